@@ -1,0 +1,2 @@
+#include "engine/jnd.h"
+#include "engine/result.h"
