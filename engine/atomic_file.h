@@ -1,0 +1,46 @@
+// Files that are either whole under their final name or not there at all.
+//
+// Thread guarantee: slow side only.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/result.h"
+
+namespace palpate {
+
+// Collects output in a temporary file beside `path`; `commit` flushes it to
+// disk and renames it. Destroyed without commit, killed or interrupted, it
+// leaves nothing under the final name.
+class AtomicFile {
+ public:
+  // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
+  // to replace it"), the folder is missing or not writable.
+  static Result<AtomicFile> create(const std::string& path, bool overwrite);
+
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&& other) noexcept;
+  ~AtomicFile();
+
+  // Appends; buffered. Errors are kept and reported by commit.
+  void write(std::string_view text);
+
+  // Errors: anything the disk refused since `create`, e.g. no space left.
+  Status commit();
+
+ private:
+  AtomicFile() = default;
+  void discard() noexcept;
+  std::string path_;
+  std::string temporary_path_;
+  std::string buffer_;
+  int descriptor_ = -1;
+  int error_number_ = 0;
+  bool overwrite_ = false;
+};
+
+// Writes `text` to `path` in one go; errors as AtomicFile.
+Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);
+
+}  // namespace palpate
