@@ -16,7 +16,8 @@ namespace palpate {
 class AtomicFile {
  public:
   // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
-  // to replace it"), the folder is missing or not writable.
+  // to replace it"), is a folder or a device; the folder is missing or not
+  // writable.
   static Result<AtomicFile> create(const std::string& path, bool overwrite);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -26,7 +27,9 @@ class AtomicFile {
   // Appends; buffered. Errors are kept and reported by commit.
   void write(std::string_view text);
 
-  // Errors: anything the disk refused since `create`, e.g. no space left.
+  // Errors: anything the disk refused since `create`, e.g. no space left; a
+  // file of that name made by someone else meanwhile, unless `overwrite`. Then
+  // nothing is left under the final name but what was there before.
   Status commit();
 
  private:
@@ -34,11 +37,21 @@ class AtomicFile {
   void discard() noexcept;
   std::string path_;
   std::string temporary_path_;
+  Status failure(int error_number) const;
+  void flush();
+  void close_descriptor() noexcept;
   std::string buffer_;
   int descriptor_ = -1;
   int error_number_ = 0;
+  int registry_slot_ = -1;
   bool overwrite_ = false;
 };
+
+// For main, once, before the first thread: SIGINT, SIGTERM, SIGHUP, SIGQUIT and
+// SIGPIPE remove the temporary files of this process before they end it as
+// usual (a signal that is ignored at the start stays ignored), and a file that
+// outgrows the process's size limit is an error of commit, not a crash.
+void remove_temporary_files_on_signals();
 
 // Writes `text` to `path` in one go; errors as AtomicFile.
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);

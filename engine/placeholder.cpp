@@ -1,2 +1,0 @@
-#include "engine/jnd.h"
-#include "engine/result.h"
