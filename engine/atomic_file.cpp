@@ -21,7 +21,7 @@ constexpr std::size_t kFlushBytes = std::size_t{1} << 18;
 // --- Registry of temporary files: what a signal handler may read ------------
 
 constexpr std::size_t kPathBytes = 4096;  // PATH_MAX on Linux
-constexpr int kSlots = 32;  // more files open at once are merely not registered
+constexpr int kSlots = 32;                // more files open at once are merely not registered
 
 enum SlotState : int { kFree, kFilling, kLive };
 
@@ -82,9 +82,7 @@ std::string temporary_name_in(const std::string& folder) {
 
 std::string words_for(int error_number) { return std::generic_category().message(error_number); }
 
-Error already_exists(const std::string& path) {
-  return Error{path + " exists; pass --force to replace it"};
-}
+Error already_exists(const std::string& path) { return Error{path + " exists; pass --force to replace it"}; }
 
 // What stands under the final name already, if anything, that forbids writing.
 Status check_target(const std::string& path, bool overwrite) {

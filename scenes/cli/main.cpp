@@ -1,1 +1,106 @@
-int main() { return 0; }
+// palpate: the headless program. Exit 0: done; 1: it could not be done; 2: wrong
+// usage. No locale is ever set, so numbers read and print with '.' everywhere.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "engine/atomic_file.h"
+#include "scenes/cli/verbs.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+void add_all_verbs(CLI::App& app, Verbs& verbs) {
+  add_scenes(app, verbs);
+  add_devices(app, verbs);
+}
+
+int fail(const std::string& message, int exit_code) {
+  const std::string block = "error: " + message + "\n";
+  std::fflush(stdout);
+  std::fwrite(block.data(), 1, block.size(), stderr);
+  return exit_code;
+}
+
+std::string known_verbs(const Verbs& verbs) {
+  std::string names;
+  for (const auto& [command, run] : verbs) names += (names.empty() ? "" : ", ") + command->get_name();
+  return names;
+}
+
+// The usage error as one line, with the verbs or the verb's own help to look at.
+int fail_usage(const CLI::App& app, const Verbs& verbs, std::string message) {
+  for (char& letter : message) {
+    if (letter == '\n' || letter == '\r') letter = ' ';
+  }
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  if (chosen.empty())
+    return fail(message + "; known verbs: " + known_verbs(verbs) + " (palpate --help explains)", kUsage);
+  return fail(message + " (palpate " + chosen.front()->get_name() + " --help explains)", kUsage);
+}
+
+Status run_chosen(const Verbs& verbs) {
+  for (const auto& [command, run] : verbs) {
+    if (!command->parsed()) continue;
+    if (const Status status = run(); !status) return status;
+  }
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout) {
+    return Error{"cannot write the results to standard output"};
+  }
+  return {};
+}
+
+// A first word that is no verb, told before CLI11 calls it "not expected".
+bool names_unknown_verb(const Verbs& verbs, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  return std::none_of(verbs.begin(), verbs.end(),
+                      [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Palpate: data-driven haptic rendering, without a window", "palpate");
+  app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  Verbs verbs;
+  add_all_verbs(app, verbs);
+  try {
+    if (argc < 2) return fail_usage(app, verbs, "no verb given");
+    if (names_unknown_verb(verbs, argc, argv)) {
+      return fail_usage(app, verbs, "unknown verb \"" + std::string(argv[1]) + "\"");
+    }
+    app.require_subcommand(1);
+    app.parse(argc, argv);
+    const Status status = run_chosen(verbs);
+    return status ? kDone : fail(status.error().message, kFailed);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      app.exit(error);  // --help and --version
+      return std::cout.flush() ? kDone : fail("cannot write to standard output", kFailed);
+    }
+    return fail_usage(app, verbs, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace palpate::cli
+
+int main(int argc, char** argv) {
+  try {
+    palpate::remove_temporary_files_on_signals();
+    return palpate::cli::run_program(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return palpate::cli::fail("out of memory", palpate::cli::kFailed);
+  } catch (const std::exception& error) {
+    return palpate::cli::fail(std::string("unexpected: ") + error.what(), palpate::cli::kFailed);
+  } catch (...) {
+    return palpate::cli::fail("unexpected: something that is no std::exception", palpate::cli::kFailed);
+  }
+}

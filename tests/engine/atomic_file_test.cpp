@@ -118,16 +118,15 @@ TEST(AtomicFile, RefusesAFolderADeviceAndAnEmptyName) {
             "cannot write " + folder.path() + ": it is a folder; name a file");
   EXPECT_EQ(write_file_atomically("/dev/null", "x", true).error().message,
             "cannot write /dev/null: it is not a regular file; name one");
-  EXPECT_EQ(write_file_atomically("", "x", true).error().message,
-            "the name of the output file is empty");
+  EXPECT_EQ(write_file_atomically("", "x", true).error().message, "the name of the output file is empty");
 }
 
 TEST(AtomicFile, NamesAMissingFolder) {
   const TemporaryFolder folder;
   const std::string path = folder.file("none/out");
-  EXPECT_EQ(write_file_atomically(path, "x", false).error().message,
-            "cannot write " + path + ": the folder " + folder.file("none") +
-                " does not exist; create it first");
+  EXPECT_EQ(
+      write_file_atomically(path, "x", false).error().message,
+      "cannot write " + path + ": the folder " + folder.file("none") + " does not exist; create it first");
   const std::string under_a_file = folder.with_file("file", "") + "/out";
   EXPECT_EQ(write_file_atomically(under_a_file, "x", false).error().message,
             "cannot write " + under_a_file + ": " + folder.file("file") + " is not a folder");

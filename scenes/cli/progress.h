@@ -1,0 +1,45 @@
+// How far a long job is, on stderr when that is a terminal, and whether the
+// user wants it to stop.
+//
+// Thread guarantee: one thread; the signal handler only sets an atomic flag.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace palpate::cli {
+
+// While one exists, the first Ctrl-C (SIGINT) asks the job to stop instead of
+// ending the program; the second ends it as before. One at a time. Use as
+//   ProgressLine line("fitting greedy-100");
+//   control.progress = [&](double fraction) { return line.update(fraction); };
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string label);
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine();  // clears the line
+
+  // `fraction` done, 0..1. Draws at most ten times a second. Returns false once
+  // the user interrupted: stop, leave no file, report "interrupted".
+  bool update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(double fraction, Clock::time_point now);
+
+  std::string label_;
+  Clock::time_point start_;
+  Clock::time_point last_drawn_;
+  bool terminal_;
+  bool drawn_ = false;
+};
+
+// Whether SIGINT arrived during the newest ProgressLine.
+bool interrupted() noexcept;
+
+// The text of a line: "label  37 %  12 s left". `elapsed_s` ≥ 0; the remaining
+// time appears once it can be guessed (2 % and 1 s).
+std::string progress_text(const std::string& label, double fraction, double elapsed_s);
+
+}  // namespace palpate::cli
