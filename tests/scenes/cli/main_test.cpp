@@ -1,0 +1,71 @@
+// The program as a whole: exit codes and what it prints where.
+#include <gtest/gtest.h>
+
+#include "tests/support/run_program.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+using test::run_program;
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// Exactly one line that starts with "error: ".
+bool is_one_error_line(const std::string& text) {
+  return text.rfind("error: ", 0) == 0 && text.find('\n') == text.size() - 1;
+}
+
+TEST(Main, HelpAndVersionGoToStandardOutput) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--help"}, {"--version"}, {"scenes", "--help"}, {"devices", "--help"}}) {
+    const auto run = run_palpate(arguments);
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_FALSE(run.out.empty());
+    EXPECT_EQ(run.err, "");
+  }
+  EXPECT_EQ(run_palpate({"--version"}).out.rfind("palpate ", 0), 0u);
+}
+
+TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{}, {"dance"}, {"--dance"}, {""}}) {
+    const auto run = run_palpate(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(is_one_error_line(run.err)) << run.err;
+    EXPECT_TRUE(contains(run.err, "known verbs: ")) << run.err;
+    EXPECT_TRUE(contains(run.err, "scenes, devices")) << run.err;
+  }
+}
+
+TEST(Main, UnknownOptionPointsToTheVerbsHelp) {
+  const auto run = run_palpate({"scenes", "--dance"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err,
+            "error: The following argument was not expected: --dance (palpate scenes --help explains)\n");
+}
+
+TEST(Main, ScenesListsEveryScene) {
+  const auto run = run_palpate({"scenes"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "");
+  for (const char* name : {"silicone_block", "foam_block", "elastic_block", "stiff_block", "skin"}) {
+    EXPECT_TRUE(contains(run.out, name)) << run.out;
+  }
+}
+
+TEST(Main, ScenesReadsTheSameInEveryLocale) {
+  EXPECT_EQ(run_palpate({"scenes"}, {"LC_ALL=de_DE.UTF-8"}).out, run_palpate({"scenes"}).out);
+}
+
+TEST(Main, ResultsThatCannotBePrintedAreAFailure) {
+  const auto run = run_program({"/bin/sh", "-c", "\"$0\" scenes > /dev/full", PALPATE_BINARY});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "error: cannot write the results to standard output\n");
+}
+
+}  // namespace
+}  // namespace palpate
