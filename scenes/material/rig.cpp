@@ -1,0 +1,165 @@
+#include "scenes/material/rig.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kGridRate_Hz = 20000.0;
+constexpr double kForceSteps = 4096.0;  // 12 bits
+
+enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream };
+
+// Between two grid points: position by the cubic through both ends with their
+// velocities, the rest straight.
+RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
+  const double rest = 1.0 - u;
+  const auto straight = [&](double from, double to) { return from + (to - from) * u; };
+  RigTruth truth;
+  truth.position_m =
+      a.position_m + (b.position_m - a.position_m) * u * u * (3.0 - 2.0 * u) +
+      kRigStep_s * u * rest * (a.velocity_m_per_s * rest - b.velocity_m_per_s * u);
+  truth.velocity_m_per_s = straight(a.velocity_m_per_s, b.velocity_m_per_s);
+  truth.acceleration_m_per_s2 = straight(a.acceleration_m_per_s2, b.acceleration_m_per_s2);
+  truth.force_N = straight(a.force_N, b.force_N);
+  truth.surface_depth_m = straight(a.surface_depth_m, b.surface_depth_m);
+  return truth;
+}
+
+double quantised_force(double force_N, const SensorSettings& sensors) {
+  const double step_N = 2.0 * sensors.force_range_N / kForceSteps;
+  const double code = std::nearbyint(force_N / step_N);
+  return std::clamp(code, -0.5 * kForceSteps, 0.5 * kForceSteps - 1.0) * step_N;
+}
+
+// The shortest text that reads back as `value`.
+std::string shortest(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+}  // namespace
+
+Result<Rig> Rig::create(const RigSettings& settings) {
+  const Result<Material> material = find_material(settings.material);
+  if (!material) return material.error();
+  if (!(settings.rate_Hz >= kSlowestRate_Hz && settings.rate_Hz <= kFastestRate_Hz)) {
+    return Error{"the rate must be 10 to 20000 Hz"};
+  }
+  const double seconds =
+      settings.seconds == 0.0 ? material->recording_seconds : settings.seconds;
+  if (!(seconds > 0.0)) return Error{"the seconds must be a number above 0"};
+  const double rows = std::floor(seconds * settings.rate_Hz + 0.5);
+  if (rows < static_cast<double>(kRecordingMinimumRows)) {
+    return Error{"seconds times rate must give at least 10 rows"};
+  }
+  if (rows > kMostRows) return Error{"seconds times rate must give at most 50 million rows"};
+  return Rig(settings, *material, static_cast<std::size_t>(rows));
+}
+
+Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_count)
+    : settings_(settings),
+      hand_(material, settings.hand, settings.seed),
+      block_(material),
+      force_noise_(settings.seed, kForceStream),
+      acceleration_noise_(settings.seed, kAccelerationStream),
+      bias_noise_(settings.seed, kBiasStream),
+      row_count_(row_count) {
+  block_.reset(hand_.position_m());
+  before_ = truth_now();
+  advance();
+  grid_index_ = 0;
+  bias_m_per_s2_ = settings.sensors.acceleration_bias_m_per_s2 * bias_noise_.normal();
+}
+
+RigTruth Rig::truth_now() const noexcept {
+  return {hand_.position_m(), hand_.velocity_m_per_s(), hand_.acceleration_m_per_s2(),
+          block_.force_N(), block_.surface_depth_m()};
+}
+
+void Rig::advance() noexcept {
+  hand_.move(kRigStep_s);
+  const double force_N = block_.step(hand_.position_m(), hand_.velocity_m_per_s(), kRigStep_s);
+  hand_.feel(force_N, kRigStep_s);
+  after_ = truth_now();
+  ++grid_index_;
+}
+
+RigTruth Rig::truth_at(double grid_time) noexcept {
+  const double whole = std::floor(grid_time);
+  while (grid_index_ < static_cast<std::uint64_t>(whole)) {
+    before_ = after_;
+    advance();
+  }
+  return between(before_, after_, grid_time - whole);
+}
+
+bool Rig::next(RecordingRow& row, RigTruth& truth) noexcept {
+  if (row_ == row_count_) return false;
+  const SensorSettings& sensors = settings_.sensors;
+  const double index = static_cast<double>(row_++);
+  truth = truth_at(index * kGridRate_Hz / settings_.rate_Hz);
+  row = {};
+  row.time_s = index / settings_.rate_Hz;
+  row.position_m = std::nearbyint(truth.position_m / sensors.encoder_step_m) * sensors.encoder_step_m;
+  row.force_N = quantised_force(
+      truth.force_N + sensors.force_noise_N * force_noise_.normal(), sensors);
+  row.acceleration_m_per_s2 =
+      truth.acceleration_m_per_s2 + bias_m_per_s2_ +
+      sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal();
+  const double share = std::min(1.0, 1.0 / (settings_.rate_Hz * sensors.acceleration_bias_time_s));
+  bias_m_per_s2_ += -share * bias_m_per_s2_ + sensors.acceleration_bias_m_per_s2 *
+                                                  std::sqrt(share * (2.0 - share)) *
+                                                  bias_noise_.normal();
+  return true;
+}
+
+Result<RigRecording> record(const RigSettings& settings) {
+  Result<Rig> rig = Rig::create(settings);
+  if (!rig) return rig.error();
+  RigRecording made;
+  made.recording.name = settings.material + "_" + std::to_string(settings.seed);
+  made.recording.columns.acceleration = true;
+  made.recording.rows.reserve(rig->row_count());
+  made.truth.reserve(rig->row_count());
+  RecordingRow row;
+  RigTruth truth;
+  while (rig->next(row, truth)) {
+    made.recording.rows.push_back(row);
+    made.truth.push_back(truth);
+  }
+  return made;
+}
+
+std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
+                                            std::size_t row_count) {
+  const SensorSettings& sensors = settings.sensors;
+  return {
+      "virtual recording by palpate synth: material " + settings.material + ", seed " +
+          std::to_string(settings.seed) + ", " + std::to_string(row_count) + " rows at " +
+          shortest(settings.rate_Hz) + " Hz",
+      "true relaxation times: " + relaxation_times_text(material),
+      "encoder step " + shortest(sensors.encoder_step_m) + " m; force noise " +
+          shortest(sensors.force_noise_N) + " N, 12 bits over +-" + shortest(sensors.force_range_N) +
+          " N",
+      "accelerometer noise " + shortest(sensors.acceleration_noise_m_per_s2) +
+          " m/s2, bias wandering by " + shortest(sensors.acceleration_bias_m_per_s2) +
+          " m/s2 within " + shortest(sensors.acceleration_bias_time_s) + " s",
+  };
+}
+
+std::size_t count_force_steps(const Recording& recording, double step_N) {
+  if (recording.rows.empty()) return 0;
+  std::size_t kept = 1;
+  double last_N = recording.rows.front().force_N;
+  for (const RecordingRow& row : recording.rows) {
+    if (std::abs(row.force_N - last_N) < step_N) continue;
+    last_N = row.force_N;
+    ++kept;
+  }
+  return kept;
+}
+
+}  // namespace palpate

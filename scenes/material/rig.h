@@ -1,0 +1,110 @@
+// The virtual recording rig behind `palpate synth`: a hand presses a block of
+// virtual material, sensors write down what they see, and the truth that no
+// sensor sees is kept beside it.
+//
+// Hand and material run at 20 kHz whatever the recording's rate; sensors only
+// read them. So the same seed gives the same motion and the same true force at
+// every rate, and each sensor draws its noise, one number per row, from a
+// stream of its own.
+// Sensors (per row, independent): encoder, position rounded to its step; force
+// cell, white noise, then 12-bit steps over its range; accelerometer (like the
+// paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz), white noise and a bias that
+// wanders slowly (Ornstein-Uhlenbeck).
+// Source: Hoever & Harders (2009), section 2.
+// Thread guarantee: one thread at a time; slow side only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/recording.h"
+#include "engine/result.h"
+#include "scenes/material/hand.h"
+#include "scenes/material/material.h"
+#include "scenes/material/random_stream.h"
+
+namespace palpate {
+
+struct SensorSettings {
+  double encoder_step_m = 30e-6;
+  double force_noise_N = 0.005;
+  double force_range_N = 10.0;  // -range .. +range in 4096 steps; clips beyond
+  double acceleration_noise_m_per_s2 = 0.07;
+  double acceleration_bias_m_per_s2 = 0.1;  // standard deviation
+  double acceleration_bias_time_s = 20.0;   // how slowly it wanders
+};
+
+inline constexpr double kRigStep_s = 1.0 / 20000.0;
+inline constexpr double kSlowestRate_Hz = 10.0;
+inline constexpr double kFastestRate_Hz = 20000.0;
+// Ten hours at 1 kHz and then some; a recording of this size is 2 GB in memory.
+inline constexpr double kMostRows = 5e7;
+
+struct RigSettings {
+  std::string material = "silicone";
+  std::uint64_t seed = 1;
+  double seconds = 0.0;     // 0: the material's own length
+  double rate_Hz = 1000.0;  // kSlowestRate_Hz .. kFastestRate_Hz
+  SensorSettings sensors;
+  HandSettings hand;
+};
+
+// What really was, at the time of one row.
+struct RigTruth {
+  double position_m = 0.0;
+  double velocity_m_per_s = 0.0;
+  double acceleration_m_per_s2 = 0.0;
+  double force_N = 0.0;          // of the material, without noise; >= 0
+  double surface_depth_m = 0.0;  // more than the depth when the tool has left
+};
+
+struct RigRecording {
+  Recording recording;          // columns: position, force, acceleration
+  std::vector<RigTruth> truth;  // one for each row
+};
+
+// Makes rows one by one, in bounded memory.
+class Rig {
+ public:
+  // Errors: unknown material (the message lists the known), seconds negative,
+  // not finite or fewer than 10 rows, rate out of range, more than kMostRows.
+  static Result<Rig> create(const RigSettings& settings);
+
+  std::size_t row_count() const noexcept { return row_count_; }
+  const Material& material() const noexcept { return block_.material(); }
+
+  // The next row and the truth behind it; false after the last.
+  bool next(RecordingRow& row, RigTruth& truth) noexcept;
+
+ private:
+  Rig(const RigSettings& settings, const Material& material, std::size_t row_count);
+  RigTruth truth_now() const noexcept;
+  void advance() noexcept;
+  RigTruth truth_at(double grid_time) noexcept;
+
+  RigSettings settings_;
+  Hand hand_;
+  MaterialState block_;
+  RandomStream force_noise_, acceleration_noise_, bias_noise_;
+  std::size_t row_count_ = 0, row_ = 0;
+  std::uint64_t grid_index_ = 0;
+  RigTruth before_, after_;  // at grid_index_ and one step later
+  double bias_m_per_s2_ = 0.0;
+};
+
+// A whole recording with its truth; errors as Rig::create. The recording's
+// name is "<material>_<seed>".
+Result<RigRecording> record(const RigSettings& settings);
+
+// What a recording made with `settings` says about itself, line by line; the
+// same for the same settings, with no path and no date. `row_count`: its rows.
+std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
+                                            std::size_t row_count);
+
+// How many rows of `recording` the paper's reduction keeps: a row is dropped
+// when its force differs by less than `step_N` from the last kept row's.
+std::size_t count_force_steps(const Recording& recording, double step_N);
+
+}  // namespace palpate

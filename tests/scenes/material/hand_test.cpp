@@ -1,0 +1,116 @@
+#include "scenes/material/hand.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kStep_s = 5e-5;
+
+Material silicone() { return find_material("silicone").value(); }
+
+void advance(Hand& hand, MaterialState& block) {
+  hand.move(kStep_s);
+  hand.feel(block.step(hand.position_m(), hand.velocity_m_per_s(), kStep_s), kStep_s);
+}
+
+// Without any force the hand is linear, so a hand with tremor less one without
+// is the tremor as the hand passes it on.
+TEST(Hand, TremblesAtEightToTwelveHertz) {
+  HandSettings calm;
+  calm.tremor_rms_m = 0.0;
+  Hand trembling(silicone(), {}, 3), steady(silicone(), calm, 3);
+  double squares = 0.0, last = 0.0;
+  int crossings = 0;
+  constexpr int kSteps = 400000;  // 20 s
+  for (int i = 0; i < kSteps; ++i) {
+    for (Hand* hand : {&trembling, &steady}) {
+      hand->move(kStep_s);
+      hand->feel(0.0, kStep_s);
+    }
+    const double tremor = trembling.position_m() - steady.position_m();
+    squares += tremor * tremor;
+    crossings += tremor * last < 0.0;
+    last = tremor;
+  }
+  const double frequency_Hz = crossings / 2.0 / (kSteps * kStep_s);
+  EXPECT_GT(frequency_Hz, 8.0);
+  EXPECT_LT(frequency_Hz, 12.0);
+  // The hand's own spring and damper pass 8 to 12 Hz on with a gain of 1 to 1.4.
+  const double rms_m = std::sqrt(squares / kSteps);
+  EXPECT_GT(rms_m, 0.9 * HandSettings{}.tremor_rms_m);
+  EXPECT_LT(rms_m, 1.5 * HandSettings{}.tremor_rms_m);
+}
+
+TEST(Hand, VelocityAndAccelerationAreTheDerivativesOfPosition) {
+  Hand hand(silicone(), {}, 2);
+  MaterialState block(silicone());
+  block.reset(hand.position_m());
+  int jumps = 0;
+  double x0 = 0.0, x1 = 0.0, v0 = 0.0, v1 = 0.0, a1 = 0.0;
+  for (int i = 0; i < 200000; ++i) {
+    advance(hand, block);
+    if (i > 2) {
+      // Central differences. Where the tool meets a surface that still lags by
+      // s, the damper makes the acceleration jump by c s v / m, some 2 m/s^2;
+      // a difference across the jump is off by half of it, and the velocity
+      // by half of it times the step.
+      ASSERT_NEAR(v1, (hand.position_m() - x0) / (2.0 * kStep_s), 1e-4) << i;
+      const double difference = (hand.velocity_m_per_s() - v0) / (2.0 * kStep_s);
+      ASSERT_NEAR(a1, difference, 2.0) << i;
+      jumps += std::abs(a1 - difference) > 0.05;
+    }
+    x0 = x1;
+    v0 = v1;
+    x1 = hand.position_m();
+    v1 = hand.velocity_m_per_s();
+    a1 = hand.acceleration_m_per_s2();
+  }
+  EXPECT_LT(jumps, 100);
+}
+
+TEST(Hand, HalvingTheStepHardlyChangesTheMotion) {
+  Hand coarse(silicone(), {}, 4), fine(silicone(), {}, 4);
+  MaterialState coarse_block(silicone()), fine_block(silicone());
+  coarse_block.reset(coarse.position_m());
+  fine_block.reset(fine.position_m());
+  double worst_m = 0.0;
+  for (int i = 0; i < 200000; ++i) {
+    advance(coarse, coarse_block);
+    for (int half = 0; half < 2; ++half) {
+      fine.move(0.5 * kStep_s);
+      fine.feel(fine_block.step(fine.position_m(), fine.velocity_m_per_s(), 0.5 * kStep_s),
+                0.5 * kStep_s);
+    }
+    worst_m = std::max(worst_m, std::abs(coarse.position_m() - fine.position_m()));
+  }
+  // A tenth of an encoder step.
+  EXPECT_LT(worst_m, 3e-6);
+}
+
+TEST(Hand, PressesTouchesAndLeavesAgain) {
+  Hand hand(silicone(), {}, 1);
+  MaterialState block(silicone());
+  block.reset(hand.position_m());
+  int touches = 0;
+  double fastest = 0.0, strongest_N = 0.0;
+  bool inside = false;
+  for (int i = 0; i < 800000; ++i) {  // 40 s
+    advance(hand, block);
+    touches += hand.position_m() > 0.0 && !inside;
+    inside = hand.position_m() > 0.0;
+    fastest = std::max(fastest, std::abs(hand.velocity_m_per_s()));
+    strongest_N = std::max(strongest_N, block.force_N());
+  }
+  EXPECT_GT(touches, 25);
+  EXPECT_GT(fastest, 0.15);
+  EXPECT_LT(fastest, 0.5);
+  EXPECT_GT(strongest_N, 5.0);
+  EXPECT_LT(strongest_N, 7.5);
+}
+
+}  // namespace
+}  // namespace palpate

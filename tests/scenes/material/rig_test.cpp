@@ -1,0 +1,240 @@
+#include "scenes/material/rig.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace palpate {
+namespace {
+
+RigRecording made(const std::string& material, std::uint64_t seed, double seconds = 0.0,
+                  double rate_Hz = 1000.0) {
+  RigSettings settings;
+  settings.material = material;
+  settings.seed = seed;
+  settings.seconds = seconds;
+  settings.rate_Hz = rate_Hz;
+  Result<RigRecording> result = record(settings);
+  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
+  return std::move(result.value());
+}
+
+bool same_bits(const Recording& a, const Recording& b) {
+  return a.rows.size() == b.rows.size() &&
+         std::memcmp(a.rows.data(), b.rows.data(), a.rows.size() * sizeof(RecordingRow)) == 0;
+}
+
+struct Spread {
+  double mean = 0.0, deviation = 0.0;
+};
+template <typename Sample>
+Spread spread(std::size_t count, Sample sample) {
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    sum += sample(i);
+    squares += sample(i) * sample(i);
+  }
+  const double n = static_cast<double>(count);
+  return {sum / n, std::sqrt(squares / n - sum / n * sum / n)};
+}
+
+// The paper's recording, section 4: 41,499 samples, of which 6,850 stay; its
+// silicone was pressed to about 6 N.
+TEST(Rig, SiliconeDefaultsAreThePapersRecording) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const RigRecording rig = made("silicone", seed);
+    EXPECT_EQ(rig.recording.rows.size(), 41499u);
+    const auto kept = static_cast<double>(count_force_steps(rig.recording, 0.05));
+    EXPECT_NEAR(kept, 6850.0, 685.0) << "seed " << seed;
+  }
+  EXPECT_EQ(made("silicone", 2, 45.272).recording.rows.size(), 45272u);
+}
+
+TEST(Rig, EveryMaterialIsPressedToAboutSixNewtons) {
+  for (const Material& material : materials()) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      const RigRecording rig = made(std::string(material.name), seed);
+      double strongest_N = 0.0;
+      std::size_t contact = 0;
+      for (const RigTruth& truth : rig.truth) {
+        strongest_N = std::max(strongest_N, truth.force_N);
+        contact += truth.position_m > 0.0;
+      }
+      EXPECT_GT(strongest_N, 5.0) << material.name;
+      EXPECT_LT(strongest_N, 7.5) << material.name;
+      EXPECT_GT(static_cast<double>(contact), 0.6 * static_cast<double>(rig.truth.size()));
+      EXPECT_LT(static_cast<double>(contact), 0.9 * static_cast<double>(rig.truth.size()));
+    }
+  }
+}
+
+TEST(Rig, SameSeedGivesTheSameBits) {
+  EXPECT_TRUE(same_bits(made("foam", 7, 5.0).recording, made("foam", 7, 5.0).recording));
+  EXPECT_FALSE(same_bits(made("foam", 7, 5.0).recording, made("foam", 8, 5.0).recording));
+}
+
+// What the sensors read is whole steps, so the hash does not see the last bits
+// in which mathematics libraries may differ. It was the same from g++ 12 and
+// clang 14 at -O0, -O2 and -O3; a change means that all recordings changed.
+TEST(Rig, EveryCompilerGivesTheSameRecording) {
+  const RigRecording rig = made("silicone", 1, 5.0);
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a over whole words
+  for (const RecordingRow& row : rig.recording.rows) {
+    for (const double steps : {row.position_m / 30e-6, row.force_N * 4096.0 / 20.0}) {
+      hash = (hash ^ static_cast<std::uint64_t>(std::llround(steps) + 100000)) * 1099511628211u;
+    }
+  }
+  EXPECT_EQ(hash, 16002731263459965987u);
+}
+
+TEST(Rig, ALongerRecordingBeginsWithTheShorterOne) {
+  const RigRecording brief = made("silicone", 3, 4.0);
+  RigRecording lengthy = made("silicone", 3, 8.0);
+  lengthy.recording.rows.resize(brief.recording.rows.size());
+  EXPECT_TRUE(same_bits(brief.recording, lengthy.recording));
+}
+
+TEST(Rig, RatesShareMotionAndForce) {
+  const RigRecording fine = made("silicone", 5, 6.0, 2000.0);
+  const RigRecording common = made("silicone", 5, 6.0, 1000.0);
+  const RigRecording coarse = made("silicone", 5, 6.0, 500.0);
+  ASSERT_EQ(coarse.truth.size(), 3000u);
+  for (std::size_t i = 0; i < coarse.truth.size(); ++i) {
+    ASSERT_EQ(coarse.truth[i].force_N, common.truth[2 * i].force_N);
+    ASSERT_EQ(coarse.truth[i].force_N, fine.truth[4 * i].force_N);
+    ASSERT_EQ(coarse.truth[i].position_m, common.truth[2 * i].position_m);
+    ASSERT_EQ(coarse.truth[i].position_m, fine.truth[4 * i].position_m);
+    ASSERT_EQ(coarse.recording.rows[i].time_s, fine.recording.rows[4 * i].time_s);
+  }
+}
+
+// 300 Hz does not divide the 20 kHz grid; every third row is on it, at 100 Hz.
+TEST(Rig, RatesBesideTheGridAreInterpolated) {
+  const RigRecording odd = made("gel", 5, 3.0, 300.0);
+  const RigRecording grid = made("gel", 5, 3.0, 100.0);
+  for (std::size_t i = 0; i < grid.truth.size(); ++i) {
+    // Index times 20000 / 300 is inexact by 1e-11 grid steps.
+    ASSERT_NEAR(odd.truth[3 * i].force_N, grid.truth[i].force_N, 1e-9);
+    ASSERT_NEAR(odd.truth[3 * i].position_m, grid.truth[i].position_m, 1e-12);
+  }
+}
+
+TEST(Rig, TruthIsConsistent) {
+  const RigRecording rig = made("silicone", 1, 10.0, 20000.0);
+  for (std::size_t i = 1; i + 1 < rig.truth.size(); ++i) {
+    const RigTruth& truth = rig.truth[i];
+    const double slope =
+        (rig.truth[i + 1].position_m - rig.truth[i - 1].position_m) * 0.5 / kRigStep_s;
+    // Positive velocity goes in; see Hand for the tolerance.
+    ASSERT_NEAR(truth.velocity_m_per_s, slope, 1e-4);
+    ASSERT_GE(truth.force_N, 0.0);
+    ASSERT_GE(truth.surface_depth_m, std::max(0.0, truth.position_m));
+    if (truth.position_m <= 0.0) {
+      ASSERT_EQ(truth.force_N, 0.0);
+    }
+  }
+}
+
+TEST(Rig, EncoderReadsTheNearestThirtyMicrometres) {
+  const RigRecording rig = made("silicone", 1, 10.0);
+  for (std::size_t i = 0; i < rig.truth.size(); ++i) {
+    const double count = rig.recording.rows[i].position_m / 30e-6;
+    ASSERT_NEAR(count, std::round(count), 1e-9);
+    ASSERT_LE(std::abs(rig.recording.rows[i].position_m - rig.truth[i].position_m), 15.001e-6);
+  }
+}
+
+TEST(Rig, ForceNoiseIsAsStatedAndInTwelveBitSteps) {
+  const RigRecording rig = made("silicone", 1);
+  const double step_N = 20.0 / 4096.0;
+  const Spread error = spread(rig.truth.size(), [&](std::size_t i) {
+    const double count = rig.recording.rows[i].force_N / step_N;
+    EXPECT_NEAR(count, std::round(count), 1e-9);
+    return rig.recording.rows[i].force_N - rig.truth[i].force_N;
+  });
+  // Noise and rounding add as squares; standard errors 2.5e-5 and 1.8e-5 N.
+  EXPECT_NEAR(error.mean, 0.0, 1e-4);
+  EXPECT_NEAR(error.deviation, std::hypot(0.005, step_N / std::sqrt(12.0)), 1e-4);
+}
+
+TEST(Rig, ForceCellClipsAtItsRange) {
+  RigSettings settings;
+  settings.seconds = 10.0;
+  settings.sensors.force_range_N = 2.0;
+  const Result<RigRecording> rig = record(settings);
+  ASSERT_TRUE(rig.ok());
+  double strongest_N = 0.0;
+  for (const RecordingRow& row : rig->recording.rows) strongest_N = std::max(strongest_N, row.force_N);
+  EXPECT_DOUBLE_EQ(strongest_N, 2.0 * 2047.0 / 2048.0);
+}
+
+TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
+  const RigRecording rig = made("silicone", 1, 200.0);
+  const auto error = [&](std::size_t i) {
+    return rig.recording.rows[i].acceleration_m_per_s2 - rig.truth[i].acceleration_m_per_s2;
+  };
+  const std::size_t count = rig.truth.size();
+  // Differences of neighbours hold twice the white variance and no bias;
+  // standard error 0.2 %.
+  const Spread steps =
+      spread(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
+  EXPECT_NEAR(steps.deviation / std::sqrt(2.0), 0.07, 0.001);
+  // Over 200 s the bias has some ten independent values of 0.1: its mean and
+  // spread are known to a factor of two.
+  const Spread bias = spread(count / 1000, [&](std::size_t second) {
+    return spread(1000, [&](std::size_t i) { return error(1000 * second + i); }).mean;
+  });
+  EXPECT_LT(std::abs(bias.mean), 0.15);
+  EXPECT_GT(bias.deviation, 0.03);
+  EXPECT_LT(bias.deviation, 0.2);
+}
+
+TEST(Rig, RefusesNonsense) {
+  const auto message = [](auto change) {
+    RigSettings settings;
+    change(settings);
+    const Result<RigRecording> result = record(settings);
+    return result.ok() ? std::string("accepted") : result.error().message;
+  };
+  EXPECT_EQ(message([](RigSettings& s) { s.material = "Silicone"; }),
+            "unknown material 'Silicone'; known: silicone, foam, elastic, stiff, gel");
+  EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 9.9; }), "the rate must be 10 to 20000 Hz");
+  EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 20001.0; }), "the rate must be 10 to 20000 Hz");
+  EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = std::nan(""); }),
+            "the rate must be 10 to 20000 Hz");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = -1.0; }),
+            "the seconds must be a number above 0");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = std::nan(""); }),
+            "the seconds must be a number above 0");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = 0.005; }),
+            "seconds times rate must give at least 10 rows");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = 1e9; }),
+            "seconds times rate must give at most 50 million rows");
+}
+
+TEST(Rig, DescribesHowTheRecordingWasMade) {
+  const RigSettings settings;
+  const std::vector<std::string> lines =
+      describe_recording(settings, find_material("silicone").value(), 41499);
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[0],
+            "virtual recording by palpate synth: material silicone, seed 1, 41499 rows at 1000 Hz");
+  EXPECT_EQ(lines[1], "true relaxation times: 0.17 s, 1.27 s");
+}
+
+TEST(CountForceSteps, CountsFromTheLastKeptRow) {
+  Recording recording;
+  for (const double force_N : {0.0, 0.04, 0.08, 0.1, 0.05, 0.03}) {
+    RecordingRow row;
+    row.force_N = force_N;
+    recording.rows.push_back(row);
+  }
+  // Kept: 0, 0.08 and 0.03 (0.1 and 0.05 are within 0.05 of 0.08).
+  EXPECT_EQ(count_force_steps(recording, 0.0499), 3u);
+  EXPECT_EQ(count_force_steps({}, 0.05), 0u);
+}
+
+}  // namespace
+}  // namespace palpate
