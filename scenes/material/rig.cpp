@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 constexpr double kGridRate_Hz = 20000.0;
-constexpr double kForceSteps = 4096.0;  // 12 bits
+constexpr double kConverterSteps = 4096.0;  // 12 bits
 
 enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream };
 
@@ -28,10 +28,18 @@ RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   return truth;
 }
 
-double quantised_force(double force_N, const SensorSettings& sensors) {
-  const double step_N = 2.0 * sensors.force_range_N / kForceSteps;
-  const double code = std::nearbyint(force_N / step_N);
-  return std::clamp(code, -0.5 * kForceSteps, 0.5 * kForceSteps - 1.0) * step_N;
+// A 12-bit converter: whole steps over -range .. +range, clipped beyond. The
+// + 0.0 here and below makes -0 a plain 0, which reads better in a file.
+double converted(double value, double range) {
+  const double step = 2.0 * range / kConverterSteps;
+  const double code = std::nearbyint(value / step);
+  return std::clamp(code, -0.5 * kConverterSteps, 0.5 * kConverterSteps - 1.0) * step + 0.0;
+}
+
+// Whole encoder steps, as the double nearest to the decimal number of
+// nanometres, which is short in a file.
+double encoded(double position_m, double step_m) {
+  return std::nearbyint(std::nearbyint(position_m / step_m) * step_m * 1e9) / 1e9 + 0.0;
 }
 
 // The shortest text that reads back as `value`.
@@ -103,12 +111,13 @@ bool Rig::next(RecordingRow& row, RigTruth& truth) noexcept {
   truth = truth_at(index * kGridRate_Hz / settings_.rate_Hz);
   row = {};
   row.time_s = index / settings_.rate_Hz;
-  row.position_m = std::nearbyint(truth.position_m / sensors.encoder_step_m) * sensors.encoder_step_m;
-  row.force_N = quantised_force(
-      truth.force_N + sensors.force_noise_N * force_noise_.normal(), sensors);
+  row.position_m = encoded(truth.position_m, sensors.encoder_step_m);
+  row.force_N = converted(truth.force_N + sensors.force_noise_N * force_noise_.normal(),
+                          sensors.force_range_N);
   row.acceleration_m_per_s2 =
-      truth.acceleration_m_per_s2 + bias_m_per_s2_ +
-      sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal();
+      converted(truth.acceleration_m_per_s2 + bias_m_per_s2_ +
+                    sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal(),
+                sensors.acceleration_range_m_per_s2);
   const double share = std::min(1.0, 1.0 / (settings_.rate_Hz * sensors.acceleration_bias_time_s));
   bias_m_per_s2_ += -share * bias_m_per_s2_ + sensors.acceleration_bias_m_per_s2 *
                                                   std::sqrt(share * (2.0 - share)) *
@@ -146,7 +155,8 @@ std::vector<std::string> describe_recording(const RigSettings& settings, const M
           " N",
       "accelerometer noise " + shortest(sensors.acceleration_noise_m_per_s2) +
           " m/s2, bias wandering by " + shortest(sensors.acceleration_bias_m_per_s2) +
-          " m/s2 within " + shortest(sensors.acceleration_bias_time_s) + " s",
+          " m/s2 within " + shortest(sensors.acceleration_bias_time_s) + " s, 12 bits over +-" +
+          shortest(sensors.acceleration_range_m_per_s2) + " m/s2",
   };
 }
 

@@ -9,7 +9,7 @@
 // Sensors (per row, independent): encoder, position rounded to its step; force
 // cell, white noise, then 12-bit steps over its range; accelerometer (like the
 // paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz), white noise and a bias that
-// wanders slowly (Ornstein-Uhlenbeck).
+// wanders slowly (Ornstein-Uhlenbeck), then 12-bit steps over its range.
 // Source: Hoever & Harders (2009), section 2.
 // Thread guarantee: one thread at a time; slow side only.
 #pragma once
@@ -32,6 +32,7 @@ struct SensorSettings {
   double force_noise_N = 0.005;
   double force_range_N = 10.0;  // -range .. +range in 4096 steps; clips beyond
   double acceleration_noise_m_per_s2 = 0.07;
+  double acceleration_range_m_per_s2 = 40.0;  // -range .. +range in 4096 steps
   double acceleration_bias_m_per_s2 = 0.1;  // standard deviation
   double acceleration_bias_time_s = 20.0;   // how slowly it wanders
 };

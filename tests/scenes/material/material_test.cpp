@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenes/material/random_stream.h"
+#include "tests/support/rt_guard.h"
 
 namespace palpate {
 namespace {
@@ -323,6 +324,19 @@ TEST(MaterialState, ResetForgetsAll) {
   used.reset();
   for (int i = 1; i < 100; ++i) {
     EXPECT_EQ(used.step(1e-4 * i, 0.1, 1e-3), fresh.step(1e-4 * i, 0.1, 1e-3));
+  }
+}
+
+TEST(MaterialState, StepNeverAllocatesOrLocks) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const Material& material : materials()) {
+    const Wandering motion(5, deepest_m(material));
+    MaterialState block(material);
+    test::RtGuard guard;
+    for (int i = 1; i <= 10000; ++i) {
+      block.step(motion.position_m(i * 1e-3), motion.velocity_m_per_s(i * 1e-3), 1e-3);
+    }
+    EXPECT_EQ(guard.stop().total(), 0) << material.name;
   }
 }
 

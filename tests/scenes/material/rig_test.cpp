@@ -82,11 +82,12 @@ TEST(Rig, EveryCompilerGivesTheSameRecording) {
   const RigRecording rig = made("silicone", 1, 5.0);
   std::uint64_t hash = 14695981039346656037u;  // FNV-1a over whole words
   for (const RecordingRow& row : rig.recording.rows) {
-    for (const double steps : {row.position_m / 30e-6, row.force_N * 4096.0 / 20.0}) {
+    for (const double steps : {row.position_m / 30e-6, row.force_N * 4096.0 / 20.0,
+                               row.acceleration_m_per_s2 * 4096.0 / 80.0}) {
       hash = (hash ^ static_cast<std::uint64_t>(std::llround(steps) + 100000)) * 1099511628211u;
     }
   }
-  EXPECT_EQ(hash, 16002731263459965987u);
+  EXPECT_EQ(hash, 14359334750392351766u);
 }
 
 TEST(Rig, ALongerRecordingBeginsWithTheShorterOne) {
@@ -176,6 +177,10 @@ TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
     return rig.recording.rows[i].acceleration_m_per_s2 - rig.truth[i].acceleration_m_per_s2;
   };
   const std::size_t count = rig.truth.size();
+  const double step = 80.0 / 4096.0;
+  for (const RecordingRow& row : rig.recording.rows) {
+    ASSERT_EQ(row.acceleration_m_per_s2, std::round(row.acceleration_m_per_s2 / step) * step);
+  }
   // Differences of neighbours hold twice the white variance and no bias;
   // standard error 0.2 %.
   const Spread steps =
