@@ -1,0 +1,61 @@
+// The inner loops of everything that computes kernels, one variant per
+// instruction set, chosen when the program runs. Only rbf_evaluate.cpp uses
+// this header; everyone else uses rbf_evaluate.h.
+//
+// Arrays are structure-of-arrays: coordinate k of point i is at
+// coordinates[k * stride + i]; counts are multiples of kSimdPad, made up with
+// harmless points (weight 0). Pointers are 64-byte aligned where padded.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "models/kernels.h"
+
+namespace palpate::simd {
+
+// Doubles in the widest vector used; every narrower one divides it.
+inline constexpr std::size_t kSimdPad = 8;
+// Floats, for the nearest-point loop.
+inline constexpr std::size_t kSimdPadFloat = 16;
+
+struct Points {
+  const double* coordinates = nullptr;
+  std::size_t stride = 0;
+  std::size_t padded = 0;
+  int dimension = 0;
+};
+
+// sum_j weights[j] phi(|x - point_j|), without the tail.
+using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* x) noexcept;
+// out[i] = phi(|point_i - centre|) for i < count.
+using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre,
+                                double* out) noexcept;
+// For rows i in [row_begin, row_end) and columns j in [column_begin,
+// column_end), which must not overlap unless they are equal:
+//   y[i] += sum_j phi_ij v[j], and, when they differ, y[j] += sum_i phi_ij v[i].
+// All bounds are multiples of kSimdPad.
+using ProductFunction = void (*)(const Points& points, std::size_t row_begin, std::size_t row_end,
+                                 std::size_t column_begin, std::size_t column_end, const double* v,
+                                 double* y) noexcept;
+// min_i |x - point_i|^2 in single precision; `count` a multiple of kSimdPadFloat.
+using NearestFunction = float (*)(const float* coordinates, std::size_t stride, std::size_t count,
+                                  const float* x) noexcept;
+
+// The loops for this kernel and dimension (1 to 8) on the chosen target.
+EvaluateFunction evaluate_function(KernelKind kind, int dimension);
+ColumnFunction column_function(KernelKind kind, int dimension);
+ProductFunction product_function(KernelKind kind, int dimension);
+NearestFunction nearest_function(int dimension);
+
+// Names of the instruction sets this processor can run, best first, and the
+// one in use. choose_target takes one of them, or "" for the best; it concerns
+// objects built afterwards. Returns false when there is no such target. For
+// tests and benchmarks, not while other threads build evaluators.
+std::vector<std::string> target_names();
+std::string target_name();
+bool choose_target(const std::string& name);
+
+}  // namespace palpate::simd

@@ -1,0 +1,33 @@
+// The data a fit works on: normalised feature vectors with the force measured
+// at each (the pairs {u_i; f_i} of Hoever & Harders 2009, section 3).
+// Thread guarantee: a value type; validate_sites may be called from any thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/result.h"
+
+namespace palpate {
+
+inline constexpr int kMaxDimension = 8;
+
+struct Sites {
+  Eigen::MatrixXd points;    // d x N, normalised, one column a site, d from 1 to kMaxDimension
+  Eigen::VectorXd target_N;  // N forces
+  // N factors >= 0 that multiply the residual rows, e.g. 1 / JND(force). A
+  // factor of 0 leaves the site out of the sum.
+  Eigen::VectorXd row_scale;
+  // N stroke numbers in time order, for leave-one-stroke-out; empty means no
+  // grouping is known.
+  std::vector<int> group;
+
+  Eigen::Index count() const { return points.cols(); }
+  int dimension() const { return static_cast<int>(points.rows()); }
+};
+
+// Checks sizes and finiteness. Errors: names the array and the sizes found and
+// expected, or the first site with a number that is not finite.
+Status validate_sites(const Sites& sites);
+
+}  // namespace palpate

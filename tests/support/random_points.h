@@ -1,0 +1,62 @@
+// Small reproducible data for tests of the numerics.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+
+#include "models/rbf_function.h"
+#include "models/polynomial_tail.h"
+#include "models/sites.h"
+
+namespace palpate::test {
+
+// A linear congruential generator (Knuth's MMIX constants): the same numbers
+// with every compiler.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed * 2 + 1) {}
+  // Uniform in [-1, 1).
+  double next() {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state_ >> 11) * 0x1p-52 - 1.0;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+inline Eigen::MatrixXd random_points(int dimension, int count, std::uint64_t seed) {
+  Numbers numbers(seed);
+  Eigen::MatrixXd points(dimension, count);
+  for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = numbers.next();
+  return points;
+}
+
+inline RbfFunction random_function(KernelKind kernel, int dimension, int centres, std::uint64_t seed) {
+  RbfFunction function;
+  function.kernel = kernel;
+  function.centres = random_points(dimension, centres, seed);
+  function.weights = random_points(1, centres, seed + 1).transpose();
+  function.tail = random_points(1, tail_size(tail_degree(kernel), dimension), seed + 2).transpose();
+  return function;
+}
+
+// A smooth force of the coordinates, with noise of the given size.
+inline Sites smooth_sites(int dimension, int count, double noise_N, std::uint64_t seed) {
+  Sites sites;
+  sites.points = random_points(dimension, count, seed);
+  sites.target_N.resize(count);
+  sites.row_scale.resize(count);
+  Numbers noise(seed + 7);
+  for (int i = 0; i < count; ++i) {
+    const auto x = sites.points.col(i);
+    const double force = 1.5 + std::exp(0.8 * x[0]) + 0.3 * std::sin(2.0 * x.sum()) + 0.2 * x.squaredNorm();
+    sites.target_N[i] = force + noise_N * noise.next();
+    sites.row_scale[i] = 1.0 / (0.065 + 0.0633 * std::abs(force));
+    sites.group.push_back(i / 50);
+  }
+  return sites;
+}
+
+}  // namespace palpate::test
