@@ -1,0 +1,24 @@
+// Recordings that must be refused, each with the whole message.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace palpate::test {
+
+struct BrokenRecording {
+  const char* name;     // for the test's output
+  std::string text;     // the file
+  std::string message;  // with "rec.csv" for the file's name
+};
+
+const std::vector<BrokenRecording>& broken_recordings();
+
+// `count` good rows at 1 kHz from row number `first`, ended by `line_end`.
+std::string good_rows(int count, int first = 0, const std::string& line_end = "\n");
+
+// The header that goes with them, and a whole good file.
+std::string good_header();
+std::string good_recording();
+
+}  // namespace palpate::test
