@@ -79,6 +79,8 @@ class FeatureFilter {
   // `sample` and its motion estimate; times increase. The contact state is
   // that of the raw position.
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept;
+  // What `update` gave last.
+  const FeatureVector& vector() const noexcept { return vector_; }
 
  private:
   std::array<FeatureSpec, kMaxFeatures> specs_{};
