@@ -76,14 +76,15 @@ void RbfEvaluator::evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd&
   });
 }
 
-void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::MatrixXd& centres,
-                   Eigen::Ref<Eigen::MatrixXd> out, const Eigen::VectorXd* row_scale) {
-  assert(out.rows() == points.count() && out.cols() == centres.cols());
+void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
+                   Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row) {
+  assert(first_row % static_cast<Eigen::Index>(simd::kSimdPad) == 0);
+  assert(first_row + out.rows() <= points.count() && out.cols() == centres.cols());
   const simd::ColumnFunction column = simd::column_function(kind, points.view().dimension);
-  for (Eigen::Index j = 0; j < centres.cols(); ++j) {
-    column(points.view(), static_cast<std::size_t>(points.count()), centres.col(j).data(), out.col(j).data());
-    if (row_scale != nullptr) out.col(j).array() *= row_scale->array();
-  }
+  simd::Points rows = points.view();
+  rows.coordinates += first_row;
+  for (Eigen::Index j = 0; j < centres.cols(); ++j)
+    column(rows, static_cast<std::size_t>(out.rows()), centres.col(j).data(), out.col(j).data());
 }
 
 KernelProduct::KernelProduct(KernelKind kind, const PointArrays& points)

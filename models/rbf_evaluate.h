@@ -78,10 +78,12 @@ class RbfEvaluator {
   simd::EvaluateFunction evaluate_ = nullptr;
 };
 
-// The matrix Phi of eq. 5, N x n: phi(|points.col(i) - centres.col(j)|).
-// `row_scale`, when given (N values), multiplies the rows. Single-threaded.
-void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::MatrixXd& centres,
-                   Eigen::Ref<Eigen::MatrixXd> out, const Eigen::VectorXd* row_scale = nullptr);
+// Rows of the matrix Phi of eq. 5:
+//   out(i, j) = phi(|points.col(first_row + i) - centres.col(j)|)
+// `out`: rows x n, contiguous columns; `first_row` a multiple of 8. Runs on the
+// calling thread; parts of a matrix may be filled by several threads at once.
+void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
+                   Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row = 0);
 
 // Products with the symmetric kernel matrix of one point set, without ever
 // storing it: each pair's kernel is computed once and used twice, which is as

@@ -1,6 +1,8 @@
 #include "models/sites.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace palpate {
@@ -31,6 +33,24 @@ Status validate_sites(const Sites& sites) {
                    " is not finite or has a negative row_scale; expected finite points, forces and factors"};
   }
   return {};
+}
+
+std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(sites.count()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const auto compare = [&](Eigen::Index a, Eigen::Index b) {
+    for (Eigen::Index k = 0; k < sites.points.rows(); ++k)
+      if (sites.points(k, a) != sites.points(k, b)) return sites.points(k, a) < sites.points(k, b) ? -1 : 1;
+    return 0;
+  };
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    const int order_of_points = compare(a, b);
+    return order_of_points != 0 ? order_of_points < 0 : a < b;
+  });
+  const auto same = [&](Eigen::Index a, Eigen::Index b) { return compare(a, b) == 0; };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  std::sort(order.begin(), order.end());
+  return order;
 }
 
 }  // namespace palpate

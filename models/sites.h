@@ -30,4 +30,8 @@ struct Sites {
 // expected, or the first site with a number that is not finite.
 Status validate_sites(const Sites& sites);
 
+// Indices, ascending, of the sites left when of those at exactly the same point
+// only the first is kept.
+std::vector<Eigen::Index> distinct_sites(const Sites& sites);
+
 }  // namespace palpate

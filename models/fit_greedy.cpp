@@ -1,0 +1,186 @@
+#include "models/fit_greedy.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/candidate_gains.h"
+#include "models/lapack.h"
+#include "models/orthogonal_basis.h"
+#include "models/seeded_random.h"
+#include "models/solve_weights.h"
+
+namespace palpate {
+namespace {
+
+double gain(const CandidateParts& parts, Eigen::Index j) {
+  const double outside = parts.outside_squared[j];
+  return outside > 0.0 ? parts.correlation[j] * parts.correlation[j] / outside : 0.0;
+}
+
+// The candidate with the largest gain, the first of equals; -1 when none has any.
+Eigen::Index best_of(const CandidateParts& parts) {
+  Eigen::Index best = -1;
+  double best_gain = 0.0;
+  for (Eigen::Index j = 0; j < parts.correlation.size(); ++j)
+    if (gain(parts, j) > best_gain) {
+      best_gain = gain(parts, j);
+      best = j;
+    }
+  return best;
+}
+
+// One way to choose the next centre: adds its column to the basis and returns
+// its site, or -1 when no candidate is of use.
+class Selection {
+ public:
+  Selection(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
+      : gains_(sites, options.kernel),
+        basis_(sites, options.kernel, options.centres),
+        left_(std::move(distinct)) {}
+  virtual ~Selection() = default;
+  virtual Eigen::Index next() = 0;
+
+ protected:
+  CandidateGains gains_;
+  OrthogonalBasis basis_;
+  std::vector<Eigen::Index> left_;  // sites not chosen yet
+};
+
+class RandomSubsets final : public Selection {
+ public:
+  RandomSubsets(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
+      : Selection(sites, options, std::move(distinct)), candidates_(options.candidates), random_(options.seed) {}
+
+  Eigen::Index next() override {
+    // A subset without use is followed by another, a few times.
+    for (int attempt = 0; attempt < 5 && !left_.empty(); ++attempt) {
+      const std::size_t count = draw();
+      const std::vector<Eigen::Index> subset(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(count));
+      const Eigen::Index best = best_of(gains_.evaluate(subset, basis_));
+      if (best < 0) continue;
+      const OrthogonalBasis::Outside part = basis_.outside(gains_.column(subset[static_cast<std::size_t>(best)]));
+      basis_.add(part);
+      left_.erase(left_.begin() + best);
+      return subset[static_cast<std::size_t>(best)];
+    }
+    return -1;
+  }
+
+ private:
+  // Brings a random subset to the front of left_; returns its size.
+  std::size_t draw() {
+    const std::size_t count = std::min(static_cast<std::size_t>(candidates_), left_.size());
+    for (std::size_t j = 0; j < count; ++j)
+      std::swap(left_[j], left_[j + static_cast<std::size_t>(random_.below(left_.size() - j))]);
+    return count;
+  }
+
+  Eigen::Index candidates_;
+  SeededRandom random_;
+};
+
+class AllSites final : public Selection {
+ public:
+  AllSites(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
+      : Selection(sites, options, std::move(distinct)),
+        row_scale_(sites.row_scale),
+        product_(options.kernel, gains_.points()),
+        parts_(gains_.evaluate(left_, basis_)),
+        exact_squared_(parts_.outside_squared) {}
+
+  Eigen::Index next() override {
+    for (Eigen::Index best = best_of(parts_); best >= 0; best = best_of(parts_)) {
+      const Eigen::Index site = left_[static_cast<std::size_t>(best)];
+      const OrthogonalBasis::Outside part = basis_.outside(gains_.column(site));
+      if (agrees(best, part)) {
+        accept(best, part);
+        return site;
+      }
+      refresh(best, part);
+    }
+    return -1;
+  }
+
+ private:
+  // Whether the recurrence still knows this column; 1 % is far below any
+  // difference in gain that matters.
+  bool agrees(Eigen::Index j, const OrthogonalBasis::Outside& part) const {
+    if (part.squared <= kInsideBasis * parts_.length_squared[j]) return false;
+    const double exact = part.correlation * part.correlation / part.squared;
+    return exact >= 0.99 * gain(parts_, j);
+  }
+
+  void refresh(Eigen::Index j, const OrthogonalBasis::Outside& part) {
+    const bool useful = part.squared > kInsideBasis * parts_.length_squared[j];
+    parts_.outside_squared[j] = exact_squared_[j] = useful ? part.squared : 0.0;
+    parts_.correlation[j] = useful ? part.correlation : 0.0;
+  }
+
+  void accept(Eigen::Index chosen, const OrthogonalBasis::Outside& part) {
+    const double share = part.correlation / std::sqrt(part.squared);
+    const Eigen::VectorXd q = basis_.add(part);
+    const Eigen::VectorXd products = product_.multiply(q.cwiseProduct(row_scale_));
+    parts_.outside_squared[chosen] = parts_.correlation[chosen] = 0.0;
+    for (Eigen::Index j = 0; j < parts_.correlation.size(); ++j) {
+      if (parts_.outside_squared[j] <= 0.0) continue;
+      const double along = products[left_[static_cast<std::size_t>(j)]];
+      parts_.outside_squared[j] -= along * along;
+      parts_.correlation[j] -= share * along;
+      // Cancellation has eaten the digits: back to the column itself.
+      if (parts_.outside_squared[j] <= kCancelled * exact_squared_[j])
+        refresh(j, basis_.outside(gains_.column(left_[static_cast<std::size_t>(j)])));
+    }
+  }
+
+  const Eigen::VectorXd& row_scale_;
+  KernelProduct product_;
+  CandidateParts parts_;
+  Eigen::VectorXd exact_squared_;  // outside_squared when it was last computed from the column
+};
+
+bool select(Selection& selection, Eigen::Index count, const FitControl& control,
+            std::vector<Eigen::Index>& chosen) {
+  for (Eigen::Index step = 0; step < count; ++step) {
+    if (!control.go_on(0.95 * static_cast<double>(step) / static_cast<double>(count))) return false;
+    const Eigen::Index site = selection.next();
+    if (site < 0) break;
+    chosen.push_back(site);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
+  if (const Status status = validate_sites(sites); !status) return status.error();
+  const BlasThreads one_thread(1);
+  std::vector<Eigen::Index> distinct = distinct_sites(sites);
+  const auto available = static_cast<Eigen::Index>(distinct.size());
+  GreedyOptions clamped = options;
+  clamped.centres = std::clamp<Eigen::Index>(options.centres, 0, available);
+  std::vector<Eigen::Index> chosen;
+  bool finished = false;
+  if (options.candidates <= 0 || options.candidates >= available) {
+    AllSites selection(sites, clamped, std::move(distinct));
+    finished = select(selection, clamped.centres, control, chosen);
+  } else {
+    RandomSubsets selection(sites, clamped, std::move(distinct));
+    finished = select(selection, clamped.centres, control, chosen);
+  }
+  if (!finished) return interrupted();
+  Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
+  for (Eigen::Index j = 0; j < centres.cols(); ++j) centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres);
+  if (!fitted) return fitted;
+  fitted->report.centres_asked = options.centres;
+  if (centres.cols() < options.centres)
+    fitted->report.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " +
+                                   (clamped.centres < options.centres ? "there are no more distinct sites"
+                                                                      : "no other site lowers the error"));
+  if (!control.go_on(1.0)) return interrupted();
+  return fitted;
+}
+
+}  // namespace palpate

@@ -1,0 +1,31 @@
+// Weights and tail for given centres, by weighted least squares:
+//   minimise sum_i row_scale_i^2 (f_i - h(x_i))^2
+// through the singular value decomposition of the matrix with its columns
+// scaled to length 1; singular values below `truncation` times the largest are
+// dropped, so that the shortest solution is taken where the data do not decide
+// (more centres than sites, coinciding centres, a constant feature).
+//
+// The N rows are folded into a small triangle block by block (QR), then the
+// triangle is decomposed: the accuracy of an SVD of the whole matrix at the
+// cost of a QR, memory O(columns^2 + block) whatever N is.
+// Source: Hoever & Harders (2009), eq. 8 and section 4.2.1.
+#pragma once
+
+#include "engine/result.h"
+#include "models/fit_control.h"
+#include "models/fit_report.h"
+#include "models/sites.h"
+
+namespace palpate {
+
+// Rounding in the triangle is about 1e-14 of the largest singular value for a
+// thousand columns; what lies two decades above is still data.
+inline constexpr double kDefaultTruncation = 1e-12;
+
+// `centres`: d x n, any points, n may be 0. Errors: those of validate_sites; a
+// wrong centre size; the decomposition did not converge; interrupted.
+// Deterministic; uses two threads. Off the tick.
+Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
+                                const FitControl& control = {}, double truncation = kDefaultTruncation);
+
+}  // namespace palpate
