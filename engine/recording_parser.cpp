@@ -45,7 +45,8 @@ std::size_t field_column(std::string_view text, std::size_t index) {
     if (at != end) ++at;
   }
   const char* const value = skip_blanks(at, end);
-  return static_cast<std::size_t>((value == end ? at : value) - text.data()) + 1;
+  const bool is_empty = value == end || *value == ',';
+  return static_cast<std::size_t>((is_empty ? at : value) - text.data()) + 1;
 }
 
 Result<RecordingParser> RecordingParser::start(std::unique_ptr<ByteSource> source,

@@ -39,7 +39,8 @@ Error explain_recording_row(const LineScanner& scanner, const CsvLine& line,
 // is no finite number.
 const char* parse_recording_number(const char* begin, const char* end, double& value);
 
-// The column (from 1) where field `index` of `text` starts, blanks skipped.
+// The column (from 1) where field `index` of `text` starts; blanks
+// before a value are skipped.
 std::size_t field_column(std::string_view text, std::size_t index);
 
 class RecordingParser {

@@ -1,0 +1,96 @@
+#include "tests/support/recording_fuzz.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/recording_parser.h"
+
+namespace palpate::test {
+namespace {
+
+// Small, so that short inputs meet the edges of the buffer too.
+constexpr std::size_t kBufferBytes = kMaximumLineBytes + 16;
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "recording reader: %s\n", what);
+  std::abort();
+}
+
+struct Outcome {
+  std::vector<RecordingRow> rows;
+  std::string message;  // empty: accepted
+};
+
+Outcome parse(std::string_view text, std::size_t piece_bytes, std::size_t batch_rows) {
+  Outcome outcome;
+  auto parser = RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv",
+                                       kBufferBytes);
+  if (!parser) return {{}, parser.error().message};
+  std::vector<RecordingRow> batch(batch_rows);
+  for (;;) {
+    const auto count = parser->read(batch.data(), batch.size());
+    if (!count) {
+      outcome.message = count.error().message;
+      require(!parser->read(batch.data(), batch.size()).ok(), "an error was forgotten");
+      return outcome;
+    }
+    if (*count == 0) return outcome;
+    require(*count <= batch.size(), "more rows than asked for");
+    outcome.rows.insert(outcome.rows.end(), batch.begin(),
+                        batch.begin() + static_cast<std::ptrdiff_t>(*count));
+  }
+}
+
+void check_rows(const std::vector<RecordingRow>& rows) {
+  require(rows.size() >= kRecordingMinimumRows, "too few rows accepted");
+  double last_time_s = -HUGE_VAL;
+  for (const RecordingRow& row : rows) {
+    require(std::isfinite(row.time_s) && row.time_s > last_time_s, "time not increasing");
+    require(std::abs(row.position_m) <= kMaximumPosition_m, "position out of range");
+    require(std::abs(row.force_N) <= kMaximumForce_N, "force out of range");
+    require(std::isfinite(row.velocity_m_per_s), "velocity not finite");
+    require(std::isfinite(row.acceleration_m_per_s2), "acceleration not finite");
+    last_time_s = row.time_s;
+  }
+}
+
+void check_message(const std::string& message) {
+  require(message.starts_with("rec.csv:"), "message without a place");
+  require(message.find("expected") != std::string::npos, "message without what was expected");
+  require(message.size() < 400, "message too long");
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  require(std::none_of(message.begin(), message.end(), is_control), "message not printable");
+}
+
+bool same_row(const RecordingRow& a, const RecordingRow& b) {
+  return a.time_s == b.time_s && a.position_m == b.position_m && a.force_N == b.force_N &&
+         a.velocity_m_per_s == b.velocity_m_per_s &&
+         a.acceleration_m_per_s2 == b.acceleration_m_per_s2;
+}
+
+}  // namespace
+
+void check_recording_bytes(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
+  const Outcome whole = parse(text, text.size() + 1, 4096);
+  // Every byte on its own, but not for a gigantic line.
+  const Outcome pieces = parse(text, size < 4096 ? 1 : 1 + size / 1000, 1);
+  require(whole.message == pieces.message, "the verdict depends on how the bytes arrive");
+  if (!whole.message.empty()) {
+    check_message(whole.message);
+    return;
+  }
+  require(whole.rows.size() == pieces.rows.size() &&
+              std::equal(whole.rows.begin(), whole.rows.end(), pieces.rows.begin(), same_row),
+          "the rows depend on how the bytes arrive");
+  check_rows(whole.rows);
+}
+
+}  // namespace palpate::test
