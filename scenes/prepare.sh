@@ -1,0 +1,74 @@
+# Sourced by scenes/run.sh, tests/run.sh and .ci/run: what must be there before
+# a program can run. Does only what is missing and is silent when nothing is.
+# Sets `root`, the source tree; the caller has `set -euo pipefail`.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# The one list of Debian packages: to build and run, and more for .ci/run.
+packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
+  libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev)
+ci_packages=(clang-14 libclang-rt-14-dev)
+
+say() { printf '== %s\n' "$*"; }
+
+# Runs a command whose output matters only when it fails.
+quietly() {
+  local log status=0
+  log=$(mktemp)
+  "$@" >"$log" 2>&1 || status=$?
+  if [ "$status" -ne 0 ]; then
+    cat "$log" >&2
+    printf 'error: failed (exit code %s): %s\n' "$status" "$*" >&2
+  fi
+  rm -f "$log"
+  return "$status"
+}
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+# install_packages NAME...: those that are missing, as root or through sudo.
+install_packages() {
+  local name missing=() as_root=()
+  command -v dpkg-query >/dev/null || return 0  # not Debian: the build says what it lacks
+  for name in "$@"; do is_installed "$name" || missing+=("$name"); done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      printf 'error: missing packages, and neither root nor sudo here; as root: apt-get install %s\n' \
+        "${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  say "installing ${missing[*]}"
+  quietly "${as_root[@]}" apt-get update -q || return
+  quietly "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -q --no-install-recommends "${missing[@]}"
+}
+
+# How many compilers at once: every core, but 1.5 GB of memory for each.
+job_count() {
+  local cores memory_kb limit
+  cores=$(nproc)
+  memory_kb=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo)
+  limit=$(cat /sys/fs/cgroup/memory.max 2>/dev/null || echo max)
+  if [ "$limit" != max ] && [ $((limit / 1024)) -lt "$memory_kb" ]; then memory_kb=$((limit / 1024)); fi
+  local by_memory=$((memory_kb / 1500000))
+  [ "$by_memory" -ge 1 ] || by_memory=1
+  echo $((by_memory < cores ? by_memory : cores))
+}
+
+# build_in FOLDER TARGET [CMAKE OPTION...]: configures when the folder is new or
+# options are given, then builds.
+build_in() {
+  local folder=$1 target=$2
+  shift 2
+  if [ ! -f "$folder/build.ninja" ] || [ $# -gt 0 ]; then
+    if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
+    quietly cmake -S "$root" -B "$folder" -G Ninja "$@" || return
+  fi
+  # A dry run that finds nothing to do saves the announcement.
+  if ninja -C "$folder" -n "$target" | grep -q 'no work to do'; then return 0; fi
+  say "building in ${folder#"$root"/}"
+  cmake --build "$folder" --target "$target" -j "$(job_count)" -- --quiet
+}

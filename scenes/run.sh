@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# The main job, on a fresh Debian 12 too. With a display: the window program,
+# arguments and all. Without one: fits all five methods on a recording of the
+# virtual silicone block, replays another and prints the comparison; or, with a
+# verb as first argument (`bash scenes/run.sh scenes`), runs `palpate` with it.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
+
+compare_methods() {
+  local out=$root/build/run palpate=$root/build/palpate method models=()
+  mkdir -p "$out"
+  say "two recordings of the virtual silicone block"
+  "$palpate" synth --material silicone --seed 1 --seconds 41.499 --out "$out/train.csv" --force
+  "$palpate" synth --material silicone --seed 2 --seconds 45.272 --out "$out/test.csv" --force
+  for method in direct voxel random kdtree greedy; do
+    say "fitting $method to the first"
+    "$palpate" fit --recording "$out/train.csv" --method "$method" --out "$out/$method.json" --force
+    models+=(--model "$out/$method.json")
+  done
+  say "replaying the second"
+  "$palpate" replay --recording "$out/test.csv" "${models[@]}" --out "$out/forces.csv" --force
+  say "recordings, models and forces are in build/run/"
+}
+
+install_packages "${packages[@]}"
+build_in "$root/build" all
+
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && [ -x "$root/build/palpate-demo" ]; then
+  exec "$root/build/palpate-demo" "$@"
+fi
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+  say "this build has no window program; the comparison without it"
+else
+  say "no display (DISPLAY and WAYLAND_DISPLAY are empty); the comparison without a window"
+fi
+case "${1:-}" in
+  "") compare_methods ;;
+  -*) say "not used without a window: $*" && compare_methods ;;
+  *) exec "$root/build/palpate" "$@" ;;
+esac
