@@ -63,12 +63,10 @@ job_count() {
 build_in() {
   local folder=$1 target=$2
   shift 2
+  if [ ! -f "$folder/build.ninja" ]; then say "building in ${folder#"$root"/}, a few minutes the first time"; fi
   if [ ! -f "$folder/build.ninja" ] || [ $# -gt 0 ]; then
     if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
     quietly cmake -S "$root" -B "$folder" -G Ninja "$@" || return
   fi
-  # A dry run that finds nothing to do saves the announcement.
-  if ninja -C "$folder" -n "$target" | grep -q 'no work to do'; then return 0; fi
-  say "building in ${folder#"$root"/}"
-  cmake --build "$folder" --target "$target" -j "$(job_count)" -- --quiet
+  cmake --build "$folder" --target "$target" -j "$(job_count)" -- --quiet | sed '/^ninja: no work to do/d'
 }

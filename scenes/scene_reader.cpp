@@ -88,7 +88,8 @@ class SceneReader {
     }
     std::string known;
     for (const char* key : keys) known += (known.empty() ? "" : ", ") + std::string(key);
-    for (const auto& [key, ignored] : value.items()) {
+    for (const auto& entry : value.items()) {
+      const std::string& key = entry.key();
       const bool listed =
           std::any_of(keys.begin(), keys.end(), [&](const char* name) { return key == name; });
       if (!listed)
