@@ -1,0 +1,101 @@
+// palpate synth: writes a recording made by the virtual rig.
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "engine/recording.h"
+#include "scenes/cli/progress.h"
+#include "scenes/cli/verbs.h"
+#include "scenes/material/rig.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr std::size_t kRowsPerUpdate = 4096;
+
+struct SynthOptions {
+  SynthOptions() { rig.material.clear(); }
+  RigSettings rig;
+  std::string out;
+  bool list = false;
+  bool force = false;
+  CLI::Option* seconds = nullptr;
+};
+
+// CLI11 alone would read -1 as 2^64 - 1.
+std::string whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec == std::errc() && read.ptr == end) return {};
+  return "found '" + text + "', expected a whole number from 0 to 18446744073709551615";
+}
+
+// Everything that is wrong with the command line itself, before any work.
+void check_usage(const SynthOptions& options) {
+  if (options.list) return;
+  if (options.rig.material.empty()) throw CLI::RequiredError("--material");
+  if (options.out.empty()) throw CLI::RequiredError("--out");
+  if (options.seconds->count() > 0 && !(options.rig.seconds > 0.0)) {
+    throw CLI::ValidationError("--seconds", "must be a number above 0");
+  }
+  const Result<Rig> trial = Rig::create(options.rig);
+  if (!trial) throw CLI::ValidationError("synth", trial.error().message);
+}
+
+Status list_materials() {
+  for (const Material& material : materials()) {
+    std::printf("%-9.*s %.*s (relaxation times: %s)\n", static_cast<int>(material.name.size()),
+                material.name.data(), static_cast<int>(material.summary.size()),
+                material.summary.data(), relaxation_times_text(material).c_str());
+  }
+  return {};
+}
+
+Status run_synth(const SynthOptions& options) {
+  if (options.list) return list_materials();
+  Result<Rig> rig = Rig::create(options.rig);
+  if (!rig) return rig.error();
+  Recording recording;
+  recording.columns.acceleration = true;
+  recording.rows.reserve(rig->row_count());
+  RecordingRow row;
+  RigTruth truth;
+  ProgressLine line("recording " + options.rig.material);
+  while (rig->next(row, truth)) {
+    recording.rows.push_back(row);
+    const std::size_t done = recording.rows.size();
+    if (done % kRowsPerUpdate == 0 &&
+        !line.update(static_cast<double>(done) / static_cast<double>(rig->row_count()))) {
+      return Error{"interrupted; no recording was written"};
+    }
+  }
+  return write_recording(options.out, recording,
+                         describe_recording(options.rig, rig->material(), rig->row_count()),
+                         options.force);
+}
+
+}  // namespace
+
+void add_synth(CLI::App& app, Verbs& verbs) {
+  auto options = std::make_shared<SynthOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "synth", "Make a recording: a virtual hand presses a virtual material");
+  verb->add_option("--material", options->rig.material, "What to press; --list names them");
+  verb->add_option("--seed", options->rig.seed, "Which hand motion and noise")
+      ->check(whole_number)
+      ->capture_default_str();
+  options->seconds = verb->add_option("--seconds", options->rig.seconds,
+                                      "How long; the material's own length if not given");
+  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second, 10 to 20000")
+      ->capture_default_str();
+  verb->add_option("--out", options->out, "Recording to write (CSV)");
+  verb->add_flag("--force", options->force, "Replace --out if it exists");
+  verb->add_flag("--list", options->list, "Name the materials and their relaxation times");
+  verb->parse_complete_callback([options] { check_usage(*options); });
+  verbs.emplace_back(verb, [options] { return run_synth(*options); });
+}
+
+}  // namespace palpate::cli

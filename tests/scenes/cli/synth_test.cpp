@@ -1,0 +1,112 @@
+// palpate synth as a user runs it.
+#include <gtest/gtest.h>
+
+#include "engine/recording.h"
+#include "scenes/material/rig.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+
+TEST(Synth, ListsTheMaterialsWithTheirRelaxationTimes) {
+  const auto run = run_palpate({"synth", "--list"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "");
+  for (const Material& material : materials()) {
+    EXPECT_NE(run.out.find(std::string(material.name)), std::string::npos) << material.name;
+    EXPECT_NE(run.out.find(relaxation_times_text(material)), std::string::npos) << material.name;
+  }
+}
+
+TEST(Synth, WritesTheRecordingOfTheLibrary) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("gel.csv");
+  const auto run = run_palpate({"synth", "--material", "gel", "--seed", "3", "--seconds", "2",
+                                "--rate", "500", "--out", path});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.err, "");
+  const Result<Recording> read = read_recording(path);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  RigSettings settings;
+  settings.material = "gel";
+  settings.seed = 3;
+  settings.seconds = 2.0;
+  settings.rate_Hz = 500.0;
+  const Result<RigRecording> rig = record(settings);
+  ASSERT_TRUE(rig.ok());
+  ASSERT_EQ(read->rows.size(), 1000u);
+  EXPECT_TRUE(read->columns.acceleration);
+  for (std::size_t i = 0; i < read->rows.size(); ++i) {
+    const RecordingRow& expected = rig->recording.rows[i];
+    ASSERT_EQ(read->rows[i].time_s, expected.time_s);
+    ASSERT_EQ(read->rows[i].position_m, expected.position_m);
+    ASSERT_EQ(read->rows[i].force_N, expected.force_N);
+    ASSERT_EQ(read->rows[i].acceleration_m_per_s2, expected.acceleration_m_per_s2);
+  }
+}
+
+TEST(Synth, SameCommandSameBytes) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.csv", "b.csv"}) {
+    ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "3", "--out",
+                           folder.file(name)})
+                  .exit_code,
+              0);
+  }
+  EXPECT_EQ(test::read_text(folder.file("a.csv")), test::read_text(folder.file("b.csv")));
+  EXPECT_EQ(test::read_text(folder.file("a.csv")).rfind("# virtual recording by palpate synth", 0), 0u);
+}
+
+TEST(Synth, WritesOverNothingWithoutForce) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.with_file("kept.csv", "mine\n");
+  const std::vector<std::string> command = {"synth", "--material", "stiff", "--seconds", "1",
+                                            "--out", path};
+  const auto refused = run_palpate(command);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+  EXPECT_EQ(test::read_text(path), "mine\n");
+  std::vector<std::string> forced = command;
+  forced.push_back("--force");
+  EXPECT_EQ(run_palpate(forced).exit_code, 0);
+  EXPECT_NE(test::read_text(path), "mine\n");
+}
+
+TEST(Synth, WrongUsageEndsWithTwoAndLeavesNoFile) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.file("x.csv");
+  const std::vector<std::vector<std::string>> wrong = {
+      {},
+      {"--material", "silicone"},
+      {"--out", out},
+      {"--material", "jelly", "--out", out},
+      {"--material", "silicone", "--out", out, "--seconds", "-1"},
+      {"--material", "silicone", "--out", out, "--seconds", "0"},
+      {"--material", "silicone", "--out", out, "--seconds", "nan"},
+      {"--material", "silicone", "--out", out, "--seconds", "soon"},
+      {"--material", "silicone", "--out", out, "--seconds", "1e9"},
+      {"--material", "silicone", "--out", out, "--seconds", "0.001"},
+      {"--material", "silicone", "--out", out, "--rate", "9"},
+      {"--material", "silicone", "--out", out, "--rate", "20001"},
+      {"--material", "silicone", "--out", out, "--rate", "nan"},
+      {"--material", "silicone", "--out", out, "--seed", "-1"},
+      {"--material", "silicone", "--out", out, "--seed", "one"},
+      {"--material", "silicone", "--out", out, "--seed", "99999999999999999999"},
+  };
+  for (std::vector<std::string> arguments : wrong) {
+    arguments.insert(arguments.begin(), "synth");
+    const auto run = run_palpate(arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
+  }
+  EXPECT_TRUE(folder.entries().empty());
+  const auto unknown = run_palpate({"synth", "--material", "jelly", "--out", out});
+  EXPECT_NE(unknown.err.find("known: silicone, foam, elastic, stiff, gel"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate
