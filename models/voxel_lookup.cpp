@@ -1,0 +1,149 @@
+#include "models/voxel_lookup.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+namespace palpate {
+
+VoxelLookup::VoxelLookup(const VoxelGrid& grid, const std::vector<double>* second)
+    : dimension_(static_cast<int>(grid.nodes.size())) {
+  assert(validate_voxel_grid(grid, dimension_).ok());
+  assert(second == nullptr || second->size() == grid.values_N.size());
+  std::size_t stride = second == nullptr ? 1 : 2;
+  interpolate_ = second == nullptr ? pick<1>(dimension_) : pick<2>(dimension_);
+  values_.reserve(grid.values_N.size() * stride);
+  for (std::size_t i = 0; i < grid.values_N.size(); ++i) {
+    values_.push_back(grid.values_N[i]);
+    if (second != nullptr) values_.push_back((*second)[i]);
+  }
+  for (std::size_t k = grid.nodes.size(); k-- > 0; stride *= grid.nodes[k].size())
+    axes_[k] = make_axis(grid.nodes[k], stride);
+}
+
+VoxelLookup::Axis VoxelLookup::make_axis(const std::vector<double>& nodes, std::size_t stride) {
+  constexpr double kMostIntervals = 4096;
+  Axis axis;
+  axis.low = nodes.front();
+  axis.high = nodes.back();
+  axis.nodes = nodes;
+  axis.stride = stride;
+  double shortest = axis.high - axis.low;
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    shortest = std::min(shortest, nodes[i + 1] - nodes[i]);
+    axis.reciprocal_width.push_back(1.0 / (nodes[i + 1] - nodes[i]));
+  }
+  const double extent = axis.high - axis.low;
+  const double intervals = std::clamp(std::ceil(extent / shortest), 1.0, kMostIntervals);
+  axis.intervals_per_unit = intervals / extent;
+  std::size_t cell = 0;
+  for (double i = 0; i <= intervals; ++i) {  // one more than needed, for x = high
+    const double start = axis.low + i / axis.intervals_per_unit;
+    while (cell + 2 < nodes.size() && nodes[cell + 1] <= start) ++cell;
+    // Rounding may put x just below `start` into this interval.
+    axis.cell_at.push_back(cell > 0 && !(nodes[cell] < start) ? cell - 1 : cell);
+  }
+  return axis;
+}
+
+VoxelLookup::Place VoxelLookup::locate(const Axis& axis, double x) noexcept {
+  const double inside = x > axis.low ? std::min(x, axis.high) : axis.low;  // NaN: low
+  std::size_t cell = axis.cell_at[static_cast<std::size_t>((inside - axis.low) * axis.intervals_per_unit)];
+  const std::size_t last = axis.nodes.size() - 2;
+  while (cell < last && axis.nodes[cell + 1] <= inside) ++cell;
+  return {cell * axis.stride, (inside - axis.nodes[cell]) * axis.reciprocal_width[cell]};
+}
+
+template <int kDimension, int kChannels>
+std::array<double, VoxelLookup::kMostChannels> VoxelLookup::interpolate(const double* x) const noexcept {
+  // Gathers the 2^d corners and halves them dimension by dimension.
+  constexpr std::size_t kCorners = std::size_t{1} << kDimension;
+  std::array<double, kCorners * kChannels> corner;
+  std::array<double, kDimension> fraction;
+  std::array<std::size_t, kCorners> offset;
+  std::size_t base = 0;
+  std::size_t filled = 1;
+  offset[0] = 0;
+  for (std::size_t k = 0; k < kDimension; ++k) {
+    const Place place = locate(axes_[k], x[k]);
+    base += place.offset;
+    fraction[k] = place.fraction;
+    for (std::size_t c = 0; c < filled; ++c) offset[filled + c] = offset[c] + axes_[k].stride;
+    filled *= 2;
+  }
+  for (std::size_t c = 0; c < kCorners; ++c)
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      corner[c * kChannels + channel] = values_[base + offset[c] + channel];
+  for (std::size_t k = kDimension; k-- > 0;) {  // corner bit k belongs to dimension k
+    const std::size_t half = (std::size_t{1} << k) * kChannels;
+    for (std::size_t c = 0; c < half; ++c) corner[c] += fraction[k] * (corner[half + c] - corner[c]);
+  }
+  std::array<double, kMostChannels> result{};
+  for (std::size_t channel = 0; channel < kChannels; ++channel) result[channel] = corner[channel];
+  return result;
+}
+
+template <int kChannels>
+VoxelLookup::Interpolate VoxelLookup::pick(int dimension) {
+  switch (dimension) {
+    case 1: return &VoxelLookup::interpolate<1, kChannels>;
+    case 2: return &VoxelLookup::interpolate<2, kChannels>;
+    case 3: return &VoxelLookup::interpolate<3, kChannels>;
+    case 4: return &VoxelLookup::interpolate<4, kChannels>;
+    case 5: return &VoxelLookup::interpolate<5, kChannels>;
+    case 6: return &VoxelLookup::interpolate<6, kChannels>;
+    case 7: return &VoxelLookup::interpolate<7, kChannels>;
+    default: return &VoxelLookup::interpolate<8, kChannels>;
+  }
+}
+
+Result<VoxelGrid> even_grid(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const std::vector<int>& sizes) {
+  if (low.size() != high.size() || static_cast<std::size_t>(low.size()) != sizes.size())
+    return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, expected " + std::to_string(low.size()) +
+                 ", one per feature"};
+  VoxelGrid grid;
+  for (Eigen::Index k = 0; k < low.size(); ++k) {
+    const int size = sizes[static_cast<std::size_t>(k)];
+    if (size < 2 || !(high[k] > low[k]))
+      return Error{"grid dimension " + std::to_string(k) + " has " + std::to_string(size) + " nodes from " +
+                   std::to_string(low[k]) + " to " + std::to_string(high[k]) +
+                   ", expected at least 2 over a positive extent"};
+    std::vector<double>& axis = grid.nodes.emplace_back();
+    for (int i = 0; i < size; ++i) {
+      const double fraction = static_cast<double>(i) / (size - 1);
+      axis.push_back((1.0 - fraction) * low[k] + fraction * high[k]);
+    }
+  }
+  return grid;
+}
+
+Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control) {
+  constexpr std::size_t kBatch = 8192;
+  const std::size_t dimension = grid.nodes.size();
+  std::size_t count = 1;
+  for (const std::vector<double>& axis : grid.nodes) {
+    if (axis.size() > kMostVoxels / count)
+      return Error{"the grid has more than " + std::to_string(kMostVoxels) + " nodes; use a coarser one"};
+    count *= axis.size();
+  }
+  grid.values_N.resize(count);
+  Eigen::VectorXd out;
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    if (!control.go_on(static_cast<double>(first) / static_cast<double>(count))) return interrupted();
+    const std::size_t batch = std::min(kBatch, count - first);
+    Eigen::MatrixXd points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(batch));
+    for (std::size_t i = 0; i < batch; ++i) {
+      std::size_t rest = first + i;
+      for (std::size_t k = dimension; k-- > 0; rest /= grid.nodes[k].size())
+        points(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
+            grid.nodes[k][rest % grid.nodes[k].size()];
+    }
+    out.resize(points.cols());
+    function(points, out);
+    std::copy(out.begin(), out.end(), grid.values_N.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+  return {};
+}
+
+}  // namespace palpate

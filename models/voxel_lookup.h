@@ -1,0 +1,88 @@
+// Fast look-up in a VoxelGrid, and the filling of one.
+//
+// The same numbers as VoxelGrid::evaluate to rounding, several times faster:
+// the loops are compiled for each dimension, a small table per axis gives the
+// cell without a search, however unevenly the nodes are spaced, and widths are
+// divided by beforehand. A second grid over the same nodes (say, how well the
+// data cover the place) is interleaved with the first and costs little more.
+// Source: Hoever & Harders (2009), section 3.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "engine/result.h"
+#include "models/fit_control.h"
+#include "models/sites.h"
+#include "models/voxel_grid.h"
+
+namespace palpate {
+
+class VoxelLookup {
+ public:
+  static constexpr int kMostChannels = 2;
+
+  // `grid` must pass validate_voxel_grid; it is copied. `second`, when given,
+  // holds one more value per node.
+  explicit VoxelLookup(const VoxelGrid& grid, const std::vector<double>* second = nullptr);
+
+  // The grid's value at x, d values; coordinates outside the box count as
+  // those of its edge, NaN as the lower edge. Haptics thread, wait-free, no
+  // allocation, O(2^d).
+  double evaluate(const double* x) const noexcept { return (this->*interpolate_)(x)[0]; }
+  // Both channels at x; the second is 0 when there is none.
+  std::array<double, kMostChannels> evaluate_all(const double* x) const noexcept { return (this->*interpolate_)(x); }
+
+  int dimension() const noexcept { return dimension_; }
+
+ private:
+  // One dimension: cells, and a table from equal intervals to the cell in
+  // which the interval starts. Intervals are no longer than the shortest cell
+  // where the table can be, so that at most one step up remains.
+  struct Axis {
+    double low = 0.0;
+    double high = 0.0;
+    double intervals_per_unit = 0.0;
+    std::vector<std::size_t> cell_at;
+    std::vector<double> nodes;
+    std::vector<double> reciprocal_width;
+    std::size_t stride = 0;  // in values
+  };
+  struct Place {
+    std::size_t offset = 0;
+    double fraction = 0.0;
+  };
+
+  static Axis make_axis(const std::vector<double>& nodes, std::size_t stride);
+  static Place locate(const Axis& axis, double x) noexcept;
+  template <int kDimension, int kChannels>
+  std::array<double, kMostChannels> interpolate(const double* x) const noexcept;
+
+  using Interpolate = std::array<double, kMostChannels> (VoxelLookup::*)(const double*) const noexcept;
+  template <int kChannels>
+  static Interpolate pick(int dimension);
+
+  std::vector<double> values_;
+  std::array<Axis, kMaxDimension> axes_;
+  Interpolate interpolate_ = nullptr;
+  int dimension_ = 0;
+};
+
+// Nodes for a grid: `sizes[k]` evenly spaced ones from low[k] to high[k].
+// Errors: names the dimension with fewer than two nodes or no extent.
+Result<VoxelGrid> even_grid(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const std::vector<int>& sizes);
+
+// Fills out[i] for the points, d x M, of a batch.
+using BatchFunction = std::function<void(const Eigen::MatrixXd& points, Eigen::VectorXd& out)>;
+
+// More nodes than this (800 MB) are refused.
+inline constexpr std::size_t kMostVoxels = 100'000'000;
+
+// Sets every value of a grid with nodes to the function there. Errors: too
+// many nodes; interrupted. Off the tick.
+Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control = {});
+
+}  // namespace palpate
