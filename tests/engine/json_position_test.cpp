@@ -1,4 +1,4 @@
-#include "scenes/json_position.h"
+#include "engine/json_position.h"
 
 #include <gtest/gtest.h>
 
