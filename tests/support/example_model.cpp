@@ -1,0 +1,148 @@
+#include "tests/support/example_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/random_points.h"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kDepth_m = 6e-3;
+constexpr double kVelocity_m_per_s = 0.05;
+
+double typical_size(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::depth: return kDepth_m;
+    case FeatureKind::velocity: return kVelocity_m_per_s;
+    case FeatureKind::lowpass_velocity: return 0.5 * kVelocity_m_per_s;
+    case FeatureKind::maxwell_branch: return 1.0;
+  }
+  return 1.0;
+}
+
+FeatureSpec filter(FeatureKind kind, double relaxation_time_s) {
+  FeatureSpec spec;
+  spec.kind = kind;
+  spec.relaxation_time_s = relaxation_time_s;
+  if (kind == FeatureKind::maxwell_branch) spec.drive = {kDepth_m, {0.4, 0.3, 0.2, 0.1}};
+  return spec;
+}
+
+VoxelGrid random_grid(std::size_t dimension, std::uint64_t seed) {
+  VoxelGrid grid;
+  std::size_t count = 1;
+  for (std::size_t k = 0; k < dimension; ++k) {
+    std::vector<double> axis;
+    for (std::size_t i = 0; i < 3 + k; ++i) axis.push_back(-1.0 + 2.0 * static_cast<double>(i) / static_cast<double>(2 + k));
+    count *= axis.size();
+    grid.nodes.push_back(std::move(axis));
+  }
+  Numbers numbers(seed);
+  for (std::size_t i = 0; i < count; ++i) grid.values_N.push_back(0.2 * numbers.next());
+  return grid;
+}
+
+Provenance example_provenance() {
+  Provenance from;
+  from.recordings = {"press-1", "press-2"};
+  from.scene = "silicone_block";
+  from.samples = 41499;
+  from.contact_samples = 30000;
+  from.samples_after_reduction = 6850;
+  from.seed = 18446744073709551615ULL;
+  from.fit_seconds = 3.0;
+  from.weighting = "jnd";
+  from.reduction = "coverage";
+  from.relaxation = "auto";
+  from.relaxation_times = {{0.17, 0.01}, {1.27, 0.0}};
+  from.training_within_jnd = 0.9991;
+  return from;
+}
+
+}  // namespace
+
+std::vector<FeatureSpec> position_features() { return {FeatureSpec{}}; }
+
+std::vector<FeatureSpec> paper_features() {
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, filter(FeatureKind::lowpass_velocity, 0.17),
+          filter(FeatureKind::lowpass_velocity, 1.27)};
+}
+
+std::vector<FeatureSpec> maxwell_features() {
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, filter(FeatureKind::maxwell_branch, 0.1),
+          filter(FeatureKind::maxwell_branch, 1.0 / 0.9)};
+}
+
+ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
+                        std::uint64_t seed) {
+  ModelData data;
+  data.name = method + "-" + std::string(kernel_name(kernel)) + "-" + std::to_string(seed);
+  data.method = method;
+  data.features = std::move(features);
+  const auto n = static_cast<Eigen::Index>(data.features.size());
+  data.offset.resize(n);
+  data.scale.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FeatureSpec& spec = data.features[static_cast<std::size_t>(i)];
+    const double size = typical_size(spec.kind);
+    data.offset(i) = spec.kind == FeatureKind::depth ? 0.5 * size : 0.0;
+    data.scale(i) = spec.kind == FeatureKind::depth ? 0.5 * size : size;
+  }
+  data.lower = data.offset - data.scale;
+  data.upper = data.offset + data.scale;
+  data.trend.reference_depth_m = kDepth_m;
+  data.trend.elastic_N = {1.0, 0.4, 0.3, 0.2, 0.1, 0.0};
+  data.trend.viscosity_Ns_per_m = {1.0, 0.5, -0.0};
+  data.trend.velocity_limit_m_per_s = 2.0 * kVelocity_m_per_s;
+  data.correction_limit_N = 0.5;
+  data.largest_force_N = 2.5;
+  data.cover = make_cover(random_points(static_cast<int>(n), 200, seed + 11));
+  // Wide enough that most of the box counts as near, partly or wholly.
+  data.cover.inner_radius = 0.3;
+  data.cover.outer_radius = 1.0 / 1.1;
+  if (method == "voxel") {
+    data.grid = random_grid(data.features.size(), seed);
+  } else {
+    data.rbf = random_function(kernel, static_cast<int>(n), 40, seed);
+    data.rbf->weights *= 0.02;
+    data.rbf->tail *= 0.1;
+  }
+  data.provenance = example_provenance();
+  return data;
+}
+
+std::vector<ModelData> example_models() {
+  std::vector<ModelData> models = {
+      example_model("direct", KernelKind::cubic, paper_features(), 1),
+      example_model("voxel", KernelKind::cubic, paper_features(), 2),
+      example_model("random", KernelKind::linear, paper_features(), 3),
+      example_model("kdtree", KernelKind::thin_plate, maxwell_features(), 4),
+      example_model("greedy", KernelKind::quintic, maxwell_features(), 5),
+      example_model("greedy", KernelKind::cubic, position_features(), 6),
+      example_model("voxel", KernelKind::cubic, position_features(), 7),
+      example_model("greedy", KernelKind::cubic, paper_features(), 8),
+  };
+  models.back().corrects_trend = false;
+  models.back().name = "paper-recipe";
+  return models;
+}
+
+Recording example_recording(std::size_t rows, double rate_Hz, double encoder_step_m) {
+  Recording recording;
+  recording.name = "example";
+  for (std::size_t i = 0; i < rows; ++i) {
+    RecordingRow row;
+    row.time_s = static_cast<double>(i) / rate_Hz;
+    const double angle = 2.0 * std::numbers::pi * 0.8 * row.time_s;
+    const double position_m = -1e-3 + 3.5e-3 * (1.0 - std::cos(angle)) * (0.7 + 0.3 * std::sin(0.37 * angle));
+    row.position_m = encoder_step_m > 0.0 ? std::round(position_m / encoder_step_m) * encoder_step_m : position_m;
+    const double velocity_m_per_s = 3.5e-3 * std::sin(angle) * 2.0 * std::numbers::pi * 0.8;
+    if (row.position_m > 0.0) row.force_N = std::max(0.0, 300.0 * row.position_m + 2.0 * velocity_m_per_s);
+    recording.rows.push_back(row);
+  }
+  return recording;
+}
+
+}  // namespace palpate::test

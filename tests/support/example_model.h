@@ -1,0 +1,33 @@
+// Models and recordings made by hand, for tests that need one and no fit.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/recording.h"
+#include "models/fitted_model.h"
+
+namespace palpate::test {
+
+// A model of a soft block, about 2 N at 6 mm, with a random correction. `method`
+// "voxel" gives a grid, every other one radial basis functions. Passes
+// validate_model; the same arguments give the same model.
+ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
+                        std::uint64_t seed);
+
+// Depth; the paper's four features; two Maxwell branches.
+std::vector<FeatureSpec> position_features();
+std::vector<FeatureSpec> paper_features();
+std::vector<FeatureSpec> maxwell_features();
+
+// One of every kind: each method, kernel, feature list, and the paper's own
+// recipe, which corrects no trend. All names differ.
+std::vector<ModelData> example_models();
+
+// Strokes into the block and out of it, 6 mm deep at most, beginning in the air;
+// with `encoder_step_m` above 0, positions in whole steps. Forces are those of
+// a spring-damper: 300 N/m and 2 Ns/m, never negative.
+Recording example_recording(std::size_t rows, double rate_Hz, double encoder_step_m = 0.0);
+
+}  // namespace palpate::test
