@@ -1,0 +1,267 @@
+// palpate replay as a program: what it prints, writes and refuses.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/recording.h"
+#include "models/model_io.h"
+#include "scenes/cli/forces_file.h"
+#include "scenes/cli/model_timing.h"
+#include "tests/support/example_model.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using test::run_palpate;
+
+class ReplayVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    recording_ = folder_.file("rec.csv");
+    ASSERT_TRUE(write_recording(recording_, test::example_recording(3000, 1000.0, 30e-6), {}, false).ok());
+    for (const ModelData& data : test::example_models()) {
+      models_.push_back(folder_.file(data.name + ".json"));
+      ASSERT_TRUE(save_model(models_.back(), data, false).ok());
+    }
+  }
+
+  // `palpate replay` of the recording with `models` and `more` arguments.
+  test::ProgramRun run(const std::vector<std::string>& models, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"replay", "--recording", recording_};
+    for (const std::string& model : models) arguments.insert(arguments.end(), {"--model", model});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_palpate(arguments);
+  }
+
+  test::TemporaryFolder folder_;
+  std::string recording_;
+  std::vector<std::string> models_;
+};
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : object.items()) names.push_back(key);
+  return names;
+}
+
+std::vector<std::string> fields(const std::string& line) {
+  std::vector<std::string> parts;
+  std::istringstream stream(line);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+TEST_F(ReplayVerb, JsonHasTheContractsFields) {
+  const auto ran = run(models_, {"--json"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(ran.err, "");
+  const Json object = Json::parse(ran.out);
+  EXPECT_EQ(keys(object), (std::vector<std::string>{"recording", "samples", "contact_samples", "models"}));
+  EXPECT_EQ(object["recording"], recording_);
+  EXPECT_EQ(object["samples"], 3000);
+  const std::uint64_t contact = object["contact_samples"];
+  ASSERT_EQ(object["models"].size(), models_.size());
+  for (const Json& model : object["models"]) {
+    EXPECT_EQ(keys(model), (std::vector<std::string>{"name", "method", "centres", "rms_error_N", "max_error_N",
+                                                     "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
+                                                     "out_of_domain_samples", "evaluation_ns", "bins"}));
+    EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));
+    EXPECT_GT(model["evaluation_ns"]["median"], 0.0);
+    EXPECT_GE(model["evaluation_ns"]["p99"], model["evaluation_ns"]["median"]);
+    EXPECT_GE(model["max_error_N"], model["rms_error_N"]);
+    std::uint64_t counted = 0;
+    for (const Json& bin : model["bins"]) {
+      EXPECT_EQ(keys(bin), (std::vector<std::string>{"force_from_N", "force_to_N", "count", "mean_abs_error_N",
+                                                     "std_abs_error_N", "max_abs_error_N", "jnd_N"}));
+      counted += bin["count"].get<std::uint64_t>();
+    }
+    EXPECT_EQ(counted, contact);
+  }
+  EXPECT_EQ(object["models"][0]["centres"], 40);
+  EXPECT_EQ(object["models"][1]["centres"], 3 * 4 * 5 * 6) << "nodes of the grid";
+}
+
+TEST_F(ReplayVerb, ForcesFileHoldsWhatTheFiguresComeFrom) {
+  const std::string out = folder_.file("forces.csv");
+  const auto ran = run({models_[0], models_[3], models_[5]}, {"--json", "--out", out});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json object = Json::parse(ran.out);
+  std::istringstream file(test::read_text(out));
+  std::string line;
+  ASSERT_TRUE(std::getline(file, line));
+  EXPECT_EQ(line,
+            "time_s,position_m,force_N,depth_m,feature_depth_m,feature_velocity_m_per_s,"
+            "feature_lowpass_velocity_0.17s_m_per_s,feature_lowpass_velocity_1.27s_m_per_s,"
+            "feature_maxwell_branch_0.1s_N,feature_maxwell_branch_1.111s_N,"
+            "direct-cubic-1_N,kdtree-thin-plate-4_N,greedy-cubic-6_N");
+  std::array<double, 3> squares{};
+  std::array<double, 3> within{};
+  int rows = 0;
+  int contact = 0;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = fields(line);
+    ASSERT_EQ(cells.size(), 13u);
+    ++rows;
+    const double depth_m = std::stod(cells[3]);
+    EXPECT_EQ(depth_m, std::max(0.0, std::stod(cells[1])));
+    if (depth_m <= 0.0) {
+      EXPECT_EQ(cells[10] + cells[11] + cells[12], "000");
+      continue;
+    }
+    ++contact;
+    const double measured_N = std::stod(cells[2]);
+    for (std::size_t m = 0; m < 3; ++m) {
+      const double error_N = std::abs(std::stod(cells[10 + m]) - measured_N);
+      squares[m] += error_N * error_N;
+      within[m] += error_N <= 0.065 + 0.0633 * std::abs(measured_N) ? 1.0 : 0.0;
+    }
+  }
+  EXPECT_EQ(rows, 3000);
+  EXPECT_EQ(contact, object["contact_samples"]);
+  for (std::size_t m = 0; m < 3; ++m) {
+    // Only the order of the sums and the last digit printed differ.
+    EXPECT_NEAR(object["models"][m]["rms_error_N"], std::sqrt(squares[m] / contact), 1e-12);
+    EXPECT_NEAR(object["models"][m]["within_jnd"], within[m] / contact, 1e-12);
+  }
+}
+
+TEST_F(ReplayVerb, TheSameCommandGivesTheSameBytes) {
+  ASSERT_EQ(run(models_, {"--out", folder_.file("a.csv")}).exit_code, 0);
+  ASSERT_EQ(run(models_, {"--out", folder_.file("b.csv")}).exit_code, 0);
+  EXPECT_EQ(test::read_text(folder_.file("a.csv")), test::read_text(folder_.file("b.csv")));
+}
+
+TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
+  const auto ran = run({models_[0], models_[5]});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  std::istringstream lines(ran.out);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 4u) << ran.out;
+  EXPECT_NE(rows[0].find("3000 samples"), std::string::npos);
+  for (const char* title : {"MODEL", "RMS mN", "WITHIN JND %", "MEDIAN ns"}) {
+    EXPECT_NE(rows[1].find(title), std::string::npos) << title;
+  }
+  EXPECT_EQ(rows[1].size(), rows[2].size());
+  EXPECT_EQ(rows[1].size(), rows[3].size());
+}
+
+TEST_F(ReplayVerb, ModelsOfOneNameAreToldApart) {
+  const std::string out = folder_.file("forces.csv");
+  const auto ran = run({models_[5], models_[5], models_[5]}, {"--json", "--out", out});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json object = Json::parse(ran.out);
+  EXPECT_EQ(object["models"][0]["name"], "greedy-cubic-6");
+  EXPECT_EQ(object["models"][1]["name"], "greedy-cubic-6-2");
+  EXPECT_EQ(object["models"][2]["name"], "greedy-cubic-6-3");
+  const std::string text = test::read_text(out);
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "time_s,position_m,force_N,depth_m,feature_depth_m,greedy-cubic-6_N,greedy-cubic-6-2_N,greedy-cubic-6-3_N");
+}
+
+TEST_F(ReplayVerb, ARecordingWithoutContactGivesNulls) {
+  Recording air = test::example_recording(100, 1000.0);
+  for (RecordingRow& row : air.rows) row.position_m = -1e-3 - 1e-6 * row.time_s;
+  recording_ = folder_.file("air.csv");
+  ASSERT_TRUE(write_recording(recording_, air, {}, false).ok());
+  const auto ran = run({models_[0]}, {"--json"});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json model = Json::parse(ran.out)["models"][0];
+  for (const char* key : {"rms_error_N", "max_error_N", "within_jnd", "p99_error_over_jnd", "max_error_over_jnd"}) {
+    EXPECT_TRUE(model[key].is_null()) << key;
+  }
+  EXPECT_TRUE(model["evaluation_ns"]["median"].is_null());
+  EXPECT_EQ(model["out_of_domain_samples"], 0);
+  EXPECT_EQ(model["bins"], Json::array());
+  const auto table = run({models_[0]});
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_EQ(table.out.find("nan"), std::string::npos);
+}
+
+TEST_F(ReplayVerb, SaysWhatCannotBeDone) {
+  const std::string none = folder_.file("none.json");
+  auto ran = run({none});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(ran.err, "error: " + none +
+                         ": found no such file, expected a model file; check the path, or make one with palpate fit\n");
+  ran = run({recording_});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err.rfind("error: " + recording_ + ":1:", 0), 0u) << ran.err;
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
+  ran = run(std::vector<std::string>(17, models_[0]));
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err, "error: found 17 models, expected at most 16; replay them in several runs\n");
+  recording_ = folder_.file("none.csv");
+  ran = run({models_[0]});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err.rfind("error: " + recording_ + ": found no such file", 0), 0u) << ran.err;
+}
+
+TEST_F(ReplayVerb, WrongUsageIsTwo) {
+  EXPECT_EQ(run_palpate({"replay"}).exit_code, 2);
+  EXPECT_EQ(run({}).exit_code, 2);
+  EXPECT_EQ(run({models_[0]}, {"--recording", recording_}).exit_code, 2);
+  EXPECT_EQ(run({models_[0]}, {"--dance"}).exit_code, 2);
+}
+
+TEST_F(ReplayVerb, NothingIsLostWithoutForceOrAfterAnError) {
+  const std::string out = folder_.with_file("forces.csv", "mine");
+  auto ran = run({models_[0]}, {"--out", out});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err, "error: " + out + " exists; pass --force to replace it\n");
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(test::read_text(out), "mine");
+
+  const std::string whole = test::read_text(recording_);
+  const std::string good = recording_;
+  recording_ = folder_.with_file("cut.csv", whole.substr(0, whole.size() / 2) + ",x\n");
+  const auto before = folder_.entries();
+  EXPECT_EQ(run({models_[0]}, {"--out", out, "--force"}).exit_code, 1);
+  EXPECT_EQ(test::read_text(out), "mine");
+  EXPECT_EQ(folder_.entries(), before);
+
+  recording_ = good;
+  EXPECT_EQ(run({models_[0]}, {"--out", out, "--force"}).exit_code, 0);
+  EXPECT_NE(test::read_text(out), "mine");
+}
+
+TEST_F(ReplayVerb, NeverWritesOverWhatItReads) {
+  const std::string before = test::read_text(recording_);
+  const auto ran = run({models_[0]}, {"--out", recording_, "--force"});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err, "error: " + recording_ +
+                         " is the file to read from, expected another one for --out; name a new file\n");
+  EXPECT_EQ(test::read_text(recording_), before);
+}
+
+TEST(DistinctNames, CountUpPastNamesThatAreTaken) {
+  EXPECT_EQ(cli::distinct_names({"a", "a-2", "a", "b", "a"}),
+            (std::vector<std::string>{"a", "a-2", "a-3", "b", "a-4"}));
+}
+
+// Runs stay whole and evenly spread, whatever the length of the stream.
+TEST(FeatureSample, IsBoundedAndSpreadOverTheWholeStream) {
+  cli::FeatureSample sample;
+  const std::size_t total = cli::FeatureSample::kBlock * cli::FeatureSample::kMaximumBlocks * 5 + 13;
+  for (std::size_t i = 0; i < total; ++i) {
+    FeatureVector features;
+    features.values[0] = static_cast<double>(i);
+    sample.add(features);
+  }
+  EXPECT_LE(sample.size(), cli::FeatureSample::kBlock * cli::FeatureSample::kMaximumBlocks);
+  EXPECT_GT(sample[sample.size() - 1][0], 0.9 * static_cast<double>(total));
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    const double expected = static_cast<double>(i / cli::FeatureSample::kBlock * cli::FeatureSample::kBlock * 8 +
+                                                i % cli::FeatureSample::kBlock);
+    ASSERT_EQ(sample[i][0], expected);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
