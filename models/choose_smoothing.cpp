@@ -1,0 +1,126 @@
+#include "models/choose_smoothing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "models/lapack.h"
+#include "models/parallel.h"
+#include "models/projected_kernel.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kFewestGroups = 4;
+
+Sites even_subset(const Sites& sites) {
+  const Eigen::Index count = std::min(sites.count(), kSmoothingSubset);
+  Sites subset;
+  subset.points.resize(sites.dimension(), count);
+  subset.target_N.resize(count);
+  subset.row_scale.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index i = k * sites.count() / count;
+    subset.points.col(k) = sites.points.col(i);
+    subset.target_N[k] = sites.target_N[i];
+    subset.row_scale[k] = sites.row_scale[i];
+    if (!sites.group.empty()) subset.group.push_back(sites.group[static_cast<std::size_t>(i)]);
+  }
+  return subset;
+}
+
+// I - H = V diag(smoothing / (e + smoothing)) V^T on the complement of q.
+class Smoother {
+ public:
+  bool prepare(const Sites& sites, const ProjectedKernel& kernel) {
+    // The tail's directions get an eigenvalue above all others, to be told apart.
+    vectors_ = kernel.matrix(10.0 * kernel.mean_eigenvalue() * static_cast<double>(sites.count()), 0.0);
+    const BlasThreads threads(thread_count());
+    if (!symmetric_eigen(vectors_, values_)) return false;
+    const Eigen::Index rank = sites.count() - kernel.tail_rank();
+    values_ = values_.head(rank).cwiseMax(0.0).eval();
+    vectors_ = vectors_.leftCols(rank).eval();
+    z_ = vectors_.transpose() * kernel.data();
+    std::map<int, std::vector<Eigen::Index>> members;
+    for (std::size_t i = 0; i < sites.group.size(); ++i)
+      members[sites.group[i]].push_back(static_cast<Eigen::Index>(i));
+    for (const auto& [number, rows] : members) groups_.push_back(vectors_(rows, Eigen::all));
+    return true;
+  }
+
+  bool has_groups() const { return groups_.size() >= kFewestGroups; }
+  bool empty() const { return values_.size() == 0; }
+
+  double generalised(double smoothing) const {
+    const Eigen::VectorXd left = shares_left(smoothing);
+    const double freedom = left.sum();
+    return static_cast<double>(vectors_.rows()) * left.cwiseProduct(z_).squaredNorm() / (freedom * freedom);
+  }
+
+  double by_group(double smoothing) const {
+    const Eigen::VectorXd left = shares_left(smoothing);
+    double sum = 0.0;
+    for (const Eigen::MatrixXd& rows : groups_) {
+      const Eigen::MatrixXd scaled = rows * left.cwiseSqrt().asDiagonal();
+      Eigen::MatrixXd block(rows.rows(), rows.rows());
+      multiply(scaled, false, scaled, true, 1.0, 0.0, block);
+      Eigen::VectorXd error = rows * left.cwiseProduct(z_);
+      if (!cholesky_in_place(block)) return kInfinity;
+      cholesky_solve(block, error);
+      sum += error.squaredNorm();
+    }
+    return sum / static_cast<double>(vectors_.rows());
+  }
+
+ private:
+  Eigen::VectorXd shares_left(double smoothing) const {
+    return (smoothing / (values_.array() + smoothing)).matrix();
+  }
+
+  Eigen::MatrixXd vectors_;
+  Eigen::VectorXd values_;
+  Eigen::VectorXd z_;
+  std::vector<Eigen::MatrixXd> groups_;  // rows of vectors_ of each stroke
+};
+
+// The smallest criterion over decades, then over quarters of a decade.
+template <typename Criterion>
+SmoothingChoice search(double unit, double smallest, const Criterion& criterion) {
+  SmoothingChoice best{smallest, kInfinity, false};
+  const auto look_at = [&](double exponent) {
+    const double smoothing = unit * std::pow(10.0, exponent);
+    if (smoothing < smallest) return;
+    const double value = criterion(smoothing);
+    if (value < best.criterion) best = {smoothing, value, false};
+  };
+  for (int decade = -12; decade <= 2; ++decade) look_at(decade);
+  if (best.criterion == kInfinity) return best;
+  const double centre = std::log10(best.smoothing / unit);
+  for (const int quarter : {-3, -2, -1, 1, 2, 3}) look_at(centre + 0.25 * quarter);
+  return best;
+}
+
+}  // namespace
+
+Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, bool by_group) {
+  const Sites subset = even_subset(sites);
+  const ProjectedKernel projected(subset, kernel);
+  const double unit = projected.mean_eigenvalue();
+  const double smallest = projected.smallest_smoothing();
+  Smoother smoother;
+  if (!smoother.prepare(subset, projected))
+    return Error{"the eigendecomposition did not converge; check the recording for extreme values"};
+  if (smoother.empty()) return SmoothingChoice{smallest, 0.0, false};
+  const BlasThreads one_thread(1);
+  if (by_group && smoother.has_groups()) {
+    SmoothingChoice choice = search(unit, smallest, [&](double s) { return smoother.by_group(s); });
+    choice.by_group = true;
+    if (choice.criterion < kInfinity) return choice;
+  }
+  return search(unit, smallest, [&](double s) { return smoother.generalised(s); });
+}
+
+}  // namespace palpate

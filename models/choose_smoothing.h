@@ -1,0 +1,34 @@
+// The smoothing of the direct fit, from the data alone and without refitting.
+//
+// One eigendecomposition of P K P (projected_kernel.h) for a subset of the
+// sites, taken at even steps, gives the residuals of every left-out stroke in
+// closed form for every smoothing: with H the smoother, group g left out,
+//   e_g = (I - H)_gg^-1 ((I - H) y)_g
+// (errors of neighbouring samples of a stroke are correlated, so that leaving
+// out single samples would choose too little). With fewer than four strokes,
+// or where that is singular, generalised cross-validation:
+//   N |(I - H) y|^2 / trace(I - H)^2.
+// The smoothing is the variance of the noise over that of the prior, which
+// does not depend on N: what is best for the subset serves for all the sites.
+// Source: Craven & Wahba (1979); the group form follows from the block inverse.
+#pragma once
+
+#include "engine/result.h"
+#include "models/kernels.h"
+#include "models/sites.h"
+
+namespace palpate {
+
+struct SmoothingChoice {
+  double smoothing = 0.0;
+  double criterion = 0.0;  // mean squared scaled residual of what was left out
+  bool by_group = false;
+};
+
+// The largest subset: its eigendecomposition takes a quarter of a second.
+inline constexpr Eigen::Index kSmoothingSubset = 1000;
+
+// Errors: the eigendecomposition did not converge. Deterministic. Off the tick.
+Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, bool by_group);
+
+}  // namespace palpate
