@@ -50,6 +50,11 @@ ColumnFunction column_function(KernelKind kind, int dimension);
 ProductFunction product_function(KernelKind kind, int dimension);
 NearestFunction nearest_function(int dimension);
 
+// sqrt(squared) from an estimate of 1/sqrt(squared) good to 14 bits, as the
+// AVX-512 loops take every other root. Here so that tests can check the
+// arithmetic on processors without AVX-512.
+double refined_root(double squared, double estimate);
+
 // Names of the instruction sets this processor can run, best first, and the
 // one in use. choose_target takes one of them, or "" for the best; it concerns
 // objects built afterwards. Returns false when there is no such target. For

@@ -74,6 +74,16 @@ TEST_P(RbfEvaluatorOnTarget, KernelsKeepTheirRelativeAccuracyFromTinyToHugeDista
     EXPECT_NEAR(evaluator.evaluate(&r) / (r * r * r), 1.0, 6 * 0x1p-52) << r;
 }
 
+// Estimates as far off as rsqrt14 may be, 2^-14, on both sides. The series is
+// good to 2^-53; three roundings without fused operations leave 3 ulp.
+TEST_P(RbfEvaluatorOnTarget, RootFromAnEstimateOf14BitsIsGoodToThreeUlp) {
+  for (double squared = 1e-60; squared < 1e120; squared *= 1.7)
+    for (const double error : {-0x1p-14, -0x1p-17, 0.0, 0x1p-15, 0x1p-14}) {
+      const double estimate = (1.0 + error) / std::sqrt(squared);
+      EXPECT_NEAR(simd::refined_root(squared, estimate) / std::sqrt(squared), 1.0, 3 * 0x1p-52) << squared;
+    }
+}
+
 TEST_P(RbfEvaluatorOnTarget, IsExactlyTheTailAtACoincidentCentreOfACubic) {
   RbfFunction f = random_function(KernelKind::cubic, 4, 1, 3);
   EXPECT_DOUBLE_EQ(RbfEvaluator(f).evaluate(f.centres.data()),
