@@ -6,6 +6,22 @@
 #include <string>
 
 namespace palpate {
+namespace {
+
+// Interpolates along dimensions kFirst to kDimension - 1 from a cell's corner.
+// Unrolled by the compiler: everything stays in registers.
+template <int kFirst, int kDimension>
+inline double between(const double* corner, const std::size_t* stride, const double* fraction) noexcept {
+  if constexpr (kFirst == kDimension) {
+    return *corner;
+  } else {
+    const double low = between<kFirst + 1, kDimension>(corner, stride, fraction);
+    const double high = between<kFirst + 1, kDimension>(corner + stride[kFirst], stride, fraction);
+    return low + fraction[kFirst] * (high - low);
+  }
+}
+
+}  // namespace
 
 VoxelLookup::VoxelLookup(const VoxelGrid& grid, const std::vector<double>* second)
     : dimension_(static_cast<int>(grid.nodes.size())) {
@@ -57,30 +73,18 @@ VoxelLookup::Place VoxelLookup::locate(const Axis& axis, double x) noexcept {
 
 template <int kDimension, int kChannels>
 std::array<double, VoxelLookup::kMostChannels> VoxelLookup::interpolate(const double* x) const noexcept {
-  // Gathers the 2^d corners and halves them dimension by dimension.
-  constexpr std::size_t kCorners = std::size_t{1} << kDimension;
-  std::array<double, kCorners * kChannels> corner;
   std::array<double, kDimension> fraction;
-  std::array<std::size_t, kCorners> offset;
-  std::size_t base = 0;
-  std::size_t filled = 1;
-  offset[0] = 0;
+  std::array<std::size_t, kDimension> stride;
+  const double* corner = values_.data();
   for (std::size_t k = 0; k < kDimension; ++k) {
     const Place place = locate(axes_[k], x[k]);
-    base += place.offset;
+    corner += place.offset;
     fraction[k] = place.fraction;
-    for (std::size_t c = 0; c < filled; ++c) offset[filled + c] = offset[c] + axes_[k].stride;
-    filled *= 2;
-  }
-  for (std::size_t c = 0; c < kCorners; ++c)
-    for (std::size_t channel = 0; channel < kChannels; ++channel)
-      corner[c * kChannels + channel] = values_[base + offset[c] + channel];
-  for (std::size_t k = kDimension; k-- > 0;) {  // corner bit k belongs to dimension k
-    const std::size_t half = (std::size_t{1} << k) * kChannels;
-    for (std::size_t c = 0; c < half; ++c) corner[c] += fraction[k] * (corner[half + c] - corner[c]);
+    stride[k] = axes_[k].stride;
   }
   std::array<double, kMostChannels> result{};
-  for (std::size_t channel = 0; channel < kChannels; ++channel) result[channel] = corner[channel];
+  for (int channel = 0; channel < kChannels; ++channel)
+    result[static_cast<std::size_t>(channel)] = between<0, kDimension>(corner + channel, stride.data(), fraction.data());
   return result;
 }
 
