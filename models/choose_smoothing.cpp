@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "models/lapack.h"
@@ -86,21 +87,36 @@ class Smoother {
   std::vector<Eigen::MatrixXd> groups_;  // rows of vectors_ of each stroke
 };
 
-// The smallest criterion over decades, then over quarters of a decade.
+// Where the criterion is flat the noise is too small to matter, and the most
+// smoothing among equals gives the best conditioned system.
+constexpr double kAsGood = 1.01;
+
+// The smallest criterion over decades, then over quarters of a decade; of
+// those as good, the most smoothing.
 template <typename Criterion>
 SmoothingChoice search(double unit, double smallest, const Criterion& criterion) {
-  SmoothingChoice best{smallest, kInfinity, false};
+  std::map<double, double> values;  // criterion by exponent
   const auto look_at = [&](double exponent) {
     const double smoothing = unit * std::pow(10.0, exponent);
-    if (smoothing < smallest) return;
-    const double value = criterion(smoothing);
-    if (value < best.criterion) best = {smoothing, value, false};
+    if (smoothing >= smallest) values[exponent] = criterion(smoothing);
+  };
+  const auto most_of_the_best = [&] {
+    double lowest = kInfinity;
+    for (const auto& [exponent, value] : values) lowest = std::min(lowest, value);
+    SmoothingChoice best{smallest, kInfinity, false};
+    double best_exponent = 0.0;
+    for (const auto& [exponent, value] : values)
+      if (value < kInfinity && value <= kAsGood * lowest) {
+        best = {unit * std::pow(10.0, exponent), value, false};
+        best_exponent = exponent;
+      }
+    return std::pair(best, best_exponent);
   };
   for (int decade = -12; decade <= 2; ++decade) look_at(decade);
-  if (best.criterion == kInfinity) return best;
-  const double centre = std::log10(best.smoothing / unit);
+  const auto [coarse, centre] = most_of_the_best();
+  if (coarse.criterion == kInfinity) return coarse;
   for (const int quarter : {-3, -2, -1, 1, 2, 3}) look_at(centre + 0.25 * quarter);
-  return best;
+  return most_of_the_best().first;
 }
 
 }  // namespace
