@@ -16,6 +16,13 @@ constexpr double kDwell_s = 0.2;
 constexpr double kBiasWalk = 0.05;
 // An encoder's edges are not perfect; this fraction of a step is left as noise.
 constexpr double kEdgeNoiseFraction = 0.02;
+// A reading that has not changed says little new: each conditioning on the same
+// interval forgets that the last one cut the tail off, and many of them push the
+// estimate away from an edge that it is about to cross. So a repeated reading
+// counts for this share of an observation per millisecond, and less when they
+// come faster. Of 1, 0.7, 0.5, 0.35 the best on each of five trajectories.
+constexpr double kRepeatedShare = 0.5;
+constexpr double kRepeatedStep_s = 1e-3;
 // No filter is ever ruled out for good.
 constexpr double kProbabilityFloor = 1e-6;
 constexpr double kInverseSqrt2Pi = 0.3989422804014327;
@@ -51,6 +58,7 @@ void MotionEstimator::start(const ToolSample& sample) noexcept {
   }
   estimate_ = {filters_[0].mean[0], filters_[0].mean[1]};
   time_s_ = sample.time_s;
+  position_m_ = sample.position_m;
   started_ = true;
 }
 
@@ -122,7 +130,7 @@ void MotionEstimator::predict(Filter& filter, double jerk_density, double step_s
   if (states_ == 4) p[3][3] += square(kBiasWalk) * h;
 }
 
-double MotionEstimator::measure_position(Filter& filter, double position_m) const noexcept {
+double MotionEstimator::measure_position(Filter& filter, double position_m, double share) const noexcept {
   const double edge_noise_m = kEdgeNoiseFraction * sensor_.encoder_step_m;
   const double noise_variance =
       std::max(square(sensor_.position_noise_m) + square(edge_noise_m), 1e-18);  // (1 nm)^2
@@ -153,6 +161,8 @@ double MotionEstimator::measure_position(Filter& filter, double position_m) cons
     log_likelihood = -0.5 * nearest * nearest - std::log(deviation);
     if (half_step > 0.0) log_likelihood += std::log(2.0 * half_step);
   }
+  shift *= share;
+  shrink *= share;
   Vector column{};
   const auto n = static_cast<std::size_t>(states_);
   for (std::size_t i = 0; i < n; ++i) column[i] = filter.covariance[i][0];
@@ -160,7 +170,7 @@ double MotionEstimator::measure_position(Filter& filter, double position_m) cons
     filter.mean[i] += column[i] * shift;
     for (std::size_t j = 0; j < n; ++j) filter.covariance[i][j] -= column[i] * column[j] * shrink;
   }
-  return log_likelihood;
+  return share * log_likelihood;
 }
 
 double MotionEstimator::measure_scalar(Filter& filter, const Vector& row, double value,
@@ -192,6 +202,9 @@ MotionEstimate MotionEstimator::update(const ToolSample& sample) noexcept {
   if (!(step_s > 0.0)) return estimate_;
   time_s_ = sample.time_s;
   mix(step_s);
+  const bool repeated = sensor_.encoder_step_m > 0.0 && sample.position_m == position_m_;
+  const double share = repeated ? kRepeatedShare * std::min(1.0, step_s / kRepeatedStep_s) : 1.0;
+  position_m_ = sample.position_m;
   std::array<double, kFilters> log_weight{};
   for (std::size_t f = 0; f < kFilters; ++f) {
     Filter& filter = filters_[f];
@@ -205,7 +218,7 @@ MotionEstimate MotionEstimator::update(const ToolSample& sample) noexcept {
       log_likelihood += measure_scalar(filter, {0.0, 1.0, 0.0, 0.0}, sample.velocity_m_per_s,
                                        square(sensor_.velocity_noise_m_per_s));
     }
-    log_likelihood += measure_position(filter, sample.position_m);
+    log_likelihood += measure_position(filter, sample.position_m, share);
     log_weight[f] = std::log(filter.probability) + log_likelihood;
   }
   const double largest = *std::max_element(log_weight.begin(), log_weight.end());
