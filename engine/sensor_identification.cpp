@@ -82,6 +82,10 @@ SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, Recordin
   return sensor;
 }
 
+double identify_force_noise_N(const RecordingRow* rows, std::size_t count) {
+  return quiet_noise(rows, std::min(count, kSensorIdentificationRows), &RecordingRow::force_N);
+}
+
 ToolSample tool_sample(const RecordingRow& row) noexcept {
   return {row.time_s, row.position_m, row.velocity_m_per_s, row.acceleration_m_per_s2};
 }

@@ -21,6 +21,9 @@ inline constexpr std::size_t kSensorIdentificationRows = 30000;
 
 SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns);
 
+// The white noise of the force column, N.
+double identify_force_noise_N(const RecordingRow* rows, std::size_t count);
+
 ToolSample tool_sample(const RecordingRow& row) noexcept;
 
 }  // namespace palpate

@@ -135,9 +135,14 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
     const auto power = bernstein_integral<kElasticCoefficients - 1>(k);
     for (std::size_t j = 0; j < power.size(); ++j) trend.elastic_N[j] += x(column) * power[j];
   }
-  for (std::size_t k = 0; k < rows.viscous_columns(); ++k, ++column) {
-    const auto power = bernstein<kViscosityCoefficients - 1>(k);
-    for (std::size_t j = 0; j < power.size(); ++j) trend.viscosity_Ns_per_m[j] += x(column) * power[j];
+  if (rows.viscous_columns() > 0) {
+    trend.thinning_velocity_m_per_s = rows.thinning_velocity_m_per_s();
+    for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
+        const auto power = bernstein<kViscosityCoefficients - 1>(k);
+        for (std::size_t j = 0; j < power.size(); ++j) (*viscosity)[j] += x(column) * power[j];
+      }
+    }
   }
   for (std::size_t i = 0; i < rows.count(); ++i) {
     trend.velocity_limit_m_per_s =

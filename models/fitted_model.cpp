@@ -45,8 +45,13 @@ Status validate_trend(const Trend& trend) {
   }
   const auto finite = [](double value) { return std::isfinite(value); };
   if (!std::all_of(trend.elastic_N.begin(), trend.elastic_N.end(), finite) ||
-      !std::all_of(trend.viscosity_Ns_per_m.begin(), trend.viscosity_Ns_per_m.end(), finite)) {
+      !std::all_of(trend.viscosity_Ns_per_m.begin(), trend.viscosity_Ns_per_m.end(), finite) ||
+      !std::all_of(trend.thinning_Ns_per_m.begin(), trend.thinning_Ns_per_m.end(), finite)) {
     return wrong("trend", "a non-finite number", "finite numbers");
+  }
+  if (!(trend.thinning_velocity_m_per_s > 0.0) || !std::isfinite(trend.thinning_velocity_m_per_s)) {
+    return wrong("trend.thinning_velocity_m_per_s", std::to_string(trend.thinning_velocity_m_per_s),
+                 "a positive number");
   }
   if (!(trend.velocity_limit_m_per_s >= 0.0) || !std::isfinite(trend.velocity_limit_m_per_s)) {
     return wrong("trend.velocity_limit_m_per_s", std::to_string(trend.velocity_limit_m_per_s), "0 or more");
@@ -103,6 +108,7 @@ Status validate_model(const ModelData& data) {
 
 FittedModel::FittedModel(ModelData data) : data_(std::move(data)), guard_(data_.cover) {
   if (data_.rbf) rbf_.emplace(*data_.rbf);
+  if (data_.grid) grid_.emplace(*data_.grid);
   for (std::size_t i = 0; i < data_.features.size(); ++i) {
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
@@ -121,7 +127,7 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   const double trust = guard_.trust(u.data());
   double force_N = trend_N;
   if (trust > 0.0) {
-    const double correction_N = (rbf_ ? rbf_->evaluate(u.data()) : data_.grid->evaluate(u.data())) -
+    const double correction_N = (rbf_ ? rbf_->evaluate(u.data()) : grid_->evaluate(u.data())) -
                                 (data_.corrects_trend ? 0.0 : trend_N);
     force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
   }

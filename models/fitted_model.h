@@ -29,6 +29,7 @@
 #include "models/rbf_function.h"
 #include "models/trend.h"
 #include "models/voxel_grid.h"
+#include "models/voxel_lookup.h"
 
 namespace palpate {
 
@@ -95,6 +96,7 @@ class FittedModel final : public ForceModel {
   ModelData data_;
   DomainGuard guard_;
   std::optional<RbfEvaluator> rbf_;
+  std::optional<VoxelLookup> grid_;
   std::array<double, kMaxFeatures> inverse_scale_{};
 };
 

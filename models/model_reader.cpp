@@ -156,6 +156,8 @@ class ModelReader : private JsonFields {
     data_.trend.reference_depth_m = number(node, "reference_depth_m", Sign::kPositive);
     coefficients(node, "elastic_N", data_.trend.elastic_N);
     coefficients(node, "viscosity_Ns_per_m", data_.trend.viscosity_Ns_per_m);
+    coefficients(node, "thinning_Ns_per_m", data_.trend.thinning_Ns_per_m);
+    data_.trend.thinning_velocity_m_per_s = number(node, "thinning_velocity_m_per_s", Sign::kPositive);
     data_.trend.velocity_limit_m_per_s = number(node, "velocity_limit_m_per_s", Sign::kNotNegative);
   }
 

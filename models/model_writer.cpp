@@ -68,6 +68,8 @@ std::string trend(const Trend& trend) {
   return "{\n    \"reference_depth_m\": " + number(trend.reference_depth_m) +
          ",\n    \"elastic_N\": " + list(trend.elastic_N) +
          ",\n    \"viscosity_Ns_per_m\": " + list(trend.viscosity_Ns_per_m) +
+         ",\n    \"thinning_Ns_per_m\": " + list(trend.thinning_Ns_per_m) +
+         ",\n    \"thinning_velocity_m_per_s\": " + number(trend.thinning_velocity_m_per_s) +
          ",\n    \"velocity_limit_m_per_s\": " + number(trend.velocity_limit_m_per_s) + "\n  }";
 }
 

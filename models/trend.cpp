@@ -34,7 +34,9 @@ double Trend::at(const double* features, const std::vector<FeatureSpec>& specs) 
   }
   const double u = depth_m / reference_depth_m;
   const double speed = std::clamp(velocity_m_per_s, -velocity_limit_m_per_s, velocity_limit_m_per_s);
-  return elastic_force_N(*this, u) + polynomial(viscosity_Ns_per_m, std::min(u, 1.0)) * speed + branches_N;
+  const double inside = std::min(u, 1.0);
+  return elastic_force_N(*this, u) + polynomial(viscosity_Ns_per_m, inside) * speed +
+         polynomial(thinning_Ns_per_m, inside) * thinned_velocity(speed, thinning_velocity_m_per_s) + branches_N;
 }
 
 }  // namespace palpate

@@ -41,15 +41,16 @@ DriveCurve combined_drive(const double* weights, double reference_depth_m) {
   return drive;
 }
 
-TrendRows::TrendRows(double reference_depth_m, bool has_velocity, std::vector<double> relaxation_times_s)
+TrendRows::TrendRows(double reference_depth_m, double thinning_velocity_m_per_s,
+                     std::vector<double> relaxation_times_s)
     : reference_depth_m_(reference_depth_m),
-      has_velocity_(has_velocity),
+      thinning_velocity_m_per_s_(thinning_velocity_m_per_s),
       relaxation_times_s_(std::move(relaxation_times_s)) {
   for (const double time_s : relaxation_times_s_) branches_.emplace_back(branch_basis(time_s, reference_depth_m));
   columns_ = kElasticCoefficients + viscous_columns() + kBranchTerms * relaxation_times_s_.size();
 }
 
-std::size_t TrendRows::viscous_columns() const { return has_velocity_ ? kViscosityCoefficients : 0; }
+std::size_t TrendRows::viscous_columns() const { return thinning_velocity_m_per_s_ > 0.0 ? 2 * kViscosityCoefficients : 0; }
 
 void TrendRows::begin_recording() {
   for (FeatureFilter& branch : branches_) branch.reset();
@@ -65,8 +66,12 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   for (std::size_t k = 0; k < kElasticCoefficients; ++k) {
     values_.push_back(u * polynomial(bernstein_integral<kElasticCoefficients - 1>(k), u));
   }
-  for (std::size_t k = 0; k < viscous_columns(); ++k) {
-    values_.push_back(velocity_m_per_s * polynomial(bernstein<kViscosityCoefficients - 1>(k), u));
+  if (viscous_columns() > 0) {
+    for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, thinning_velocity_m_per_s_)}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
+        values_.push_back(v * polynomial(bernstein<kViscosityCoefficients - 1>(k), u));
+      }
+    }
   }
   for (const FeatureFilter& branch : branches_) {
     const auto& branch_values = branch.vector().values;

@@ -3,7 +3,8 @@
 //
 // Each row holds the trend's basis at one sample in contact:
 //   elastic    int_0^u B_k,5           k = 0..5
-//   viscous    v B_k,2(min(u, 1))      k = 0..2, when the scene has velocity
+//   viscous    v B_k,2(min(u, 1))      k = 0..2, when the scene has velocity,
+//              then the same with v / (1 + |v| / v_0)
 //   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
 // The branch filters are the features' own code. When more than
 // kMaximumTrendRows rows come, every other one is dropped and the stride
@@ -29,7 +30,8 @@ DriveCurve combined_drive(const double* weights, double reference_depth_m);
 
 class TrendRows {
  public:
-  TrendRows(double reference_depth_m, bool has_velocity, std::vector<double> relaxation_times_s);
+  // `thinning_velocity_m_per_s`: v_0; 0 when the scene has no velocity.
+  TrendRows(double reference_depth_m, double thinning_velocity_m_per_s, std::vector<double> relaxation_times_s);
 
   // A new recording begins: filters start anew.
   void begin_recording();
@@ -45,13 +47,14 @@ class TrendRows {
   double depth_m(std::size_t index) const { return depth_m_[index]; }
   int stroke(std::size_t index) const { return stroke_[index]; }
   double reference_depth_m() const { return reference_depth_m_; }
+  double thinning_velocity_m_per_s() const { return thinning_velocity_m_per_s_; }
   const std::vector<double>& relaxation_times_s() const { return relaxation_times_s_; }
 
  private:
   void halve();
 
   double reference_depth_m_;
-  bool has_velocity_;
+  double thinning_velocity_m_per_s_;
   std::vector<double> relaxation_times_s_;
   std::vector<FeatureFilter> branches_;
   std::size_t columns_;

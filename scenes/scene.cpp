@@ -29,18 +29,20 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
-  for (const SceneFeature& feature : scene.features) {
+  for (const FeatureSpec& feature : scene.features) {
     char low_pass[48];
     std::snprintf(low_pass, sizeof low_pass, "velocity low-pass %g s", feature.relaxation_time_s);
     switch (feature.kind) {
-      case SceneFeatureKind::kDepth:
+      case FeatureKind::depth:
         words.emplace_back("depth");
         break;
-      case SceneFeatureKind::kVelocity:
+      case FeatureKind::velocity:
         words.emplace_back("velocity");
         break;
-      case SceneFeatureKind::kLowpassVelocity:
+      case FeatureKind::lowpass_velocity:
         words.emplace_back(low_pass);
+        break;
+      case FeatureKind::maxwell_branch:  // identified in a fit, never written in a scene
         break;
     }
   }

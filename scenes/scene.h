@@ -10,22 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/features.h"
 #include "engine/jnd.h"
 #include "engine/result.h"
 
 namespace palpate {
-
-// What a model is given, besides time. Source: Hoever & Harders (2009), eq. 1.
-enum class SceneFeatureKind {
-  kDepth,            // "depth": max(0, position), m
-  kVelocity,         // "velocity": rate of the depth, m/s
-  kLowpassVelocity,  // "lowpass_velocity": that rate through a first-order low-pass
-};
-
-struct SceneFeature {
-  SceneFeatureKind kind = SceneFeatureKind::kDepth;
-  double relaxation_time_s = 0.0;  // of a low-pass, > 0; 0 for the other kinds
-};
 
 struct Colour {
   std::uint8_t red = 0;
@@ -46,15 +35,13 @@ struct Scene {
   std::string title;
   std::string description;
   std::optional<std::string> material;  // virtual material; none: recordings only
-  std::vector<SceneFeature> features;   // 1 to 8, the depth among them
+  std::vector<FeatureSpec> features;    // 1 to 8, the depth among them; low-passes for memory
   JndLine jnd;
   BlockGeometry block;
   Colour block_colour;
   Colour tool_colour;
   std::vector<std::string> default_models;  // methods: direct, voxel, ...
 };
-
-inline constexpr std::size_t kSceneMaximumFeatures = 8;
 
 // The features in words: "depth, velocity, velocity low-pass 0.17 s".
 std::string describe_features(const Scene& scene);

@@ -168,10 +168,10 @@ class SceneReader {
   }
 
   void read_features(const Json& document) {
-    const std::string expected = "a list of 1 to " + std::to_string(kSceneMaximumFeatures) + " features";
+    const std::string expected = "a list of 1 to " + std::to_string(kMaxFeatures) + " features";
     const Json* list = member(document, "", "features", expected);
     if (list == nullptr) return;
-    if (!list->is_array() || list->empty() || list->size() > kSceneMaximumFeatures) {
+    if (!list->is_array() || list->empty() || list->size() > kMaxFeatures) {
       const std::string what =
           list->is_array() ? "found " + std::to_string(list->size()) + " features" : found(*list);
       complain("/features", what + ", expected " + expected);
@@ -189,12 +189,12 @@ class SceneReader {
     if (!is_object(value, pointer, {"kind", "relaxation_time_s"})) return;
     const Json* kind = member(value, pointer, "kind", "depth, velocity or lowpass_velocity");
     if (kind == nullptr) return;
-    SceneFeature feature;
+    FeatureSpec feature;
     if (*kind == "lowpass_velocity") {
-      feature.kind = SceneFeatureKind::kLowpassVelocity;
+      feature.kind = FeatureKind::lowpass_velocity;
       feature.relaxation_time_s = number(value, pointer, "relaxation_time_s", {0.0, kLongestRelaxation_s});
     } else if (*kind == "depth" || *kind == "velocity") {
-      feature.kind = *kind == "depth" ? SceneFeatureKind::kDepth : SceneFeatureKind::kVelocity;
+      feature.kind = *kind == "depth" ? FeatureKind::depth : FeatureKind::velocity;
       if (value.contains("relaxation_time_s")) {
         complain(pointer + "/relaxation_time_s",
                  "found a relaxation time, expected none for the kind " + kind->dump());
@@ -206,9 +206,9 @@ class SceneReader {
     add_feature(feature, pointer);
   }
 
-  void add_feature(const SceneFeature& feature, const std::string& pointer) {
+  void add_feature(const FeatureSpec& feature, const std::string& pointer) {
     const bool again =
-        std::any_of(scene_.features.begin(), scene_.features.end(), [&](const SceneFeature& other) {
+        std::any_of(scene_.features.begin(), scene_.features.end(), [&](const FeatureSpec& other) {
           return other.kind == feature.kind && other.relaxation_time_s == feature.relaxation_time_s;
         });
     if (again) complain(pointer, "found the same feature twice, expected each once");

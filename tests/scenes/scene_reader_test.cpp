@@ -41,7 +41,7 @@ TEST(SceneReader, ReadsEveryField) {
   EXPECT_EQ(scene->title, "X");
   EXPECT_FALSE(scene->material.has_value());
   ASSERT_EQ(scene->features.size(), 2u);
-  EXPECT_EQ(scene->features[1].kind, SceneFeatureKind::kLowpassVelocity);
+  EXPECT_EQ(scene->features[1].kind, FeatureKind::lowpass_velocity);
   EXPECT_DOUBLE_EQ(scene->features[1].relaxation_time_s, 0.5);
   EXPECT_DOUBLE_EQ(scene->jnd.offset_N, 0.1);
   EXPECT_DOUBLE_EQ(scene->block.length_m, 0.2);

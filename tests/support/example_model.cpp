@@ -95,6 +95,8 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.trend.reference_depth_m = kDepth_m;
   data.trend.elastic_N = {1.0, 0.4, 0.3, 0.2, 0.1, 0.0};
   data.trend.viscosity_Ns_per_m = {1.0, 0.5, -0.0};
+  data.trend.thinning_Ns_per_m = {0.5, 0.0, 0.25};
+  data.trend.thinning_velocity_m_per_s = 0.05;
   data.trend.velocity_limit_m_per_s = 2.0 * kVelocity_m_per_s;
   data.correction_limit_N = 0.5;
   data.largest_force_N = 2.5;
