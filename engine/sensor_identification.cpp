@@ -13,6 +13,9 @@ constexpr double kQuietShare = 0.2;
 // Below this a change is rounding of the last decimal, in any of the units.
 constexpr double kFinestStep = 1e-9;
 constexpr double kMultipleTolerance = 0.02;
+// Grows with the multiple, as the error of the step does, but never so far that
+// anything would pass for a multiple: noise passes half the time at most.
+constexpr double kLargestMultipleTolerance = 0.25;
 constexpr double kMultipleShare = 0.99;
 
 // The step that a column is quantised by; 0 when it is not.
@@ -29,7 +32,8 @@ double quantisation_step(const RecordingRow* rows, std::size_t count, double Rec
     const double steps = std::abs(rows[i].*column - rows[i - 1].*column) / step;
     if (steps < 0.5) continue;
     ++moved;
-    if (std::abs(steps - std::round(steps)) < kMultipleTolerance * std::max(1.0, steps * 0.1)) ++multiples;
+    const double tolerance = std::min(kMultipleTolerance * std::max(1.0, steps * 0.1), kLargestMultipleTolerance);
+    if (std::abs(steps - std::round(steps)) < tolerance) ++multiples;
   }
   const bool quantised = static_cast<double>(multiples) >= kMultipleShare * static_cast<double>(moved);
   return quantised && moved >= 3 ? step : 0.0;
