@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
-#include "scenes/json_position.h"
+#include "engine/json_position.h"
 #include "scenes/scene.h"
 
 namespace palpate {

@@ -132,40 +132,40 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
        "m.json:13:14: normalisation.scale: found 1, expected 3 numbers, one per feature; fit the model "
        "again"},
       {"\"offset_N\": 0.065", "\"offset_N\": 0",
-       "m.json:24:23: jnd.offset_N: found 0, expected a number above 0; fit the model again"},
+       "m.json:26:23: jnd.offset_N: found 0, expected a number above 0; fit the model again"},
       {"\"jnd\": {", "\"jnd\": 3, \"was\": {",
-       "m.json:24:10: jnd: found 3, expected an object with \"offset_N\"; fit the model again"},
+       "m.json:26:10: jnd: found 3, expected an object with \"offset_N\"; fit the model again"},
       {"\"corrects_trend\": true", "\"corrects_trend\": 1",
-       "m.json:21:21: corrects_trend: found 1, expected true or false; fit the model again"},
+       "m.json:23:21: corrects_trend: found 1, expected true or false; fit the model again"},
       {"\"largest_force_N\": 2.5", "\"largest_force_N\": -2.5",
-       "m.json:23:22: largest_force_N: found -2.5, expected a number, 0 or more; fit the model again"},
+       "m.json:25:22: largest_force_N: found -2.5, expected a number, 0 or more; fit the model again"},
       {"\"inner_radius\": 0.3", "\"inner_radius\": 3",
        "m.json: domain radii: found 3.000000 and 0.909091, expected 0 <= inner < outer; fit the model "
        "again"},
       {"\"seed\": 18446744073709551615", "\"seed\": -1",
-       "m.json:31:13: provenance.seed: found -1, expected a whole number, 0 or more; fit the model again"},
+       "m.json:33:13: provenance.seed: found -1, expected a whole number, 0 or more; fit the model again"},
       {"\"press-2\"", "2",
-       "m.json:26:31: provenance.recordings[1]: found 2, expected a text; fit the model again"},
+       "m.json:28:31: provenance.recordings[1]: found 2, expected a text; fit the model again"},
       {"\"standard_error_s\": 0.01", "\"standard_error\": 0.01",
-       "m.json:36:26: provenance.relaxation_times[0].standard_error_s: found no such field, expected a "
+       "m.json:38:26: provenance.relaxation_times[0].standard_error_s: found no such field, expected a "
        "number, 0 or more; fit the model again"},
       {"[0.25, 0.25, 0.25]", "",
-       "m.json:44:15: domain.points: found an empty list, expected a list of at least one point; fit the "
+       "m.json:46:15: domain.points: found an empty list, expected a list of at least one point; fit the "
        "model again"},
       {"\"linear\"", "\"gauss\"",
-       "m.json:48:13: kernel: found \"gauss\", expected one of cubic, linear, thin-plate, quintic; fit "
+       "m.json:50:13: kernel: found \"gauss\", expected one of cubic, linear, thin-plate, quintic; fit "
        "the model again"},
       {"\"tail\": [1.5]", "\"tail\": [1.5, 2]",
-       "m.json:49:11: tail: found a list of 2, expected 1 coefficients; fit the model again"},
+       "m.json:51:11: tail: found a list of 2, expected 1 coefficients; fit the model again"},
       {"[0.5, 0.5, 0.5],", "[0.5, 0.5],",
-       "m.json:51:5: centres[0]: found a list of 2, expected 3 numbers, one per feature; fit the model "
+       "m.json:53:5: centres[0]: found a list of 2, expected 3 numbers, one per feature; fit the model "
        "again"},
       {"[0.5, 0.5, 0.5],", "[0.5, \"x\", 0.5],",
-       "m.json:51:11: centres[0][1]: found \"x\", expected a number; fit the model again"},
+       "m.json:53:11: centres[0][1]: found \"x\", expected a number; fit the model again"},
       {"[0.5, 0.5, 0.5],", "",
-       "m.json:54:14: weights: found a list of 2, expected 1 numbers, one per centre; fit the model again"},
+       "m.json:56:14: weights: found a list of 2, expected 1 numbers, one per centre; fit the model again"},
       {"0.125,", "",
-       "m.json:54:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
+       "m.json:56:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
       {"\"centres\"", "\"centers\"",
        "m.json:1:1: found neither \"centres\" nor \"grid\", expected one of them; fit the model again"},
       {"\"centres\"", "\"grid\": {}, \"centres\"",
@@ -176,32 +176,32 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
 TEST(ModelReader, RefusesWrongGrids) {
   expect_all(small_grid_text(), {
       {"[[-1, 0, 1]]", "[[-1, 0, 0]]",
-       "m.json:47:23: grid.nodes[0][2]: found 0, expected at least 2 numbers, each above the last; fit "
+       "m.json:49:23: grid.nodes[0][2]: found 0, expected at least 2 numbers, each above the last; fit "
        "the model again"},
       {"[[-1, 0, 1]]", "[[-1]]",
-       "m.json:47:15: grid.nodes[0]: found a list of 1, expected at least 2 numbers, each above the last; "
+       "m.json:49:15: grid.nodes[0]: found a list of 1, expected at least 2 numbers, each above the last; "
        "fit the model again"},
       {"[[-1, 0, 1]]", "[]",
-       "m.json:47:14: grid.nodes: found a list of 0 axes, expected 1, one per feature; fit the model again"},
+       "m.json:49:14: grid.nodes: found a list of 0 axes, expected 1, one per feature; fit the model again"},
       {"[[-1, 0, 1]]", "[[-1, 1]]",
-       "m.json:48:17: grid.values_N: found a list of 3, expected as many as the grid has nodes; fit the "
+       "m.json:50:17: grid.values_N: found a list of 3, expected as many as the grid has nodes; fit the "
        "model again"},
       {"1.5, 2.5, 3.5", "1.5, 2.5, {}",
-       "m.json:49:15: grid.values_N[2]: found an object, expected a number; fit the model again"},
+       "m.json:51:15: grid.values_N[2]: found an object, expected a number; fit the model again"},
   });
 }
 
 TEST(ModelReader, RefusesTextThatIsNotJson) {
   expect_all(small_text(), {
       {"\"largest_force_N\": 2.5", "\"largest_force_N\": 1e999",
-       "m.json:23:22: found 1e999, expected a finite number; fit the model again"},
+       "m.json:25:22: found 1e999, expected a finite number; fit the model again"},
       {"\"largest_force_N\": 2.5", "\"largest_force_N\": -1e400",
-       "m.json:23:22: found -1e400, expected a finite number; fit the model again"},
+       "m.json:25:22: found -1e400, expected a finite number; fit the model again"},
       {"\"largest_force_N\": 2.5", "\"largest_force_N\": NaN",
-       "m.json:23:22: syntax error while parsing value - invalid literal; last read: "
+       "m.json:25:22: syntax error while parsing value - invalid literal; last read: "
        "'\"largest_force_N\": N'; the file is damaged: copy it again or fit the model again"},
       {"\"largest_force_N\": 2.5", "\"largest_force_N\": 2,5",
-       "m.json:23:24: syntax error while parsing object key - unexpected number literal; expected string "
+       "m.json:25:24: syntax error while parsing object key - unexpected number literal; expected string "
        "literal; the file is damaged: copy it again or fit the model again"},
       {"\"small\"", "\"sm\xff\"",
        "m.json:4:14: syntax error while parsing value - invalid string: ill-formed UTF-8 byte; last read: "
