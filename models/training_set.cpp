@@ -70,7 +70,7 @@ class CoverageReduction {
     } else {
       merge(sites_[where->second], site);
     }
-    if (sites_.size() > kMaximumSites) coarsen();
+    if (sites_.size() > kCoverageSites) coarsen();
   }
 
   std::vector<TrainingSite> take() { return std::move(sites_); }
@@ -97,7 +97,7 @@ class CoverageReduction {
   }
 
   void coarsen() {
-    while (sites_.size() > kMaximumSites) {
+    while (sites_.size() > kCoverageSites) {
       step_ *= kGrowth;
       const std::vector<TrainingSite> old = std::move(sites_);
       sites_.clear();

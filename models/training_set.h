@@ -9,7 +9,9 @@
 //   coverage  the feature space is divided into cubes of side `step`; all
 //             samples of a cube become one site with their mean feature vector
 //             and mean force (default). Dwell is thinned, nothing that was
-//             visited is lost, and noise averages out.
+//             visited is lost, and noise averages out. The step starts fine and
+//             grows until kCoverageSites are enough, so a short recording keeps
+//             its detail.
 //   force     the paper's rule (section 2.1): a sample is kept when the force
 //             moved 50 mN since the last one kept.
 //   none      every sample in contact.
@@ -37,7 +39,8 @@ enum class Reduction { coverage, force, none };
 
 inline constexpr std::size_t kMaximumSites = 10000;
 inline constexpr double kReductionForce_N = 0.05;   // the paper's 50 mN
-inline constexpr double kCoverageStep = 0.03;       // of normalised feature space
+inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
+inline constexpr double kCoverageStep = 0.005;      // of normalised feature space, to begin with
 
 struct Normalisation {
   Eigen::VectorXd offset;  // SI
