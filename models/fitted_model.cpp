@@ -115,7 +115,7 @@ FittedModel::FittedModel(ModelData data) : data_(std::move(data)), guard_(data_.
 }
 
 int FittedModel::centre_count() const noexcept {
-  return static_cast<int>(data_.rbf ? data_.rbf->centre_count() : data_.grid->node_count());
+  return data_.rbf ? static_cast<int>(data_.rbf->centre_count()) : static_cast<int>(data_.grid->node_count());
 }
 
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
