@@ -23,17 +23,11 @@ inline double between(const double* corner, const std::size_t* stride, const dou
 
 }  // namespace
 
-VoxelLookup::VoxelLookup(const VoxelGrid& grid, const std::vector<double>* second)
-    : dimension_(static_cast<int>(grid.nodes.size())) {
+VoxelLookup::VoxelLookup(const VoxelGrid& grid)
+    : values_(grid.values_N), interpolate_(pick(static_cast<int>(grid.nodes.size()))),
+      dimension_(static_cast<int>(grid.nodes.size())) {
   assert(validate_voxel_grid(grid, dimension_).ok());
-  assert(second == nullptr || second->size() == grid.values_N.size());
-  std::size_t stride = second == nullptr ? 1 : 2;
-  interpolate_ = second == nullptr ? pick<1>(dimension_) : pick<2>(dimension_);
-  values_.reserve(grid.values_N.size() * stride);
-  for (std::size_t i = 0; i < grid.values_N.size(); ++i) {
-    values_.push_back(grid.values_N[i]);
-    if (second != nullptr) values_.push_back((*second)[i]);
-  }
+  std::size_t stride = 1;
   for (std::size_t k = grid.nodes.size(); k-- > 0; stride *= grid.nodes[k].size())
     axes_[k] = make_axis(grid.nodes[k], stride);
 }
@@ -71,8 +65,8 @@ VoxelLookup::Place VoxelLookup::locate(const Axis& axis, double x) noexcept {
   return {cell * axis.stride, (inside - axis.nodes[cell]) * axis.reciprocal_width[cell]};
 }
 
-template <int kDimension, int kChannels>
-std::array<double, VoxelLookup::kMostChannels> VoxelLookup::interpolate(const double* x) const noexcept {
+template <int kDimension>
+double VoxelLookup::interpolate(const double* x) const noexcept {
   std::array<double, kDimension> fraction;
   std::array<std::size_t, kDimension> stride;
   const double* corner = values_.data();
@@ -82,44 +76,20 @@ std::array<double, VoxelLookup::kMostChannels> VoxelLookup::interpolate(const do
     fraction[k] = place.fraction;
     stride[k] = axes_[k].stride;
   }
-  std::array<double, kMostChannels> result{};
-  for (int channel = 0; channel < kChannels; ++channel)
-    result[static_cast<std::size_t>(channel)] = between<0, kDimension>(corner + channel, stride.data(), fraction.data());
-  return result;
+  return between<0, kDimension>(corner, stride.data(), fraction.data());
 }
 
-template <int kChannels>
 VoxelLookup::Interpolate VoxelLookup::pick(int dimension) {
   switch (dimension) {
-    case 1: return &VoxelLookup::interpolate<1, kChannels>;
-    case 2: return &VoxelLookup::interpolate<2, kChannels>;
-    case 3: return &VoxelLookup::interpolate<3, kChannels>;
-    case 4: return &VoxelLookup::interpolate<4, kChannels>;
-    case 5: return &VoxelLookup::interpolate<5, kChannels>;
-    case 6: return &VoxelLookup::interpolate<6, kChannels>;
-    case 7: return &VoxelLookup::interpolate<7, kChannels>;
-    default: return &VoxelLookup::interpolate<8, kChannels>;
+    case 1: return &VoxelLookup::interpolate<1>;
+    case 2: return &VoxelLookup::interpolate<2>;
+    case 3: return &VoxelLookup::interpolate<3>;
+    case 4: return &VoxelLookup::interpolate<4>;
+    case 5: return &VoxelLookup::interpolate<5>;
+    case 6: return &VoxelLookup::interpolate<6>;
+    case 7: return &VoxelLookup::interpolate<7>;
+    default: return &VoxelLookup::interpolate<8>;
   }
-}
-
-Result<VoxelGrid> even_grid(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const std::vector<int>& sizes) {
-  if (low.size() != high.size() || static_cast<std::size_t>(low.size()) != sizes.size())
-    return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, expected " + std::to_string(low.size()) +
-                 ", one per feature"};
-  VoxelGrid grid;
-  for (Eigen::Index k = 0; k < low.size(); ++k) {
-    const int size = sizes[static_cast<std::size_t>(k)];
-    if (size < 2 || !(high[k] > low[k]))
-      return Error{"grid dimension " + std::to_string(k) + " has " + std::to_string(size) + " nodes from " +
-                   std::to_string(low[k]) + " to " + std::to_string(high[k]) +
-                   ", expected at least 2 over a positive extent"};
-    std::vector<double>& axis = grid.nodes.emplace_back();
-    for (int i = 0; i < size; ++i) {
-      const double fraction = static_cast<double>(i) / (size - 1);
-      axis.push_back((1.0 - fraction) * low[k] + fraction * high[k]);
-    }
-  }
-  return grid;
 }
 
 Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control) {

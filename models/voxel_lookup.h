@@ -3,8 +3,7 @@
 // The same numbers as VoxelGrid::evaluate to rounding, several times faster:
 // the loops are compiled for each dimension, a small table per axis gives the
 // cell without a search, however unevenly the nodes are spaced, and widths are
-// divided by beforehand. A second grid over the same nodes (say, how well the
-// data cover the place) is interleaved with the first and costs little more.
+// divided by beforehand.
 // Source: Hoever & Harders (2009), section 3.
 #pragma once
 
@@ -23,18 +22,13 @@ namespace palpate {
 
 class VoxelLookup {
  public:
-  static constexpr int kMostChannels = 2;
-
-  // `grid` must pass validate_voxel_grid; it is copied. `second`, when given,
-  // holds one more value per node.
-  explicit VoxelLookup(const VoxelGrid& grid, const std::vector<double>* second = nullptr);
+  // `grid` must pass validate_voxel_grid; it is copied.
+  explicit VoxelLookup(const VoxelGrid& grid);
 
   // The grid's value at x, d values; coordinates outside the box count as
   // those of its edge, NaN as the lower edge. Haptics thread, wait-free, no
   // allocation, O(2^d).
-  double evaluate(const double* x) const noexcept { return (this->*interpolate_)(x)[0]; }
-  // Both channels at x; the second is 0 when there is none.
-  std::array<double, kMostChannels> evaluate_all(const double* x) const noexcept { return (this->*interpolate_)(x); }
+  double evaluate(const double* x) const noexcept { return (this->*interpolate_)(x); }
 
   int dimension() const noexcept { return dimension_; }
 
@@ -58,11 +52,10 @@ class VoxelLookup {
 
   static Axis make_axis(const std::vector<double>& nodes, std::size_t stride);
   static Place locate(const Axis& axis, double x) noexcept;
-  template <int kDimension, int kChannels>
-  std::array<double, kMostChannels> interpolate(const double* x) const noexcept;
+  template <int kDimension>
+  double interpolate(const double* x) const noexcept;
 
-  using Interpolate = std::array<double, kMostChannels> (VoxelLookup::*)(const double*) const noexcept;
-  template <int kChannels>
+  using Interpolate = double (VoxelLookup::*)(const double*) const noexcept;
   static Interpolate pick(int dimension);
 
   std::vector<double> values_;
@@ -70,10 +63,6 @@ class VoxelLookup {
   Interpolate interpolate_ = nullptr;
   int dimension_ = 0;
 };
-
-// Nodes for a grid: `sizes[k]` evenly spaced ones from low[k] to high[k].
-// Errors: names the dimension with fewer than two nodes or no extent.
-Result<VoxelGrid> even_grid(const Eigen::VectorXd& low, const Eigen::VectorXd& high, const std::vector<int>& sizes);
 
 // Fills out[i] for the points, d x M, of a batch.
 using BatchFunction = std::function<void(const Eigen::MatrixXd& points, Eigen::VectorXd& out)>;
