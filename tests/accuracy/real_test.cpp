@@ -1,0 +1,87 @@
+// What the methods are worth on recordings of real materials; skips where the
+// recordings are not beside the sources.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+using test::fit;
+using test::fit_all;
+using test::judge;
+using test::ModelPtr;
+using test::prepare;
+using test::real_recording;
+using test::RecordingPtr;
+using test::scene_request;
+
+class RealAccuracy : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(test::real_data())) GTEST_SKIP() << "no recordings at " << test::real_data();
+  }
+};
+
+std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::string>& forces_mN) {
+  std::vector<RecordingPtr> recordings;
+  for (const std::string& force : forces_mN) {
+    recordings.push_back(real_recording("aurora_skin/" + kind + "_" + force + "mN.csv"));
+  }
+  return recordings;
+}
+
+TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
+  const PreparedTraining prepared = prepare(skin("train", {"250", "600", "1000"}), scene_request("skin"));
+  const ModelPtr greedy = fit(prepared, Method::greedy);
+  double squares = 0.0;
+  double within = 0.0;
+  double samples = 0.0;
+  for (const RecordingPtr& recording : skin("test", {"400", "800", "900"})) {
+    const ErrorSummary summary = judge(*recording, greedy);
+    std::cout << test::figures(recording->name, summary) << "\n";
+    const auto n = static_cast<double>(summary.samples);
+    squares += n * summary.rms_error_N * summary.rms_error_N;
+    within += n * summary.within_jnd;
+    samples += n;
+  }
+  EXPECT_GE(within / samples, 0.97);
+  EXPECT_LE(std::sqrt(squares / samples), 0.035);
+}
+
+// The second cycle leaves what the first one showed: see how many samples are
+// out of domain.
+TEST_F(RealAccuracy, PressOnItsSecondCycle) {
+  const PreparedTraining prepared =
+      prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block"));
+  const RecordingPtr recording = real_recording("ur3e_press_mit/test_cycle2.csv");
+  for (const ModelPtr& model : fit_all(prepared)) {
+    const ErrorSummary summary = judge(*recording, model);
+    std::cout << test::figures(model->name(), summary) << "\n";
+    EXPECT_LE(summary.rms_error_N, 0.5) << model->name();
+    EXPECT_GE(summary.within_jnd, 0.7) << model->name() << "; required of greedy only";
+  }
+}
+
+TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
+  for (const std::string thinner : {"0T", "100T"}) {
+    const PreparedTraining prepared =
+        prepare({real_recording("ecoflex_static/EF10_" + thinner + "_train_A1.csv")}, test::position_request());
+    const RecordingPtr recording = real_recording("ecoflex_static/EF10_" + thinner + "_test_A3.csv");
+    double peak_N = 0.0;
+    for (const RecordingRow& row : recording->rows) peak_N = std::max(peak_N, row.force_N);
+    for (const ModelPtr& model : fit_all(prepared)) {
+      const ErrorSummary summary = judge(*recording, model);
+      std::cout << test::figures(model->name(), summary) << ", " << 100.0 * summary.rms_error_N / peak_N
+                << " % of the peak\n";
+      EXPECT_LT(summary.rms_error_N, 0.01 * peak_N) << model->name() << ", " << thinner;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate

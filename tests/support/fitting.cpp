@@ -1,0 +1,120 @@
+#include "tests/support/fitting.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/replay.h"
+#include "scenes/scene.h"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kTestSeconds = 45.272;
+constexpr std::uint64_t kTestSeed = 2;
+// Fewer samples than this say nothing about a bin's deviation.
+constexpr std::uint64_t kFullBin = 100;
+
+}  // namespace
+
+RigSettings train_settings(const std::string& material) {
+  RigSettings settings;
+  settings.material = material;
+  return settings;
+}
+
+RigSettings test_settings(const std::string& material) {
+  RigSettings settings;
+  settings.material = material;
+  settings.seed = kTestSeed;
+  settings.seconds = kTestSeconds;
+  return settings;
+}
+
+RecordingPtr rig_recording(const RigSettings& settings) {
+  return std::make_shared<const Recording>(must(record(settings)).recording);
+}
+
+RecordingPtr encoder_only(const RecordingPtr& recording) {
+  auto copy = std::make_shared<Recording>(*recording);
+  copy->columns.acceleration = false;
+  for (RecordingRow& row : copy->rows) row.acceleration_m_per_s2 = 0.0;
+  return copy;
+}
+
+std::filesystem::path real_data() { return std::filesystem::path(PALPATE_SOURCE_DIR) / "../shared/data"; }
+
+RecordingPtr real_recording(const std::string& file) {
+  return std::make_shared<const Recording>(must(read_recording((real_data() / file).string())));
+}
+
+TrainingRequest scene_request(const std::string& scene) {
+  const Scene found = must(load_scene(scene));
+  TrainingRequest request;
+  request.scene = found.name;
+  request.features = found.features;
+  request.jnd = found.jnd;
+  return request;
+}
+
+TrainingRequest position_request() { return scene_request("elastic_block"); }
+
+PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request) {
+  std::vector<MotionSource::Input> inputs;
+  for (const RecordingPtr& recording : recordings) inputs.push_back({"", recording});
+  MotionSource source(std::move(inputs));
+  return must(prepare_training(source, request));
+}
+
+ModelPtr fit(const PreparedTraining& prepared, Method method, std::uint64_t seed) {
+  MethodRequest request;
+  request.method = method;
+  request.seed = seed;
+  return std::make_shared<const FittedModel>(must(fit_method(prepared, request)).data);
+}
+
+std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
+  std::vector<ModelPtr> models;
+  for (const Method method : kMethods) models.push_back(fit(prepared, method));
+  return models;
+}
+
+std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models) {
+  std::vector<ErrorStatistics> statistics;
+  for (const ModelPtr& model : models) statistics.emplace_back(model->data().jnd);
+  must(replay(recording, ForceModels(models.begin(), models.end()),
+              [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+                if (!snapshot.in_contact) return;
+                for (std::size_t i = 0; i < models.size(); ++i) {
+                  statistics[i].add(snapshot.force_N[i], row.force_N, (snapshot.out_of_domain_mask >> i & 1U) != 0);
+                }
+              }));
+  std::vector<ErrorSummary> summaries;
+  for (const ErrorStatistics& one : statistics) summaries.push_back(one.summary());
+  return summaries;
+}
+
+ErrorSummary judge(const Recording& recording, const ModelPtr& model) {
+  return judge(recording, std::vector<ModelPtr>{model}).front();
+}
+
+double worst_bin_over_jnd(const ErrorSummary& summary, double from_N) {
+  double worst = 0.0;
+  for (const ForceBin& bin : summary.bins) {
+    if (bin.force_from_N < from_N || bin.count < kFullBin) continue;
+    worst = std::max(worst, (bin.mean_abs_error_N + bin.std_abs_error_N) / bin.jnd_N);
+  }
+  return worst;
+}
+
+std::string figures(const std::string& name, const ErrorSummary& summary) {
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "%-12s RMS %6.1f mN, within JND %7.3f %%, worst %6.2f JND, worst bin %5.2f JND, out of domain %.1f %%",
+                name.c_str(), 1e3 * summary.rms_error_N, 100.0 * summary.within_jnd, summary.max_error_over_jnd,
+                worst_bin_over_jnd(summary),
+                100.0 * static_cast<double>(summary.out_of_domain_samples) /
+                    static_cast<double>(std::max<std::uint64_t>(summary.samples, 1)));
+  return line;
+}
+
+}  // namespace palpate::test

@@ -1,0 +1,69 @@
+// Recordings of the virtual rig, fits and error figures in a line each, for
+// tests of what fitted models are worth.
+//
+// Every helper throws std::runtime_error with the error's message when
+// something that must work does not, which fails the test that called it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/evaluation.h"
+#include "models/fit.h"
+#include "scenes/material/rig.h"
+
+namespace palpate::test {
+
+using RecordingPtr = std::shared_ptr<const Recording>;
+using ModelPtr = std::shared_ptr<const FittedModel>;
+
+// The value of `result`, or the exception.
+template <typename T>
+T must(Result<T> result);
+
+// The recording that everybody trains on (seed 1, 41.499 s) and the one that
+// everybody tests on (45.272 s of another seed).
+RigSettings train_settings(const std::string& material);
+RigSettings test_settings(const std::string& material);
+
+RecordingPtr rig_recording(const RigSettings& settings);
+// Without the acceleration column: the encoder alone.
+RecordingPtr encoder_only(const RecordingPtr& recording);
+
+// Real recordings, kept beside the sources and never in them.
+std::filesystem::path real_data();
+RecordingPtr real_recording(const std::string& file);
+
+// What `palpate fit --scene scene` asks for.
+TrainingRequest scene_request(const std::string& scene);
+// The same for a model of position alone.
+TrainingRequest position_request();
+
+PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request);
+ModelPtr fit(const PreparedTraining& prepared, Method method, std::uint64_t seed = 1);
+// One of each method, in the order of kMethods.
+std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
+
+// One summary per model, over the samples in contact.
+std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models);
+ErrorSummary judge(const Recording& recording, const ModelPtr& model);
+
+// The worst of (mean + standard deviation) / JND over the bins that begin at
+// `from_N` or above and hold at least 100 samples.
+double worst_bin_over_jnd(const ErrorSummary& summary, double from_N = 0.0);
+
+// One line of figures, for the log.
+std::string figures(const std::string& name, const ErrorSummary& summary);
+
+template <typename T>
+T must(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return std::move(*result);
+}
+
+}  // namespace palpate::test
