@@ -57,6 +57,22 @@ class HapticsTick {
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
+  // Goes on where `before` is: same motion estimate and, for every feature list
+  // that both have, same filter state, so that a change of models in mid-press
+  // loses no memory of the material; its snapshot is that of these models. A list
+  // that is new begins at rest with the next sample. Same sensor. Wait-free.
+  void continue_from(const HapticsTick& before) noexcept;
+
+  // Slow side: from now on `step` also times each evaluation, in units of
+  // engine/cycle_clock.h; some 10 ns each.
+  void time_evaluations(bool timed) noexcept { timed_ = timed; }
+  // What the last evaluation of model `index` took; 0 before the first one. Out of
+  // contact nothing is evaluated and the figure stays.
+  std::uint64_t evaluation_cycles(std::size_t index) const noexcept { return cycles_[index]; }
+
+  // What `step` gave last.
+  const TickSnapshot& snapshot() const noexcept { return snapshot_; }
+
   std::size_t model_count() const noexcept { return models_.size(); }
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }
   // The features that model `index` was last given.
@@ -68,14 +84,18 @@ class HapticsTick {
   const FeatureVector& vector(std::size_t index) const noexcept { return vectors_[index]; }
 
  private:
+  void evaluate_models() noexcept;
+
   MotionEstimator motion_;
   std::vector<std::shared_ptr<const ForceModel>> models_;
   std::vector<FeatureFilter> filters_;
   std::vector<FeatureVector> vectors_;
   std::vector<std::size_t> filter_of_;  // per model
+  std::array<std::uint64_t, kMaxModels> cycles_{};
   TickSnapshot snapshot_;
   double time_s_ = 0.0;
   bool started_ = false;
+  bool timed_ = false;
 };
 
 }  // namespace palpate
