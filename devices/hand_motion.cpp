@@ -1,4 +1,4 @@
-#include "scenes/material/hand.h"
+#include "devices/hand_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,13 @@ namespace palpate {
 namespace {
 
 constexpr double kStart_m = -0.006;
+// Unhurried, from wherever the tool was.
+constexpr double kReturn_s = 0.8;
 constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace
 
-Hand::Hand(const Material& material, const HandSettings& settings, std::uint64_t seed)
-    : material_(material), settings_(settings), random_(seed, 0) {
+HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : settings_(settings), random_(seed, 0) {
   using enum Gesture;
   deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke, poke,
            poke,       poke,       poke,       steps, modulation, modulation, modulation, rest};
@@ -29,7 +30,15 @@ Hand::Hand(const Material& material, const HandSettings& settings, std::uint64_t
   go({kStart_m, any(0.15, 0.4)});
 }
 
-void Hand::start_tremor(double dt_s) {
+void HandMotion::resume_at(double position_m) noexcept {
+  position_m_ = segment_from_m_ = planned_m_ = aim_m_ = position_m;
+  velocity_m_per_s_ = acceleration_m_per_s2_ = aim_velocity_m_per_s_ = 0.0;
+  segment_count_ = segment_ = 0;
+  segment_time_s_ = 0.0;
+  go({kStart_m, kReturn_s});
+}
+
+void HandMotion::start_tremor(double dt_s) {
   tremor_dt_s_ = dt_s;
   for (Tremor& tremor : tremor_) {
     tremor.turn_cos = std::cos(tremor.rate_rad_per_s * dt_s);
@@ -37,14 +46,14 @@ void Hand::start_tremor(double dt_s) {
   }
 }
 
-void Hand::move(double dt_s) noexcept {
+void HandMotion::move(double dt_s) noexcept {
   position_m_ += dt_s * (velocity_m_per_s_ + 0.5 * dt_s * acceleration_m_per_s2_);
   velocity_m_per_s_ += dt_s * acceleration_m_per_s2_;
   advance_aim(dt_s);
 }
 
 // Corrects the velocity that `move` predicted: velocity Verlet.
-void Hand::feel(double force_N, double dt_s) noexcept {
+void HandMotion::feel(double force_N, double dt_s) noexcept {
   const double drive_N = settings_.stiffness_N_per_m * (aim_m_ - position_m_) +
                          settings_.damping_Ns_per_m * (aim_velocity_m_per_s_ - velocity_m_per_s_);
   const double acceleration = (drive_N - force_N) / settings_.mass_kg;
@@ -52,7 +61,7 @@ void Hand::feel(double force_N, double dt_s) noexcept {
   acceleration_m_per_s2_ = acceleration;
 }
 
-void Hand::advance_aim(double dt_s) {
+void HandMotion::advance_aim(double dt_s) {
   segment_time_s_ += dt_s;
   while (segment_time_s_ >= segments_[segment_].duration_s) {
     segment_time_s_ -= segments_[segment_].duration_s;
@@ -75,28 +84,14 @@ void Hand::advance_aim(double dt_s) {
   }
 }
 
-void Hand::go(Segment segment) {
+void HandMotion::go(Segment segment) {
   if (segment_count_ == kMostSegments) return;
   segments_[segment_count_++] = segment;
   planned_m_ = segment.target_m;
 }
 
-// The aim that ends up pressing with `force_N`, the branches half relaxed.
-double Hand::aim_for(double force_N) const {
-  double low_m = 0.0, high_m = 0.1;
-  for (int i = 0; i < 40; ++i) {
-    const double depth_m = 0.5 * (low_m + high_m);
-    double held_N = material_.elastic_force_N(depth_m);
-    for (std::size_t b = 0; b < material_.branch_count; ++b) {
-      held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);
-    }
-    (held_N < force_N ? low_m : high_m) = depth_m;
-  }
-  return low_m + force_N / settings_.stiffness_N_per_m;
-}
-
 // Draws gestures as from a shuffled deck: every half minute has all of them.
-void Hand::plan() {
+void HandMotion::plan() {
   segment_count_ = segment_ = 0;
   if (dealt_ == deck_.size()) {
     for (std::size_t i = deck_.size() - 1; i > 0; --i) {
@@ -115,13 +110,13 @@ void Hand::plan() {
 }
 
 // Back into the air, then a short pause.
-void Hand::leave(double fastest_s, double slowest_s) {
+void HandMotion::leave(double fastest_s, double slowest_s) {
   const double air_m = any(-0.006, -0.001);
   go({air_m, any(fastest_s, slowest_s)});
   go({air_m, any(0.03, 0.15)});
 }
 
-void Hand::plan_slow_press() {
+void HandMotion::plan_slow_press() {
   press({any(0.5, 1.0) * settings_.strongest_press_N, any(0.35, 0.9)});
   go({planned_m_, any(0.1, 0.6)});
   if (any(0.0, 1.0) < 0.4) {
@@ -131,7 +126,7 @@ void Hand::plan_slow_press() {
   leave(0.2, 0.7);
 }
 
-void Hand::plan_taps() {
+void HandMotion::plan_taps() {
   const std::uint64_t count = 5 + random_.index(6);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.2, 0.85) * settings_.strongest_press_N, any(0.1, 0.18)});
@@ -139,13 +134,13 @@ void Hand::plan_taps() {
   }
 }
 
-void Hand::plan_poke() {
+void HandMotion::plan_poke() {
   press({any(0.5, 0.95) * settings_.strongest_press_N, any(0.1, 0.2)});
   go({planned_m_, any(0.02, 0.4)});
   leave(0.08, 0.25);
 }
 
-void Hand::plan_steps() {
+void HandMotion::plan_steps() {
   const std::uint64_t count = 3 + random_.index(4);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.05, 1.0) * settings_.strongest_press_N, any(0.1, 0.3)});
@@ -154,7 +149,7 @@ void Hand::plan_steps() {
   leave(0.15, 0.5);
 }
 
-void Hand::plan_modulation() {
+void HandMotion::plan_modulation() {
   const double middle = any(0.4, 0.6);
   const double swing = any(0.2, 0.4);
   press({middle * settings_.strongest_press_N, any(0.3, 0.6)});

@@ -23,7 +23,7 @@
 #include "engine/result.h"
 #include "scenes/material/hand.h"
 #include "scenes/material/material.h"
-#include "scenes/material/random_stream.h"
+#include "engine/random_stream.h"
 
 namespace palpate {
 

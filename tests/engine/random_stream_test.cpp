@@ -1,4 +1,4 @@
-#include "scenes/material/random_stream.h"
+#include "engine/random_stream.h"
 
 #include <gtest/gtest.h>
 
