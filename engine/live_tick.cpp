@@ -1,0 +1,185 @@
+#include "engine/live_tick.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "engine/cycle_clock.h"
+
+namespace palpate {
+namespace {
+
+// Strokes for warming up: in and out of contact, a second of each.
+constexpr int kWarmUpSamples = 500;
+constexpr double kWarmUpStep_s = 1e-3;
+
+ToolSample warm_up_sample(int index) noexcept {
+  const double time_s = kWarmUpStep_s * index;
+  ToolSample sample;
+  sample.time_s = time_s;
+  sample.position_m = 2e-3 * std::sin(25.0 * time_s);
+  return sample;
+}
+
+std::uint32_t fault_bits(TickFault fault) noexcept {
+  switch (fault) {
+    case TickFault::none: return 0;
+    case TickFault::bad_sample: return loop_fault::kBadSample;
+    case TickFault::time_not_later: return loop_fault::kTimeNotLater;
+    case TickFault::force_not_finite: return loop_fault::kModelNotFinite;
+  }
+  return 0;
+}
+
+std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
+  std::uint32_t bits = 0;
+  if ((flags & force_limit::kNotFinite) != 0) bits |= loop_fault::kForceNotFinite;
+  if ((flags & force_limit::kClamped) != 0) bits |= loop_fault::kForceClamped;
+  if ((flags & force_limit::kSlewed) != 0) bits |= loop_fault::kForceSlewed;
+  return bits;
+}
+
+ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
+  ForceMixer::Forces forces_N{};
+  std::copy(snapshot.force_N.begin(), snapshot.force_N.end(), forces_N.begin());
+  return forces_N;
+}
+
+}  // namespace
+
+LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor,
+                       std::vector<std::shared_ptr<const ForceModel>> models,
+                       std::shared_ptr<ReferenceForce> true_force)
+    : id(set_id), tick(sensor, std::move(models)), reference(std::move(true_force)) {
+  for (int i = 0; i < 2; ++i) tick.step({kWarmUpStep_s * i, 1e-3, 0.0, 0.0});
+  tick.reset();
+  tick.time_evaluations(true);
+}
+
+LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings)
+    : device_(device),
+      slot_(slot),
+      mixer_(settings.jnd),
+      limiter_(device.limits()),
+      outgoing_mixer_(settings.jnd),
+      ns_per_cycle_(ns_per_cycle()) {
+  mixer_.hand_over();
+}
+
+LiveTick::~LiveTick() {
+  delete models_;
+  delete outgoing_;
+}
+
+void LiveTick::warm_up() noexcept {
+  take_models();
+  if (models_ == nullptr) return;
+  HapticsTick& tick = models_->tick;
+  tick.reset();
+  for (int i = 0; i < kWarmUpSamples; ++i) tick.step(warm_up_sample(i));
+  tick.reset();
+}
+
+void LiveTick::take_models() noexcept {
+  if (outgoing_ != nullptr) return;  // one fade at a time
+  LiveModels* next = slot_.take();
+  if (next == nullptr) return;
+  if (models_ != nullptr) {
+    next->tick.continue_from(models_->tick);
+    outgoing_ = models_;
+    outgoing_mixer_ = mixer_;
+  }
+  mixer_.hand_over();
+  models_ = next;
+  snapshot_.models_id = models_->id;
+  snapshot_.selected = models_->selected;
+  snapshot_.tick = models_->tick.snapshot();
+}
+
+void LiveTick::take_samples(double now_s) noexcept {
+  snapshot_.samples = 0;
+  snapshot_.restarted = false;
+  DeviceSample sample;
+  for (int i = 0; i < kMaxSamplesPerTick && device_.read(now_s, sample); ++i) take_sample(sample);
+}
+
+void LiveTick::take_sample(const DeviceSample& sample) noexcept {
+  ++snapshot_.samples;
+  snapshot_.restarted = snapshot_.restarted || sample.restart;
+  snapshot_.measured_N = sample.measured_force_N;
+  if (models_ == nullptr) {
+    snapshot_.tick.time_s = sample.tool.time_s;
+    snapshot_.tick.position_m = sample.tool.position_m;
+    snapshot_.tick.depth_m = std::max(0.0, sample.tool.position_m);
+    snapshot_.tick.in_contact = sample.tool.position_m > 0.0;
+    return;
+  }
+  if (outgoing_ != nullptr) {
+    if (sample.restart) outgoing_->tick.reset();
+    outgoing_->tick.step(sample.tool);
+  }
+  if (sample.restart) models_->tick.reset();
+  snapshot_.tick = models_->tick.step(sample.tool);
+  snapshot_.faults |= fault_bits(snapshot_.tick.fault);
+  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
+    snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
+  }
+}
+
+double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
+  if (models_ == nullptr) return 0.0;
+  const std::size_t count = models_->tick.model_count();
+  if (controls.models_id == models_->id && controls.selected < count) snapshot_.selected = controls.selected;
+  if (snapshot_.selected >= count) snapshot_.selected = 0;
+  ForceMixer::Forces forces_N = forces_of(snapshot_.tick);
+  if (outgoing_ != nullptr) {
+    forces_N[ForceMixer::kOutgoing] = outgoing_mixer_.current(forces_of(outgoing_->tick.snapshot()));
+  }
+  const double force_N = mixer_.mix(forces_N, snapshot_.selected, step_s);
+  if (outgoing_ != nullptr && mixer_.weights()[ForceMixer::kOutgoing] == 0.0) {
+    slot_.retire(outgoing_);
+    outgoing_ = nullptr;
+  }
+  snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
+  return force_N;
+}
+
+void LiveTick::render(double wanted_N, double step_s) noexcept {
+  // A sample that cannot be true: no force until there is one that can.
+  if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
+  snapshot_.mixed_N = wanted_N;
+  snapshot_.rendered_N = limiter_.limit(wanted_N, step_s);
+  snapshot_.faults |= limiter_bits(limiter_.flags());
+  snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
+  device_.write(snapshot_.rendered_N);
+}
+
+const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) noexcept {
+  const double step_s = started_ ? now_s - now_s_ : 0.0;
+  started_ = true;
+  now_s_ = now_s;
+  snapshot_.loop_time_s = now_s;
+  snapshot_.faults = 0;
+  take_models();
+  take_samples(now_s);
+  render(mix(controls, step_s), step_s);
+  snapshot_.faults_latched |= snapshot_.faults;
+  if (models_ != nullptr) {
+    for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
+      snapshot_.evaluation_ns[i] =
+          static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
+    }
+  }
+  return snapshot_;
+}
+
+bool LiveTick::release(double now_s) noexcept {
+  const double step_s = now_s - now_s_;
+  now_s_ = now_s;
+  snapshot_.faults = 0;
+  render(0.0, step_s);
+  return snapshot_.rendered_N == 0.0;
+}
+
+}  // namespace palpate

@@ -1,0 +1,139 @@
+// One tick of the live loop: device in, models, force out, snapshot. No clock
+// and no thread: the loop calls it every millisecond, a test calls it as it
+// likes. The models' forces are those of HapticsTick, so live and replay give
+// the same bits for the same samples.
+//
+//   take a new set of models -> read the device -> HapticsTick for each sample
+//   -> mix (what is in the hand) -> limit -> write the device -> snapshot
+//
+// Thread guarantee: built on the slow side; `run` and `release` belong to the
+// haptics thread, are wait-free, allocate nothing, lock nothing and never throw.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <type_traits>
+
+#include "engine/device.h"
+#include "engine/force_limiter.h"
+#include "engine/force_mixer.h"
+#include "engine/haptics_tick.h"
+#include "engine/jnd.h"
+#include "engine/model_slot.h"
+
+namespace palpate {
+
+// A force to compare the models with that is computed along with them: the true
+// force of a virtual material.
+class ReferenceForce {
+ public:
+  virtual ~ReferenceForce() = default;
+  // Haptics thread. Wait-free, never throws. `restart`: forget what was before.
+  virtual double step(const TickSnapshot& snapshot, bool restart) noexcept = 0;
+};
+
+// Everything that is exchanged at once when the models change.
+struct LiveModels {
+  // Slow side: sizes all workspaces and evaluates every model once. `id`, above
+  // 0, tells this set from others in snapshots and controls. `reference` may be
+  // null; sets that follow each other may share one, for only the newest steps it.
+  LiveModels(std::uint32_t id, const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models,
+             std::shared_ptr<ReferenceForce> reference = nullptr);
+
+  std::uint32_t id;
+  HapticsTick tick;
+  std::shared_ptr<ReferenceForce> reference;
+  std::uint32_t selected = 0;  // until the controls speak of this set
+};
+
+// What the user wants of the loop.
+struct LoopControls {
+  std::uint32_t models_id = 0;  // the set that `selected` speaks of
+  std::uint32_t selected = 0;   // the model in the hand
+};
+
+// What a tick found wrong, bits.
+namespace loop_fault {
+inline constexpr std::uint32_t kBadSample = 1;
+inline constexpr std::uint32_t kTimeNotLater = 2;
+inline constexpr std::uint32_t kModelNotFinite = 4;
+inline constexpr std::uint32_t kForceNotFinite = 8;   // reached the limiter
+inline constexpr std::uint32_t kForceClamped = 16;
+inline constexpr std::uint32_t kForceSlewed = 32;
+inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop
+}  // namespace loop_fault
+
+inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
+
+// What a live tick has to say. `tick.force_N[i]` are the models' forces,
+// `rendered_N` is what the device got.
+struct LoopSnapshot {
+  TickSnapshot tick;
+  double loop_time_s = 0.0;  // steady clock; goes on where `tick.time_s` starts over
+  double mixed_N = 0.0;      // what the models ask for, before the limiter
+  double rendered_N = 0.0;
+  double measured_N = kNoForce;   // of the device's force sensor; NaN: none
+  double reference_N = kNoForce;  // of the set's ReferenceForce; NaN: none
+  std::uint64_t missed_deadlines = 0;
+  std::uint32_t models_id = 0;  // whose forces these are
+  std::uint32_t selected = 0;
+  std::uint32_t samples = 0;  // taken from the device in this tick; 0: state as before
+  std::uint32_t faults = 0;          // of this tick, loop_fault
+  std::uint32_t faults_latched = 0;  // of all ticks
+  bool ramping = false;  // the limiter still holds back
+  bool fading = false;   // the hand is on its way from one model to another
+  bool restarted = false;  // a new stream began in this tick
+  float lateness_us = 0.0F;
+  float tick_us = 0.0F;  // of the tick before this one
+  std::array<float, kMaxModels> evaluation_ns{};
+};
+static_assert(std::is_trivially_copyable_v<LoopSnapshot>);
+
+struct LiveTickSettings {
+  JndLine jnd;
+};
+
+class LiveTick {
+ public:
+  // `device` outlives this. No models yet: forces are 0 until a set is taken.
+  LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings = {});
+  LiveTick(const LiveTick&) = delete;
+  LiveTick& operator=(const LiveTick&) = delete;
+  ~LiveTick();
+
+  // Takes the pending set and runs its tick on made-up strokes, then forgets
+  // them: caches and branch predictors are warm before the device counts.
+  void warm_up() noexcept;
+
+  // `now_s`: steady clock. The snapshot lives until the next call.
+  const LoopSnapshot& run(double now_s, const LoopControls& controls) noexcept;
+
+  // As `run`, towards no force; true once the device was given 0.
+  bool release(double now_s) noexcept;
+
+  // The last sample's tick, for tests of live against replay.
+  const HapticsTick* models() const noexcept { return models_ != nullptr ? &models_->tick : nullptr; }
+
+ private:
+  void take_models() noexcept;
+  void take_samples(double now_s) noexcept;
+  void take_sample(const DeviceSample& sample) noexcept;
+  double mix(const LoopControls& controls, double step_s) noexcept;
+  void render(double wanted_N, double step_s) noexcept;
+
+  Device& device_;
+  ModelSlot<LiveModels>& slot_;
+  ForceMixer mixer_;
+  ForceLimiter limiter_;
+  LiveModels* models_ = nullptr;
+  LiveModels* outgoing_ = nullptr;  // still felt; retired when it is not
+  ForceMixer outgoing_mixer_;
+  LoopSnapshot snapshot_;
+  double ns_per_cycle_;
+  double now_s_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace palpate

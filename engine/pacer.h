@@ -1,0 +1,58 @@
+// Deadlines and how to wait for them.
+#pragma once
+
+#include <cstdint>
+
+namespace palpate {
+
+// What happened between two deadlines.
+struct Wake {
+  std::int64_t lateness_ns = 0;  // behind the deadline that was waited for; never below 0
+  std::uint64_t missed = 0;      // later deadlines that had passed as well: skipped
+};
+
+// Absolute deadlines, one period apart. Value type, no clock; wait-free.
+class Deadlines {
+ public:
+  Deadlines(std::int64_t start_ns, std::int64_t period_ns) noexcept
+      : next_ns_(start_ns + period_ns), period_ns_(period_ns) {}
+
+  std::int64_t next_ns() const noexcept { return next_ns_; }
+
+  // The loop goes on at `now_ns`, having waited for `next_ns()`; the next deadline
+  // is then the first one after `now_ns`, on the same grid.
+  Wake wake(std::int64_t now_ns) noexcept {
+    Wake wake;
+    if (now_ns > next_ns_) wake.lateness_ns = now_ns - next_ns_;
+    wake.missed = static_cast<std::uint64_t>(wake.lateness_ns / period_ns_);
+    next_ns_ += (static_cast<std::int64_t>(wake.missed) + 1) * period_ns_;
+    return wake;
+  }
+
+ private:
+  std::int64_t next_ns_;
+  std::int64_t period_ns_;
+};
+
+// A clock and a way to wait on it. Haptics thread; never throws, never allocates.
+class Pacer {
+ public:
+  virtual ~Pacer() = default;
+  virtual std::int64_t now_ns() noexcept = 0;
+  // Returns at `deadline_ns` or later; at once when it has passed.
+  virtual void wait_until(std::int64_t deadline_ns) noexcept = 0;
+};
+
+// The steady clock (CLOCK_MONOTONIC). Sleeps until `spin_ns` before a deadline,
+// then spins.
+class SteadyPacer final : public Pacer {
+ public:
+  explicit SteadyPacer(std::int64_t spin_ns = 0) noexcept : spin_ns_(spin_ns) {}
+  std::int64_t now_ns() noexcept override;
+  void wait_until(std::int64_t deadline_ns) noexcept override;
+
+ private:
+  std::int64_t spin_ns_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,98 @@
+// Models and devices for tests of the loop: springs, and a tool that moves as a
+// function of time says.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/device.h"
+#include "engine/force_model.h"
+#include "engine/live_tick.h"
+#include "engine/pacer.h"
+
+namespace palpate::test {
+
+// F = stiffness x depth; depth is its only feature unless others are given.
+class SpringModel final : public ForceModel {
+ public:
+  explicit SpringModel(double stiffness_N_per_m, std::vector<FeatureSpec> features = {FeatureSpec{}})
+      : stiffness_N_per_m_(stiffness_N_per_m), features_(std::move(features)) {}
+  ForceEstimate evaluate(const double* features) const noexcept override {
+    return {stiffness_N_per_m_ * features[0], false};
+  }
+  const std::vector<FeatureSpec>& features() const noexcept override { return features_; }
+  const std::string& name() const noexcept override { return name_; }
+  const std::string& method() const noexcept override { return name_; }
+  int centre_count() const noexcept override { return 0; }
+
+ private:
+  double stiffness_N_per_m_;
+  std::vector<FeatureSpec> features_;
+  std::string name_ = "spring";
+};
+
+inline std::shared_ptr<const ForceModel> spring(double stiffness_N_per_m) {
+  return std::make_shared<const SpringModel>(stiffness_N_per_m);
+}
+
+// One sample per tick, at the position that `path` gives for the time.
+class PathDevice final : public Device {
+ public:
+  using Path = double (*)(double time_s);
+  explicit PathDevice(Path path, const ForceLimits& limits = {1e3, 1e9, 0.0}) : path_(path), limits_(limits) {}
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return limits_; }
+  bool read(double now_s, DeviceSample& sample) noexcept override {
+    if (now_s == now_s_) return false;
+    now_s_ = now_s;
+    sample = {};
+    sample.tool.time_s = now_s;
+    sample.tool.position_m = path_(now_s);
+    return true;
+  }
+  void write(double force_N) noexcept override {
+    force_N_ = force_N;
+    ++writes_;
+  }
+
+  double force_N() const { return force_N_; }
+  int writes() const { return writes_; }
+
+ private:
+  Path path_;
+  ForceLimits limits_;
+  std::string name_ = "path";
+  double now_s_ = -1.0;
+  double force_N_ = 0.0;
+  int writes_ = 0;
+};
+
+inline double held_5mm(double) { return 5e-3; }
+inline double strokes(double time_s) { return 4e-3 * std::sin(6.0 * time_s); }
+
+// A clock that goes only while it is waited for, each time later than asked by
+// what `lateness_ns` gives for the number of the wait.
+class FakePacer final : public Pacer {
+ public:
+  explicit FakePacer(std::function<std::int64_t(int)> lateness_ns) : lateness_ns_(std::move(lateness_ns)) {}
+  std::int64_t now_ns() noexcept override { return now_ns_; }
+  void wait_until(std::int64_t deadline_ns) noexcept override {
+    now_ns_ = std::max(now_ns_, deadline_ns + lateness_ns_(waits_++));
+  }
+  int waits() const { return waits_; }
+
+ private:
+  std::function<std::int64_t(int)> lateness_ns_;
+  std::int64_t now_ns_ = 1'000'000'000;
+  int waits_ = 0;
+};
+
+}  // namespace palpate::test
