@@ -1,0 +1,40 @@
+// The hand by itself until somebody takes over with the mouse, and again once
+// that has been idle for a while. The tool goes on from where the other left it.
+//
+// Thread guarantee: as Device; `mouse` is for the window's thread, see there.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "devices/hand_device.h"
+#include "devices/mouse_device.h"
+
+namespace palpate {
+
+class AutoDevice final : public Device {
+ public:
+  explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {}, const MouseSettings& mouse = {})
+      : hand_(seed, hand), mouse_(mouse) {}
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return simulated_sensor(); }
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return simulated_limits(); }
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override;
+
+  // Setting its target is taking over.
+  MouseDevice& mouse() noexcept { return mouse_; }
+  // Any thread, wait-free.
+  bool hand_is_exploring() const noexcept { return exploring_.load(std::memory_order_relaxed); }
+
+ private:
+  std::string name_ = "auto";
+  HandDevice hand_;
+  MouseDevice mouse_;
+  std::atomic<bool> exploring_{true};
+};
+
+}  // namespace palpate
