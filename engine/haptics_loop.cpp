@@ -35,6 +35,7 @@ Status HapticsLoop::start() {
         status = make_this_thread_realtime(settings_.rt);
       } else {
         status.scheduling = "normal, as asked";
+        status.fine_timers = system_rt_calls().set_timer_slack_1ns() == 0;
       }
       granted.set_value(std::move(status));
       run(pacer_);
