@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "scenes/material/material.h"
-#include "scenes/material/random_stream.h"
+#include "engine/random_stream.h"
 
 namespace palpate::test {
 namespace {
