@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/sensor_identification.h"
-#include "models/fit_control.h"
 
 namespace palpate {
 namespace {
@@ -26,9 +25,10 @@ class RowStream {
   const std::string& name() const { return loaded_ ? loaded_->name : reader_->name(); }
   RecordingColumns columns() const { return loaded_ ? loaded_->columns : reader_->columns(); }
 
-  // The next chunk; empty at the end.
+  // The next chunk, full but for the last one, so that files and memory show
+  // sensor identification the same rows; empty at the end.
   Result<std::size_t> next(std::vector<RecordingRow>& chunk) {
-    if (!loaded_) return reader_->read(chunk.data(), chunk.size());
+    if (!loaded_) return next_from_file(chunk);
     const std::size_t count = std::min(chunk.size(), loaded_->rows.size() - position_);
     std::copy_n(loaded_->rows.begin() + static_cast<std::ptrdiff_t>(position_), count, chunk.begin());
     position_ += count;
@@ -36,6 +36,17 @@ class RowStream {
   }
 
  private:
+  Result<std::size_t> next_from_file(std::vector<RecordingRow>& chunk) {
+    std::size_t filled = 0;
+    while (filled < chunk.size()) {
+      const auto count = reader_->read(chunk.data() + filled, chunk.size() - filled);
+      if (!count) return count.error();
+      if (*count == 0) break;
+      filled += *count;
+    }
+    return filled;
+  }
+
   std::shared_ptr<const Recording> loaded_;
   std::optional<RecordingReader> reader_;
   std::size_t position_ = 0;
@@ -45,6 +56,7 @@ class RowStream {
 
 Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit) {
   names_.clear();
+  kept_.clear();  // of a pass that broke off
   rows_ = 0;
   bool keep = true;
   // One chunk is what sensor identification looks at.
@@ -73,7 +85,7 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
         const bool in_contact = row.sample.position_m > 0.0;
         if (in_contact && (row.first || !was_in_contact)) ++row.stroke;
         was_in_contact = in_contact;
-        if (keep && kept_.size() == kMaximumKeptRows) {
+        if (keep && kept_.size() == kept_rows_) {
           keep = false;
           kept_.clear();
           kept_.shrink_to_fit();
@@ -92,10 +104,15 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
   return {};
 }
 
-Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit) {
-  if (!complete_) return read_all(visit);
+Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control,
+                              double fraction) {
+  std::size_t seen = 0;
+  const auto visit_and_ask = [&](const MotionRow& row) {
+    return visit(row) && (++seen % kRowsPerQuestion != 0 || control.go_on(fraction));
+  };
+  if (!complete_) return read_all(visit_and_ask);
   for (const MotionRow& row : kept_) {
-    if (!visit(row)) return interrupted();
+    if (!visit_and_ask(row)) return interrupted();
   }
   return {};
 }

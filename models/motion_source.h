@@ -18,11 +18,15 @@
 #include "engine/recording.h"
 #include "engine/result.h"
 #include "engine/tool_sample.h"
+#include "models/fit_control.h"
 
 namespace palpate {
 
 // Rows kept in memory, over all recordings together: about 150 MB.
 inline constexpr std::size_t kMaximumKeptRows = 3000000;
+
+// Some 20 ms of reading: a long pass can be stopped at once.
+inline constexpr std::size_t kRowsPerQuestion = 65536;
 
 struct MotionRow {
   ToolSample sample;
@@ -41,11 +45,15 @@ class MotionSource {
     std::shared_ptr<const Recording> loaded;
   };
 
-  explicit MotionSource(std::vector<Input> inputs) : inputs_(std::move(inputs)) {}
+  // `kept_rows`: how many rows may stay in memory between the passes.
+  explicit MotionSource(std::vector<Input> inputs, std::size_t kept_rows = kMaximumKeptRows)
+      : inputs_(std::move(inputs)), kept_rows_(kept_rows) {}
 
   // Calls `visit` for every row in order; a visit that returns false ends the
-  // pass with "interrupted". Errors: those of RecordingReader.
-  Status for_each(const std::function<bool(const MotionRow&)>& visit);
+  // pass with "interrupted", and so does `control`, asked every kRowsPerQuestion
+  // rows with `fraction`. Errors: those of RecordingReader.
+  Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
+                  double fraction = 0.0);
 
   const std::vector<std::string>& names() const { return names_; }  // after the first pass
   std::size_t rows() const { return rows_; }                        // after the first pass
@@ -56,6 +64,7 @@ class MotionSource {
   Status read_all(const std::function<bool(const MotionRow&)>& visit);
 
   std::vector<Input> inputs_;
+  std::size_t kept_rows_;
   std::vector<std::string> names_;
   std::vector<MotionRow> kept_;
   std::size_t rows_ = 0;

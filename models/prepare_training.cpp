@@ -63,7 +63,7 @@ void release_one_sided(PreparedTraining& prepared, const RbfEvaluator& model, co
   }
 }
 
-Status make_sites(PreparedTraining& prepared, const TrainingRequest& request, const FitControl& control) {
+Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const TrainingSet& set = prepared.set;
   const auto n = static_cast<Eigen::Index>(set.sites.size());
   const auto d = static_cast<Eigen::Index>(set.features.size());
@@ -92,7 +92,7 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request, co
     RandomOptions quick;
     quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
     for (int pass = 0; pass < kOneSidedPasses; ++pass) {
-      const auto fitted = fit_random(sites, quick, control);
+      const auto fitted = fit_random(sites, quick);
       if (!fitted) return fitted.error();
       release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
     }
@@ -112,7 +112,7 @@ struct Extent {
   double rms_velocity_m_per_s = 0.0;  // in contact
 };
 
-Result<Extent> measure_extent(MotionSource& source) {
+Result<Extent> measure_extent(MotionSource& source, const FitControl& control) {
   Extent extent;
   double squares = 0.0;
   double count = 0.0;
@@ -124,7 +124,7 @@ Result<Extent> measure_extent(MotionSource& source) {
       count += 1.0;
     }
     return true;
-  });
+  }, control, 0.0);
   if (!status) return status.error();
   // A tool that never moved still needs a scale: 1 um/s.
   extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
@@ -132,7 +132,8 @@ Result<Extent> measure_extent(MotionSource& source) {
 }
 
 Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const TrainingRequest& request,
-                        const Extent& extent, double no_force_N, const std::vector<double>& times_s) {
+                        const Extent& extent, double no_force_N, const std::vector<double>& times_s,
+                        const FitControl& control) {
   const bool papers = is_papers_recipe(request);
   const bool viscous = !papers && has_velocity(request.features);
   TrendRows rows(extent.depth_m, viscous ? extent.rms_velocity_m_per_s : 0.0,
@@ -141,7 +142,7 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
     if (row.first) rows.begin_recording();
     rows.add(row.sample, row.motion, row.force_N, row.stroke);
     return true;
-  });
+  }, control, 0.15);
   if (!status) return status;
   FittedTrend fitted = fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N);
   prepared.common.trend = fitted.trend;
@@ -154,7 +155,7 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
   return {};
 }
 
-Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source) {
+Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, const FitControl& control) {
   FeatureFilter filter(prepared.common.features);
   const std::size_t stride = prepared.set.contact_samples / kMaximumJudged + 1;
   std::size_t seen = 0;
@@ -166,14 +167,14 @@ Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source) {
       prepared.judge_force_N.push_back(row.force_N);
     }
     return true;
-  });
+  }, control, 0.28);
 }
 
 }  // namespace
 
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
-  const auto extent = measure_extent(source);
+  const auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (!control.go_on(0.05)) return interrupted();
   if (!(extent->depth_m > 0.0)) {
@@ -204,10 +205,10 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
     }
   }
   if (!control.go_on(0.15)) return interrupted();
-  if (Status status = fit_common_trend(prepared, source, request, *extent, no_force_N, times_s); !status) {
+  if (Status status = fit_common_trend(prepared, source, request, *extent, no_force_N, times_s, control); !status) {
     return status.error();
   }
-  auto set = make_training_set(source, common.features, request.reduction, no_force_N);
+  auto set = make_training_set(source, common.features, request.reduction, no_force_N, control, 0.2);
   if (!set) return set.error();
   prepared.set = std::move(*set);
   if (!control.go_on(0.25)) return interrupted();
@@ -217,9 +218,9 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   common.lower = prepared.set.normalisation.lower;
   common.upper = prepared.set.normalisation.upper;
   common.jnd = request.jnd;
-  if (Status status = make_sites(prepared, request, {}); !status) return status.error();
+  if (Status status = make_sites(prepared, request); !status) return status.error();
   common.cover = make_cover(prepared.sites.points);
-  if (Status status = keep_judged_samples(prepared, source); !status) return status.error();
+  if (Status status = keep_judged_samples(prepared, source, control); !status) return status.error();
 
   Provenance& provenance = common.provenance;
   provenance.recordings = source.names();

@@ -127,7 +127,14 @@ class ForceReduction {
     if (std::abs(site.force_N - last_N_) < threshold_N_) return;
     last_N_ = site.force_N;
     sites_.push_back(site);
-    if (sites_.size() <= kMaximumSites) return;
+    while (sites_.size() > kMaximumSites) thin();
+  }
+
+  std::vector<TrainingSite> take() { return std::move(sites_); }
+  double threshold_N() const { return threshold_N_; }
+
+ private:
+  void thin() {
     threshold_N_ *= kGrowth;
     std::vector<TrainingSite> kept;
     for (const TrainingSite& candidate : sites_) {
@@ -136,10 +143,6 @@ class ForceReduction {
     sites_ = std::move(kept);
   }
 
-  std::vector<TrainingSite> take() { return std::move(sites_); }
-  double threshold_N() const { return threshold_N_; }
-
- private:
   std::vector<TrainingSite> sites_;
   double threshold_N_ = kReductionForce_N;
   double last_N_ = std::nan("");
@@ -172,7 +175,8 @@ class NoReduction {
 }  // namespace
 
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double no_force_N) {
+                                      Reduction reduction, double no_force_N, const FitControl& control,
+                                      double fraction) {
   TrainingSet set;
   set.features = features;
   const auto n = static_cast<Eigen::Index>(features.size());
@@ -184,7 +188,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
       const FeatureVector& vector = filter.update(row.sample, row.motion);
       if (vector.in_contact) handle(row, vector);
       return true;
-    });
+    }, control, fraction);
   };
 
   FeatureMoments moments(features.size());

@@ -67,8 +67,9 @@ struct TrainingSet {
 };
 
 // `no_force_N`: at or below it a sample counts as "no measured force". Errors:
-// those of the source; no sample in contact.
+// those of the source; no sample in contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double no_force_N);
+                                      Reduction reduction, double no_force_N, const FitControl& control = {},
+                                      double fraction = 0.0);
 
 }  // namespace palpate
