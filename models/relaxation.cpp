@@ -276,7 +276,7 @@ Result<RelaxationIdentification> identify_relaxation(MotionSource& source, doubl
     }
     last_s = row.sample.time_s;
     return true;
-  });
+  }, control, 0.05);
   if (!status) return status.error();
   const double shortest_s = std::clamp(2.0 * duration_s / static_cast<double>(std::max<std::size_t>(steps, 1)),
                                        kShortest_s, 0.1 * kLongest_s);
@@ -302,14 +302,27 @@ Result<RelaxationIdentification> identify_relaxation(MotionSource& source, doubl
   if (!fine_rows) return fine_rows.error();
   const Problem fine(std::move(*fine_rows), weighting, jnd, no_force_N);
 
-  RelaxationIdentification result;
   std::array<FineChoice, kMaximumTimes> choices;
+  std::vector<double> between_s;  // of each number of times, behind each other
   for (std::size_t count = 1; count <= kMaximumTimes; ++count) {
-    FineChoice& choice = choices[count - 1];
-    choice = best_fine(fine, fine.total(), first_of(count), count);
+    choices[count - 1] = best_fine(fine, fine.total(), first_of(count), count);
+    const auto times_s = interpolated(fine, fine.total(), choices[count - 1], first_of(count));
+    between_s.insert(between_s.end(), times_s.begin(), times_s.end());
+  }
+
+  // Judged at the times themselves: with little noise a true time between two of
+  // the ladder would pass for both of them.
+  auto judged_rows = gather(source, reference_depth_m, thinning_velocity_m_per_s, between_s, control, 0.14);
+  if (!judged_rows) return judged_rows.error();
+  const Problem judged(std::move(*judged_rows), weighting, jnd, no_force_N);
+  RelaxationIdentification result;
+  std::size_t next = 0;
+  for (std::size_t count = 1; count <= kMaximumTimes; ++count) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < count; ++i) chosen.push_back(next++);
     double left_out = 0.0;
-    for (std::size_t fold = 0; fold < kFolds; ++fold) left_out += fine.left_out(fold, choice.at);
-    result.error_over_jnd.push_back(std::sqrt(left_out / fine.total().count));
+    for (std::size_t fold = 0; fold < kFolds; ++fold) left_out += judged.left_out(fold, chosen);
+    result.error_over_jnd.push_back(std::sqrt(left_out / judged.total().count));
   }
   const double least = *std::min_element(result.error_over_jnd.begin(), result.error_over_jnd.end());
   std::size_t count = 1;
