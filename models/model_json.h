@@ -13,8 +13,9 @@
 // the file are their constants only: no state is stored.
 //
 // The same fit gives the same bytes but for one honest field: the time that it
-// took. It is stored in whole seconds, rounded up, which repeats for every fit
-// that stays clear of a whole second; nothing else varies.
+// took. It is stored rounded up to the next of 1, 2, 5, 10, 20, 50 ... seconds,
+// which repeats for every fit that stays clear of such a step; nothing else
+// varies.
 //
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once

@@ -86,6 +86,18 @@ std::string grid(const VoxelGrid& grid) {
   return "{\n    \"nodes\": [" + axes + "],\n    \"values_N\": [" + values + "\n  ]}";
 }
 
+// The time of a fit in the file: the next of 1, 2, 5, 10, 20, 50 ... seconds, so
+// that equal commands write equal bytes unless their times straddle such a step.
+// (`fit --json` prints the time itself.)
+double stored_seconds(double fit_seconds) {
+  for (double decade = 1.0; decade < 1e12; decade *= 10.0) {
+    for (const double step : {1.0, 2.0, 5.0}) {
+      if (fit_seconds <= step * decade) return step * decade;
+    }
+  }
+  return fit_seconds;
+}
+
 std::string provenance(const Provenance& provenance) {
   std::string recordings;
   for (const std::string& name : provenance.recordings) {
@@ -103,7 +115,7 @@ std::string provenance(const Provenance& provenance) {
          ",\n    \"contact_samples\": " + count(provenance.contact_samples) +
          ",\n    \"samples_after_reduction\": " + count(provenance.samples_after_reduction) +
          ",\n    \"seed\": " + count(provenance.seed) +
-         ",\n    \"fit_seconds\": " + number(std::ceil(provenance.fit_seconds)) +
+         ",\n    \"fit_seconds\": " + number(stored_seconds(provenance.fit_seconds)) +
          ",\n    \"weighting\": " + quoted(provenance.weighting) +
          ",\n    \"reduction\": " + quoted(provenance.reduction) +
          ",\n    \"relaxation\": " + quoted(provenance.relaxation) +

@@ -115,13 +115,19 @@ TEST(ModelIo, CentresStandOneToALine) {
   EXPECT_EQ(std::count(centres.begin(), centres.end(), '\n'), 40);
 }
 
-TEST(ModelIo, TheTimeOfAFitIsStoredInWholeSecondsOnly) {
+TEST(ModelIo, TheTimeOfAFitIsStoredInCoarseStepsOnly) {
   ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
   data.provenance.fit_seconds = 0.21;
   const std::string text = text_of(data);
   data.provenance.fit_seconds = 0.97;
   EXPECT_EQ(text_of(data), text);
   EXPECT_NE(text.find("\"fit_seconds\": 1,"), std::string::npos);
+  for (const auto& [seconds, stored] : {std::pair{0.0, 1.0}, std::pair{1.0, 1.0}, std::pair{1.01, 2.0},
+                                        std::pair{2.5, 5.0}, std::pair{5.1, 10.0}, std::pair{19.0, 20.0},
+                                        std::pair{301.0, 500.0}, std::pair{86400.0, 100000.0}}) {
+    data.provenance.fit_seconds = seconds;
+    EXPECT_EQ(read_back(data).provenance.fit_seconds, stored) << seconds;
+  }
 }
 
 TEST(ModelIo, RecordingNamesLoseTheirFolders) {

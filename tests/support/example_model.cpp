@@ -52,7 +52,7 @@ Provenance example_provenance() {
   from.contact_samples = 30000;
   from.samples_after_reduction = 6850;
   from.seed = 18446744073709551615ULL;
-  from.fit_seconds = 3.0;
+  from.fit_seconds = 5.0;
   from.weighting = "jnd";
   from.reduction = "coverage";
   from.relaxation = "auto";
