@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <utility>
 
@@ -20,6 +21,8 @@ constexpr int kDepthNodes = 25;
 constexpr int kOtherNodes = 11;
 constexpr double kMostNodes = 2e5;
 constexpr int kPositionOnlyNodes = 200;
+// Of a grid that was asked for; a model file holds no more.
+constexpr double kMaximumGridNodes = 1e7;
 
 std::vector<int> default_grid(std::size_t features) {
   if (features == 1) return {kPositionOnlyNodes};
@@ -67,6 +70,12 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
                  " features; give one size per feature, e.g. --grid 25x11x11x11 for four"};
   }
   VoxelGrid grid;
+  const double nodes = std::accumulate(sizes.begin(), sizes.end(), 1.0, [](double product, int n) { return product * n; });
+  if (nodes > kMaximumGridNodes) {
+    char asked[32];
+    std::snprintf(asked, sizeof asked, "%.3g", nodes);
+    return Error{"the grid would have " + std::string(asked) + " nodes, at most 1e7 can be saved; give smaller sizes"};
+  }
   for (std::size_t k = 0; k < d; ++k) {
     if (sizes[k] < 2) return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
     grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k]));

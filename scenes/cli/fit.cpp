@@ -3,12 +3,12 @@
 #include <chrono>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "engine/atomic_file.h"
 #include "models/fit.h"
 #include "models/model_io.h"
 #include "scenes/cli/progress.h"
@@ -176,9 +176,8 @@ void print_json(const MethodFit& fit, const FitArguments& arguments, double seco
 Status run_fit(const FitArguments& arguments) {
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
-  if (!arguments.force && std::filesystem::exists(arguments.out)) {
-    return Error{arguments.out + " exists; pass --force to replace it"};
-  }
+  // A name that cannot be written is told now and not after the fit.
+  if (const auto trial = AtomicFile::create(arguments.out, arguments.force); !trial) return trial.error();
   const auto start = std::chrono::steady_clock::now();
   ProgressLine line("fitting " + arguments.method);
   FitControl prepare;

@@ -1,0 +1,223 @@
+// palpate fit as a user meets it: exit codes, messages, files.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "models/model_io.h"
+#include "tests/support/example_model.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate::test {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+class FitVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(write_recording(recording(), example_recording(1000, 250.0), {}, false).ok());
+  }
+
+  std::string recording() const { return folder_.file("press.csv"); }
+  std::string out() const { return folder_.file("model.json"); }
+
+  // `palpate fit` with these options; those of `more` take their place.
+  ProgramRun fit(const Arguments& more, const std::string& method = "greedy") const {
+    Arguments arguments = {"fit"};
+    const std::pair<std::string, std::string> defaults[] = {
+        {"--recording", recording()}, {"--method", method}, {"--centres", "20"}, {"--out", out()}};
+    for (const auto& [option, value] : defaults) {
+      if (std::find(more.begin(), more.end(), option) == more.end()) arguments.insert(arguments.end(), {option, value});
+    }
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_palpate(arguments);
+  }
+
+  // The run made a model that loads.
+  void expect_model(const ProgramRun& run) const {
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(run.err, "");
+    EXPECT_TRUE(load_model(out()).ok());
+  }
+
+  // The run ended in one line and left nothing.
+  void expect_refused(const ProgramRun& run, int exit_code, const std::string& words) const {
+    EXPECT_EQ(run.exit_code, exit_code);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
+    EXPECT_EQ(run.err.find('\n'), run.err.size() - 1) << run.err;
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+    EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
+  const ProgramRun run = fit({"--json"});
+  expect_model(run);
+  const auto object = nlohmann::json::parse(run.out);  // refuses anything behind it
+  ASSERT_TRUE(object.is_object());
+  EXPECT_EQ(object.at("method"), "greedy");
+  EXPECT_EQ(object.at("kernel"), "cubic");
+  EXPECT_EQ(object.at("weighting"), "jnd");
+  EXPECT_EQ(object.at("centres"), 20);
+  EXPECT_EQ(object.at("samples"), 1000);
+  EXPECT_TRUE(object.at("centres").is_number_integer());
+  EXPECT_TRUE(object.at("samples_after_reduction").is_number_integer());
+  EXPECT_TRUE(object.at("fit_seconds").is_number_float());
+  EXPECT_GT(object.at("fit_seconds").get<double>(), 0.0);
+  ASSERT_TRUE(object.at("training_within_jnd").is_number());
+  EXPECT_GT(object.at("training_within_jnd").get<double>(), 0.9);
+  EXPECT_LE(object.at("training_within_jnd").get<double>(), 1.0);
+}
+
+// All but the time, which is stored in steps of 1, 2, 5, 10 ... seconds; a fit
+// on a busy machine can cross one, so the line is compared by its shape.
+TEST_F(FitVerb, TheSameCommandTwiceGivesTheSameBytes) {
+  for (const char* method : {"direct", "voxel", "random", "kdtree", "greedy"}) {
+    std::string texts[2];
+    for (std::string& text : texts) {
+      expect_model(fit({"--force"}, method));
+      text = read_text(out());
+      const std::size_t at = text.find("\"fit_seconds\": ");
+      ASSERT_NE(at, std::string::npos);
+      const std::size_t begin = at + 15;
+      const std::size_t end = text.find(',', begin);
+      const std::string seconds = text.substr(begin, end - begin);
+      EXPECT_NE(std::string("125").find(seconds[0]), std::string::npos) << seconds;
+      EXPECT_EQ(seconds.find_first_not_of('0', 1), std::string::npos) << seconds;
+      if (std::stod(seconds) > 1.0) text.replace(begin, end - begin, "1");  // slow machine, see above
+    }
+    EXPECT_EQ(texts[0], texts[1]) << method;
+  }
+}
+
+TEST_F(FitVerb, EveryOptionHasAUse) {
+  const Arguments options[] = {{"--kernel", "linear"},      {"--kernel", "thin-plate"},  {"--kernel", "quintic"},
+                               {"--weighting", "relative"}, {"--weighting", "none"},     {"--reduction", "force"},
+                               {"--reduction", "none"},     {"--relaxation", "auto"},    {"--relaxation", "0.1,0.5"},
+                               {"--candidates", "all"},     {"--scene", "elastic_block"}, {"--centres", "100000"},
+                               {"--seed", "7"},             {"--reduction", "force", "--weighting", "relative"}};
+  for (Arguments option : options) {
+    SCOPED_TRACE(option[0] + " " + option[1]);
+    option.push_back("--force");
+    expect_model(fit(option));
+  }
+  expect_model(fit({"--solver", "tsvd", "--reduction", "force", "--force"}, "direct"));
+  expect_model(fit({"--grid", "4x3x3x3", "--force"}, "voxel"));
+  EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
+}
+
+TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
+  const ProgramRun run = run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out",
+                                      out(), "--json"});
+  expect_model(run);
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 2000);
+}
+
+TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
+  expect_refused(fit({}, "guess"), 2, "direct,voxel,random,kdtree,greedy");
+  expect_refused(fit({"--kernel", "gauss"}), 2, "cubic,linear,thin-plate,quintic");
+  expect_refused(fit({"--weighting", "x"}), 2, "jnd,relative,none");
+  expect_refused(fit({"--reduction", "x"}), 2, "coverage,force,none");
+  expect_refused(fit({"--solver", "x"}), 2, "cholesky,tsvd");
+  expect_refused(fit({"--centres", "0"}), 2, "100000");
+  expect_refused(fit({"--candidates", "some"}), 2, "expected a whole number of at least 1, or all");
+  for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {
+    expect_refused(fit({"--relaxation", times}), 2, "expected scene, auto, or one to six times");
+  }
+  for (const char* grid : {"25x", "1x2x3x4", "axb", "9999999999x2"}) {
+    expect_refused(fit({"--grid", grid}, "voxel"), 2, "expected sizes such as 25x11x11x11");
+  }
+  expect_refused(run_palpate({"fit", "--method", "greedy", "--out", out()}), 2, "--recording");
+}
+
+TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
+  expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
+  expect_refused(fit({"--grid", "25"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
+  expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, "at most 1e7");
+  expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
+  expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
+}
+
+TEST_F(FitVerb, AnExistingModelSurvivesWithoutForce) {
+  folder_.with_file("model.json", "mine");
+  const ProgramRun run = fit({});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "error: " + out() + " exists; pass --force to replace it\n");
+  EXPECT_EQ(read_text(out()), "mine");
+  expect_model(fit({"--force"}));
+}
+
+TEST_F(FitVerb, AnOutThatCannotBeWrittenIsToldBeforeTheFit) {
+  expect_refused(fit({"--out", folder_.file("no/such/model.json")}), 1, "does not exist; create it first");
+  expect_refused(fit({"--out", folder_.path()}), 1, "it is a folder; name a file");
+  expect_refused(fit({"--out", recording() + "/model.json"}), 1, "is not a folder");
+}
+
+TEST_F(FitVerb, NoContactIsToldInOneLine) {
+  Recording air = example_recording(100, 1000.0);
+  for (RecordingRow& row : air.rows) row.position_m = -1e-3;
+  ASSERT_TRUE(write_recording(recording(), air, {}, true).ok());
+  expect_refused(fit({}), 1, "in contact");
+}
+
+// Starts `palpate fit` and waits until it reads its recording, which is after
+// it took charge of SIGINT; -1 when it never does.
+pid_t start_fit(const Arguments& arguments, const std::string& recording, const std::string& err) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
+  std::vector<char*> words;
+  std::string program = PALPATE_BINARY;
+  words.push_back(program.data());
+  Arguments copies = arguments;
+  for (std::string& copy : copies) words.push_back(copy.data());
+  words.push_back(nullptr);
+  pid_t child = -1;
+  const int failed = posix_spawn(&child, PALPATE_BINARY, &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return -1;
+  const std::filesystem::path open_files = "/proc/" + std::to_string(child) + "/fd";
+  while (waitpid(child, nullptr, WNOHANG) == 0) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(open_files, ignored)) {
+      if (std::filesystem::read_symlink(entry.path(), ignored) == recording) return child;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return -1;
+}
+
+// Reading alone takes longer than the signal's way; the direct fit behind it
+// takes seconds.
+TEST_F(FitVerb, InterruptedItLeavesNoFile) {
+  ASSERT_TRUE(write_recording(recording(), example_recording(400000, 1000.0, 30e-6), {}, true).ok());
+  const TemporaryFolder elsewhere;
+  const std::string real = std::filesystem::canonical(recording());
+  const pid_t child = start_fit({"fit", "--recording", recording(), "--method", "direct", "--out", out()}, real,
+                                elsewhere.file("err"));
+  ASSERT_GT(child, 0);
+  ASSERT_EQ(kill(child, SIGINT), 0);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_EQ(read_text(elsewhere.file("err")), "error: interrupted\n");
+  EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
+}
+
+}  // namespace
+}  // namespace palpate::test
