@@ -26,6 +26,8 @@ class AtomicFile {
 
   // Appends; buffered. Errors are kept and reported by commit.
   void write(std::string_view text);
+  // Whether the disk has refused something already; commit says what.
+  bool failed() const noexcept { return error_number_ != 0; }
 
   // Errors: anything the disk refused since `create`, e.g. no space left; a
   // file of that name made by someone else meanwhile, unless `overwrite`. Then

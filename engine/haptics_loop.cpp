@@ -17,8 +17,9 @@ double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<dou
 
 HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
     : device_(device),
+      taken_(std::make_unique<TakenRing>()),
       settings_(settings),
-      live_(device, slot_, settings.tick),
+      live_(device, slot_, {settings.tick.jnd, taken_.get()}),
       pacer_(settings.spin_ns),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 
@@ -102,9 +103,13 @@ LoopStatistics HapticsLoop::statistics() const noexcept {
   result.dropped_snapshots = ring_->dropped();
   result.lateness = lateness_.percentiles();
   result.tick = duration_.percentiles();
-  const std::int64_t last_ns = last_tick_ns_.load(std::memory_order_relaxed);
-  if (last_ns != 0) result.age_s = seconds(SteadyPacer().now_ns() - last_ns);
+  result.age_s = age_s();
   return result;
+}
+
+double HapticsLoop::age_s() const noexcept {
+  const std::int64_t last_ns = last_tick_ns_.load(std::memory_order_relaxed);
+  return last_ns != 0 ? seconds(SteadyPacer().now_ns() - last_ns) : 0.0;
 }
 
 }  // namespace palpate

@@ -3,7 +3,7 @@
 // Deadline k is start + k x 1 ms, however long a tick took. Deadlines that have
 // passed when the loop gets to them are counted as missed and skipped, never
 // made up in a burst. Nothing is shared with other threads but a TripleBuffer
-// each way, an SpscRing of snapshots, the ModelSlot and counters.
+// each way, an SpscRing of snapshots and one of samples, the ModelSlot and counters.
 #pragma once
 
 #include <atomic>
@@ -76,6 +76,16 @@ class HapticsLoop {
     return ring_->pop(snapshots, most);
   }
 
+  // One reader thread, the recorder's, wait-free, O(most). Every sample that was
+  // taken while the controls asked for a recording, oldest first.
+  std::size_t read_samples(TakenSample* samples, std::size_t most) noexcept { return taken_->pop(samples, most); }
+  // Any thread, wait-free. Samples that found no room since the beginning.
+  std::uint64_t dropped_samples() const noexcept { return taken_->dropped(); }
+
+  // Any thread, wait-free; the figures of `statistics` that cost nothing.
+  std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
+  double age_s() const noexcept;
+
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;
 
@@ -90,6 +100,7 @@ class HapticsLoop {
   void let_go(Pacer& pacer, Deadlines& deadlines) noexcept;
 
   Device& device_;
+  std::unique_ptr<TakenRing> taken_;
   LoopSettings settings_;
   ModelSlot<LiveModels> slot_;
   LiveTick live_;

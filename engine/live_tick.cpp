@@ -63,6 +63,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       mixer_(settings.jnd),
       limiter_(device.limits()),
       outgoing_mixer_(settings.jnd),
+      taken_(settings.taken),
       ns_per_cycle_(ns_per_cycle()) {
   mixer_.hand_over();
 }
@@ -108,6 +109,28 @@ void LiveTick::take_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
   snapshot_.restarted = snapshot_.restarted || sample.restart;
   snapshot_.measured_N = sample.measured_force_N;
+  step_models(sample);
+  if (recording_ != 0 && taken_ != nullptr) hand_over_sample(sample);
+}
+
+void LiveTick::hand_over_sample(const DeviceSample& sample) noexcept {
+  TakenSample taken;
+  taken.tool = sample.tool;
+  taken.measured_N = sample.measured_force_N;
+  taken.recording = recording_;
+  taken.restart = sample.restart;
+  if (models_ != nullptr) {
+    const TickFault fault = snapshot_.tick.fault;
+    taken.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
+    if (models_->reference != nullptr) taken.reference_N = snapshot_.reference_N;
+    if (models_->written_model < models_->tick.model_count()) {
+      taken.model_N = snapshot_.tick.force_N[models_->written_model];
+    }
+  }
+  taken_->push(taken);
+}
+
+void LiveTick::step_models(const DeviceSample& sample) noexcept {
   if (models_ == nullptr) {
     snapshot_.tick.time_s = sample.tool.time_s;
     snapshot_.tick.position_m = sample.tool.position_m;
@@ -161,6 +184,7 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   now_s_ = now_s;
   snapshot_.loop_time_s = now_s;
   snapshot_.faults = 0;
+  recording_ = controls.recording;
   take_models();
   take_samples(now_s);
   render(mix(controls, step_s), step_s);

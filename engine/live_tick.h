@@ -22,6 +22,7 @@
 #include "engine/haptics_tick.h"
 #include "engine/jnd.h"
 #include "engine/model_slot.h"
+#include "engine/spsc_ring.h"
 
 namespace palpate {
 
@@ -46,12 +47,16 @@ struct LiveModels {
   HapticsTick tick;
   std::shared_ptr<ReferenceForce> reference;
   std::uint32_t selected = 0;  // until the controls speak of this set
+  // The model whose force goes into TakenSample, none by default: the reference
+  // where there is neither a sensor nor a ReferenceForce.
+  std::uint32_t written_model = kMaxModels;
 };
 
 // What the user wants of the loop.
 struct LoopControls {
   std::uint32_t models_id = 0;  // the set that `selected` speaks of
   std::uint32_t selected = 0;   // the model in the hand
+  std::uint32_t recording = 0;  // above 0: every sample goes into the ring under this number
 };
 
 // What a tick found wrong, bits.
@@ -91,8 +96,26 @@ struct LoopSnapshot {
 };
 static_assert(std::is_trivially_copyable_v<LoopSnapshot>);
 
+// One sample as the device gave it, for a recorder: a tick may take several, of
+// which a snapshot has only the last.
+struct TakenSample {
+  ToolSample tool;
+  double measured_N = kNoForce;
+  double reference_N = kNoForce;  // of the set's ReferenceForce at this sample
+  double model_N = kNoForce;      // of the set's `written_model` at this sample
+  std::uint32_t recording = 0;    // as in LoopControls
+  bool restart = false;           // a new stream begins here
+  bool usable = true;             // false: not finite, or not later than the one before
+};
+static_assert(std::is_trivially_copyable_v<TakenSample>);
+
+// At 1 kHz half a minute, at 20 kHz more than a second of a recorder that stands still.
+inline constexpr std::size_t kTakenRing = 32768;
+using TakenRing = SpscRing<TakenSample, kTakenRing>;
+
 struct LiveTickSettings {
   JndLine jnd;
+  TakenRing* taken = nullptr;  // outlives the tick; null: nobody records
 };
 
 class LiveTick {
@@ -120,6 +143,8 @@ class LiveTick {
   void take_models() noexcept;
   void take_samples(double now_s) noexcept;
   void take_sample(const DeviceSample& sample) noexcept;
+  void step_models(const DeviceSample& sample) noexcept;
+  void hand_over_sample(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
   void render(double wanted_N, double step_s) noexcept;
 
@@ -131,6 +156,8 @@ class LiveTick {
   LiveModels* outgoing_ = nullptr;  // still felt; retired when it is not
   ForceMixer outgoing_mixer_;
   LoopSnapshot snapshot_;
+  TakenRing* taken_;
+  std::uint32_t recording_ = 0;
   double ns_per_cycle_;
   double now_s_ = 0.0;
   bool started_ = false;

@@ -1,6 +1,9 @@
+#include "engine/recording_writer.h"
+
 #include <charconv>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "engine/atomic_file.h"
 #include "engine/csv_scanner.h"
@@ -55,15 +58,20 @@ void append_row(std::string& out, RecordingColumns columns, const RecordingRow& 
   out += '\n';
 }
 
-// A file that the reader would refuse is not written at all.
-Status check_writable(const std::string& path, const Recording& recording,
-                      const std::vector<std::string>& comments) {
+Status check_comments(const std::string& path, const std::vector<std::string>& comments) {
   for (const std::string& comment : comments) {
     if (comment.size() <= kMaximumCommentBytes) continue;
     return Error{path + ": found a comment of " + std::to_string(comment.size()) +
                  " bytes, expected at most " + std::to_string(kMaximumCommentBytes) +
                  "; shorten it"};
   }
+  return {};
+}
+
+// A file that the reader would refuse is not written at all.
+Status check_writable(const std::string& path, const Recording& recording,
+                      const std::vector<std::string>& comments) {
+  if (Status checked = check_comments(path, comments); !checked) return checked;
   RowRules rules;
   for (const RecordingRow& row : recording.rows) {
     if (const auto fault = rules.check(row)) {
@@ -77,23 +85,52 @@ Status check_writable(const std::string& path, const Recording& recording,
 
 }  // namespace
 
+RecordingWriter::RecordingWriter(AtomicFile file, RecordingColumns columns)
+    : file_(std::move(file)), columns_(columns) {
+  piece_.reserve(kPieceBytes + kMaximumLineBytes);
+}
+
+Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
+                                                const std::vector<std::string>& comments, bool overwrite) {
+  if (Status checked = check_comments(path, comments); !checked) return checked.error();
+  auto file = AtomicFile::create(path, overwrite);
+  if (!file) return file.error();
+  RecordingWriter writer(std::move(*file), columns);
+  writer.path_ = path;
+  for (const std::string& comment : comments) append_comment(writer.piece_, comment);
+  append_header(writer.piece_, columns);
+  return writer;
+}
+
+bool RecordingWriter::add(const RecordingRow& row) {
+  if (rules_.check(row)) return false;
+  append_row(piece_, columns_, row);
+  if (piece_.size() >= kPieceBytes) flush();
+  return true;
+}
+
+void RecordingWriter::flush() {
+  file_.write(piece_);
+  piece_.clear();
+}
+
+Status RecordingWriter::commit() {
+  flush();
+  if (file_.failed()) return file_.commit();
+  if (const auto fault = rules_.finish()) {
+    const AtomicFile given_up = std::move(file_);
+    return Error{path_ + ": cannot write: " + fault->text};
+  }
+  return file_.commit();
+}
+
 Status write_recording(const std::string& path, const Recording& recording,
                        const std::vector<std::string>& comments, bool overwrite) {
   if (Status checked = check_writable(path, recording, comments); !checked) return checked;
-  auto file = AtomicFile::create(path, overwrite);
-  if (!file) return file.error();
-  std::string piece;
-  piece.reserve(kPieceBytes + kMaximumLineBytes);
-  for (const std::string& comment : comments) append_comment(piece, comment);
-  append_header(piece, recording.columns);
-  for (const RecordingRow& row : recording.rows) {
-    append_row(piece, recording.columns, row);
-    if (piece.size() < kPieceBytes) continue;
-    file->write(piece);
-    piece.clear();
-  }
-  file->write(piece);
-  return file->commit();
+  auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
+  if (!writer) return writer.error();
+  for (const RecordingRow& row : recording.rows) writer->add(row);
+  return writer->commit();
 }
 
 }  // namespace palpate

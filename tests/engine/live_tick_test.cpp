@@ -292,5 +292,39 @@ TEST(LiveTick, StepsTheReferenceOfTheNewestSet) {
   EXPECT_EQ(reference->restarts, 3);
 }
 
+// Several samples a tick, of which a snapshot has the last.
+TEST(LiveTick, HandsOverEverySampleWhileRecording) {
+  const Recording recording = test::example_recording(4000, 4000.0);
+  ReplayDevice device(recording);
+  ModelSlot<LiveModels> slot;
+  const auto taken = std::make_unique<TakenRing>();
+  LiveTick live(device, slot, {{}, taken.get()});
+  auto models = std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0), spring(500.0)},
+                                             std::make_shared<CountingReference>());
+  models->written_model = 1;
+  slot.publish(std::move(models));
+  int tick = 0;
+  for (; tick < 100; ++tick) live.run(kTick_s * tick, {});
+  TakenSample sample;
+  EXPECT_FALSE(taken->pop(sample)) << "nobody asked";
+  std::vector<TakenSample> samples;
+  for (; tick < 400; ++tick) {
+    const LoopSnapshot& snapshot = live.run(kTick_s * tick, {1, 0, 7});
+    while (taken->pop(sample)) samples.push_back(sample);
+    ASSERT_EQ(samples.back().tool.time_s, snapshot.tick.time_s);
+    ASSERT_EQ(samples.back().model_N, snapshot.tick.force_N[1]);
+    ASSERT_EQ(samples.back().reference_N, snapshot.reference_N);
+  }
+  ASSERT_NEAR(static_cast<double>(samples.size()), 1200.0, 4.0);
+  const auto first = static_cast<std::size_t>(std::lround(
+      (samples.front().tool.time_s - recording.rows.front().time_s) * 4000.0));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    ASSERT_EQ(samples[i].tool.position_m, recording.rows[first + i].position_m);
+    ASSERT_EQ(samples[i].measured_N, recording.rows[first + i].force_N);
+    ASSERT_EQ(samples[i].recording, 7u);
+    ASSERT_TRUE(samples[i].usable);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -1,3 +1,5 @@
+#include "engine/recording_writer.h"
+
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -165,6 +167,34 @@ TEST(WriteRecording, LeavesNoFileWhenTheDiskIsFull) {
   ASSERT_FALSE(written.ok());
   EXPECT_NE(written.error().message.find(folder.file("rec.csv")), std::string::npos)
       << written.error().message;
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
+  const TemporaryFolder folder;
+  const Recording recording = random_recording(5000, {true, false});
+  ASSERT_TRUE(write_recording(folder.file("whole.csv"), recording, {"a comment"}, false).ok());
+  auto writer = RecordingWriter::create(folder.file("rows.csv"), recording.columns, {"a comment"}, false);
+  ASSERT_TRUE(writer.ok());
+  for (const RecordingRow& row : recording.rows) {
+    ASSERT_TRUE(writer->add(row));
+    ASSERT_FALSE(writer->add(row)) << "the same time again";
+  }
+  RecordingRow far = recording.rows.back();
+  far.time_s += 1.0;
+  far.position_m = 2.0;
+  EXPECT_FALSE(writer->add(far));
+  EXPECT_EQ(writer->rows(), 5000u);
+  ASSERT_TRUE(writer->commit().ok());
+  EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
+}
+
+TEST(RecordingWriter, RefusesTooFewRows) {
+  const TemporaryFolder folder;
+  auto writer = RecordingWriter::create(folder.file("rec.csv"), {}, {}, false);
+  ASSERT_TRUE(writer.ok());
+  for (int i = 0; i < 9; ++i) writer->add({1e-3 * i, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_FALSE(writer->commit().ok());
   EXPECT_TRUE(folder.entries().empty());
 }
 
