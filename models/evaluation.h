@@ -10,24 +10,9 @@
 #include <vector>
 
 #include "engine/jnd.h"
+#include "models/error_figures.h"
 
 namespace palpate {
-
-inline constexpr double kForceBin_N = 0.5;
-// At most so many bins: beyond 1 kN the last one takes the rest.
-inline constexpr std::size_t kMaximumForceBins = 2000;
-
-// Errors of the samples with force_from_N <= measured force < force_to_N.
-// A bin without samples has 0 for every error.
-struct ForceBin {
-  double force_from_N = 0.0;
-  double force_to_N = 0.0;
-  std::uint64_t count = 0;
-  double mean_abs_error_N = 0.0;
-  double std_abs_error_N = 0.0;  // population standard deviation
-  double max_abs_error_N = 0.0;
-  double jnd_N = 0.0;  // at the middle of the bin
-};
 
 // Without samples every figure is 0 and there are no bins; whoever shows them
 // looks at `samples` first.
@@ -55,24 +40,9 @@ class ErrorStatistics {
   ErrorSummary summary() const;
 
  private:
-  struct Moments {  // Welford (1962): no cancellation, whatever the count
-    std::uint64_t count = 0;
-    double mean = 0.0;
-    double squares = 0.0;
-    double largest = 0.0;
-  };
-
-  std::vector<ForceBin> force_bins() const;
-
   JndLine jnd_;
-  std::uint64_t samples_ = 0;
-  std::uint64_t within_ = 0;
-  std::uint64_t out_of_domain_ = 0;
-  double squares_N2_ = 0.0;
-  double max_error_N_ = 0.0;
-  double max_ratio_ = 0.0;
+  ErrorFigures figures_;
   std::vector<float> ratios_;
-  std::vector<Moments> bins_;
 };
 
 }  // namespace palpate

@@ -89,7 +89,8 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
 }
 
 Result<FittedRbf> fit_function(const Sites& sites, const Eigen::VectorXd& jnd_N, const MethodRequest& request,
-                               const FitControl& control) {
+                               const FitControl& control, const MethodFit* direct) {
+  if (request.method == Method::voxel && direct != nullptr) return FittedRbf{*direct->data.rbf, direct->report};
   switch (request.method) {
     case Method::random: return fit_random(sites, {request.kernel, request.centres, request.seed}, control);
     case Method::kdtree: return fit_kdtree(sites, jnd_N, {request.kernel, request.centres}, control);
@@ -140,13 +141,20 @@ std::string_view method_name(Method method) {
   return "greedy";
 }
 
+std::optional<Method> method_from_name(std::string_view name) {
+  for (const Method method : kMethods) {
+    if (method_name(method) == name) return method;
+  }
+  return std::nullopt;
+}
+
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
-                             const FitControl& control) {
+                             const FitControl& control, const MethodFit* direct) {
   Eigen::VectorXd jnd_N(prepared.sites.count());
   for (Eigen::Index i = 0; i < jnd_N.size(); ++i) {
     jnd_N(i) = prepared.common.jnd.at(prepared.set.sites[static_cast<std::size_t>(i)].force_N);
   }
-  auto fitted = fit_function(prepared.sites, jnd_N, request, control);
+  auto fitted = fit_function(prepared.sites, jnd_N, request, control, direct);
   if (!fitted) return fitted.error();
   MethodFit fit{prepared.common, std::move(fitted->report)};
   fit.data.method = method_name(request.method);

@@ -12,7 +12,9 @@
 // Thread guarantee: slow side.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +36,8 @@ enum class Method { direct, voxel, random, kdtree, greedy };
 inline constexpr std::array<Method, 5> kMethods{Method::direct, Method::voxel, Method::random, Method::kdtree,
                                                 Method::greedy};
 std::string_view method_name(Method method);
+// Nothing for a name that is none of them.
+std::optional<Method> method_from_name(std::string_view name);
 
 enum class Relaxation { scene, automatic, given };
 enum class DirectSolverChoice { cholesky, tsvd };
@@ -78,8 +82,10 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
                                           const FitControl& control = {});
 
 // Errors: the method cannot be fitted to these sites (says why); interrupted.
-// The same prepared training and request give the same bits.
+// The same prepared training and request give the same bits. `direct`: the fit
+// by Method::direct of the same prepared training, kernel and solver, when there is
+// one already; voxel then fills its grid from it instead of fitting it again.
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
-                             const FitControl& control = {});
+                             const FitControl& control = {}, const MethodFit* direct = nullptr);
 
 }  // namespace palpate

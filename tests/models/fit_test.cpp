@@ -279,5 +279,27 @@ TEST(Fit, StopsWhereverItIsAsked) {
   }
 }
 
+TEST(Fit, KnowsItsMethodsByName) {
+  for (const Method method : kMethods) EXPECT_EQ(method_from_name(method_name(method)), method);
+  EXPECT_EQ(method_from_name("position"), std::nullopt);
+}
+
+TEST(Fit, AVoxelGridFromADirectFitIsTheSame) {
+  const auto prepared = prepare({test::example_recording(1500, 500.0)}, request_for(test::paper_features()));
+  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  MethodRequest request;
+  request.method = Method::direct;
+  const auto direct = fit_method(*prepared, request);
+  ASSERT_TRUE(direct.ok()) << direct.error().message;
+  request.method = Method::voxel;
+  request.grid.assign(4, 5);
+  const auto alone = fit_method(*prepared, request);
+  const auto shared = fit_method(*prepared, request, {}, &*direct);
+  ASSERT_TRUE(alone.ok() && shared.ok());
+  EXPECT_EQ(shared->data.grid->nodes, alone->data.grid->nodes);
+  EXPECT_EQ(shared->data.grid->values_N, alone->data.grid->values_N);
+  EXPECT_EQ(shared->report.smoothing, alone->report.smoothing);
+}
+
 }  // namespace
 }  // namespace palpate
