@@ -41,6 +41,8 @@ struct Scene {
   Colour block_colour;
   Colour tool_colour;
   std::vector<std::string> default_models;  // methods: direct, voxel, ...
+  // A hand that explores by itself aims at most for this force.
+  double strongest_press_N = 5.0;
 };
 
 // The features in words: "depth, velocity, velocity low-pass 0.17 s".

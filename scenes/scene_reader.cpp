@@ -20,6 +20,7 @@ constexpr std::array<const char*, 5> kMethods = {"direct", "voxel", "random", "k
 constexpr double kLongestRelaxation_s = 100.0;
 constexpr double kLargestLength_m = 10.0;
 constexpr double kLargestJndOffset_N = 100.0;
+constexpr double kStrongestPress_N = 20.0;
 
 struct Range {
   double above = 0.0;
@@ -141,7 +142,7 @@ class SceneReader {
   void read_document(const Json& document) {
     if (!is_object(document, "",
                    {"name", "title", "description", "material", "features", "jnd", "block", "colours",
-                    "default_models"}))
+                    "default_models", "strongest_press_N"}))
       return;
     read_name(document);
     scene_.title = text(document, "", "title");
@@ -152,6 +153,9 @@ class SceneReader {
     read_block(document);
     read_colours(document);
     read_default_models(document);
+    if (document.contains("strongest_press_N")) {
+      scene_.strongest_press_N = number(document, "", "strongest_press_N", {0.0, kStrongestPress_N});
+    }
   }
 
   void read_name(const Json& document) {

@@ -1,5 +1,4 @@
 // palpate fit: recordings in, a model file out.
-#include <algorithm>
 #include <chrono>
 #include <charconv>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene.h"
+#include "scenes/training.h"
 
 namespace palpate::cli {
 namespace {
@@ -89,10 +89,7 @@ std::string check_grid(const std::string& text) {
 }
 
 TrainingRequest training_request(const FitArguments& arguments, const Scene& scene) {
-  TrainingRequest request;
-  request.scene = scene.name;
-  request.features = scene.features;
-  request.jnd = scene.jnd;
+  TrainingRequest request = palpate::training_request(scene);
   request.weighting = arguments.weighting == "jnd"        ? Weighting::jnd
                       : arguments.weighting == "relative" ? Weighting::relative
                                                           : Weighting::none;
@@ -110,8 +107,7 @@ TrainingRequest training_request(const FitArguments& arguments, const Scene& sce
 
 MethodRequest method_request(const FitArguments& arguments) {
   MethodRequest request;
-  request.method = *std::find_if(kMethods.begin(), kMethods.end(),
-                                 [&](Method method) { return method_name(method) == arguments.method; });
+  request.method = *method_from_name(arguments.method);
   request.centres = arguments.centres;
   request.candidates = arguments.candidates == "all" ? 0 : std::stoi(arguments.candidates);
   request.kernel = *kernel_from_name(arguments.kernel);

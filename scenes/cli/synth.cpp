@@ -13,8 +13,6 @@
 namespace palpate::cli {
 namespace {
 
-constexpr std::size_t kRowsPerUpdate = 4096;
-
 struct SynthOptions {
   SynthOptions() { rig.material.clear(); }
   RigSettings rig;
@@ -56,25 +54,14 @@ Status list_materials() {
 
 Status run_synth(const SynthOptions& options) {
   if (options.list) return list_materials();
-  Result<Rig> rig = Rig::create(options.rig);
-  if (!rig) return rig.error();
-  Recording recording;
-  recording.columns.acceleration = true;
-  recording.rows.reserve(rig->row_count());
-  RecordingRow row;
-  RigTruth truth;
+  const Result<Material> material = find_material(options.rig.material);
+  if (!material) return material.error();
   ProgressLine line("recording " + options.rig.material);
-  while (rig->next(row, truth)) {
-    recording.rows.push_back(row);
-    const std::size_t done = recording.rows.size();
-    if (done % kRowsPerUpdate == 0 &&
-        !line.update(static_cast<double>(done) / static_cast<double>(rig->row_count()))) {
-      return Error{"interrupted; no recording was written"};
-    }
-  }
-  return write_recording(options.out, recording,
-                         describe_recording(options.rig, rig->material(), rig->row_count()),
-                         options.force);
+  const Result<Recording> recording =
+      record_sensors(options.rig, [&](double share) { return line.update(share); });
+  if (!recording) return recording.error();
+  return write_recording(options.out, *recording,
+                         describe_recording(options.rig, *material, recording->rows.size()), options.force);
 }
 
 }  // namespace

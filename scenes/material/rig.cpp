@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kGridRate_Hz = 20000.0;
 constexpr double kConverterSteps = 4096.0;  // 12 bits
+constexpr std::size_t kRowsPerUpdate = 4096;  // between two words on progress
 
 enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream };
 
@@ -40,6 +41,10 @@ double converted(double value, double range) {
 // nanometres, which is short in a file.
 double encoded(double position_m, double step_m) {
   return std::nearbyint(std::nearbyint(position_m / step_m) * step_m * 1e9) / 1e9 + 0.0;
+}
+
+std::string recording_name(const RigSettings& settings) {
+  return settings.material + "_" + std::to_string(settings.seed);
 }
 
 // The shortest text that reads back as `value`.
@@ -125,11 +130,29 @@ bool Rig::next(RecordingRow& row, RigTruth& truth) noexcept {
   return true;
 }
 
+Result<Recording> record_sensors(const RigSettings& settings, const std::function<bool(double)>& progress) {
+  Result<Rig> rig = Rig::create(settings);
+  if (!rig) return rig.error();
+  Recording recording;
+  recording.name = recording_name(settings);
+  recording.columns.acceleration = true;
+  recording.rows.reserve(rig->row_count());
+  RecordingRow row;
+  RigTruth truth;
+  while (rig->next(row, truth)) {
+    recording.rows.push_back(row);
+    const std::size_t done = recording.rows.size();
+    const double share = static_cast<double>(done) / static_cast<double>(rig->row_count());
+    if (progress && done % kRowsPerUpdate == 0 && !progress(share)) return Error{"interrupted"};
+  }
+  return recording;
+}
+
 Result<RigRecording> record(const RigSettings& settings) {
   Result<Rig> rig = Rig::create(settings);
   if (!rig) return rig.error();
   RigRecording made;
-  made.recording.name = settings.material + "_" + std::to_string(settings.seed);
+  made.recording.name = recording_name(settings);
   made.recording.columns.acceleration = true;
   made.recording.rows.reserve(rig->row_count());
   made.truth.reserve(rig->row_count());

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,11 @@ class Rig {
   RigTruth before_, after_;  // at grid_index_ and one step later
   double bias_m_per_s2_ = 0.0;
 };
+
+// A whole recording as the sensors see it, without the truth. `progress` is told
+// the share done now and then and may be empty; when it returns false the
+// recording is given up. Errors: as Rig::create; "interrupted".
+Result<Recording> record_sensors(const RigSettings& settings, const std::function<bool(double share)>& progress = {});
 
 // A whole recording with its truth; errors as Rig::create. The recording's
 // name is "<material>_<seed>".

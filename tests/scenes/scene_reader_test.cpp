@@ -49,6 +49,17 @@ TEST(SceneReader, ReadsEveryField) {
   EXPECT_EQ(scene->block_colour.red, 0x56);
   EXPECT_EQ(scene->block_colour.blue, 0xE9);
   EXPECT_EQ(scene->default_models, std::vector<std::string>{"greedy"});
+  EXPECT_EQ(scene->strongest_press_N, 5.0) << "may be left out";
+}
+
+TEST(SceneReader, TakesAStrongestPress) {
+  std::string text = kGood;
+  text.insert(text.rfind('}'), ", \"strongest_press_N\": 0.9");
+  const auto scene = parse_scene(text, "x.json");
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->strongest_press_N, 0.9);
+  EXPECT_EQ(complaint_after("\"material\": null,", "\"material\": null, \"strongest_press_N\": 0,"),
+            "x.json:5:42: found 0, expected a number above 0 up to 20");
 }
 
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {

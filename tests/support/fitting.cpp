@@ -5,6 +5,7 @@
 
 #include "engine/replay.h"
 #include "scenes/scene.h"
+#include "scenes/training.h"
 
 namespace palpate::test {
 namespace {
@@ -48,12 +49,7 @@ RecordingPtr real_recording(const std::string& file) {
 }
 
 TrainingRequest scene_request(const std::string& scene) {
-  const Scene found = must(load_scene(scene));
-  TrainingRequest request;
-  request.scene = found.name;
-  request.features = found.features;
-  request.jnd = found.jnd;
-  return request;
+  return training_request(must(load_scene(scene)));
 }
 
 TrainingRequest position_request() { return scene_request("elastic_block"); }

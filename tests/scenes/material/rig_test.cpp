@@ -241,5 +241,26 @@ TEST(CountForceSteps, CountsFromTheLastKeptRow) {
   EXPECT_EQ(count_force_steps({}, 0.05), 0u);
 }
 
+TEST(Rig, RecordsTheSensorsAloneAndStopsWhenTold) {
+  RigSettings settings;
+  settings.seconds = 10.0;
+  const RigRecording whole = record(settings).value();
+  double share = 0.0;
+  const auto follow = [&](double now) { return (share = now) <= 1.0; };
+  const Recording sensors = record_sensors(settings, follow).value();
+  EXPECT_GT(share, 0.5);
+  EXPECT_EQ(sensors.name, whole.recording.name);
+  EXPECT_TRUE(sensors.columns.acceleration);
+  ASSERT_EQ(sensors.rows.size(), whole.recording.rows.size());
+  for (std::size_t i = 0; i < sensors.rows.size(); ++i) {
+    ASSERT_EQ(sensors.rows[i].position_m, whole.recording.rows[i].position_m);
+    ASSERT_EQ(sensors.rows[i].force_N, whole.recording.rows[i].force_N);
+    ASSERT_EQ(sensors.rows[i].acceleration_m_per_s2, whole.recording.rows[i].acceleration_m_per_s2);
+  }
+  const auto stopped = record_sensors(settings, [](double) { return false; });
+  ASSERT_FALSE(stopped.ok());
+  EXPECT_EQ(stopped.error().message, "interrupted");
+}
+
 }  // namespace
 }  // namespace palpate
