@@ -1,0 +1,40 @@
+// The dent that one model's surface shows, and its colour.
+//
+// The surface follows the tool in and comes back slowly, by the model's own
+// relaxation times tau_b: a low-passed depth each,
+//   m_b <- d + (m_b - d) exp(-h / tau_b)      [= d - tau_b x (low-passed velocity)]
+//   dent = max(d, 0.35 mean_b m_b)
+// A model without memory has a surface without memory: dent = d. The colour is
+// the largest error of late, fading within 0.3 s. A picture, not a model: no
+// force depends on it.
+// Thread guarantee: one thread; allocates in the constructor only.
+#pragma once
+
+#include <vector>
+
+#include "engine/features.h"
+
+namespace palpate {
+
+class Dent {
+ public:
+  Dent() = default;
+  explicit Dent(const std::vector<FeatureSpec>& features);
+
+  // `step_s`: since the last call.
+  void step(double depth_m, double error_over_jnd, double step_s);
+
+  double depth_m() const noexcept { return dent_m_; }
+  double error_over_jnd() const noexcept { return error_over_jnd_; }
+
+ private:
+  struct Branch {
+    double relaxation_time_s = 0.0;
+    double depth_m = 0.0;
+  };
+  std::vector<Branch> branches_;
+  double dent_m_ = 0.0;
+  double error_over_jnd_ = 0.0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,89 @@
+#include "scenes/live/fault_log.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kSameEvent_s = 1.0;
+
+enum Kind : std::size_t {
+  kBadSample,
+  kTimeNotLater,
+  kModelNotFinite,
+  kForceNotFinite,
+  kForceClamped,
+  kDeadlineMissed,
+  kDropped,
+  kStall,
+};
+
+constexpr std::array<const char*, 8> kWords = {
+    "the device gave a sample that is not a number; the force let go",
+    "the device gave a sample that is not later than the one before; skipped",
+    "a model gave a force that is not a number; 0 N instead",
+    "the force became not a number; 0 N instead",
+    "the force was above what the device may be given; held back",
+    "a tick was late and its deadline missed",
+    "the window was too slow to show every tick",
+    "the haptics loop stood still for more than 50 ms",
+};
+
+struct BitKind {
+  std::uint32_t bit;
+  Kind kind;
+};
+// A force that the limiter slews is none of these: it does so at every ramp, and
+// when the tool hits the block hard, and that is what it is for.
+constexpr std::array<BitKind, 5> kAlarms = {{
+    {loop_fault::kBadSample, kBadSample},
+    {loop_fault::kTimeNotLater, kTimeNotLater},
+    {loop_fault::kModelNotFinite, kModelNotFinite},
+    {loop_fault::kForceNotFinite, kForceNotFinite},
+    {loop_fault::kForceClamped, kForceClamped},
+}};
+
+}  // namespace
+
+bool FaultLog::see(const LoopSnapshot& snapshot) {
+  bool any = false;
+  for (const BitKind& alarm : kAlarms) {
+    if ((snapshot.faults & alarm.bit) == 0) continue;
+    note(alarm.kind, 1, snapshot.loop_time_s);
+    any = true;
+  }
+  if (snapshot.missed_deadlines > missed_) {
+    note(kDeadlineMissed, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
+    missed_ = snapshot.missed_deadlines;
+    any = true;
+  }
+  return any;
+}
+
+void FaultLog::see_dropped(std::uint64_t dropped, double now_s) {
+  if (dropped > dropped_) note(kDropped, dropped - dropped_, now_s);
+  dropped_ = dropped;
+}
+
+void FaultLog::see_age(double age_s, double now_s) {
+  const bool stalled = age_s > kStall_s;
+  if (stalled && !stalled_) note(kStall, 1, now_s);
+  stalled_ = stalled;
+}
+
+void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {
+  Last& last = last_[kind];
+  if (last.event != kMost && at_s - last.at_s <= kSameEvent_s) {
+    events_[last.event].count += count;
+    last.at_s = at_s;
+    return;
+  }
+  if (events_.size() == kMost) {
+    events_.erase(events_.begin());
+    for (Last& other : last_) {
+      if (other.event != kMost) other.event = other.event > 0 ? other.event - 1 : kMost;
+    }
+  }
+  events_.push_back({at_s, kWords[kind], count});
+  last = {events_.size() - 1, at_s};
+}
+
+}  // namespace palpate

@@ -1,0 +1,55 @@
+// What went wrong in the loop, in words, newest last.
+//
+// A fault that follows one of its kind within a second counts there. What is
+// part of normal running is no fault: the limiter holding back while the force
+// ramps up at the start, after a bad sample or from one model to another.
+// Thread guarantee: one thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/live_tick.h"
+
+namespace palpate {
+
+struct FaultEvent {
+  double loop_time_s = 0.0;  // of the first
+  std::string text;          // in words
+  std::uint64_t count = 1;   // of the same kind that followed within a second
+};
+
+class FaultLog {
+ public:
+  static constexpr std::size_t kMost = 200;
+  // An older last tick is a stall.
+  static constexpr double kStall_s = 0.05;
+
+  // Every snapshot in order; whether it holds a fault.
+  bool see(const LoopSnapshot& snapshot);
+  // `dropped`: snapshots lost so far, in all.
+  void see_dropped(std::uint64_t dropped, double now_s);
+  // `age_s`: of the last tick. A stall counts once, however long.
+  void see_age(double age_s, double now_s);
+
+  const std::vector<FaultEvent>& events() const noexcept { return events_; }
+
+ private:
+  static constexpr std::size_t kKinds = 8;
+  void note(std::size_t kind, std::uint64_t count, double at_s);
+
+  struct Last {
+    std::size_t event = kMost;  // its place in events_; kMost: gone
+    double at_s = 0.0;
+  };
+  std::vector<FaultEvent> events_;
+  std::array<Last, kKinds> last_{};
+  std::uint64_t missed_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool stalled_ = false;
+};
+
+}  // namespace palpate

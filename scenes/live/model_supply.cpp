@@ -1,0 +1,176 @@
+#include "scenes/live/model_supply.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "models/model_io.h"
+#include "scenes/material/rig.h"
+#include "scenes/training.h"
+
+namespace palpate {
+namespace {
+
+// Graphics and haptics win on two cores; a fit takes a little longer.
+constexpr int kNice = 10;
+// Shares of the first fit's time, as far as the bar is concerned.
+constexpr double kRecorded = 0.3;
+constexpr double kPrepared = 0.7;
+
+// How long a model takes to make, in words of order only. Direct before voxel,
+// which then fills its grid from it.
+int cost(const SlotPlan& plan) {
+  if (plan.origin == ModelOrigin::file) return 0;
+  if (plan.origin == ModelOrigin::position) return 4;
+  switch (plan.method) {
+    case Method::random: return 1;
+    case Method::kdtree: return 2;
+    case Method::greedy: return 3;
+    case Method::direct: return 5;
+    case Method::voxel: return 6;
+  }
+  return 6;
+}
+
+// Of this thread and those that it will start: Linux counts threads one by one.
+void lower_priority() { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
+
+}  // namespace
+
+ModelSupply::ModelSupply(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
+
+ModelSupply::~ModelSupply() {
+  cancel();
+  {
+    const std::lock_guard lock(mutex_);
+    wake_.notify_one();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+Status ModelSupply::start() {
+  try {
+    thread_ = std::thread([this] {
+      lower_priority();
+      work();
+    });
+  } catch (const std::system_error& error) {
+    return Error{std::string("cannot start the thread that fits models: ") + error.what() + "; close other programs"};
+  }
+  return {};
+}
+
+void ModelSupply::order(std::size_t ticket, const SlotPlan& plan) {
+  const std::lock_guard lock(mutex_);
+  const auto slower = std::find_if(orders_.begin(), orders_.end(),
+                                   [&](const Order& other) { return cost(other.plan) > cost(plan); });
+  orders_.insert(slower, {ticket, plan});
+  wake_.notify_one();
+}
+
+std::vector<SuppliedModel> ModelSupply::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(finished_, {});
+}
+
+ModelSupply::Progress ModelSupply::progress() const {
+  const std::lock_guard lock(mutex_);
+  if (!working_on_) return {};
+  return {true, *working_on_, share_.load(std::memory_order_relaxed)};
+}
+
+std::optional<ModelSupply::Order> ModelSupply::next() {
+  std::unique_lock lock(mutex_);
+  working_on_.reset();
+  wake_.wait(lock, [this] { return !orders_.empty() || cancelled_.load(std::memory_order_relaxed); });
+  if (cancelled_.load(std::memory_order_relaxed)) return std::nullopt;
+  Order order = std::move(orders_.front());
+  orders_.pop_front();
+  working_on_ = order.ticket;
+  share_.store(0.0, std::memory_order_relaxed);
+  return order;
+}
+
+void ModelSupply::work() {
+  while (const std::optional<Order> order = next()) {
+    SuppliedModel model = make(*order);
+    const std::lock_guard lock(mutex_);
+    finished_.push_back(std::move(model));
+  }
+}
+
+SuppliedModel ModelSupply::make(const Order& order) {
+  SuppliedModel made{order.ticket, order.plan, nullptr, ""};
+  if (order.plan.origin == ModelOrigin::file) {
+    auto model = load_model(order.plan.path);
+    if (model) {
+      made.model = std::move(*model);
+    } else {
+      made.problem = model.error().message;
+    }
+    return made;
+  }
+  Result<ModelData> data = fit(order.plan);
+  if (data) {
+    made.model = std::make_shared<const FittedModel>(std::move(*data));
+  } else {
+    made.problem = data.error().message;
+  }
+  return made;
+}
+
+FitControl ModelSupply::control(double from, double to) {
+  FitControl result;
+  result.progress = [this, from, to](double fraction) {
+    share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
+    return !cancelled_.load(std::memory_order_relaxed);
+  };
+  return result;
+}
+
+Status ModelSupply::prepare_recording() {
+  if (recording_ != nullptr) return {};
+  if (!scene_.material) return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
+  RigSettings settings;
+  settings.material = *scene_.material;
+  settings.seed = seed_;
+  Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
+  if (!recording) return recording.error();
+  recording_ = std::make_shared<const Recording>(std::move(*recording));
+  return {};
+}
+
+Status ModelSupply::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
+  if (prepared) return {};
+  if (Status status = prepare_recording(); !status) return status;
+  MotionSource source({{"", recording_}});
+  Result<PreparedTraining> made = prepare_training(source, request, control(kRecorded, kPrepared));
+  if (!made) return made.error();
+  prepared.emplace(std::move(*made));
+  return {};
+}
+
+Result<ModelData> ModelSupply::fit(const SlotPlan& plan) {
+  const bool prepared_before = plan.origin == ModelOrigin::method && prepared_.has_value();
+  std::optional<PreparedTraining> of_position;
+  const bool position = plan.origin == ModelOrigin::position;
+  std::optional<PreparedTraining>& prepared = position ? of_position : prepared_;
+  if (const Status status = prepare(prepared, position ? position_request(scene_) : training_request(scene_));
+      !status) {
+    return status.error();
+  }
+  MethodRequest request;
+  request.method = plan.method;
+  request.seed = seed_;
+  Result<MethodFit> fitted = fit_method(*prepared, request, control(prepared_before ? 0.0 : kPrepared, 1.0),
+                                        direct_ ? &*direct_ : nullptr);
+  if (!fitted) return fitted.error();
+  if (!position && plan.method == Method::direct) direct_ = *fitted;
+  return std::move(fitted->data);
+}
+
+}  // namespace palpate

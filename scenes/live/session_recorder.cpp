@@ -1,0 +1,182 @@
+#include "scenes/live/session_recorder.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kSamplesAtOnce = 1024;
+constexpr auto kPause = std::chrono::milliseconds(20);
+
+double force_of(const TakenSample& sample, WrittenForce force) {
+  switch (force) {
+    case WrittenForce::measured: return sample.measured_N;
+    case WrittenForce::reference: return sample.reference_N;
+    case WrittenForce::model: return sample.model_N;
+  }
+  return kNoForce;
+}
+
+std::string counted(std::uint64_t count, const char* words) {
+  return count > 0 ? "; " + std::to_string(count) + " samples " + words : std::string();
+}
+
+}  // namespace
+
+std::optional<double> RecordingTime::place(double time_s, bool restart) noexcept {
+  if (!started_ || restart) {
+    if (started_) {
+      start_s_ = last_s_ + kStreamGap_s;
+      gaps_s_ += kStreamGap_s;
+    }
+    started_ = true;
+    origin_s_ = time_s;
+    last_s_ = start_s_;
+    return start_s_;
+  }
+  const double at_s = start_s_ + (time_s - origin_s_);
+  if (!(at_s > last_s_)) return std::nullopt;
+  last_s_ = at_s;
+  return at_s;
+}
+
+SessionRecorder::SessionRecorder(HapticsLoop& loop) : loop_(loop), buffer_(kSamplesAtOnce) {}
+
+SessionRecorder::~SessionRecorder() {
+  stop();
+  wait();
+}
+
+Status SessionRecorder::start(const RecorderRequest& request) {
+  if (active_) return Error{"already recording into " + request_.path + "; stop that one first"};
+  std::error_code ignored;
+  if (std::filesystem::exists(request.path, ignored)) return Error{request.path + " exists; choose another name"};
+  Result<RecordingWriter> writer = RecordingWriter::create(request.path, request.columns, request.comments, false);
+  if (!writer) return writer.error();
+  // What an earlier recording left, so that this one finds room.
+  while (loop_.read_samples(buffer_.data(), buffer_.size()) > 0) continue;
+  writer_.emplace(std::move(*writer));
+  request_ = request;
+  ++number_;
+  time_ = {};
+  counts_ = {};
+  restart_pending_ = false;
+  dropped_before_ = loop_.dropped_samples();
+  rows_.store(0, std::memory_order_relaxed);
+  seconds_.store(0.0, std::memory_order_relaxed);
+  stop_ = false;
+  try {
+    thread_ = std::thread([this] { work(); });
+  } catch (const std::system_error& error) {
+    writer_.reset();
+    return Error{std::string("cannot start the recorder's thread: ") + error.what() + "; close other programs"};
+  }
+  active_ = true;
+  stopping_ = false;
+  return {};
+}
+
+void SessionRecorder::stop() {
+  if (!active_) return;
+  stopping_ = true;
+  const std::lock_guard lock(mutex_);
+  stop_ = true;
+  wake_.notify_one();
+}
+
+void SessionRecorder::wait() {
+  if (thread_.joinable()) thread_.join();
+  active_ = false;
+  stopping_ = false;
+}
+
+void SessionRecorder::work() {
+  for (bool last = false; !last && !writer_->failed();) {
+    {
+      std::unique_lock lock(mutex_);
+      last = wake_.wait_for(lock, kPause, [this] { return stop_; });
+    }
+    drain();
+  }
+  Notice outcome = finish();
+  writer_.reset();
+  const std::lock_guard lock(mutex_);
+  outcome_ = std::move(outcome);
+}
+
+void SessionRecorder::drain() {
+  // No more rounds than the ring is long: a loop that fills it faster than a disk
+  // takes it must not keep `stop` waiting.
+  for (std::size_t round = 0; round <= kTakenRing / kSamplesAtOnce; ++round) {
+    const std::size_t count = loop_.read_samples(buffer_.data(), buffer_.size());
+    for (std::size_t i = 0; i < count; ++i) write(buffer_[i]);
+    if (count < buffer_.size()) break;
+  }
+  rows_.store(writer_->rows(), std::memory_order_relaxed);
+  seconds_.store(time_.last_s() - time_.gaps_s(), std::memory_order_relaxed);
+}
+
+void SessionRecorder::write(const TakenSample& sample) {
+  if (sample.recording != number_) return;
+  restart_pending_ = restart_pending_ || sample.restart;
+  if (!sample.usable || !std::isfinite(sample.tool.time_s)) {
+    ++counts_.unusable;
+    return;
+  }
+  const double force_N = force_of(sample, request_.force);
+  if (!std::isfinite(force_N)) {
+    ++counts_.without_force;
+    return;
+  }
+  const std::optional<double> time_s = time_.place(sample.tool.time_s, restart_pending_);
+  restart_pending_ = false;
+  if (!time_s) {
+    ++counts_.unusable;
+    return;
+  }
+  const ToolSample& tool = sample.tool;
+  if (!writer_->add({*time_s, tool.position_m, force_N, tool.velocity_m_per_s, tool.acceleration_m_per_s2})) {
+    ++counts_.refused;
+  }
+}
+
+Notice SessionRecorder::finish() {
+  const std::uint64_t dropped = loop_.dropped_samples() - dropped_before_;
+  const Status status = writer_->commit();
+  if (!status) return {"the recording was lost: " + status.error().message, true};
+  char length[64];
+  std::snprintf(length, sizeof length, " (%.1f s)", time_.last_s() - time_.gaps_s());
+  return {"recorded " + std::to_string(writer_->rows()) + " rows" + length + " into " + request_.path +
+              counted(dropped, "were lost, the disk was too slow") +
+              counted(counts_.unusable + counts_.refused, "that the loop could not use were left out") +
+              counted(counts_.without_force, "without a force were left out"),
+          dropped > 0};
+}
+
+RecordingStatus SessionRecorder::status() const {
+  RecordingStatus status;
+  status.active = active_ && !stopping_;
+  status.saving = active_ && stopping_;
+  if (!active_) return status;
+  status.path = request_.path;
+  status.rows = rows_.load(std::memory_order_relaxed);
+  status.seconds = seconds_.load(std::memory_order_relaxed);
+  return status;
+}
+
+std::optional<Notice> SessionRecorder::take_outcome() {
+  std::optional<Notice> outcome;
+  {
+    const std::lock_guard lock(mutex_);
+    outcome = std::exchange(outcome_, std::nullopt);
+  }
+  if (outcome) wait();
+  return outcome;
+}
+
+}  // namespace palpate

@@ -1,0 +1,39 @@
+// What a session's models are made from, in the order of their slots.
+// Thread guarantee: slow side (looks at files).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/result.h"
+#include "models/fit.h"
+#include "scenes/scene.h"
+
+namespace palpate {
+
+enum class ModelOrigin : std::uint8_t {
+  method,    // fitted to a virtual recording of the scene's material
+  position,  // likewise, to the depth alone
+  file,
+};
+
+struct SlotPlan {
+  ModelOrigin origin = ModelOrigin::method;
+  Method method = Method::greedy;  // of a fit
+  std::string path;                // of a file
+};
+
+// What to call it until there is a model with a name of its own.
+std::string plan_name(const SlotPlan& plan);
+// "direct", "voxel", ..., "position"; nothing for a file before it is read.
+std::string plan_method(const SlotPlan& plan);
+
+// `models`: methods or model files as asked for; none: the scene's default. When
+// asked, a model of position alone comes behind them, and, in a scene with a
+// material, always the direct interpolant, the reference. Errors: neither a method
+// nor a file, a method in a scene without a material, more than kMaxModels in all.
+Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
+                                         bool position_only);
+
+}  // namespace palpate

@@ -1,0 +1,29 @@
+// The true force of a scene's virtual material under the same tool, computed
+// along with the models: the reference of a session without a force sensor.
+//
+// The block is driven by the tick's position and velocity estimate with the
+// real time step. Only for devices that are simulated or virtual: a recording
+// that is replayed was pressed into another block and carries its own force.
+// Thread guarantee: as ReferenceForce; `step` is wait-free and allocates nothing.
+#pragma once
+
+#include "engine/live_tick.h"
+#include "scenes/material/material.h"
+
+namespace palpate {
+
+class TrueForce final : public ReferenceForce {
+ public:
+  explicit TrueForce(const Material& material) noexcept : block_(material) {}
+
+  // The first step, and one with `restart`, finds the block fully relaxed under
+  // the tool: the state in which a model's filters begin as well.
+  double step(const TickSnapshot& snapshot, bool restart) noexcept override;
+
+ private:
+  MaterialState block_;
+  double time_s_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace palpate

@@ -1,0 +1,59 @@
+// The dent follows the model's own relaxation features.
+#include "scenes/live/dent.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kTau_s = 0.5;
+constexpr double kStep_s = 1e-3;
+
+std::vector<FeatureSpec> with_memory() {
+  FeatureSpec low_pass;
+  low_pass.kind = FeatureKind::lowpass_velocity;
+  low_pass.relaxation_time_s = kTau_s;
+  return {FeatureSpec{}, low_pass};
+}
+
+// m = d - tau y with y the low-pass feature of engine/features.h.
+TEST(Dent, IsTheDepthLessTheLowPassedVelocity) {
+  Dent dent(with_memory());
+  FeatureFilter filter(with_memory());
+  for (int i = 0; i < 3000; ++i) {
+    ToolSample sample;
+    sample.time_s = kStep_s * i;
+    sample.position_m = i < 1500 ? 4e-3 * std::sin(2.0 * sample.time_s) : -1e-3;
+    const MotionEstimate motion{sample.position_m, 0.0};
+    const FeatureVector& features = filter.update(sample, motion);
+    const double depth_m = std::max(0.0, sample.position_m);
+    dent.step(depth_m, 0.0, i == 0 ? 0.0 : kStep_s);
+    const double remembered_m = depth_m - kTau_s * features.values[1];
+    // The feature takes the depth as linear within a step, the dent as constant.
+    ASSERT_NEAR(dent.depth_m(), std::max(depth_m, 0.35 * remembered_m), 1e-5) << i;
+  }
+  EXPECT_GT(dent.depth_m(), 1e-6) << "still on its way back";
+}
+
+TEST(Dent, WithoutMemoryIsTheDepth) {
+  Dent dent({FeatureSpec{}});
+  dent.step(3e-3, 0.0, kStep_s);
+  EXPECT_EQ(dent.depth_m(), 3e-3);
+  dent.step(0.0, 0.0, kStep_s);
+  EXPECT_EQ(dent.depth_m(), 0.0);
+}
+
+TEST(Dent, ColourFadesWithinAThirdOfASecond) {
+  Dent dent;
+  dent.step(1e-3, 2.0, kStep_s);
+  dent.step(1e-3, 0.5, 0.3);
+  EXPECT_NEAR(dent.error_over_jnd(), 2.0 / std::exp(1.0), 1e-12);
+  dent.step(1e-3, 1.5, kStep_s);
+  EXPECT_EQ(dent.error_over_jnd(), 1.5);
+}
+
+}  // namespace
+}  // namespace palpate

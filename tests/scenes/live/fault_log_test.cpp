@@ -1,0 +1,81 @@
+#include "scenes/live/fault_log.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+LoopSnapshot snapshot(double loop_time_s, std::uint32_t faults, std::uint64_t missed = 0) {
+  LoopSnapshot result;
+  result.loop_time_s = loop_time_s;
+  result.faults = faults;
+  result.missed_deadlines = missed;
+  return result;
+}
+
+TEST(FaultLog, CountsWhatFollowsWithinASecond) {
+  FaultLog log;
+  EXPECT_TRUE(log.see(snapshot(10.0, loop_fault::kBadSample)));
+  EXPECT_FALSE(log.see(snapshot(10.001, 0)));
+  EXPECT_TRUE(log.see(snapshot(10.9, loop_fault::kBadSample)));
+  EXPECT_TRUE(log.see(snapshot(11.8, loop_fault::kBadSample | loop_fault::kTimeNotLater)));
+  EXPECT_TRUE(log.see(snapshot(13.0, loop_fault::kBadSample)));
+  ASSERT_EQ(log.events().size(), 3u);
+  EXPECT_EQ(log.events()[0].loop_time_s, 10.0);
+  EXPECT_EQ(log.events()[0].count, 3u);
+  EXPECT_EQ(log.events()[0].text, "the device gave a sample that is not a number; the force let go");
+  EXPECT_EQ(log.events()[1].count, 1u);
+  EXPECT_EQ(log.events()[2].loop_time_s, 13.0);
+}
+
+TEST(FaultLog, TakesNormalRunningForNoFault) {
+  FaultLog log;
+  LoopSnapshot ramping = snapshot(1.0, loop_fault::kForceSlewed);
+  ramping.ramping = true;
+  EXPECT_FALSE(log.see(ramping));
+  EXPECT_FALSE(log.see(snapshot(2.0, loop_fault::kForceSlewed)));
+  log.see_age(0.049, 2.0);
+  log.see_dropped(0, 2.0);
+  EXPECT_TRUE(log.events().empty());
+}
+
+TEST(FaultLog, CountsMissedDeadlinesEvenThoseOfLostSnapshots) {
+  FaultLog log;
+  EXPECT_TRUE(log.see(snapshot(1.0, loop_fault::kDeadlineMissed, 2)));
+  EXPECT_TRUE(log.see(snapshot(1.5, 0, 7)));
+  EXPECT_FALSE(log.see(snapshot(1.6, 0, 7)));
+  ASSERT_EQ(log.events().size(), 1u);
+  EXPECT_EQ(log.events()[0].count, 7u);
+}
+
+TEST(FaultLog, AStallIsOneEvent) {
+  FaultLog log;
+  for (int i = 0; i < 300; ++i) log.see_age(0.051 + 0.016 * i, 10.0 + 0.016 * i);
+  ASSERT_EQ(log.events().size(), 1u);
+  EXPECT_EQ(log.events()[0].count, 1u);
+  log.see_age(0.001, 20.0);
+  log.see_age(0.2, 30.0);
+  EXPECT_EQ(log.events().size(), 2u);
+}
+
+TEST(FaultLog, CountsLostSnapshots) {
+  FaultLog log;
+  log.see_dropped(5, 1.0);
+  log.see_dropped(5, 1.1);
+  log.see_dropped(8, 1.2);
+  ASSERT_EQ(log.events().size(), 1u);
+  EXPECT_EQ(log.events()[0].count, 8u);
+}
+
+TEST(FaultLog, KeepsTheLast) {
+  FaultLog log;
+  for (int i = 0; i < 500; ++i) log.see(snapshot(2.0 * i, loop_fault::kForceClamped));
+  ASSERT_EQ(log.events().size(), FaultLog::kMost);
+  EXPECT_EQ(log.events().back().loop_time_s, 998.0);
+  EXPECT_EQ(log.events().front().loop_time_s, 600.0);
+  log.see(snapshot(998.5, loop_fault::kForceClamped));
+  EXPECT_EQ(log.events().back().count, 2u);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,268 @@
+// A whole session without a window, with its real threads.
+#include "scenes/live/live_session.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <thread>
+
+#include "engine/replay.h"
+#include "models/model_io.h"
+#include "tests/support/example_model.h"
+#include "tests/support/fitting.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::must;
+using test::TemporaryFolder;
+
+using Session = std::unique_ptr<LiveSession>;
+
+// Two model files and a recording, and sessions that need no fit.
+struct Files {
+  Files() {
+    a = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+    b = test::example_model("direct", KernelKind::cubic, test::maxwell_features(), 2);
+    a.name = "first";
+    b.name = "second";
+    EXPECT_TRUE(save_model(folder.file("a.json"), a, false).ok());
+    EXPECT_TRUE(save_model(folder.file("b.json"), b, false).ok());
+    recording = test::example_recording(700, 1000.0, 30e-6);
+    EXPECT_TRUE(write_recording(folder.file("played.csv"), recording, {}, false).ok());
+  }
+  SessionRequest request(const std::string& device) const {
+    SessionRequest result;
+    result.scene = "skin";
+    result.device = device;
+    result.models = {folder.file("a.json"), folder.file("b.json")};
+    result.realtime = false;
+    return result;
+  }
+  Session replaying() const { return must(LiveSession::open(request("replay:" + folder.file("played.csv")))); }
+  Session exploring() const { return must(LiveSession::open(request("hand"))); }
+
+  TemporaryFolder folder;
+  ModelData a, b;
+  Recording recording;
+};
+
+// Frames until `done`; false when that takes absurdly long.
+bool frames_until(LiveSession& session, const std::function<bool()>& done) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > give_up) return false;
+    session.update();
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+  return true;
+}
+
+void frames(LiveSession& session, double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  frames_until(session, [&] { return std::chrono::steady_clock::now() > end; });
+}
+
+std::string error_of(const SessionRequest& request) {
+  auto session = LiveSession::open(request);
+  return session ? "opened" : session.error().message;
+}
+
+TEST(LiveSession, RefusesWhatCannotBeOpened) {
+  SessionRequest request;
+  request.scene = "sponge";
+  EXPECT_EQ(error_of(request).rfind("unknown scene \"sponge\"; known scenes: ", 0), 0u);
+  request = {};
+  request.models = {"nothing.json"};
+  EXPECT_EQ(error_of(request).rfind("found no model \"nothing.json\"", 0), 0u);
+  request = {};
+  request.device = "brush";
+  EXPECT_EQ(error_of(request).rfind("unknown device \"brush\"", 0), 0u);
+  request = {};
+  request.scene = "skin";
+  EXPECT_EQ(error_of(request).rfind("the scene \"skin\" has no virtual material", 0), 0u);
+}
+
+// The loop and replay give the same bits for the same samples. The models join
+// in mid-stream: counted from the recording's next beginning.
+TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
+  const Files files;
+  const ForceModels models{std::make_shared<FittedModel>(files.a), std::make_shared<FittedModel>(files.b)};
+  std::map<double, TickSnapshot> expected;
+  must(replay(files.recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
+    expected[row.time_s] = tick;
+  }));
+  const Session session = files.replaying();
+  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
+  double last_s = session->replay().at_s;
+  ASSERT_TRUE(frames_until(*session, [&] { return session->replay().at_s < std::exchange(last_s, session->replay().at_s); }));
+  int compared = 0;
+  for (int i = 0; i < 120; ++i) {
+    session->update();
+    const LoopSnapshot& newest = session->newest();
+    if (newest.tick.model_count == 2) {
+      const auto tick = expected.find(newest.tick.time_s);
+      ASSERT_NE(tick, expected.end()) << "time " << newest.tick.time_s;
+      ASSERT_EQ(newest.tick.force_N[0], tick->second.force_N[0]) << newest.tick.time_s;
+      ASSERT_EQ(newest.tick.force_N[1], tick->second.force_N[1]) << newest.tick.time_s;
+      EXPECT_EQ(session->slot(0).force_N, newest.tick.force_N[0]);
+      ++compared;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(LiveSession, ComparesWithTheForceInTheRecording) {
+  const Files files;
+  const Session session = files.replaying();
+  EXPECT_EQ(session->reference(), ReferenceKind::measured);
+  EXPECT_EQ(session->reference_words(), "force in the recording");
+  EXPECT_FALSE(session->has_reference(ReferenceKind::truth));
+  EXPECT_FALSE(session->has_reference(ReferenceKind::direct)) << "not read yet";
+  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
+  EXPECT_EQ(session->slot(0).name, "first");
+  EXPECT_EQ(session->slot(1).method, "direct");
+  ASSERT_TRUE(frames_until(*session, [&] { return session->slot(1).errors.samples() > 300; }));
+  EXPECT_GT(session->slot(0).errors.rms_error_N(), 0.0);
+  EXPECT_GT(session->slot(0).evaluation_ns, 0.0);
+  session->use_reference(ReferenceKind::truth);
+  EXPECT_EQ(session->reference(), ReferenceKind::measured) << "there is none";
+  session->use_reference(ReferenceKind::direct);
+  EXPECT_EQ(session->slot(0).errors.samples(), 0u) << "figures begin anew";
+  ASSERT_TRUE(frames_until(*session, [&] { return session->slot(1).errors.samples() > 100; }));
+  EXPECT_EQ(session->slot(1).errors.max_error_N(), 0.0) << "its own reference";
+  EXPECT_GT(session->slot(0).errors.max_error_N(), 0.0);
+  EXPECT_TRUE(session->newest().restarted || session->history().size() > 300);
+}
+
+TEST(LiveSession, ReplaysAsTold) {
+  const Files files;
+  const Session session = files.replaying();
+  EXPECT_FALSE(session->takes_mouse());
+  EXPECT_FALSE(session->hand_is_exploring());
+  session->pause_replay(true);
+  session->seek_replay(0.25);
+  session->set_replay_speed(2.0);
+  frames(*session, 0.05);
+  const ReplayStatus status = session->replay();
+  EXPECT_TRUE(status.present);
+  EXPECT_TRUE(status.paused);
+  EXPECT_EQ(status.speed, 2.0);
+  EXPECT_NEAR(status.at_s, 0.25, 1.1e-3);
+  EXPECT_NEAR(status.duration_s, 0.699, 1e-9);
+}
+
+TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
+  const Files files;
+  SessionRequest request = files.request("hand");
+  request.models = {files.folder.file("a.json")};
+  const Session session = must(LiveSession::open(request));
+  session->select(0);
+  EXPECT_EQ(session->slot(0).state, SlotState::waiting);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
+  EXPECT_EQ(session->reference(), ReferenceKind::direct);
+  EXPECT_EQ(session->reference_words(), "no reference");
+  EXPECT_TRUE(std::isnan(session->reference_N()));
+  session->load_file(files.folder.file("b.json"));
+  session->load_file(files.folder.file("a.json"));
+  session->load_file(files.folder.with_file("bad.json", "{\"format\": 3}"));
+  EXPECT_FALSE(session->all_settled());
+  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
+  ASSERT_EQ(session->slot_count(), 3u);
+  EXPECT_EQ(session->slot(2).name, "first-2") << "names are distinct";
+  EXPECT_EQ(session->selected(), 0u);
+  const std::vector<Notice> notices = session->take_notices();
+  ASSERT_EQ(notices.size(), 3u);
+  EXPECT_FALSE(notices[0].problem);
+  EXPECT_TRUE(notices[2].problem);
+  EXPECT_NE(notices[2].text.find("bad.json"), std::string::npos);
+  EXPECT_TRUE(session->take_notices().empty());
+  session->select(2);
+  session->select(9);
+  EXPECT_EQ(session->selected(), 2u);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->newest().selected == 2 && !session->fading(); }));
+  EXPECT_EQ(session->reference_words(), "direct interpolant") << "there is one now";
+  // In the first points the later models were not there.
+  EXPECT_TRUE(std::isnan(session->history()[0].force_N[2]));
+  EXPECT_FALSE(std::isnan(session->history()[session->history().size() - 1].force_N[2]));
+}
+
+TEST(LiveSession, RefusesMoreModelsThanTheLoopTakes) {
+  const Files files;
+  SessionRequest request = files.request("mouse");
+  request.models.assign(kMaxModels, files.folder.file("a.json"));
+  const Session session = must(LiveSession::open(request));
+  session->load_file(files.folder.file("b.json"));
+  const std::vector<Notice> notices = session->take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_TRUE(notices[0].problem);
+}
+
+TEST(LiveSession, TakesTheMouse) {
+  const Files files;
+  const Session session = must(LiveSession::open(files.request("auto")));
+  EXPECT_TRUE(session->takes_mouse());
+  EXPECT_TRUE(session->hand_is_exploring());
+  session->set_tool_target(-0.01);
+  ASSERT_TRUE(frames_until(*session, [&] { return !session->hand_is_exploring(); }));
+  session->nudge_tool(1e-3);
+  ASSERT_TRUE(frames_until(*session, [&] { return std::abs(session->newest().tick.position_m + 9e-3) < 1e-4; }));
+}
+
+TEST(LiveSession, ClosedWhileRecordingLeavesTheFileWhole) {
+  const Files files;
+  {
+    const Session session = files.replaying();
+    const std::string path = files.folder.file("live.csv");
+    ASSERT_TRUE(session->start_recording(path).ok());
+    EXPECT_FALSE(session->start_recording(files.folder.file("other.csv")).ok());
+    ASSERT_TRUE(frames_until(*session, [&] { return session->recording().rows > 200; }));
+    EXPECT_TRUE(session->recording().active);
+    EXPECT_EQ(session->recording().path, path);
+  }
+  const Recording live = must(read_recording(files.folder.file("live.csv")));
+  EXPECT_GT(live.rows.size(), 200u);
+}
+
+// The whole of it, with fits: first figures against the material's truth, then a
+// recording of the session that a fit accepts.
+TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
+  const TemporaryFolder folder;
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.models = {"greedy", "random"};
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  ASSERT_EQ(session->slot_count(), 3u);
+  EXPECT_EQ(session->slot(2).name, "direct") << "the reference, always";
+  EXPECT_EQ(session->reference_words(), "true force of the virtual elastic");
+  ASSERT_TRUE(frames_until(*session, [&] { return session->slot(0).state == SlotState::ready; }));
+  EXPECT_EQ(session->slot(1).state, SlotState::ready) << "the quickest first";
+  EXPECT_EQ(session->selected(), 0u) << "the first asked for";
+  EXPECT_EQ(session->slot(0).name, "greedy-100");
+  EXPECT_EQ(session->slot(0).centres, 100);
+  ASSERT_TRUE(session->start_recording(folder.file("live.csv")).ok());
+  ASSERT_TRUE(frames_until(*session, [&] {
+    return session->slot(0).errors.samples() > 500 && session->recording().seconds > 2.0;
+  }));
+  EXPECT_GT(session->slot(0).errors.within_jnd(), 0.9);
+  EXPECT_GT(session->slot(1).errors.samples(), 500u);
+  session->stop_recording();
+  ASSERT_TRUE(frames_until(*session, [&] { return !session->recording().saving && !session->recording().active; }));
+  const std::vector<Notice> notices = session->take_notices();
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_FALSE(notices[0].problem) << notices[0].text;
+  const auto recording = std::make_shared<const Recording>(must(read_recording(folder.file("live.csv"))));
+  EXPECT_TRUE(recording->columns.velocity);
+  const PreparedTraining prepared = test::prepare({recording}, test::scene_request("elastic_block"));
+  EXPECT_GT(test::judge(*recording, test::fit(prepared, Method::random)).within_jnd, 0.95);
+}
+
+}  // namespace
+}  // namespace palpate

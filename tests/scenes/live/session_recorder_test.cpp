@@ -1,0 +1,263 @@
+// Every sample into a file that the reader accepts, whatever the device does.
+#include "scenes/live/session_recorder.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "devices/hand_device.h"
+#include "devices/replay_device.h"
+#include "tests/support/live_doubles.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::FakePacer;
+using test::PathDevice;
+using test::read_text;
+using test::TemporaryFolder;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class DepthForce final : public ReferenceForce {
+ public:
+  double step(const TickSnapshot& snapshot, bool) noexcept override { return 250.0 * snapshot.depth_m; }
+};
+
+// A loop whose first model is the written one, without its thread.
+struct Rig {
+  explicit Rig(Device& device) : loop(device), recorder(loop) {
+    auto models = std::make_unique<LiveModels>(1, device.sensor(), std::vector{test::spring(300.0)},
+                                               std::make_shared<DepthForce>());
+    models->written_model = 0;
+    loop.publish_models(std::move(models));
+  }
+  Status start(const std::string& path, WrittenForce force, RecordingColumns columns = {}) {
+    Status status = recorder.start({path, force, columns, {"made by a test"}});
+    loop.set_controls({1, 0, recorder.number()});
+    return status;
+  }
+  void run(int ticks) {
+    FakePacer pacer([&](int wait) -> std::int64_t {
+      if (wait == ticks - 1) loop.request_stop();
+      return 0;
+    });
+    loop.run(pacer);
+  }
+  Notice finish() {
+    recorder.stop();
+    recorder.wait();
+    return recorder.take_outcome().value_or(Notice{"no outcome", true});
+  }
+  HapticsLoop loop;
+  SessionRecorder recorder;
+};
+
+TEST(SessionRecorder, WritesEverySampleOfAHand) {
+  const TemporaryFolder folder;
+  HandDevice hand(1);
+  Rig rig(hand);
+  ASSERT_TRUE(rig.start(folder.file("hand.csv"), WrittenForce::reference, {true, false}).ok());
+  EXPECT_TRUE(rig.recorder.status().active);
+  rig.run(20000);
+  const Notice notice = rig.finish();
+  EXPECT_FALSE(notice.problem) << notice.text;
+  EXPECT_EQ(notice.text, "recorded 20000 rows (20.0 s) into " + folder.file("hand.csv"));
+  EXPECT_FALSE(rig.recorder.status().active);
+  const Result<Recording> recording = read_recording(folder.file("hand.csv"));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  ASSERT_EQ(recording->rows.size(), 20000u);
+  EXPECT_TRUE(recording->columns.velocity);
+  EXPECT_EQ(recording->rows.front().time_s, 0.0);
+  double most_m = 0.0;
+  for (std::size_t i = 0; i < recording->rows.size(); ++i) {
+    const RecordingRow& row = recording->rows[i];
+    ASSERT_EQ(row.force_N, 250.0 * std::max(0.0, row.position_m));
+    if (i > 0) {
+      ASSERT_NEAR(row.time_s - recording->rows[i - 1].time_s, 1e-3, 1e-9);
+    }
+    most_m = std::max(most_m, row.position_m);
+  }
+  EXPECT_GT(most_m, 1e-3) << "it pressed";
+  EXPECT_EQ(read_text(folder.file("hand.csv")).rfind("# made by a test\n", 0), 0u);
+}
+
+TEST(SessionRecorder, WritesTheModelsForceWhenThatIsTheReference) {
+  const TemporaryFolder folder;
+  PathDevice device(test::strokes);
+  Rig rig(device);
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::model).ok());
+  rig.run(1000);
+  EXPECT_FALSE(rig.finish().problem);
+  const Recording recording = read_recording(folder.file("a.csv")).value();
+  ASSERT_EQ(recording.rows.size(), 1000u);
+  EXPECT_FALSE(recording.columns.velocity);
+  for (const RecordingRow& row : recording.rows) {
+    ASSERT_NEAR(row.force_N, 300.0 * std::max(0.0, row.position_m), 1e-3) << "of the position estimate";
+  }
+}
+
+// 4 kHz, of which a snapshot has every fourth; the end joins the beginning.
+TEST(SessionRecorder, GoesOnWhereARecordingStartsOver) {
+  const TemporaryFolder folder;
+  Recording played;
+  for (int i = 0; i < 2000; ++i) played.rows.push_back({5.0 + i / 4000.0, 1e-3, 0.25, 0.0, 0.0});
+  ReplayDevice device(played);
+  Rig rig(device);
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::measured).ok());
+  rig.run(1300);
+  const Notice notice = rig.finish();
+  EXPECT_FALSE(notice.problem);
+  const Result<Recording> recording = read_recording(folder.file("a.csv"));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_NEAR(static_cast<double>(recording->rows.size()), 5200.0, 12.0);
+  EXPECT_EQ(notice.text.find(';'), std::string::npos) << notice.text;
+  int restarts = 0;
+  for (std::size_t i = 1; i < recording->rows.size(); ++i) {
+    const double step_s = recording->rows[i].time_s - recording->rows[i - 1].time_s;
+    if (step_s > 1.0) {
+      ++restarts;
+      EXPECT_NEAR(step_s, kStreamGap_s, 1e-9);
+    } else {
+      ASSERT_NEAR(step_s, 2.5e-4, 1e-9);
+    }
+  }
+  EXPECT_EQ(restarts, 2);
+}
+
+TEST(SessionRecorder, LeavesOutWhatTheLoopCouldNotUse) {
+  const TemporaryFolder folder;
+  PathDevice device([](double time_s) { return std::fmod(time_s, 0.1) < 0.005 ? kNan : 1e-3; });
+  Rig rig(device);
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+  rig.run(1000);
+  const Notice notice = rig.finish();
+  EXPECT_NE(notice.text.find("samples that the loop could not use were left out"), std::string::npos) << notice.text;
+  const Result<Recording> recording = read_recording(folder.file("a.csv"));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_NEAR(static_cast<double>(recording->rows.size()), 950.0, 12.0);
+}
+
+TEST(SessionRecorder, TakesOneAtATimeAndNothingOfTheLast) {
+  const TemporaryFolder folder;
+  PathDevice device(test::strokes);
+  Rig rig(device);
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+  EXPECT_EQ(rig.start(folder.file("b.csv"), WrittenForce::reference).error().message,
+            "already recording into " + folder.file("a.csv") + "; stop that one first");
+  rig.run(100);
+  EXPECT_FALSE(rig.finish().problem);
+  // The loop has not heard of the end yet: these belong to nobody.
+  EXPECT_EQ(rig.recorder.start({folder.file("a.csv"), WrittenForce::reference, {}, {}}).error().message,
+            folder.file("a.csv") + " exists; choose another name");
+  ASSERT_TRUE(rig.recorder.start({folder.file("b.csv"), WrittenForce::reference, {}, {}}).ok());
+  const Notice notice = rig.finish();
+  EXPECT_TRUE(notice.problem) << "fewer than ten rows";
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
+}
+
+TEST(SessionRecorder, IsWholeWhenTheSessionEnds) {
+  const TemporaryFolder folder;
+  PathDevice device(test::strokes);
+  {
+    Rig rig(device);
+    ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+    rig.run(500);
+  }
+  EXPECT_EQ(read_recording(folder.file("a.csv")).value().rows.size(), 500u);
+}
+
+TEST(SessionRecorder, SaysThatTheFolderIsGone) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("sub"));
+  PathDevice device(test::strokes);
+  Rig rig(device);
+  ASSERT_TRUE(rig.start(folder.file("sub/a.csv"), WrittenForce::reference).ok());
+  rig.run(100);
+  std::filesystem::remove_all(folder.file("sub"));
+  const Notice notice = rig.finish();
+  EXPECT_TRUE(notice.problem);
+  EXPECT_EQ(notice.text.rfind("the recording was lost: cannot write " + folder.file("sub/a.csv"), 0), 0u)
+      << notice.text;
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+// Stands in for a full disk: no file of this process may grow beyond 100 kB.
+class SmallFiles {
+ public:
+  SmallFiles() : handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{100'000, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
+  const TemporaryFolder folder;
+  PathDevice device(test::strokes);
+  Rig rig(device);
+  Notice notice;
+  {
+    const SmallFiles small;
+    ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+    rig.run(30000);
+    rig.recorder.wait();
+    notice = rig.recorder.take_outcome().value_or(Notice{"no outcome", false});
+  }
+  EXPECT_TRUE(notice.problem);
+  EXPECT_EQ(notice.text, "the recording was lost: cannot write " + folder.file("a.csv") + ": File too large");
+  EXPECT_TRUE(folder.entries().empty());
+  ASSERT_TRUE(rig.start(folder.file("b.csv"), WrittenForce::reference).ok()) << "and the next one is free to begin";
+}
+
+// The loop's own thread beside the recorder's; for the thread sanitizer.
+TEST(SessionRecorder, RecordsBesideTheRunningLoop) {
+  const TemporaryFolder folder;
+  PathDevice device(test::strokes);
+  LoopSettings settings;
+  settings.realtime = false;
+  HapticsLoop loop(device, settings);
+  SessionRecorder recorder(loop);
+  loop.publish_models(std::make_unique<LiveModels>(1, device.sensor(), std::vector{test::spring(300.0)},
+                                                   std::make_shared<DepthForce>()));
+  ASSERT_TRUE(loop.start().ok());
+  for (const char* name : {"a.csv", "b.csv"}) {
+    ASSERT_TRUE(recorder.start({folder.file(name), WrittenForce::reference, {}, {}}).ok());
+    loop.set_controls({1, 0, recorder.number()});
+    while (recorder.status().rows < 100) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    loop.set_controls({1, 0, 0});
+    recorder.stop();
+    recorder.wait();
+    const std::optional<Notice> outcome = recorder.take_outcome();
+    ASSERT_TRUE(outcome.has_value());
+    EXPECT_FALSE(outcome->problem) << outcome->text;
+    EXPECT_GE(read_recording(folder.file(name)).value().rows.size(), 100u);
+  }
+}
+
+TEST(RecordingTime, IsStrictlyIncreasing) {
+  RecordingTime time;
+  EXPECT_EQ(time.place(1000.0, true), 0.0);
+  EXPECT_EQ(time.place(1000.5, false), 0.5);
+  EXPECT_EQ(time.place(1000.5, false), std::nullopt);
+  EXPECT_EQ(time.place(999.0, false), std::nullopt);
+  EXPECT_EQ(time.place(7.0, true), 0.5 + kStreamGap_s);
+  EXPECT_EQ(time.place(7.25, false), 0.75 + kStreamGap_s);
+  EXPECT_EQ(time.last_s() - time.gaps_s(), 0.75);
+}
+
+}  // namespace
+}  // namespace palpate
