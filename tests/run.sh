@@ -5,7 +5,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../scenes/prepare.sh"
 
-install_packages "${packages[@]}"
+install_packages "${packages[@]}" "${test_packages[@]}"
 read -r -a options <<<"${PALPATE_CMAKE_OPTIONS:-}"
 build_in "${PALPATE_BUILD_FOLDER:-$root/build}" all "${options[@]}"
 exec ctest --test-dir "${PALPATE_BUILD_FOLDER:-$root/build}" --output-on-failure -j "$(job_count)" "$@"

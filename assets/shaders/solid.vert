@@ -1,0 +1,17 @@
+#version 330 core
+// Tool and arrow: a lathe around y, stretched along it.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+
+uniform mat4 view_projection;
+uniform vec3 offset;
+uniform vec3 stretch;
+
+out vec3 world;
+out vec3 surface_normal;
+
+void main() {
+  world = position * stretch + offset;
+  surface_normal = normal / stretch;
+  gl_Position = view_projection * vec4(world, 1.0);
+}

@@ -1,0 +1,34 @@
+#version 330 core
+// The table: a pool of light that fades into the background, and under every
+// block a soft shadow, the smoothed distance to a rounded box.
+in vec2 place;
+
+uniform vec3 table_colour;
+uniform vec3 background;
+uniform float reach;       // metres to where the table has faded
+uniform vec2 half_size;    // of a block, metres
+uniform int block_count;
+uniform vec2 blocks[4];    // where they stand
+uniform vec4 chosen;       // colour under the one in the hand; alpha 0: none
+uniform vec2 chosen_at;
+
+out vec4 pixel;
+
+float box_distance(vec2 p) {
+  vec2 q = abs(p) - (half_size - 0.012);
+  return length(max(q, 0.0)) + min(max(q.x, q.y), 0.0) - 0.012;
+}
+
+void main() {
+  float fade = smoothstep(0.25 * reach, reach, length(place));
+  vec3 colour = mix(table_colour, background, fade);
+  float light = 1.0;
+  for (int i = 0; i < block_count; ++i) {
+    vec2 from = place - blocks[i];
+    light *= 0.50 + 0.50 * smoothstep(-0.006, 0.030, box_distance(from + vec2(0.006, -0.004)));
+  }
+  colour *= light;
+  float ring = abs(box_distance(place - chosen_at) - 0.007);
+  colour = mix(colour, chosen.rgb, chosen.a * (1.0 - smoothstep(0.0012, 0.0026, ring)));
+  pixel = vec4(colour, 1.0);
+}

@@ -1,0 +1,44 @@
+// A camera that orbits a point above the table, with limits, and eases to where
+// it is asked to go.
+// Thread guarantee: value type.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace palpate {
+
+class Camera {
+ public:
+  // To see blocks that together reach `radius_m` from the middle, from so far to
+  // the right of the front. `at_once`: without easing.
+  void frame(float radius_m, float yaw_rad, bool at_once);
+  void orbit(float yaw_rad, float pitch_rad);
+  // Factor on the distance: below 1 nearer.
+  void zoom(float factor);
+  // Eases, over about 0.2 s.
+  void advance(float seconds);
+
+  glm::vec3 eye() const;
+  glm::mat4 view_projection(float aspect) const;
+  float field_of_view_rad() const { return kFieldOfView_rad; }
+
+ private:
+  static constexpr float kFieldOfView_rad = 0.55F;
+  struct Pose {
+    float yaw_rad = 0.5F;
+    float pitch_rad = 0.42F;
+    float distance_m = 0.4F;
+    bool operator==(const Pose&) const = default;
+  };
+  Pose now_;
+  Pose wanted_;
+  float radius_m_ = 0.1F;
+};
+
+// Where `world` is in a viewport of `size` pixels, y down; behind the eye: far
+// outside.
+glm::vec2 project(const glm::mat4& view_projection, const glm::vec3& world, const glm::vec2& size);
+
+}  // namespace palpate

@@ -1,0 +1,39 @@
+// Every colour that has a meaning, once: methods, reference, JND scale, themes.
+// Sources: Okabe & Ito (2008) for the methods; viridis (van der Walt & Smith
+// 2015, CC0) for the scale.
+// Thread guarantee: pure functions.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string_view>
+
+namespace palpate {
+
+using Rgb = glm::vec3;  // 0..1, as on the screen (sRGB)
+
+enum class Theme { light, dark };
+
+struct Palette {
+  Rgb background;
+  Rgb table;
+  Rgb panel;
+  Rgb raised;    // controls
+  Rgb text;
+  Rgb quiet;     // second-rank text, axes
+  Rgb grid;
+  Rgb band;      // the JND band
+  Rgb fault;     // red, for nothing else
+};
+const Palette& palette(Theme theme) noexcept;
+
+// Of a fitting method; direct is black or white, and so is what is not known.
+Rgb method_colour(std::string_view method, Theme theme) noexcept;
+// The measured or true force.
+inline constexpr Rgb kReferenceColour{0.0F, 0.62F, 0.45F};
+
+// Error over the JND: from 0 to 1 an even scale from dark blue to yellow, above
+// it magenta, which the scale does not have.
+Rgb error_colour(double error_over_jnd) noexcept;
+inline constexpr Rgb kAboveJndColour{0.93F, 0.10F, 0.55F};
+
+}  // namespace palpate

@@ -1,0 +1,279 @@
+#include "rendering/demo_app.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "engine/pacer.h"
+#include "rendering/screenshot.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kSPerNs = 1e-9;
+constexpr float kSceneShare = 0.6F;
+constexpr double kToast_s = 6.0;
+constexpr double kProblemToast_s = 12.0;
+constexpr std::size_t kMostToasts = 4;
+
+double now() { return kSPerNs * static_cast<double>(SteadyPacer().now_ns()); }
+
+std::string new_recording_path() {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&time, &local);
+  char name[64];
+  std::strftime(name, sizeof name, "session-%Y%m%d-%H%M%S.csv", &local);
+  return name;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
+  std::unique_ptr<DemoApp> app(new DemoApp);
+  if (const Status status = app->set_up(request); !status) return status.error();
+  return app;
+}
+
+Status DemoApp::set_up(const DemoRequest& request) {
+  view_.kiosk = request.kiosk;
+  view_.theme = request.kiosk ? Theme::dark : Theme::light;
+  // The window first: without a display nothing else needs to start.
+  auto window = Window::open(request.window);
+  if (!window) return window.error();
+  window_ = std::move(*window);
+  SessionRequest wanted = request.session;
+  wanted.position_only = wanted.position_only || request.kiosk;  // something that can be told apart
+  auto session = LiveSession::open(wanted);
+  if (!session) return session.error();
+  session_ = std::move(*session);
+  auto blocks = BlockView::create(session_->scene());
+  if (!blocks) return blocks.error();
+  blocks_ = std::move(*blocks);
+  start_imgui();
+  last_frame_s_ = second_began_s_ = now();
+  return {};
+}
+
+void DemoApp::start_imgui() {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  imgui_ = true;
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;  // the window remembers nothing between runs
+  glfwSetWindowUserPointer(window_->handle(), this);
+  glfwSetDropCallback(window_->handle(), [](GLFWwindow* handle, int count, const char** paths) {
+    auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
+    app->drop_files({paths, paths + count});
+  });
+  ImGui_ImplGlfw_InitForOpenGL(window_->handle(), true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+DemoApp::~DemoApp() {
+  session_.reset();
+  blocks_.reset();
+  if (!imgui_) return;
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+bool DemoApp::closing() const noexcept {
+  return view_.kiosk ? leaving_ : glfwWindowShouldClose(window_->handle()) != 0;
+}
+
+void DemoApp::close() {
+  leaving_ = true;
+  glfwSetWindowShouldClose(window_->handle(), GLFW_TRUE);
+}
+
+void DemoApp::drop_files(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) session_->load_file(path);
+}
+
+SceneArea DemoApp::scene_area() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return {{0.0F, 0.0F}, {std::round(kSceneShare * size.x), size.y}};
+}
+
+void DemoApp::frame() {
+  glfwPollEvents();
+  const double now_s = now();
+  session_->update();
+  take_notices(now_s);
+  blocks_->camera().advance(static_cast<float>(now_s - last_frame_s_));
+  draw();
+  handle_keys();
+  handle_mouse();
+  window_->show_frame();
+  count_frame(now());
+}
+
+void DemoApp::draw() {
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(window_->handle(), &width, &height);
+  float content_scale = 1.0F;
+  glfwGetWindowContentScale(window_->handle(), &content_scale, nullptr);
+  style_.update(height, content_scale, view_.kiosk, view_.theme);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  forget_mouse_outside();
+  ImGui::NewFrame();
+  draw_blocks();
+  clear_panel();
+  const SceneArea area = scene_area();
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_, [this](Command command) { run(command); });
+  const ImVec2 at(area.size.x, 0.0F);
+  const ImVec2 size(all.x - area.size.x, all.y);
+  if (view_.kiosk) {
+    open_day_.draw(*session_, view_, style_, at, size);
+  } else {
+    panel_.draw(*session_, view_, style_, frames_, at, size);
+  }
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void DemoApp::draw_blocks() {
+  const SceneArea area = scene_area();
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  Viewport viewport;
+  viewport.width = static_cast<int>(area.size.x * scale.x);
+  viewport.height = static_cast<int>(area.size.y * scale.y);
+  const std::vector<BlockPose> poses = block_poses();
+  // More models become ready: more blocks.
+  if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
+  blocks_framed_ = poses.size();
+  blocks_->draw(poses, viewport, view_.theme);
+}
+
+// The mouse has left: nothing is under it any more.
+void DemoApp::forget_mouse_outside() {
+  const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
+  if (held || glfwGetWindowAttrib(window_->handle(), GLFW_HOVERED) != 0) return;
+  ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
+}
+
+// Clearing costs less than filling a rectangle, where the processor draws.
+void DemoApp::clear_panel() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto left = static_cast<int>(scene_area().size.x * io.DisplayFramebufferScale.x);
+  const auto right = static_cast<int>(io.DisplaySize.x * io.DisplayFramebufferScale.x);
+  const auto height = static_cast<int>(io.DisplaySize.y * io.DisplayFramebufferScale.y);
+  const Rgb& panel = style_.colours().panel;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(left, 0, right - left, height);
+  glClearColor(panel.r, panel.g, panel.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+std::vector<BlockPose> DemoApp::block_poses() const {
+  const LoopSnapshot& newest = session_->newest();
+  BlockPose pose;
+  pose.tool_m = static_cast<float>(newest.tick.position_m);
+  std::vector<BlockPose> poses;
+  for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
+    const SlotView& model = session_->slot(slot);
+    pose.dent_m = static_cast<float>(model.dent_m);
+    pose.error_over_jnd = static_cast<float>(model.dent_error_over_jnd);
+    pose.force_N = static_cast<float>(model.force_N);
+    pose.arrow = method_colour(model.method, view_.theme);
+    pose.chosen = slot == session_->selected();
+    if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
+    pose.judged = view_.hidden_choice == 0;
+    poses.push_back(pose);
+  }
+  // Before the first model is ready: a block nobody has a model of yet.
+  if (poses.empty()) {
+    pose.dent_m = std::max(0.0F, pose.tool_m);
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void DemoApp::count_frame(double now_s) {
+  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) / kSPerNs));
+  frames_.seconds += now_s - last_frame_s_;
+  ++frames_.frames;
+  ++frames_this_second_;
+  last_frame_s_ = now_s;
+  if (now_s - second_began_s_ < 1.0) return;
+  frames_.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
+  frames_this_second_ = 0;
+  second_began_s_ = now_s;
+}
+
+void DemoApp::take_notices(double now_s) {
+  for (const Notice& notice : session_->take_notices()) {
+    toasts_.push_back({notice.text, notice.problem, now_s + (notice.problem ? kProblemToast_s : kToast_s)});
+  }
+  std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
+  if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
+}
+
+void DemoApp::run(Command command) {
+  switch (command) {
+    case Command::next_block_count:
+      view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
+      break;
+    case Command::pause_curves:
+      view_.paused = !view_.paused;
+      view_.paused_at_s = now();
+      view_.scrolled_back_s = 0.0;
+      break;
+    case Command::reset_figures: session_->reset_figures(); break;
+    case Command::next_reference: next_reference(); break;
+    case Command::record: record(); break;
+    case Command::file_list: view_.file_list = !view_.file_list; break;
+    case Command::details: view_.details = !view_.details; break;
+    case Command::theme: view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light; break;
+    case Command::help: view_.help = !view_.help; break;
+    case Command::fullscreen: window_->set_fullscreen(!window_->fullscreen()); break;
+  }
+}
+
+void DemoApp::record() {
+  if (session_->recording().active) {
+    session_->stop_recording();
+    return;
+  }
+  const std::string path = new_recording_path();
+  const Status status = session_->start_recording(path);
+  const double until_s = now() + (status ? kToast_s : kProblemToast_s);
+  toasts_.push_back({status ? "recording to " + path : status.error().message, !status, until_s});
+}
+
+void DemoApp::next_reference() {
+  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->reference());
+  const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
+  for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
+    const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];
+    if (!session_->has_reference(kind)) continue;
+    session_->use_reference(kind);
+    return;
+  }
+}
+
+Status DemoApp::screenshot(const std::string& path, bool overwrite) {
+  draw();
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(window_->handle(), &width, &height);
+  const Status status = save_screenshot(path, width, height, overwrite);
+  window_->show_frame();
+  return status;
+}
+
+}  // namespace palpate

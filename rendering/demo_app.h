@@ -1,0 +1,93 @@
+// The window program without its command line: a session, a window, and one
+// frame after the other.
+//
+// Thread guarantee: main thread only.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/result.h"
+#include "rendering/block_view.h"
+#include "rendering/open_day.h"
+#include "rendering/panel.h"
+#include "rendering/scene_overlay.h"
+#include "rendering/ui_style.h"
+#include "rendering/view_state.h"
+#include "rendering/window.h"
+#include "scenes/live/live_session.h"
+
+namespace palpate {
+
+struct DemoRequest {
+  SessionRequest session;
+  WindowRequest window;
+  bool kiosk = false;
+};
+
+class DemoApp {
+ public:
+  // Errors: those of LiveSession::open and Window::open, a broken shader.
+  static Result<std::unique_ptr<DemoApp>> create(const DemoRequest& request);
+  DemoApp(const DemoApp&) = delete;
+  DemoApp& operator=(const DemoApp&) = delete;
+  ~DemoApp();
+
+  // Events, session, picture, panel; shows it and waits for the next frame's time.
+  void frame();
+  bool closing() const noexcept;
+  void close();
+  // Draws the present state once more and saves it.
+  Status screenshot(const std::string& path, bool overwrite);
+
+  LiveSession& session() noexcept { return *session_; }
+  ViewState& view() noexcept { return view_; }
+  const FrameFigures& frames() const noexcept { return frames_; }
+  const std::vector<Toast>& toasts() const noexcept { return toasts_; }
+  Window& window() noexcept { return *window_; }
+
+  // What events do; GLFW's callbacks call them.
+  void drop_files(const std::vector<std::string>& paths);
+  void run(Command command);
+
+ private:
+  DemoApp() = default;
+  Status set_up(const DemoRequest& request);
+  void start_imgui();
+  void handle_keys();
+  void handle_command_keys();
+  void handle_mouse();
+  void move_tool_to_mouse();
+  void take_notices(double now_s);
+  void draw();
+  void draw_blocks();
+  void clear_panel();
+  void count_frame(double now_s);
+  std::vector<BlockPose> block_poses() const;
+  void forget_mouse_outside();
+  SceneArea scene_area() const;
+  void record();
+  void next_reference();
+
+  // The window last: OpenGL things go before it.
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<LiveSession> session_;
+  std::unique_ptr<BlockView> blocks_;
+  UiStyle style_;
+  Panel panel_;
+  SceneOverlay overlay_;
+  OpenDay open_day_{1};
+  ViewState view_;
+  FrameFigures frames_;
+  std::vector<Toast> toasts_;
+  double last_frame_s_ = 0.0;
+  double second_began_s_ = 0.0;
+  std::uint64_t frames_this_second_ = 0;
+  std::size_t blocks_framed_ = 1;
+  bool imgui_ = false;
+  bool orbiting_ = false;
+  bool leaving_ = false;  // a kiosk's only way out
+};
+
+}  // namespace palpate

@@ -1,0 +1,119 @@
+// palpate-demo: the window program's command line.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "engine/atomic_file.h"
+#include "engine/pacer.h"
+#include "rendering/demo_app.h"
+#include "rendering/stats_file.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+constexpr double kSPerNs = 1e-9;
+// A picture without --seconds: by then all models are fitted and the curves full.
+constexpr double kPictureAfter_s = 12.0;
+
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
+
+struct Arguments {
+  DemoRequest demo;
+  double seconds = 0.0;  // 0: until closed
+  std::string screenshot;
+  std::string stats;
+  bool force = false;
+};
+
+// The first signal ends the program as closing the window does, so that the force
+// goes to zero and a recording is saved; the second ends it at once.
+void ask_to_stop(int signal) {
+  stop_asked.store(true, std::memory_order_relaxed);
+  std::signal(signal, SIG_DFL);
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "error: %s\n", message.c_str());
+  return kFailed;
+}
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  SessionRequest& session = arguments.demo.session;
+  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`")->capture_default_str();
+  app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")->capture_default_str();
+  app.add_option("--model", session.models, "Models: files, or direct, voxel, random, kdtree, greedy [the scene's]")
+      ->type_name("FILE_OR_METHOD");
+  app.add_option("--seconds", arguments.seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
+  app.add_option("--screenshot", arguments.screenshot, "Save the window as it is at the end [after 12 s], then end")
+      ->type_name("PNG");
+  app.add_option("--stats", arguments.stats, "Write how the loop, the picture and the models did, at the end")
+      ->type_name("JSON");
+  app.add_flag("--fullscreen", arguments.demo.window.fullscreen, "Fill the screen");
+  app.add_flag("--kiosk", arguments.demo.kiosk, "Open day: full screen, big text, Ctrl+Shift+Q ends it");
+  app.add_flag("--force", arguments.force, "Replace existing files");
+}
+
+// A name that cannot be written is told now and not at the end.
+Status check_outputs(const Arguments& arguments) {
+  for (const std::string& path : {arguments.screenshot, arguments.stats}) {
+    if (path.empty()) continue;
+    if (const auto trial = AtomicFile::create(path, arguments.force); !trial) return trial.error();
+  }
+  return {};
+}
+
+Status run_demo(Arguments& arguments) {
+  if (Status status = check_outputs(arguments); !status) return status;
+  if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
+  if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
+  auto app = DemoApp::create(arguments.demo);
+  if (!app) return app.error();
+  SteadyPacer clock;
+  const std::int64_t start_ns = clock.now_ns();
+  while (!(*app)->closing() && !stop_asked.load(std::memory_order_relaxed)) {
+    (*app)->frame();
+    if (arguments.seconds > 0.0 && kSPerNs * static_cast<double>(clock.now_ns() - start_ns) >= arguments.seconds) break;
+  }
+  if (!arguments.screenshot.empty()) {
+    if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
+  }
+  if (arguments.stats.empty()) return {};
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()), arguments.force);
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it", "palpate-demo");
+  app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    std::fprintf(stderr, "error: %s\nrun `palpate-demo --help`\n", error.what());
+    return kWrongUsage;
+  }
+  const Status status = run_demo(arguments);
+  return status ? kDone : fail(status.error().message);
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, palpate::ask_to_stop);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return palpate::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    return palpate::fail(std::string("unexpected: ") + error.what());
+  }
+}
