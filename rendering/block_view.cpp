@@ -81,7 +81,7 @@ void BlockView::show(std::size_t count, bool at_once) {
   if (count == 1) {
     camera_.frame(0.92F * width, 0.5F, at_once);
   } else {
-    camera_.frame(count == 2 ? 1.30F * width : 1.62F * width, 0.3F, at_once);
+    camera_.frame(count == 2 ? 1.55F * width : 1.90F * width, 0.3F, at_once);
   }
 }
 

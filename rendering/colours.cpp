@@ -28,15 +28,11 @@ constexpr std::array<std::pair<std::string_view, Rgb>, 5> kMethodColours{{{"voxe
                                                                           {"kdtree", hex(0x0072B2)},
                                                                           {"greedy", hex(0xD55E00)},
                                                                           {"position", hex(0xCC79A7)}}};
-// The same blue, light enough to be read on near-black.
-constexpr Rgb kKdtreeOnDark = hex(0x3B9BDC);
-
 }  // namespace
 
 const Palette& palette(Theme theme) noexcept { return theme == Theme::light ? kLight : kDark; }
 
 Rgb method_colour(std::string_view method, Theme theme) noexcept {
-  if (method == "kdtree" && theme == Theme::dark) return kKdtreeOnDark;
   for (const auto& [name, colour] : kMethodColours) {
     if (name == method) return colour;
   }

@@ -59,7 +59,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   start_imgui();
-  last_frame_s_ = second_began_s_ = now();
+  frame_began_s_ = last_frame_s_ = second_began_s_ = now();
   return {};
 }
 
@@ -74,6 +74,11 @@ void DemoApp::start_imgui() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->drop_files({paths, paths + count});
   });
+  glfwSetKeyCallback(window_->handle(), [](GLFWwindow* handle, int key, int, int action, int modifiers) {
+    auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
+    if (action == GLFW_PRESS) app->press_key(key, modifiers);
+  });
+  // Calls the callbacks that are there already after its own.
   ImGui_ImplGlfw_InitForOpenGL(window_->handle(), true);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
@@ -110,7 +115,8 @@ void DemoApp::frame() {
   const double now_s = now();
   session_->update();
   take_notices(now_s);
-  blocks_->camera().advance(static_cast<float>(now_s - last_frame_s_));
+  blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
+  frame_began_s_ = now_s;
   draw();
   handle_keys();
   handle_mouse();

@@ -47,16 +47,23 @@ class DemoApp {
   const std::vector<Toast>& toasts() const noexcept { return toasts_; }
   Window& window() noexcept { return *window_; }
 
-  // What events do; GLFW's callbacks call them.
+  // What events do; GLFW's callbacks call them. A key counts even when it was
+  // pressed and let go within a frame.
   void drop_files(const std::vector<std::string>& paths);
+  void press_key(int key, int modifiers);
   void run(Command command);
 
  private:
   DemoApp() = default;
   Status set_up(const DemoRequest& request);
   void start_imgui();
+  struct KeyPress {
+    int key = 0;        // GLFW's
+    int modifiers = 0;
+  };
   void handle_keys();
-  void handle_command_keys();
+  void handle_key(const KeyPress& press);
+  void replay_key(int key);
   void handle_mouse();
   void move_tool_to_mouse();
   void take_notices(double now_s);
@@ -81,7 +88,9 @@ class DemoApp {
   ViewState view_;
   FrameFigures frames_;
   std::vector<Toast> toasts_;
-  double last_frame_s_ = 0.0;
+  std::vector<KeyPress> keys_;  // since the last frame
+  double frame_began_s_ = 0.0;
+  double last_frame_s_ = 0.0;  // its end
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;

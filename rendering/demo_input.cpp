@@ -39,46 +39,48 @@ void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
   view.scrolled_back_s = std::clamp(view.scrolled_back_s + by_s, 0.0, most_s);
 }
 
-void replay_keys(LiveSession& session) {
-  const ReplayStatus replay = session.replay();
-  if (!replay.present) return;
-  if (ImGui::IsKeyPressed(GLFW_KEY_P, false)) session.pause_replay(!replay.paused);
-  if (ImGui::IsKeyPressed(GLFW_KEY_LEFT_BRACKET)) session.seek_replay(std::max(0.0, replay.at_s - kSeekStep_s));
-  if (ImGui::IsKeyPressed(GLFW_KEY_RIGHT_BRACKET)) session.seek_replay(replay.at_s + kSeekStep_s);
-  if (ImGui::IsKeyPressed(GLFW_KEY_COMMA)) session.set_replay_speed(replay.speed / kSpeedStep);
-  if (ImGui::IsKeyPressed(GLFW_KEY_PERIOD)) session.set_replay_speed(replay.speed * kSpeedStep);
-}
-
 }  // namespace
 
+void DemoApp::press_key(int key, int modifiers) { keys_.push_back({key, modifiers}); }
+
 void DemoApp::handle_keys() {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (io.KeyCtrl) {
-    if (ImGui::IsKeyPressed(GLFW_KEY_Q, false) && (!view_.kiosk || io.KeyShift)) close();
-    return;
-  }
   if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) session_->nudge_tool(kKeyStep_m);
   if (ImGui::IsKeyDown(GLFW_KEY_UP)) session_->nudge_tool(-kKeyStep_m);
-  if (view_.kiosk) {
-    open_day_.update(*session_, view_);
-  } else {
-    handle_command_keys();
-  }
-}
-
-void DemoApp::handle_command_keys() {
-  for (const auto& [key, command] : kCommandKeys) {
-    if (ImGui::IsKeyPressed(key, false)) run(command);
-  }
-  for (int i = 0; i < 9; ++i) {
-    if (ImGui::IsKeyPressed(GLFW_KEY_1 + i, false) && static_cast<std::size_t>(i) < session_->slot_count()) {
-      session_->select(static_cast<std::size_t>(i));
-    }
-  }
-  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) view_.help = view_.file_list = view_.details = false;
   if (ImGui::IsKeyDown(GLFW_KEY_LEFT)) scroll_back(*session_, view_, kScrollStep_s);
   if (ImGui::IsKeyDown(GLFW_KEY_RIGHT)) scroll_back(*session_, view_, -kScrollStep_s);
-  replay_keys(*session_);
+  for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);
+  if (view_.kiosk) open_day_.update(*session_, view_);
+}
+
+void DemoApp::handle_key(const KeyPress& press) {
+  if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
+    const bool chord = (press.modifiers & GLFW_MOD_SHIFT) != 0;
+    if (press.key == GLFW_KEY_Q && (chord || !view_.kiosk)) close();
+    return;
+  }
+  if (view_.kiosk) {
+    open_day_.press_key(press.key, *session_, view_);
+    return;
+  }
+  for (const auto& [key, command] : kCommandKeys) {
+    if (press.key == key) run(command);
+  }
+  const auto slot = static_cast<std::size_t>(press.key - GLFW_KEY_1);
+  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && slot < session_->slot_count()) session_->select(slot);
+  if (press.key == GLFW_KEY_ESCAPE) view_.help = view_.file_list = view_.details = false;
+  if (session_->replay().present) replay_key(press.key);
+}
+
+void DemoApp::replay_key(int key) {
+  const ReplayStatus replay = session_->replay();
+  switch (key) {
+    case GLFW_KEY_P: session_->pause_replay(!replay.paused); break;
+    case GLFW_KEY_LEFT_BRACKET: session_->seek_replay(std::max(0.0, replay.at_s - kSeekStep_s)); break;
+    case GLFW_KEY_RIGHT_BRACKET: session_->seek_replay(replay.at_s + kSeekStep_s); break;
+    case GLFW_KEY_COMMA: session_->set_replay_speed(replay.speed / kSpeedStep); break;
+    case GLFW_KEY_PERIOD: session_->set_replay_speed(replay.speed * kSpeedStep); break;
+    default: break;
+  }
 }
 
 void DemoApp::handle_mouse() {

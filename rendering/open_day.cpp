@@ -30,7 +30,6 @@ void OpenDay::update(LiveSession& session, ViewState& view) {
   if (visitor && !visitor_) begin(session, view);
   if (!visitor && visitor_) forget(session, view);
   visitor_ = visitor;
-  handle_keys(session, view);
   if (trial_.state() == AbTrial::State::exploring) {
     trial_.see(session.slot(trial_.slot_under(1)).force_N, session.slot(trial_.slot_under(2)).force_N,
                session.newest().tick.in_contact, session.jnd());
@@ -53,20 +52,20 @@ void OpenDay::forget(LiveSession& session, ViewState& view) {
   view.theme = Theme::dark;
 }
 
-void OpenDay::handle_keys(LiveSession& session, ViewState& view) {
-  if (ImGui::GetIO().KeyCtrl) return;
-  for (const int key : {1, 2}) {
-    if (!ImGui::IsKeyPressed(GLFW_KEY_0 + key, false)) continue;
-    if (trial_.state() == AbTrial::State::idle) begin(session, view);
-    if (trial_.state() == AbTrial::State::idle) return;
-    trial_.press(key);
-    session.select(trial_.slot_under(key));
-  }
+void OpenDay::press_key(int key, LiveSession& session, ViewState& view) {
+  if (key == GLFW_KEY_1 || key == GLFW_KEY_2) try_model(key - GLFW_KEY_0, session, view);
   if (trial_.state() == AbTrial::State::exploring && trial_.tried_both()) {
-    if (ImGui::IsKeyPressed(GLFW_KEY_D, false)) trial_.answer(true);
-    if (ImGui::IsKeyPressed(GLFW_KEY_S, false)) trial_.answer(false);
+    if (key == GLFW_KEY_D) trial_.answer(true);
+    if (key == GLFW_KEY_S) trial_.answer(false);
   }
-  if (trial_.state() == AbTrial::State::answered && ImGui::IsKeyPressed(GLFW_KEY_N, false)) begin(session, view);
+  if (trial_.state() == AbTrial::State::answered && key == GLFW_KEY_N) begin(session, view);
+}
+
+void OpenDay::try_model(int number, LiveSession& session, ViewState& view) {
+  if (trial_.state() == AbTrial::State::idle) begin(session, view);
+  if (trial_.state() == AbTrial::State::idle) return;  // there are no two models yet
+  trial_.press(number);
+  session.select(trial_.slot_under(number));
 }
 
 void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at, const ImVec2& size) {

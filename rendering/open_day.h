@@ -21,8 +21,10 @@ class OpenDay {
  public:
   explicit OpenDay(std::uint64_t seed) : trial_(seed) {}
 
-  // Once a frame, before drawing: visitors come and go; keys.
+  // Once a frame: visitors come and go.
   void update(LiveSession& session, ViewState& view);
+  // A key of GLFW: 1 and 2 try, D and S answer, N goes on.
+  void press_key(int key, LiveSession& session, ViewState& view);
   void draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at, const ImVec2& size);
 
   const AbTrial& trial() const noexcept { return trial_; }
@@ -30,7 +32,7 @@ class OpenDay {
  private:
   void begin(LiveSession& session, ViewState& view);
   void forget(LiveSession& session, ViewState& view);
-  void handle_keys(LiveSession& session, ViewState& view);
+  void try_model(int number, LiveSession& session, ViewState& view);
   void draw_trial(const UiStyle& style, float width) const;
   void draw_keys(const UiStyle& style, float width) const;
 

@@ -32,7 +32,7 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   ImGui::Begin("panel", nullptr, kFixed);
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // What has a fixed size first; the plots share the rest.
-  const float health = line * (view.details ? 13.5F : 2.2F);
+  const float health = line * static_cast<float>(health_lines(session, view));
   const float rows = static_cast<float>(std::clamp<std::size_t>(session.slot_count(), 2, 7)) + 1.0F;
   const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 2.0F;
   const float titles = line * 3.4F;

@@ -42,6 +42,8 @@ class Panel {
 
 void draw_model_table(LiveSession& session, const UiStyle& style, float height);
 void draw_error_bins(const LiveSession& session, const UiStyle& style, float height);
+// Lines of text that draw_health takes, at most as a rule.
+int health_lines(const LiveSession& session, const ViewState& view);
 void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames);
 
 // What the panel's quiet line says; `problem` when it is not quiet.

@@ -6,7 +6,10 @@
 namespace palpate {
 namespace {
 
+constexpr std::size_t kFaultsShown = 6;
 constexpr double kStall_s = 0.05;
+// How long an alarm stays in words.
+constexpr double kTold_s = 5.0;
 constexpr double kFewFrames_per_s = 50.0;
 // Skipped deadlines beyond this share are worth words.
 constexpr double kManyMissed = 0.01;
@@ -44,7 +47,7 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
     return;
   }
   const double now_s = session.newest().loop_time_s;
-  const std::size_t first = faults.size() > 6 ? faults.size() - 6 : 0;
+  const std::size_t first = faults.size() > kFaultsShown ? faults.size() - kFaultsShown : 0;
   for (std::size_t i = faults.size(); i-- > first;) {
     ImGui::TextColored(paint(style.colours().fault), "%.0f s ago", std::max(0.0, now_s - faults[i].loop_time_s));
     ImGui::SameLine();
@@ -54,21 +57,28 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
 
 }  // namespace
 
+int health_lines(const LiveSession& session, const ViewState& view) {
+  const int quiet = 3;
+  if (!view.details) return quiet;
+  const int fix = session.scheduling().fix.empty() ? 0 : 3;
+  return quiet + fix + 5 + static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
+}
+
 HealthWords health_words(const LiveSession& session, const FrameFigures& frames) {
   const LoopStatistics statistics = session.statistics();
   if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
     return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
   }
-  if (session.newest().faults_latched != 0 && !session.faults().empty() &&
-      session.newest().loop_time_s - session.faults().back().loop_time_s < 5.0) {
-    return {session.faults().back().text, true};
+  for (auto fault = session.faults().rbegin(); fault != session.faults().rend(); ++fault) {
+    if (session.newest().loop_time_s - fault->loop_time_s > kTold_s) break;
+    if (fault->alarm) return {fault->text, true};
   }
   const double missed = statistics.ticks > 0 ? static_cast<double>(statistics.missed_deadlines) / static_cast<double>(statistics.ticks) : 0.0;
   if (missed > kManyMissed) {
-    return {text_of("The loop misses %.1f %% of its deadlines: close other programs, or allow real-time priority", 100.0 * missed), true};
+    return {text_of("%.1f %% of the deadlines missed: close other programs, or allow real-time priority", 100.0 * missed), true};
   }
   if (frames.recent_fps > 0.0 && frames.recent_fps < kFewFrames_per_s) {
-    return {text_of("%.0f frames a second: fewer blocks or a smaller window help; the force is not affected", frames.recent_fps), true};
+    return {text_of("%.0f frames a second, fewer blocks help; the force is not affected", frames.recent_fps), true};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", frames.recent_fps),

@@ -82,7 +82,7 @@ void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {
       if (other.event != kMost) other.event = other.event > 0 ? other.event - 1 : kMost;
     }
   }
-  events_.push_back({at_s, kWords[kind], count});
+  events_.push_back({at_s, kWords[kind], count, kind != kDeadlineMissed && kind != kDropped});
   last = {events_.size() - 1, at_s};
 }
 

@@ -20,6 +20,7 @@ struct FaultEvent {
   double loop_time_s = 0.0;  // of the first
   std::string text;          // in words
   std::uint64_t count = 1;   // of the same kind that followed within a second
+  bool alarm = true;         // else: counted, but nobody needs to be told at once
 };
 
 class FaultLog {

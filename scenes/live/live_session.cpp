@@ -114,6 +114,10 @@ void LiveSession::take(const LoopSnapshot& snapshot) {
   const double reference_N = reference_in(snapshot, set);
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
+  // Filters that begin in the middle of a press know nothing of its beginning: no
+  // model is judged before the tool has been in the air once.
+  if (snapshot.restarted || set == nullptr) begun_in_air_ = false;
+  if (set != nullptr && !snapshot.tick.in_contact) begun_in_air_ = true;
   HistoryPoint point;
   point.loop_time_s = snapshot.loop_time_s;
   point.depth_m = static_cast<float>(snapshot.tick.depth_m);
@@ -138,7 +142,7 @@ void LiveSession::take_slot(std::size_t index, std::size_t slot_index, const Loo
                             double reference_N) {
   Slot& slot = *slots_[slot_index];
   slot.late_error_over_jnd = 0.0;
-  const bool counts = snapshot.samples > 0 && snapshot.tick.in_contact &&
+  const bool counts = begun_in_air_ && snapshot.samples > 0 && snapshot.tick.in_contact &&
                       (snapshot.tick.fault == TickFault::none || snapshot.tick.fault == TickFault::force_not_finite);
   if (!counts) return;
   slot.time.add(snapshot.evaluation_ns[index]);
@@ -301,7 +305,7 @@ void LiveSession::load_file(const std::string& path) {
   }
   ++outstanding_;
   ++outstanding_files_;
-  supply_->order(kNoSlot, {ModelOrigin::file, Method::greedy, path});
+  supply_->order(kNoSlot, {ModelOrigin::file, Method::greedy, path, nullptr});
 }
 
 bool LiveSession::all_settled() const noexcept { return outstanding_ == 0; }

@@ -213,6 +213,7 @@ class LiveSession {
   double reference_N_ = kNoForce;
   LoopSnapshot newest_;
   std::vector<LoopSnapshot> buffer_;
+  bool begun_in_air_ = false;  // since the filters started
   double last_loop_time_s_ = 0.0;
   ForceHistory history_;
   FaultLog faults_;

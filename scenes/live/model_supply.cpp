@@ -105,6 +105,10 @@ void ModelSupply::work() {
 
 SuppliedModel ModelSupply::make(const Order& order) {
   SuppliedModel made{order.ticket, order.plan, nullptr, ""};
+  if (order.plan.loaded != nullptr) {
+    made.model = order.plan.loaded;
+    return made;
+  }
   if (order.plan.origin == ModelOrigin::file) {
     auto model = load_model(order.plan.path);
     if (model) {

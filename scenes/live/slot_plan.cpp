@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/haptics_tick.h"
+#include "models/model_io.h"
 
 namespace palpate {
 namespace {
@@ -24,11 +25,13 @@ Error unknown_model(const std::string& asked) {
 Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
   if (const std::optional<Method> method = method_from_name(asked)) {
     if (!scene.material) return needs_files(scene);
-    return SlotPlan{ModelOrigin::method, *method, ""};
+    return SlotPlan{ModelOrigin::method, *method, "", nullptr};
   }
   std::error_code missing;
   if (!std::filesystem::exists(asked, missing)) return unknown_model(asked);
-  return SlotPlan{ModelOrigin::file, Method::greedy, asked};
+  auto model = load_model(asked);
+  if (!model) return model.error();
+  return SlotPlan{ModelOrigin::file, Method::greedy, asked, std::move(*model)};
 }
 
 }  // namespace
@@ -59,12 +62,11 @@ Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<s
     if (!plan) return plan.error();
     plans.push_back(std::move(*plan));
   }
-  if (position_only && !scene.material) return needs_files(scene);
-  if (position_only) plans.push_back({ModelOrigin::position, Method::greedy, ""});
+  if (position_only && scene.material) plans.push_back({ModelOrigin::position, Method::greedy, "", nullptr});
   const bool has_direct = std::any_of(plans.begin(), plans.end(), [](const SlotPlan& plan) {
     return plan.origin == ModelOrigin::method && plan.method == Method::direct;
   });
-  if (scene.material && !has_direct) plans.push_back({ModelOrigin::method, Method::direct, ""});
+  if (scene.material && !has_direct) plans.push_back({ModelOrigin::method, Method::direct, "", nullptr});
   if (plans.size() <= kMaxModels) return plans;
   return Error{"found " + std::to_string(plans.size()) + " models, the direct reference included, expected at most " +
                std::to_string(kMaxModels) + "; leave some out"};

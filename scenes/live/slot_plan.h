@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct SlotPlan {
   ModelOrigin origin = ModelOrigin::method;
   Method method = Method::greedy;  // of a fit
   std::string path;                // of a file
+  std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file that has been read already
 };
 
 // What to call it until there is a model with a name of its own.
@@ -29,10 +31,12 @@ std::string plan_name(const SlotPlan& plan);
 // "direct", "voxel", ..., "position"; nothing for a file before it is read.
 std::string plan_method(const SlotPlan& plan);
 
-// `models`: methods or model files as asked for; none: the scene's default. When
-// asked, a model of position alone comes behind them, and, in a scene with a
-// material, always the direct interpolant, the reference. Errors: neither a method
-// nor a file, a method in a scene without a material, more than kMaxModels in all.
+// `models`: methods or model files as asked for; none: the scene's default. Files
+// are read here, so that a broken one is known before anything starts. In a scene
+// with a material a model of position alone comes behind them when asked, and always
+// the direct interpolant, the reference. Errors: neither a method nor a file, a file
+// that load_model refuses, a method in a scene without a material, more than
+// kMaxModels in all.
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
                                          bool position_only);
 

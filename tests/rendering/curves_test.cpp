@@ -41,7 +41,7 @@ TEST(CurveColumns, LoseNoPeakAndKeepGapsOpen) {
     EXPECT_FLOAT_EQ(column.low_N[0], 1.1F);
     EXPECT_FLOAT_EQ(column.band_high_N, 1.0F + static_cast<float>(jnd.at(1.0)));
     if (!std::isnan(column.low_N[1])) ++ready;
-    if (std::isnan(column.low_N[1])) EXPECT_TRUE(std::isnan(column.error_over_jnd[1]));
+    EXPECT_EQ(std::isnan(column.low_N[1]), std::isnan(column.error_over_jnd[1]));
   }
   EXPECT_NEAR(ready, 25, 1);
 }

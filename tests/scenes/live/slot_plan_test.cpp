@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "models/model_io.h"
+#include "tests/support/example_model.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -25,7 +27,8 @@ TEST(SlotPlan, TheScenesDefaultAndAlwaysTheDirectInterpolant) {
 
 TEST(SlotPlan, FilesNeedNoMaterial) {
   const test::TemporaryFolder folder;
-  const std::string file = folder.with_file("mine.json", "{}");
+  const std::string file = folder.file("mine.json");
+  ASSERT_TRUE(save_model(file, test::example_models().front(), false).ok());
   EXPECT_EQ(names(plan_slots(scene("skin"), {file}, false)), "mine");
   EXPECT_EQ(names(plan_slots(scene("silicone_block"), {file}, false)), "mine, direct");
   const std::string refused =
@@ -33,7 +36,9 @@ TEST(SlotPlan, FilesNeedNoMaterial) {
       "palpate fit --scene skin";
   EXPECT_EQ(names(plan_slots(scene("skin"), {}, false)), refused);
   EXPECT_EQ(names(plan_slots(scene("skin"), {file, "greedy"}, false)), refused);
-  EXPECT_EQ(names(plan_slots(scene("skin"), {file}, true)), refused);
+  EXPECT_EQ(names(plan_slots(scene("skin"), {file}, true)), "mine") << "nothing to fit one of position alone to";
+  const std::string broken = folder.with_file("broken.json", "{}");
+  EXPECT_EQ(names(plan_slots(scene("skin"), {broken}, false)).rfind("error: " + broken, 0), 0u);
 }
 
 TEST(SlotPlan, RefusesWhatItDoesNotKnow) {

@@ -1,0 +1,92 @@
+// palpate-demo as a whole: how it ends and what it says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace palpate {
+namespace {
+
+using test::ProgramRun;
+using test::run_program;
+using test::TemporaryFolder;
+
+ProgramRun demo(std::vector<std::string> arguments, const std::vector<std::string>& environment = {}) {
+  arguments.insert(arguments.begin(), PALPATE_DEMO_BINARY);
+  return run_program(arguments, environment);
+}
+
+// One line on stderr, nothing else.
+void expect_error(const ProgramRun& run, const std::string& words) {
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.err.rfind("error: ", 0), 0u) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+}
+
+class DemoMain : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_FALSE(test::virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb"; }
+  TemporaryFolder folder_;
+};
+
+TEST_F(DemoMain, WithoutADisplayItSaysSo) {
+  expect_error(demo({}, {"DISPLAY=", "WAYLAND_DISPLAY="}), "no display");
+  expect_error(demo({}, {"DISPLAY=:4711", "WAYLAND_DISPLAY="}), "no display");
+}
+
+TEST_F(DemoMain, WithoutOpenGl33ItSaysSo) {
+  expect_error(demo({"--seconds", "1"}, {"MESA_GL_VERSION_OVERRIDE=2.1"}), "OpenGL 3.3");
+}
+
+TEST_F(DemoMain, UnknownScenesModelsAndDevicesAreNamed) {
+  expect_error(demo({"--scene", "marble"}), "marble");
+  expect_error(demo({"--model", "magic"}), "magic");
+  expect_error(demo({"--model", folder_.file("none.json")}), "none.json");
+  expect_error(demo({"--device", "wand"}), "wand");
+}
+
+TEST_F(DemoMain, WrongUsageIsExitCode2) {
+  EXPECT_EQ(demo({"--sceen", "skin"}).exit_code, 2);
+  EXPECT_EQ(demo({"--seconds", "soon"}).exit_code, 2);
+  EXPECT_EQ(demo({"--help"}).exit_code, 0);
+}
+
+TEST_F(DemoMain, RunsForItsSecondsAndWritesStatsAndPicture) {
+  const std::string stats = folder_.file("stats.json");
+  const std::string picture = folder_.file("window.png");
+  const ProgramRun run = demo({"--seconds", "3", "--model", "random", "--stats", stats, "--screenshot", picture});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  std::ifstream file(stats);
+  const nlohmann::json json = nlohmann::json::parse(file);
+  EXPECT_GT(json.at("haptics").at("ticks"), 500);
+  for (const char* key : {"missed_deadlines", "lateness_us", "tick_us", "scheduling"}) EXPECT_TRUE(json["haptics"].contains(key));
+  for (const char* key : {"p50", "p99", "p99_9", "max"}) {
+    EXPECT_TRUE(json["haptics"]["lateness_us"].contains(key));
+    EXPECT_TRUE(json["haptics"]["tick_us"].contains(key));
+  }
+  EXPECT_GT(json.at("graphics").at("frames"), 2);
+  for (const char* key : {"p50", "p99", "max"}) EXPECT_TRUE(json["graphics"]["frame_ms"].contains(key));
+  EXPECT_TRUE(json.at("models").is_array());
+  for (const auto& model : json["models"]) {
+    for (const char* key : {"name", "within_jnd", "evaluation_ns"}) EXPECT_TRUE(model.contains(key));
+  }
+  EXPECT_TRUE(json.at("faults").is_array());
+  std::ifstream png(picture, std::ios::binary);
+  const std::string head{std::istreambuf_iterator<char>(png), {}};
+  EXPECT_EQ(head.substr(1, 3), "PNG");
+
+  expect_error(demo({"--seconds", "1", "--stats", stats}), "--force");
+}
+
+}  // namespace
+}  // namespace palpate
