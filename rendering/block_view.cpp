@@ -32,9 +32,12 @@ std::vector<glm::vec2> tool_profile() {
   }
   for (const glm::vec2 point : {glm::vec2(0.40F, 2.1F), glm::vec2(0.40F, 4.6F), glm::vec2(0.46F, 5.0F),
                                 glm::vec2(1.05F, 5.5F), glm::vec2(1.20F, 5.9F), glm::vec2(1.28F, 9.0F),
-                                glm::vec2(1.20F, 12.4F), glm::vec2(0.95F, 13.0F), glm::vec2(0.5F, 13.35F),
-                                glm::vec2(1e-4F, 13.45F)}) {
+                                glm::vec2(1.20F, 12.4F)}) {
     profile.push_back(point);
+  }
+  for (int i = 1; i <= 8; ++i) {
+    const float angle = 0.5F * kPi * static_cast<float>(i) / 8.0F;
+    profile.emplace_back(std::max(1e-4F, 1.20F * std::cos(angle)), 12.4F + 1.20F * std::sin(angle));
   }
   return profile;
 }
@@ -81,7 +84,7 @@ void BlockView::show(std::size_t count, bool at_once) {
   if (count == 1) {
     camera_.frame(0.92F * width, 0.5F, at_once);
   } else {
-    camera_.frame(count == 2 ? 1.55F * width : 1.90F * width, 0.3F, at_once);
+    camera_.frame(count == 2 ? 1.42F * width : 1.78F * width, 0.3F, at_once);
   }
 }
 

@@ -7,7 +7,10 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -25,6 +28,13 @@ constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
 
 double now() { return kSPerNs * static_cast<double>(SteadyPacer().now_ns()); }
+
+// Where real-time priority was refused, the picture steps back for the force:
+// that needs no privilege.
+void yield_to_haptics(const RtStatus& granted) {
+  constexpr int kPictureNice = 5;
+  if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
+}
 
 std::string new_recording_path() {
   const std::time_t time = std::time(nullptr);
@@ -46,15 +56,18 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 Status DemoApp::set_up(const DemoRequest& request) {
   view_.kiosk = request.kiosk;
   view_.theme = request.kiosk ? Theme::dark : Theme::light;
-  // The window first: without a display nothing else needs to start.
-  auto window = Window::open(request.window);
-  if (!window) return window.error();
-  window_ = std::move(*window);
+  // Without a display nothing else needs to start.
+  if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
   wanted.position_only = wanted.position_only || request.kiosk;  // something that can be told apart
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
+  yield_to_haptics(session_->scheduling());
+  // After the haptics thread: the driver's threads take over this one's priority.
+  auto window = Window::open(request.window);
+  if (!window) return window.error();
+  window_ = std::move(*window);
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
@@ -84,6 +97,8 @@ void DemoApp::start_imgui() {
 }
 
 DemoApp::~DemoApp() {
+  // A fit that cannot be stopped at once is not waited for in sight.
+  if (window_ != nullptr) glfwHideWindow(window_->handle());
   session_.reset();
   blocks_.reset();
   if (!imgui_) return;

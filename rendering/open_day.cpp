@@ -76,7 +76,7 @@ void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, 
   const float width = ImGui::GetContentRegionAvail().x;
   ImGui::TextWrapped("A computer learned this block from one recording and pushes back as the block did.");
   ImGui::Spacing();
-  curves_.draw_for_visitors(session, view, style, std::max(6.0F * line, 0.30F * size.y));
+  curves_.draw_for_visitors(session, view, style, std::max(6.0F * line, 0.36F * size.y));
   ImGui::TextDisabled("Inside the grey band a hand cannot tell.");
   ImGui::Dummy({0.0F, 0.4F * line});
   draw_trial(style, width);
@@ -98,7 +98,9 @@ void OpenDay::draw_trial(const UiStyle& style, float width) const {
   }
   ImGui::PopFont();
   if (trial_.state() == AbTrial::State::idle) {
-    ImGui::TextWrapped("Until then a hand presses by itself.");
+    ImGui::TextWrapped("Slowly, and it gives way. Quickly, and it resists. Hold still, and the force fades: it remembers what you did.");
+    ImGui::Spacing();
+    ImGui::TextDisabled("Until then a hand presses by itself.");
     return;
   }
   draw_keys(style, width);

@@ -8,14 +8,13 @@ namespace {
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                         ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
-void draw_data_note(const LiveSession& session, const UiStyle& style) {
-  if (session.slot_count() == 0) return;
-  const SlotView& slot = session.slot(session.selected());
-  if (slot.state != SlotState::ready || !slot.out_of_domain || !session.newest().tick.in_contact) return;
-  ImGui::TextColored(paint(style.colours().fault), "Away from the recorded data: the force is the model's safe trend");
-}
-
 }  // namespace
+
+bool away_from_data(const LiveSession& session) {
+  if (session.slot_count() == 0 || !session.newest().tick.in_contact) return false;
+  const SlotView& slot = session.slot(session.selected());
+  return slot.state == SlotState::ready && slot.out_of_domain;
+}
 
 void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
@@ -39,7 +38,6 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health - table - titles);
   const bool bins = !view.details || rest > 14.0F * line;
   curves_.draw(session, view, style, rest * (bins ? 0.42F : 0.65F), rest * (bins ? 0.24F : 0.35F));
-  draw_data_note(session, style);
   draw_model_table(session, style, table);
   if (bins) {
     section_title(style, "ERROR AGAINST FORCE");

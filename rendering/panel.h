@@ -53,6 +53,9 @@ struct HealthWords {
 };
 HealthWords health_words(const LiveSession& session, const FrameFigures& frames);
 
+// Whether the model in the hand is used where nothing was recorded.
+bool away_from_data(const LiveSession& session);
+
 // Small parts that several use.
 void section_title(const UiStyle& style, const char* title);
 // A tooltip for the item before.

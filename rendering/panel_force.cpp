@@ -69,8 +69,10 @@ void draw_curve(const Plot& plot, const std::vector<CurveColumn>& columns, ImU32
     const float x = plot.x_px(column.time_s);
     const float y_low = plot.y_px(bottom);
     const float y_high = plot.y_px(top);
-    points.emplace_back(x, y_low);
-    if (y_low - y_high > 1.5F) points.emplace_back(x, y_high);
+    // In the direction of travel: a line that turns on the spot has no width there.
+    const bool falling = !points.empty() && y_low - points.back().y > points.back().y - y_high;
+    points.emplace_back(x, falling ? y_high : y_low);
+    if (y_low - y_high > 1.5F) points.emplace_back(x, falling ? y_low : y_high);
   }
   plot.line(points, colour, thickness);
 }
@@ -124,7 +126,11 @@ void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& sty
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Force of every model in the last 10 s, and the reference in green.\nThe grey band: what a hand cannot tell from the reference.\nWheel: back in time. Space: stop and go.");
   section_title(style, "ERROR / JND");
   ImGui::SameLine();
-  ImGui::TextDisabled(view.paused ? "stopped, Space goes on" : "above 1 a hand could tell");
+  if (away_from_data(session)) {
+    ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
+  } else {
+    ImGui::TextDisabled(view.paused ? "stopped, Space goes on" : "above 1 a hand could tell");
+  }
   draw_error(session, view, style, error_height, end_s);
   if (view.paused && ImGui::IsItemHovered()) ImGui::SetTooltip("%.1f s before the stop", view.scrolled_back_s);
 }

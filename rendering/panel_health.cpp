@@ -60,7 +60,7 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
 int health_lines(const LiveSession& session, const ViewState& view) {
   const int quiet = 3;
   if (!view.details) return quiet;
-  const int fix = session.scheduling().fix.empty() ? 0 : 3;
+  const int fix = session.scheduling().fix.empty() ? 0 : 8;
   return quiet + fix + 5 + static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
 }
 

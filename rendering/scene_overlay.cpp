@@ -26,8 +26,10 @@ ImVec2 text_size(ImFont* font, const std::string& text) {
   return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str());
 }
 
-// Top left corner of block `index`'s label.
+// Top left corner of block `index`'s label: at its foot, or, of a single block, in
+// the picture's upper right corner, where nothing else is.
 ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area, const ImVec2& size) {
+  if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
   const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
   const auto height = static_cast<float>(blocks.geometry().height_m);
   // Before the block's front side, on the table's edge of it.
@@ -75,7 +77,8 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   const bool known = session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready &&
                      !std::isnan(session.reference_N());
   const double error = known ? session.slot(session.selected()).dent_error_over_jnd : 0.0;
-  const std::string number = known ? three_digits(error).substr(0, error < 9.995 ? 4 : 3) : "–";
+  // Two decimals are more than anyone can see change.
+  const std::string number = !known ? "–" : error < 0.9995 ? three_digits(error).substr(0, 4) : three_digits(error);
   const ImVec2 size = text_size(big, "0.00");
   const float y = corner.y - size.y - 1.9F * line;
   text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);
@@ -202,10 +205,9 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
 }
 
 void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (session.slot_count() == 0) return;
-  const SlotView& slot = session.slot(session.selected());
-  if (slot.state != SlotState::ready || !slot.out_of_domain || !session.newest().tick.in_contact) return;
-  const std::string text = "Nothing like this was recorded: here " + slot.name + " only follows the trend";
+  if (!away_from_data(session)) return;
+  const std::string text =
+      "Nothing like this was recorded: here " + session.slot(session.selected()).name + " only follows the trend";
   const ImVec2 size = text_size(style.fonts().body, text);
   const float pad = 0.4F * size.y;
   const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.2F * size.y);
@@ -310,7 +312,9 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   const float line = style.fonts().body->FontSize;
   const float buttons = 2.4F * line;
   const float bars = buttons + (session.replay().present ? 2.4F * line : 0.0F);
-  draw_labels(session, blocks, view, style, area);
+  // Who only passes by needs no model's name.
+  const bool passing = view.kiosk && session.takes_mouse() && session.hand_is_exploring();
+  if (!passing) draw_labels(session, blocks, view, style, area);
   if (view.hidden_choice == 0) draw_big_number(session, style, area, bars);
   draw_data_warning(session, style, area);
   draw_title(session, view, style, area);

@@ -41,10 +41,14 @@ Error no_display() {
 
 }  // namespace
 
-Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
+Status Window::find_display() {
   glfwSetErrorCallback(keep_problem);
   if (!set("DISPLAY") && !set("WAYLAND_DISPLAY")) last_problem() = "and neither is WAYLAND_DISPLAY";
   if ((!set("DISPLAY") && !set("WAYLAND_DISPLAY")) || glfwInit() != GLFW_TRUE) return no_display();
+  return {};
+}
+
+Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -22,7 +22,10 @@ struct WindowRequest {
 
 class Window {
  public:
-  // Errors, one sentence each: no display, no OpenGL 3.3.
+  // Whether there is a display at all; cheap, before anything else starts. Errors:
+  // there is none.
+  static Status find_display();
+  // After `find_display`. Errors, in one sentence: no OpenGL 3.3.
   static Result<std::unique_ptr<Window>> open(const WindowRequest& request);
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

@@ -240,6 +240,13 @@ TEST_F(DemoAppTest, AVisitorsChoiceStaysASecretUntilTheAnswer) {
   EXPECT_EQ(app_->view().hidden_choice, 0);
 }
 
+TEST_F(DemoAppTest, SaysWhenTheProbeIsAwayFromTheData) {
+  open("mouse");
+  EXPECT_FALSE(away_from_data(app_->session()));
+  app_->session().set_tool_target(0.03);  // example models know 6 mm
+  EXPECT_TRUE(until([&] { return away_from_data(app_->session()); }));
+}
+
 TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
   open("hand");
   glfwSetWindowSize(app_->window().handle(), 1920, 1080);
