@@ -37,7 +37,7 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
 }
 
 void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, std::size_t slots, CurveColumn& column) {
-  column.fault = column.fault || point.fault;
+  column.trouble = std::max(column.trouble, point.trouble);
   column.contact = column.contact || point.in_contact;
   const bool known = !std::isnan(point.reference_N);
   const auto jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));

@@ -18,7 +18,7 @@ struct CurveColumn {
   bool any = false;     // has ticks
   bool reference = false;
   bool contact = false;
-  bool fault = false;
+  TickTrouble trouble = TickTrouble::none;  // the worst
   float reference_N = 0.0F;  // the last one
   float band_low_N = 0.0F;   // reference -/+ JND, outermost
   float band_high_N = 0.0F;

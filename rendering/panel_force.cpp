@@ -77,12 +77,18 @@ void draw_curve(const Plot& plot, const std::vector<CurveColumn>& columns, ImU32
   plot.line(points, colour, thickness);
 }
 
+// The timeline of faults along the upper edge: a tick for a missed deadline, a red
+// triangle for what the force path had to deal with.
 void draw_faults(const Plot& plot, const std::vector<CurveColumn>& columns, const UiStyle& style) {
+  const float size = 6.0F * style.scale();
   for (const CurveColumn& column : columns) {
-    if (!column.fault) continue;
     const float x = plot.x_px(column.time_s);
-    plot.list().AddTriangleFilled({x - 4.0F, plot.top()}, {x + 4.0F, plot.top()}, {x, plot.top() + 7.0F},
-                                  ink(style.colours().fault));
+    if (column.trouble == TickTrouble::late) {
+      plot.list().AddLine({x, plot.top()}, {x, plot.top() + size}, ink(style.colours().quiet));
+    } else if (column.trouble == TickTrouble::alarm) {
+      plot.list().AddTriangleFilled({x - size, plot.top()}, {x + size, plot.top()}, {x, plot.top() + 1.6F * size},
+                                    ink(style.colours().fault));
+    }
   }
 }
 
@@ -123,7 +129,7 @@ void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& sty
   ImGui::TextDisabled("%s", session.reference_words().c_str());
   tip("What the models are compared with. F chooses another.\nThe grey band is one just noticeable difference (JND) either way.");
   draw_force(session, view, style, force_height, end_s);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Force of every model in the last 10 s, and the reference in green.\nThe grey band: what a hand cannot tell from the reference.\nWheel: back in time. Space: stop and go.");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Force of every model in the last 10 s, and the reference in green.\nThe grey band: what a hand cannot tell from the reference.\nMarks at the top: missed deadlines, and in red faults (L lists them).\nWheel: back in time. Space: stop and go.");
   section_title(style, "ERROR / JND");
   ImGui::SameLine();
   if (away_from_data(session)) {

@@ -43,19 +43,19 @@ constexpr std::array<BitKind, 5> kAlarms = {{
 
 }  // namespace
 
-bool FaultLog::see(const LoopSnapshot& snapshot) {
-  bool any = false;
+TickTrouble FaultLog::see(const LoopSnapshot& snapshot) {
+  TickTrouble trouble = TickTrouble::none;
   for (const BitKind& alarm : kAlarms) {
     if ((snapshot.faults & alarm.bit) == 0) continue;
     note(alarm.kind, 1, snapshot.loop_time_s);
-    any = true;
+    trouble = TickTrouble::alarm;
   }
   if (snapshot.missed_deadlines > missed_) {
     note(kDeadlineMissed, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
     missed_ = snapshot.missed_deadlines;
-    any = true;
+    if (trouble == TickTrouble::none) trouble = TickTrouble::late;
   }
-  return any;
+  return trouble;
 }
 
 void FaultLog::see_dropped(std::uint64_t dropped, double now_s) {

@@ -23,14 +23,21 @@ struct FaultEvent {
   bool alarm = true;         // else: counted, but nobody needs to be told at once
 };
 
+// What was wrong with one tick, for a mark on the curves.
+enum class TickTrouble : std::uint8_t {
+  none,
+  late,   // deadlines were missed before it
+  alarm,  // anything worse
+};
+
 class FaultLog {
  public:
   static constexpr std::size_t kMost = 200;
   // An older last tick is a stall.
   static constexpr double kStall_s = 0.05;
 
-  // Every snapshot in order; whether it holds a fault.
-  bool see(const LoopSnapshot& snapshot);
+  // Every snapshot in order; what it holds.
+  TickTrouble see(const LoopSnapshot& snapshot);
   // `dropped`: snapshots lost so far, in all.
   void see_dropped(std::uint64_t dropped, double now_s);
   // `age_s`: of the last tick. A stall counts once, however long.

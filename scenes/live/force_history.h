@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/haptics_tick.h"
+#include "scenes/live/fault_log.h"
 
 namespace palpate {
 
@@ -20,7 +21,7 @@ struct HistoryPoint {
   float rendered_N = 0.0F;
   bool in_contact = false;
   bool out_of_domain = false;  // of the model in the hand
-  bool fault = false;
+  TickTrouble trouble = TickTrouble::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
 };
 

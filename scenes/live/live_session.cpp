@@ -125,7 +125,7 @@ void LiveSession::take(const LoopSnapshot& snapshot) {
   point.rendered_N = static_cast<float>(snapshot.rendered_N);
   point.in_contact = snapshot.tick.in_contact;
   point.out_of_domain = (snapshot.tick.out_of_domain_mask >> snapshot.selected & 1U) != 0;
-  point.fault = faults_.see(snapshot);
+  point.trouble = faults_.see(snapshot);
   point.force_N.fill(std::nanf(""));
   if (set != nullptr) {
     for (std::size_t i = 0; i < set->slots.size(); ++i) {
