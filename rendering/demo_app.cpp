@@ -72,6 +72,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   start_imgui();
+  if (find_font().empty()) toasts_.push_back({"no font found; install fonts-dejavu-core", true, now() + kProblemToast_s});
   frame_began_s_ = last_frame_s_ = second_began_s_ = now();
   return {};
 }

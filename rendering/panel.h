@@ -15,8 +15,6 @@ namespace palpate {
 // Live force against time with the JND band, and the error over the JND below.
 class ForceCurves {
  public:
-  // The loop time at the right edge of the curves.
-  static double end_time_s(const LiveSession& session, const ViewState& view, double now_s);
   void draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height, float error_height);
   // The force plot alone, with the reference and the model in the hand, which has no
   // colour of its own while it is a secret.

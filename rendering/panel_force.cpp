@@ -17,6 +17,9 @@ constexpr float kColumn_px = 1.5F;
 
 double now_s() { return kSPerNs * static_cast<double>(SteadyPacer().now_ns()); }
 
+// The loop time at the right edge of the curves.
+double end_time_s(const ViewState& view) { return view.paused ? view.paused_at_s - view.scrolled_back_s : now_s(); }
+
 // The models' order of drawing: the one in the hand on top.
 template <typename Draw>
 void for_each_slot(const LiveSession& session, const ViewState& view, Draw draw) {
@@ -113,13 +116,9 @@ void scroll_with_wheel(const Plot& plot, const LiveSession& session, ViewState& 
 
 }  // namespace
 
-double ForceCurves::end_time_s(const LiveSession&, const ViewState& view, double now) {
-  return view.paused ? view.paused_at_s - view.scrolled_back_s : now;
-}
-
 void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height,
                        float error_height) {
-  const double end_s = end_time_s(session, view, now_s());
+  const double end_s = end_time_s(view);
   gather(session, view, end_s);
   section_title(style, "FORCE");
   ImGui::SameLine();
@@ -142,7 +141,7 @@ void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& sty
 }
 
 void ForceCurves::draw_for_visitors(LiveSession& session, ViewState& view, const UiStyle& style, float height) {
-  const double end_s = end_time_s(session, view, now_s());
+  const double end_s = end_time_s(view);
   gather(session, view, end_s);
   draw_force(session, view, style, height, end_s);
 }

@@ -31,23 +31,23 @@ constexpr const char* kFontFiles[] = {
 // Latin, and the few signs that the panel uses.
 constexpr ImWchar kGlyphs[] = {0x20, 0xFF, 0x2013, 0x2026, 0x2190, 0x2193, 0x2264, 0x2265, 0x25A0, 0x25CF, 0x3BC, 0x3C4, 0};
 
-const char* font_file() {
-  for (const char* path : kFontFiles) {
-    std::error_code missing;
-    if (std::filesystem::exists(path, missing)) return path;
-  }
-  return nullptr;
-}
-
-ImFont* add_font(const char* path, float size_px) {
+ImFont* add_font(const std::string& path, float size_px) {
   ImGuiIO& io = ImGui::GetIO();
-  if (path != nullptr) return io.Fonts->AddFontFromFileTTF(path, size_px, nullptr, kGlyphs);
+  if (!path.empty()) return io.Fonts->AddFontFromFileTTF(path.c_str(), size_px, nullptr, kGlyphs);
   ImFontConfig plain;
   plain.SizePixels = size_px;
   return io.Fonts->AddFontDefault(&plain);
 }
 
 }  // namespace
+
+std::string find_font() {
+  for (const char* path : kFontFiles) {
+    std::error_code missing;
+    if (std::filesystem::exists(path, missing)) return path;
+  }
+  return {};
+}
 
 void UiStyle::update(int height_px, float content_scale, bool large, Theme theme) {
   const float by_height = static_cast<float>(height_px) / kDesignHeight_px;
@@ -66,10 +66,8 @@ void UiStyle::update(int height_px, float content_scale, bool large, Theme theme
 
 void UiStyle::build_fonts() {
   ImGuiIO& io = ImGui::GetIO();
-  const char* path = font_file();
-  problem_ = path == nullptr ? "no font found; install fonts-dejavu-core" : "";
+  const std::string path = find_font();
   io.Fonts->Clear();
-  // One texture for the card, small: no anti-aliased line texture is needed twice.
   fonts_.body = add_font(path, std::round(kBody_px * scale_));
   fonts_.heading = add_font(path, std::round(kHeading_px * scale_));
   fonts_.big = add_font(path, std::round(kBig_px * scale_));

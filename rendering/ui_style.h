@@ -21,6 +21,9 @@ struct Fonts {
   ImFont* big = nullptr;
 };
 
+// The font file that is used; empty: none was found, and a plain built-in one is.
+std::string find_font();
+
 class UiStyle {
  public:
   // Before each frame. `height_px`: of the framebuffer. Rebuilds the fonts when the
@@ -32,8 +35,6 @@ class UiStyle {
   float scale() const noexcept { return scale_; }
   Theme theme() const noexcept { return theme_; }
   const Palette& colours() const noexcept { return palette(theme_); }
-  // Empty: the real font was found.
-  const std::string& problem() const noexcept { return problem_; }
 
  private:
   void build_fonts();
@@ -43,7 +44,6 @@ class UiStyle {
   float scale_ = 0.0F;
   Theme theme_ = Theme::light;
   bool coloured_ = false;
-  std::string problem_;
 };
 
 }  // namespace palpate
