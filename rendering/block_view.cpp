@@ -14,13 +14,15 @@ namespace palpate {
 namespace {
 
 constexpr float kPi = 3.14159265F;
-constexpr float kBetween = 1.32F;         // blocks side by side, in widths
+constexpr float kBetween = 1.32F;  // blocks side by side, in widths
 constexpr float kArrow_m_per_N = 0.006F;
 constexpr float kShortestArrow_N = 0.03F;
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
 
 Rgb rgb(const Colour& colour) {
-  return Rgb(static_cast<float>(colour.red), static_cast<float>(colour.green), static_cast<float>(colour.blue)) / 255.0F;
+  return Rgb(static_cast<float>(colour.red), static_cast<float>(colour.green),
+             static_cast<float>(colour.blue)) /
+         255.0F;
 }
 
 // A ball, a neck, a handle; in units of the ball's radius, the tip at y = 0.
@@ -30,9 +32,9 @@ std::vector<glm::vec2> tool_profile() {
     const float angle = kPi * (static_cast<float>(i) / 18.0F * 0.86F - 0.5F);
     profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
   }
-  for (const glm::vec2 point : {glm::vec2(0.40F, 2.1F), glm::vec2(0.40F, 4.6F), glm::vec2(0.46F, 5.0F),
-                                glm::vec2(1.05F, 5.5F), glm::vec2(1.20F, 5.9F), glm::vec2(1.28F, 9.0F),
-                                glm::vec2(1.20F, 12.4F)}) {
+  for (const glm::vec2 point :
+       {glm::vec2(0.40F, 2.1F), glm::vec2(0.40F, 4.6F), glm::vec2(0.46F, 5.0F), glm::vec2(1.05F, 5.5F),
+        glm::vec2(1.20F, 5.9F), glm::vec2(1.28F, 9.0F), glm::vec2(1.20F, 12.4F)}) {
     profile.push_back(point);
   }
   for (int i = 1; i <= 8; ++i) {
@@ -45,7 +47,9 @@ std::vector<glm::vec2> tool_profile() {
 // Flat shading of a corner: the same point twice would give no direction, so
 // corners are a hair apart.
 std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0016F, 1e-5F}, {0.0016F, 1.0F}}; }
-std::vector<glm::vec2> tip_profile() { return {{1e-4F, 0.0F}, {0.0042F, 1e-5F}, {0.0041F, 2e-4F}, {1e-4F, 0.0085F}}; }
+std::vector<glm::vec2> tip_profile() {
+  return {{1e-4F, 0.0F}, {0.0042F, 1e-5F}, {0.0041F, 2e-4F}, {1e-4F, 0.0085F}};
+}
 
 }  // namespace
 
@@ -59,7 +63,8 @@ Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene) {
   if (!solid) return solid.error();
   auto table = Shader::load(folder, "table");
   if (!table) return table.error();
-  return std::unique_ptr<BlockView>(new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table)));
+  return std::unique_ptr<BlockView>(
+      new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table)));
 }
 
 BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table)
@@ -95,13 +100,15 @@ glm::vec3 BlockView::place(std::size_t index, std::size_t count) const {
   return {column * step, 0.0F, row * step};
 }
 
-glm::vec2 BlockView::on_screen(std::size_t index, std::size_t count, const glm::vec3& point, const glm::vec2& size) const {
+glm::vec2 BlockView::on_screen(std::size_t index, std::size_t count, const glm::vec3& point,
+                               const glm::vec2& size) const {
   return project(camera_.view_projection(size.x / size.y), place(index, count) + point, size);
 }
 
 float BlockView::depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const {
   constexpr float kProbe_m = 0.01F;
-  const float pixels = on_screen(index, count, {0.0F, -kProbe_m, 0.0F}, size).y - on_screen(index, count, {0.0F, 0.0F, 0.0F}, size).y;
+  const float pixels = on_screen(index, count, {0.0F, -kProbe_m, 0.0F}, size).y -
+                       on_screen(index, count, {0.0F, 0.0F, 0.0F}, size).y;
   return kProbe_m / std::max(pixels, 1.0F);
 }
 
@@ -114,7 +121,8 @@ void BlockView::begin(const Shader& shader) const {
 
 void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
   if (viewport.width < 1 || viewport.height < 1) return;
-  view_projection_ = camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
+  view_projection_ =
+      camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
   draw_backdrop(table_state(blocks, viewport, theme), viewport);
   glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
   glScissor(viewport.x, viewport.y, viewport.width, viewport.height);
@@ -131,8 +139,10 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glBindVertexArray(0);
 }
 
-BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) const {
-  TableState state{view_projection_, viewport.width, viewport.height, theme, std::min<std::size_t>(blocks.size(), 4)};
+BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport,
+                                             Theme theme) const {
+  TableState state{view_projection_, viewport.width, viewport.height, theme,
+                   std::min<std::size_t>(blocks.size(), 4)};
   for (std::size_t i = 0; i < state.count; ++i) {
     if (!blocks[i].chosen || state.count == 1) continue;
     const glm::vec3 at = place(i, state.count);
@@ -211,7 +221,8 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
   // Beside the tool, as seen from the eye, so that neither hides the other.
   const glm::vec3 eye = camera_.eye();
   const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
-  const glm::vec3 foot = at + 3.2F * static_cast<float>(geometry_.tool_radius_m) * right + glm::vec3(0.0F, 0.001F, 0.0F);
+  const glm::vec3 foot =
+      at + 3.2F * static_cast<float>(geometry_.tool_radius_m) * right + glm::vec3(0.0F, 0.001F, 0.0F);
   const float length_m = std::min(kArrow_m_per_N * pose.force_N, 0.09F);
   solid_shader_.set("colour", pose.arrow);
   solid_shader_.set("shininess", 0.15F);

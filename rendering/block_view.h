@@ -52,7 +52,8 @@ class BlockView {
   glm::vec3 place(std::size_t index, std::size_t count) const;
   // A point of block `index`, relative to the middle of its top, in the
   // viewport's pixels, y down.
-  glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point, const glm::vec2& size) const;
+  glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point,
+                      const glm::vec2& size) const;
   // How far the tool moves inwards for a pixel downwards, metres.
   float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
   const BlockGeometry& geometry() const noexcept { return geometry_; }

@@ -45,12 +45,14 @@ void Camera::advance(float seconds) {
 
 glm::vec3 Camera::eye() const {
   const float flat = now_.distance_m * std::cos(now_.pitch_rad);
-  return {flat * std::sin(now_.yaw_rad), now_.distance_m * std::sin(now_.pitch_rad), flat * std::cos(now_.yaw_rad)};
+  return {flat * std::sin(now_.yaw_rad), now_.distance_m * std::sin(now_.pitch_rad),
+          flat * std::cos(now_.yaw_rad)};
 }
 
 glm::mat4 Camera::view_projection(float aspect) const {
   // In a tall viewport the width decides.
-  const float vertical = aspect >= 1.0F ? kFieldOfView_rad : 2.0F * std::atan(std::tan(0.5F * kFieldOfView_rad) / aspect);
+  const float vertical =
+      aspect >= 1.0F ? kFieldOfView_rad : 2.0F * std::atan(std::tan(0.5F * kFieldOfView_rad) / aspect);
   return glm::perspective(vertical, aspect, kNear_m, kFar_m) *
          glm::lookAt(eye(), glm::vec3(0.0F, 0.004F, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
 }

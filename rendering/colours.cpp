@@ -21,7 +21,8 @@ const Palette kDark{hex(0x14171A), hex(0x262B30), hex(0x1B1F23), hex(0x2D343B), 
                     hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F)};
 
 // Samples of viridis at 0, 0.25, 0.5, 0.75, 1.
-constexpr std::array<Rgb, 5> kScale{hex(0x440154), hex(0x3B528B), hex(0x21918C), hex(0x5EC962), hex(0xFDE725)};
+constexpr std::array<Rgb, 5> kScale{hex(0x440154), hex(0x3B528B), hex(0x21918C), hex(0x5EC962),
+                                    hex(0xFDE725)};
 
 constexpr std::array<std::pair<std::string_view, Rgb>, 5> kMethodColours{{{"voxel", hex(0x56B4E9)},
                                                                           {"random", hex(0xE69F00)},

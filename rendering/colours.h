@@ -17,12 +17,12 @@ struct Palette {
   Rgb background;
   Rgb table;
   Rgb panel;
-  Rgb raised;    // controls
+  Rgb raised;  // controls
   Rgb text;
-  Rgb quiet;     // second-rank text, axes
+  Rgb quiet;  // second-rank text, axes
   Rgb grid;
-  Rgb band;      // the JND band
-  Rgb fault;     // red, for nothing else
+  Rgb band;   // the JND band
+  Rgb fault;  // red, for nothing else
 };
 const Palette& palette(Theme theme) noexcept;
 

@@ -10,8 +10,12 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 // NaN counts as nothing.
-float smaller(float so_far, float value) noexcept { return value < so_far || std::isnan(so_far) ? value : so_far; }
-float larger(float so_far, float value) noexcept { return value > so_far || std::isnan(so_far) ? value : so_far; }
+float smaller(float so_far, float value) noexcept {
+  return value < so_far || std::isnan(so_far) ? value : so_far;
+}
+float larger(float so_far, float value) noexcept {
+  return value > so_far || std::isnan(so_far) ? value : so_far;
+}
 
 }  // namespace
 
@@ -24,7 +28,8 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
   empty.high_N.fill(kNone);
   empty.error_over_jnd.fill(kNone);
   columns_.assign(count + 2, empty);
-  for (std::size_t i = 0; i < columns_.size(); ++i) columns_[i].time_s = (first + static_cast<double>(i) + 0.5) * width_s;
+  for (std::size_t i = 0; i < columns_.size(); ++i)
+    columns_[i].time_s = (first + static_cast<double>(i) + 0.5) * width_s;
   highest_force_N_ = highest_error_ = 0.0F;
   for (std::size_t i = history.first_at(first * width_s); i < history.size(); ++i) {
     const HistoryPoint& point = history[i];
@@ -36,7 +41,8 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
   }
 }
 
-void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, std::size_t slots, CurveColumn& column) {
+void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, std::size_t slots,
+                        CurveColumn& column) {
   column.trouble = std::max(column.trouble, point.trouble);
   column.contact = column.contact || point.in_contact;
   const bool known = !std::isnan(point.reference_N);

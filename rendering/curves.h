@@ -19,8 +19,8 @@ struct CurveColumn {
   bool reference = false;
   bool contact = false;
   TickTrouble trouble = TickTrouble::none;  // the worst
-  float reference_N = 0.0F;  // the last one
-  float band_low_N = 0.0F;   // reference -/+ JND, outermost
+  float reference_N = 0.0F;                 // the last one
+  float band_low_N = 0.0F;                  // reference -/+ JND, outermost
   float band_high_N = 0.0F;
   std::array<float, kMaxModels> low_N{};  // NaN: no force
   std::array<float, kMaxModels> high_N{};

@@ -72,7 +72,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   start_imgui();
-  if (find_font().empty()) toasts_.push_back({"no font found; install fonts-dejavu-core", true, now() + kProblemToast_s});
+  if (find_font().empty())
+    toasts_.push_back({"no font found; install fonts-dejavu-core", true, now() + kProblemToast_s});
   frame_began_s_ = last_frame_s_ = second_began_s_ = now();
   return {};
 }
@@ -255,14 +256,30 @@ void DemoApp::run(Command command) {
       view_.paused_at_s = now();
       view_.scrolled_back_s = 0.0;
       break;
-    case Command::reset_figures: session_->reset_figures(); break;
-    case Command::next_reference: next_reference(); break;
-    case Command::record: record(); break;
-    case Command::file_list: view_.file_list = !view_.file_list; break;
-    case Command::details: view_.details = !view_.details; break;
-    case Command::theme: view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light; break;
-    case Command::help: view_.help = !view_.help; break;
-    case Command::fullscreen: window_->set_fullscreen(!window_->fullscreen()); break;
+    case Command::reset_figures:
+      session_->reset_figures();
+      break;
+    case Command::next_reference:
+      next_reference();
+      break;
+    case Command::record:
+      record();
+      break;
+    case Command::file_list:
+      view_.file_list = !view_.file_list;
+      break;
+    case Command::details:
+      view_.details = !view_.details;
+      break;
+    case Command::theme:
+      view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light;
+      break;
+    case Command::help:
+      view_.help = !view_.help;
+      break;
+    case Command::fullscreen:
+      window_->set_fullscreen(!window_->fullscreen());
+      break;
   }
 }
 

@@ -58,7 +58,7 @@ class DemoApp {
   Status set_up(const DemoRequest& request);
   void start_imgui();
   struct KeyPress {
-    int key = 0;        // GLFW's
+    int key = 0;  // GLFW's
     int modifiers = 0;
   };
   void handle_keys();

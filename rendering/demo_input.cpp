@@ -25,13 +25,17 @@ constexpr double kSeekStep_s = 2.0;
 constexpr double kSpeedStep = 1.25;
 constexpr float kClick_px = 4.0F;
 
-constexpr std::pair<int, Command> kCommandKeys[] = {
-    {GLFW_KEY_H, Command::help},          {GLFW_KEY_SLASH, Command::help},
-    {GLFW_KEY_B, Command::next_block_count}, {GLFW_KEY_SPACE, Command::pause_curves},
-    {GLFW_KEY_C, Command::reset_figures}, {GLFW_KEY_F, Command::next_reference},
-    {GLFW_KEY_R, Command::record},        {GLFW_KEY_M, Command::file_list},
-    {GLFW_KEY_L, Command::details},       {GLFW_KEY_T, Command::theme},
-    {GLFW_KEY_F11, Command::fullscreen}};
+constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
+                                                    {GLFW_KEY_SLASH, Command::help},
+                                                    {GLFW_KEY_B, Command::next_block_count},
+                                                    {GLFW_KEY_SPACE, Command::pause_curves},
+                                                    {GLFW_KEY_C, Command::reset_figures},
+                                                    {GLFW_KEY_F, Command::next_reference},
+                                                    {GLFW_KEY_R, Command::record},
+                                                    {GLFW_KEY_M, Command::file_list},
+                                                    {GLFW_KEY_L, Command::details},
+                                                    {GLFW_KEY_T, Command::theme},
+                                                    {GLFW_KEY_F11, Command::fullscreen}};
 
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
   if (!view.paused || session.history().size() == 0) return;
@@ -66,7 +70,8 @@ void DemoApp::handle_key(const KeyPress& press) {
     if (press.key == key) run(command);
   }
   const auto slot = static_cast<std::size_t>(press.key - GLFW_KEY_1);
-  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && slot < session_->slot_count()) session_->select(slot);
+  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && slot < session_->slot_count())
+    session_->select(slot);
   if (press.key == GLFW_KEY_ESCAPE) view_.help = view_.file_list = view_.details = false;
   if (session_->replay().present) replay_key(press.key);
 }
@@ -74,12 +79,23 @@ void DemoApp::handle_key(const KeyPress& press) {
 void DemoApp::replay_key(int key) {
   const ReplayStatus replay = session_->replay();
   switch (key) {
-    case GLFW_KEY_P: session_->pause_replay(!replay.paused); break;
-    case GLFW_KEY_LEFT_BRACKET: session_->seek_replay(std::max(0.0, replay.at_s - kSeekStep_s)); break;
-    case GLFW_KEY_RIGHT_BRACKET: session_->seek_replay(replay.at_s + kSeekStep_s); break;
-    case GLFW_KEY_COMMA: session_->set_replay_speed(replay.speed / kSpeedStep); break;
-    case GLFW_KEY_PERIOD: session_->set_replay_speed(replay.speed * kSpeedStep); break;
-    default: break;
+    case GLFW_KEY_P:
+      session_->pause_replay(!replay.paused);
+      break;
+    case GLFW_KEY_LEFT_BRACKET:
+      session_->seek_replay(std::max(0.0, replay.at_s - kSeekStep_s));
+      break;
+    case GLFW_KEY_RIGHT_BRACKET:
+      session_->seek_replay(replay.at_s + kSeekStep_s);
+      break;
+    case GLFW_KEY_COMMA:
+      session_->set_replay_speed(replay.speed / kSpeedStep);
+      break;
+    case GLFW_KEY_PERIOD:
+      session_->set_replay_speed(replay.speed * kSpeedStep);
+      break;
+    default:
+      break;
   }
 }
 
@@ -103,7 +119,8 @@ void DemoApp::handle_mouse() {
   }
   if (!view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
-    if (const auto slot = overlay_.slot_at(*session_, *blocks_, view_, area, io.MousePos)) session_->select(*slot);
+    if (const auto slot = overlay_.slot_at(*session_, *blocks_, view_, area, io.MousePos))
+      session_->select(*slot);
   }
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F) move_tool_to_mouse();
 }
@@ -120,7 +137,8 @@ void DemoApp::move_tool_to_mouse() {
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);
   const float below_px = mouse.y - area.at.y - surface.y;
-  session_->set_tool_target(static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size)));
+  session_->set_tool_target(
+      static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size)));
 }
 
 }  // namespace palpate

@@ -48,11 +48,14 @@ int fail(const std::string& message) {
 void add_options(CLI::App& app, Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
   app.add_option("--scene", session.scene, "Scene, see `palpate scenes`")->capture_default_str();
-  app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")->capture_default_str();
-  app.add_option("--model", session.models, "Models: files, or direct, voxel, random, kdtree, greedy [the scene's]")
+  app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")
+      ->capture_default_str();
+  app.add_option("--model", session.models,
+                 "Models: files, or direct, voxel, random, kdtree, greedy [the scene's]")
       ->type_name("FILE_OR_METHOD");
   app.add_option("--seconds", arguments.seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
-  app.add_option("--screenshot", arguments.screenshot, "Save the window as it is at the end [after 12 s], then end")
+  app.add_option("--screenshot", arguments.screenshot,
+                 "Save the window as it is at the end [after 12 s], then end")
       ->type_name("PNG");
   app.add_option("--stats", arguments.stats, "Write how the loop, the picture and the models did, at the end")
       ->type_name("JSON");
@@ -80,17 +83,21 @@ Status run_demo(Arguments& arguments) {
   const std::int64_t start_ns = clock.now_ns();
   while (!(*app)->closing() && !stop_asked.load(std::memory_order_relaxed)) {
     (*app)->frame();
-    if (arguments.seconds > 0.0 && kSPerNs * static_cast<double>(clock.now_ns() - start_ns) >= arguments.seconds) break;
+    if (arguments.seconds > 0.0 &&
+        kSPerNs * static_cast<double>(clock.now_ns() - start_ns) >= arguments.seconds)
+      break;
   }
   if (!arguments.screenshot.empty()) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()), arguments.force);
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()),
+                               arguments.force);
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it", "palpate-demo");
+  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it",
+               "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
   Arguments arguments;
   add_options(app, arguments);

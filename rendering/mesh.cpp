@@ -45,7 +45,9 @@ Outline outline(const glm::vec2& half) {
   return points;
 }
 
-void add_ring(Mesh& mesh, const Outline& ring) { mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end()); }
+void add_ring(Mesh& mesh, const Outline& ring) {
+  mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end());
+}
 
 // Joins the last ring with the one before it; the last lies outside or below.
 void join_rings(Mesh& mesh) {
@@ -54,7 +56,8 @@ void join_rings(Mesh& mesh) {
   const std::uint32_t inner = outer - kAround;
   for (std::uint32_t i = 0; i < kAround; ++i) {
     const std::uint32_t next = (i + 1) % kAround;
-    for (const std::uint32_t index : {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
+    for (const std::uint32_t index :
+         {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
       mesh.triangles.push_back(index);
     }
   }
@@ -116,14 +119,16 @@ Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {
       const float angle = 2.0F * kPi * static_cast<float>(i) / static_cast<float>(sides);
       const float c = std::cos(angle);
       const float s = std::sin(angle);
-      mesh.vertices.push_back({{profile[k].x * c, profile[k].y, profile[k].x * s}, {along.y * c, -along.x, along.y * s}});
+      mesh.vertices.push_back(
+          {{profile[k].x * c, profile[k].y, profile[k].x * s}, {along.y * c, -along.x, along.y * s}});
     }
     if (k == 0) continue;
     const auto upper = static_cast<std::uint32_t>(k) * around;
     const std::uint32_t lower = upper - around;
     for (std::uint32_t i = 0; i < around; ++i) {
       const std::uint32_t next = (i + 1) % around;
-      for (const std::uint32_t index : {lower + i, upper + i, lower + next, lower + next, upper + i, upper + next}) {
+      for (const std::uint32_t index :
+           {lower + i, upper + i, lower + next, lower + next, upper + i, upper + next}) {
         mesh.triangles.push_back(index);
       }
     }
@@ -141,15 +146,17 @@ GpuMesh::GpuMesh(const Mesh& mesh) : index_count_(static_cast<int>(mesh.triangle
   glBindVertexArray(array_);
   glGenBuffers(2, buffers_);
   glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)), mesh.vertices.data(),
-               GL_STATIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
+               mesh.vertices.data(), GL_STATIC_DRAW);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
-               mesh.triangles.data(), GL_STATIC_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)), mesh.triangles.data(),
+               GL_STATIC_DRAW);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
   glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsetof(Vertex, normal)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                        reinterpret_cast<const void*>(offsetof(Vertex, normal)));
   glBindVertexArray(0);
 }
 

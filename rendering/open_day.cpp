@@ -11,8 +11,9 @@
 namespace palpate {
 namespace {
 
-constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                        ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
+constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                        ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
 std::vector<TrialModel> ready_models(const LiveSession& session) {
   std::vector<TrialModel> ready;
@@ -26,7 +27,8 @@ std::vector<TrialModel> ready_models(const LiveSession& session) {
 }  // namespace
 
 void OpenDay::update(LiveSession& session, ViewState& view) {
-  const bool visitor = session.takes_mouse() ? !session.hand_is_exploring() : trial_.state() != AbTrial::State::idle;
+  const bool visitor =
+      session.takes_mouse() ? !session.hand_is_exploring() : trial_.state() != AbTrial::State::idle;
   if (visitor && !visitor_) begin(session, view);
   if (!visitor && visitor_) forget(session, view);
   visitor_ = visitor;
@@ -68,7 +70,8 @@ void OpenDay::try_model(int number, LiveSession& session, ViewState& view) {
   session.select(trial_.slot_under(number));
 }
 
-void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at, const ImVec2& size) {
+void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at,
+                   const ImVec2& size) {
   ImGui::SetNextWindowPos(at);
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("visitor", nullptr, kFixed);
@@ -92,13 +95,21 @@ void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, 
 void OpenDay::draw_trial(const UiStyle& style, float width) const {
   ImGui::PushFont(style.fonts().heading);
   switch (trial_.state()) {
-    case AbTrial::State::idle: ImGui::TextWrapped("Press the block: move the mouse over it."); break;
-    case AbTrial::State::exploring: ImGui::TextWrapped("Can you feel the difference?"); break;
-    case AbTrial::State::answered: ImGui::TextWrapped(trial_.answered_different() ? "You felt a difference." : "You felt none."); break;
+    case AbTrial::State::idle:
+      ImGui::TextWrapped("Press the block: move the mouse over it.");
+      break;
+    case AbTrial::State::exploring:
+      ImGui::TextWrapped("Can you feel the difference?");
+      break;
+    case AbTrial::State::answered:
+      ImGui::TextWrapped(trial_.answered_different() ? "You felt a difference." : "You felt none.");
+      break;
   }
   ImGui::PopFont();
   if (trial_.state() == AbTrial::State::idle) {
-    ImGui::TextWrapped("Slowly, and it gives way. Quickly, and it resists. Hold still, and the force fades: it remembers what you did.");
+    ImGui::TextWrapped(
+        "Slowly, and it gives way. Quickly, and it resists. Hold still, and the force fades: it remembers "
+        "what you did.");
     ImGui::Spacing();
     ImGui::TextDisabled("Until then a hand presses by itself.");
     return;
@@ -122,7 +133,8 @@ void OpenDay::draw_keys(const UiStyle& style, float width) const {
   for (const int key : {1, 2}) {
     const float x = at.x + (key == 1 ? 0.0F : side + 0.5F * font->FontSize);
     const bool down = trial_.pressed() == key;
-    list.AddRectFilled({x, at.y}, {x + side, at.y + side}, ink(down ? style.colours().text : style.colours().raised), 8.0F);
+    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
+                       ink(down ? style.colours().text : style.colours().raised), 8.0F);
     const char text[2] = {static_cast<char>('0' + key), '\0'};
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
     list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},

@@ -25,7 +25,8 @@ class OpenDay {
   void update(LiveSession& session, ViewState& view);
   // A key of GLFW: 1 and 2 try, D and S answer, N goes on.
   void press_key(int key, LiveSession& session, ViewState& view);
-  void draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at, const ImVec2& size);
+  void draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at,
+            const ImVec2& size);
 
   const AbTrial& trial() const noexcept { return trial_; }
 

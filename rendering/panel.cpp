@@ -5,8 +5,9 @@
 namespace palpate {
 namespace {
 
-constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                        ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
+constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                        ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
 }  // namespace
 
@@ -33,7 +34,8 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   // What has a fixed size first; the plots share the rest.
   const float health = line * static_cast<float>(health_lines(session, view));
   const float rows = static_cast<float>(std::clamp<std::size_t>(session.slot_count(), 2, 7)) + 1.0F;
-  const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 2.0F;
+  const float table =
+      rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 2.0F;
   const float titles = line * 3.4F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health - table - titles);
   const bool bins = !view.details || rest > 14.0F * line;

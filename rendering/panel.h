@@ -15,15 +15,18 @@ namespace palpate {
 // Live force against time with the JND band, and the error over the JND below.
 class ForceCurves {
  public:
-  void draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height, float error_height);
+  void draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height,
+            float error_height);
   // The force plot alone, with the reference and the model in the hand, which has no
   // colour of its own while it is a secret.
   void draw_for_visitors(LiveSession& session, ViewState& view, const UiStyle& style, float height);
 
  private:
   void gather(const LiveSession& session, ViewState& view, double end_s);
-  void draw_force(const LiveSession& session, ViewState& view, const UiStyle& style, float height, double end_s);
-  void draw_error(const LiveSession& session, const ViewState& view, const UiStyle& style, float height, double end_s);
+  void draw_force(const LiveSession& session, ViewState& view, const UiStyle& style, float height,
+                  double end_s);
+  void draw_error(const LiveSession& session, const ViewState& view, const UiStyle& style, float height,
+                  double end_s);
   CurveColumns curves_;
 };
 
@@ -31,8 +34,8 @@ class ForceCurves {
 class Panel {
  public:
   // Into a window at (x, y).
-  void draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames, const ImVec2& at,
-            const ImVec2& size);
+  void draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
+            const ImVec2& at, const ImVec2& size);
 
  private:
   ForceCurves curves_;
@@ -42,7 +45,8 @@ void draw_model_table(LiveSession& session, const UiStyle& style, float height);
 void draw_error_bins(const LiveSession& session, const UiStyle& style, float height);
 // Lines of text that draw_health takes, at most as a rule.
 int health_lines(const LiveSession& session, const ViewState& view);
-void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames);
+void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style,
+                 const FrameFigures& frames);
 
 // What the panel's quiet line says; `problem` when it is not quiet.
 struct HealthWords {

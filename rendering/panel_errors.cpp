@@ -29,7 +29,8 @@ Limits limits_of(const LiveSession& session) {
   return limits;
 }
 
-void draw_slot(const Plot& plot, const SlotView& slot, const LiveSession& session, const UiStyle& style, bool selected) {
+void draw_slot(const Plot& plot, const SlotView& slot, const LiveSession& session, const UiStyle& style,
+               bool selected) {
   const ImU32 colour = ink(method_colour(slot.method, style.theme()), selected ? 1.0F : 0.75F);
   const float size = style.scale();
   std::vector<ImVec2> spread;
@@ -50,7 +51,8 @@ void draw_slot(const Plot& plot, const SlotView& slot, const LiveSession& sessio
 void draw_error_bins(const LiveSession& session, const UiStyle& style, float height) {
   const Limits limits = limits_of(session);
   {
-    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height}, {0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N", true);
+    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height}, {0.0, limits.force_N},
+                    {0.0, limits.error_N}, "N", "N", true);
     const double ends[2] = {0.0, limits.force_N};
     std::vector<ImVec2> line;
     std::vector<ImVec2> floor;
@@ -64,10 +66,14 @@ void draw_error_bins(const LiveSession& session, const UiStyle& style, float hei
       if (i != session.selected()) draw_slot(plot, session.slot(i), session, style, false);
     }
     if (session.slot_count() > 0) draw_slot(plot, session.slot(session.selected()), session, style, true);
-    plot.caption(" JND", 0.0F, std::clamp((plot.y_px(session.jnd().offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F, 0.0F, 0.9F),
-                 ink(style.colours().quiet));
+    plot.caption(
+        " JND", 0.0F,
+        std::clamp((plot.y_px(session.jnd().offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F,
+                   0.0F, 0.9F),
+        ink(style.colours().quiet));
   }
-  tip("Error against force since the last reset (C), in steps of 0.5 N.\nDots: mean + standard deviation. Triangles: the largest.\nBlack line: the just noticeable difference.");
+  tip("Error against force since the last reset (C), in steps of 0.5 N.\nDots: mean + standard deviation. "
+      "Triangles: the largest.\nBlack line: the just noticeable difference.");
 }
 
 }  // namespace palpate

@@ -31,7 +31,8 @@ void row(const char* name, const TimePercentiles& times) {
 }
 
 void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
-  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings)) return;
+  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings))
+    return;
   for (const char* heading : {"microseconds", "p50", "p99", "p99.9", "max"}) ImGui::TableSetupColumn(heading);
   ImGui::TableHeadersRow();
   row("lateness", statistics.lateness);
@@ -49,9 +50,12 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
   const double now_s = session.newest().loop_time_s;
   const std::size_t first = faults.size() > kFaultsShown ? faults.size() - kFaultsShown : 0;
   for (std::size_t i = faults.size(); i-- > first;) {
-    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago", std::max(0.0, now_s - faults[i].loop_time_s));
+    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago",
+                       std::max(0.0, now_s - faults[i].loop_time_s));
     ImGui::SameLine();
-    ImGui::TextWrapped("%s%s", faults[i].text.c_str(), faults[i].count > 1 ? (" (" + std::to_string(faults[i].count) + " times)").c_str() : "");
+    ImGui::TextWrapped(
+        "%s%s", faults[i].text.c_str(),
+        faults[i].count > 1 ? (" (" + std::to_string(faults[i].count) + " times)").c_str() : "");
   }
 }
 
@@ -61,31 +65,41 @@ int health_lines(const LiveSession& session, const ViewState& view) {
   const int quiet = 3;
   if (!view.details) return quiet;
   const int fix = session.scheduling().fix.empty() ? 0 : 8;
-  return quiet + fix + 5 + static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
+  return quiet + fix + 5 +
+         static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
 }
 
 HealthWords health_words(const LiveSession& session, const FrameFigures& frames) {
   const LoopStatistics statistics = session.statistics();
   if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
-    return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
+    return {
+        text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s),
+        true};
   }
   for (auto fault = session.faults().rbegin(); fault != session.faults().rend(); ++fault) {
     if (session.newest().loop_time_s - fault->loop_time_s > kTold_s) break;
     if (fault->alarm) return {fault->text, true};
   }
-  const double missed = statistics.ticks > 0 ? static_cast<double>(statistics.missed_deadlines) / static_cast<double>(statistics.ticks) : 0.0;
+  const double missed = statistics.ticks > 0 ? static_cast<double>(statistics.missed_deadlines) /
+                                                   static_cast<double>(statistics.ticks)
+                                             : 0.0;
   if (missed > kManyMissed) {
-    return {text_of("%.1f %% of the deadlines missed: close other programs, or allow real-time priority", 100.0 * missed), true};
+    return {text_of("%.1f %% of the deadlines missed: close other programs, or allow real-time priority",
+                    100.0 * missed),
+            true};
   }
   if (frames.recent_fps > 0.0 && frames.recent_fps < kFewFrames_per_s) {
-    return {text_of("%.0f frames a second, fewer blocks help; the force is not affected", frames.recent_fps), true};
+    return {text_of("%.0f frames a second, fewer blocks help; the force is not affected", frames.recent_fps),
+            true};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
-              ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", frames.recent_fps),
+              ", missed " + std::to_string(statistics.missed_deadlines) +
+              text_of(", %.0f fps", frames.recent_fps),
           false};
 }
 
-void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames) {
+void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style,
+                 const FrameFigures& frames) {
   section_title(style, "LOOP");
   ImGui::SameLine();
   const HealthWords words = health_words(session, frames);

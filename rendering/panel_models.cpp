@@ -21,19 +21,27 @@ constexpr Heading kHeadings[kColumns] = {
     {"N", "Force now, newtons", 1.0F},
     {"mN off", "Error now: model minus reference, millinewtons", 1.25F},
     {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", 1.0F},
-    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset", 1.45F},
+    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset",
+     1.45F},
     {"ns", "Time of one evaluation, nanoseconds, median of the last second in contact", 1.1F},
     {"centres", "Centres of the radial basis functions; nodes of a grid", 1.35F}};
 
 double sort_value(const SlotView& slot, int column) {
   switch (column) {
-    case kForce: return slot.force_N;
-    case kError: return std::abs(slot.error_N);
-    case kRatio: return slot.error_over_jnd;
-    case kWithin: return slot.errors.within_jnd();
-    case kTime: return slot.evaluation_ns;
-    case kCentres: return slot.centres;
-    default: return 0.0;
+    case kForce:
+      return slot.force_N;
+    case kError:
+      return std::abs(slot.error_N);
+    case kRatio:
+      return slot.error_over_jnd;
+    case kWithin:
+      return slot.errors.within_jnd();
+    case kTime:
+      return slot.evaluation_ns;
+    case kCentres:
+      return slot.centres;
+    default:
+      return 0.0;
   }
 }
 
@@ -45,7 +53,9 @@ std::vector<std::size_t> sorted_slots(const LiveSession& session) {
   const int column = specs->Specs[0].ColumnIndex;
   const bool rising = specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (column == kName) return rising ? session.slot(a).name < session.slot(b).name : session.slot(b).name < session.slot(a).name;
+    if (column == kName)
+      return rising ? session.slot(a).name < session.slot(b).name
+                    : session.slot(b).name < session.slot(a).name;
     const double left = sort_value(session.slot(a), column);
     const double right = sort_value(session.slot(b), column);
     return rising ? left < right : right < left;
@@ -72,7 +82,8 @@ void draw_heading(int column) {
   tip(kHeadings[column].tip);
   if (column == kName) return;
   const float width = ImGui::CalcTextSize(kHeadings[column].text).x;
-  ImGui::GetWindowDrawList()->AddText({at.x + room - width, at.y}, ImGui::GetColorU32(ImGuiCol_Text), kHeadings[column].text);
+  ImGui::GetWindowDrawList()->AddText({at.x + room - width, at.y}, ImGui::GetColorU32(ImGuiCol_Text),
+                                      kHeadings[column].text);
 }
 
 std::string format(const char* pattern, double value) {
@@ -96,15 +107,16 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
   const SlotView& slot = session.slot(index);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
-  const ImU32 colour = ink(method_colour(slot.method, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
+  const ImU32 colour =
+      ink(method_colour(slot.method, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
   const std::string label = "      " + slot.name + "##slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
   if (ImGui::Selectable(label.c_str(), index == session.selected(), flags)) session.select(index);
   if (ImGui::IsItemHovered()) {
-    const std::string words = index == session.selected()
-                                  ? slot.name + " is in the hand"
-                                  : "Click, or press " + std::to_string(index + 1) + ", to take " + slot.name + " into the hand";
+    const std::string words = index == session.selected() ? slot.name + " is in the hand"
+                                                          : "Click, or press " + std::to_string(index + 1) +
+                                                                ", to take " + slot.name + " into the hand";
     ImGui::SetTooltip("%s", words.c_str());
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -120,8 +132,12 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
 void draw_waiting(const SlotView& slot) {
   ImGui::TableNextColumn();
   switch (slot.state) {
-    case SlotState::waiting: ImGui::TextDisabled("waits"); break;
-    case SlotState::fitting: ImGui::TextDisabled("fits %.0f %%", 100.0 * slot.progress); break;
+    case SlotState::waiting:
+      ImGui::TextDisabled("waits");
+      break;
+    case SlotState::fitting:
+      ImGui::TextDisabled("fits %.0f %%", 100.0 * slot.progress);
+      break;
     default:
       ImGui::TextDisabled("failed");
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", slot.problem.c_str());
@@ -152,7 +168,8 @@ void draw_model_table(LiveSession& session, const UiStyle& style, float height) 
                      ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
   if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return;
   ImGui::TableSetupScrollFreeze(0, 1);
-  for (const Heading& heading : kHeadings) ImGui::TableSetupColumn(heading.text, ImGuiTableColumnFlags_WidthStretch, heading.share);
+  for (const Heading& heading : kHeadings)
+    ImGui::TableSetupColumn(heading.text, ImGuiTableColumnFlags_WidthStretch, heading.share);
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (int column = 0; column < kColumns; ++column) {
     ImGui::TableSetColumnIndex(column);

@@ -74,7 +74,8 @@ void Plot::draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) con
   for (double y = std::ceil(y_.from / y_step - 1e-9) * y_step; y <= y_.to + 1e-9 * y_step; y += y_step) {
     list_->AddLine({low_.x, std::round(y_px(y))}, {high_.x, std::round(y_px(y))}, grid);
     const bool last = y + y_step > y_.to + 1e-9 * y_step;
-    std::snprintf(text, sizeof text, "%g%s%s", std::abs(y) < 1e-9 ? 0.0 : y, last && *y_unit != '\0' ? " " : "", last ? y_unit : "");
+    std::snprintf(text, sizeof text, "%g%s%s", std::abs(y) < 1e-9 ? 0.0 : y,
+                  last && *y_unit != '\0' ? " " : "", last ? y_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     list_->AddText({low_.x - size.x - 0.3F * line, y_px(y) - 0.55F * line}, words, text);
   }
@@ -83,7 +84,8 @@ void Plot::draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) con
     list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, grid);
     if (!x_numbers) continue;
     const bool last = x + x_step > x_.to + 1e-9 * x_step;
-    std::snprintf(text, sizeof text, "%g%s%s", std::abs(x) < 1e-9 ? 0.0 : x, last ? " " : "", last ? x_unit : "");
+    std::snprintf(text, sizeof text, "%g%s%s", std::abs(x) < 1e-9 ? 0.0 : x, last ? " " : "",
+                  last ? x_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     const float at = std::min(x_px(x) - 0.5F * size.x, high_.x + 0.6F * line - size.x);
     list_->AddText({at, high_.y + 0.15F * line}, words, text);
@@ -91,7 +93,8 @@ void Plot::draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) con
 }
 
 void Plot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
-  if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+  if (points.size() > 1)
+    list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
 }
 
 void Plot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const {
@@ -105,7 +108,8 @@ void Plot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& low
     list_->PrimWriteVtx(lower[i], white, colour);
   }
   for (int i = 0; i < quads; ++i) {
-    for (const int corner : {0, 1, 2, 2, 1, 3}) list_->PrimWriteIdx(static_cast<ImDrawIdx>(first + 2 * i + corner));
+    for (const int corner : {0, 1, 2, 2, 1, 3})
+      list_->PrimWriteIdx(static_cast<ImDrawIdx>(first + 2 * i + corner));
   }
 }
 

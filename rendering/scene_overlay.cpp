@@ -12,9 +12,10 @@
 namespace palpate {
 namespace {
 
-constexpr auto kFloating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                           ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_AlwaysAutoResize |
-                           ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+constexpr auto kFloating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
+                           ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                           ImGuiWindowFlags_NoNav;
 
 ImDrawList& back() { return *ImGui::GetBackgroundDrawList(); }
 
@@ -28,12 +29,14 @@ ImVec2 text_size(ImFont* font, const std::string& text) {
 
 // Top left corner of block `index`'s label: at its foot, or, of a single block, in
 // the picture's upper right corner, where nothing else is.
-ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area, const ImVec2& size) {
+ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area,
+                   const ImVec2& size) {
   if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
   const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
   const auto height = static_cast<float>(blocks.geometry().height_m);
   // Before the block's front side, on the table's edge of it.
-  const glm::vec2 front = blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half}, {area.size.x, area.size.y});
+  const glm::vec2 front = blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half},
+                                           {area.size.x, area.size.y});
   const float x = std::clamp(front.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
   const float y = std::clamp(front.y + 0.25F * size.y, 4.0F, area.size.y - size.y - 4.0F);
   return {area.at.x + x, area.at.y + y};
@@ -43,27 +46,31 @@ std::string label_text(const LiveSession& session, std::size_t slot) {
   return std::to_string(slot + 1) + "  " + session.slot(slot).name;
 }
 
-void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view, const UiStyle& style,
-                 const SceneArea& area) {
+void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
+                 const UiStyle& style, const SceneArea& area) {
   const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
   ImFont* font = style.fonts().heading;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const SlotView& slot = session.slot(slots[i]);
     const bool secret = view.hidden_choice > 0;
-    const std::string text = secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
+    const std::string text =
+        secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
     const bool chosen = slots[i] == session.selected();
     const Rgb colour = secret ? style.colours().text : method_colour(slot.method, style.theme());
     const float pad = 0.25F * font->FontSize;
-    back().AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad}, {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
+    back().AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
+                         {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
                          ink(style.colours().panel, 0.88F), 6.0F);
-    back().AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad}, {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
+    back().AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
+                         {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
     text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
     if (slots.size() < 2 || !chosen) continue;
     const std::string hand = "in the hand";
     const ImVec2 below = text_size(style.fonts().body, hand);
-    text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad}, ink(style.colours().text), hand);
+    text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad},
+            ink(style.colours().text), hand);
   }
 }
 
@@ -78,22 +85,27 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
                      !std::isnan(session.reference_N());
   const double error = known ? session.slot(session.selected()).dent_error_over_jnd : 0.0;
   // Two decimals are more than anyone can see change.
-  const std::string number = !known ? "–" : error < 0.9995 ? three_digits(error).substr(0, 4) : three_digits(error);
+  const std::string number = !known           ? "–"
+                             : error < 0.9995 ? three_digits(error).substr(0, 4)
+                                              : three_digits(error);
   const ImVec2 size = text_size(big, "0.00");
   const float y = corner.y - size.y - 1.9F * line;
   text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);
   const float beside = corner.x + size.x + 0.7F * line;
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), "of what a hand can notice:");
-  text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet), "the error of the model in the hand");
+  text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet),
+          "the error of the model in the hand");
   const float width = 11.0F * line;
   const float top = y + size.y + 0.35F * line;
   const float high = 0.55F * line;
   for (int i = 0; i < 40; ++i) {
     const float from = static_cast<float>(i) / 40.0F;
-    back().AddRectFilled({corner.x + from * width, top}, {corner.x + (from + 0.025F) * width + 0.5F, top + high},
+    back().AddRectFilled({corner.x + from * width, top},
+                         {corner.x + (from + 0.025F) * width + 0.5F, top + high},
                          ink(error_colour(static_cast<double>(from))));
   }
-  back().AddRectFilled({corner.x + width + 3.0F, top}, {corner.x + 1.3F * width, top + high}, ink(kAboveJndColour));
+  back().AddRectFilled({corner.x + width + 3.0F, top}, {corner.x + 1.3F * width, top + high},
+                       ink(kAboveJndColour));
   text_at(body, {corner.x, top + high + 1.0F}, ink(p.quiet), "0");
   text_at(body, {corner.x + width - 0.3F * line, top + high + 1.0F}, ink(p.quiet), "1");
   text_at(body, {corner.x + width + 1.0F * line, top + high + 1.0F}, ink(p.quiet), "error / JND");
@@ -128,11 +140,14 @@ void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea
   if (!session.takes_mouse() || !session.hand_is_exploring()) return;
   const std::string hint = "The hand moves by itself. Move the mouse over the block to press it.";
   const ImVec2 size = text_size(style.fonts().body, hint);
-  text_at(style.fonts().body, {area.at.x + 0.9F * style.fonts().body->FontSize, area.at.y + 2.6F * style.fonts().heading->FontSize - 0.6F * size.y},
+  text_at(style.fonts().body,
+          {area.at.x + 0.9F * style.fonts().body->FontSize,
+           area.at.y + 2.6F * style.fonts().heading->FontSize - 0.6F * size.y},
           ink(style.colours().quiet), hint);
 }
 
-void draw_buttons(const LiveSession& session, const ViewState& view, const SceneArea& area, const std::function<void(Command)>& run) {
+void draw_buttons(const LiveSession& session, const ViewState& view, const SceneArea& area,
+                  const std::function<void(Command)>& run) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::Begin("buttons", nullptr, kFloating);
   bool first = true;
@@ -183,7 +198,8 @@ void draw_recording(const LiveSession& session, const UiStyle& style, const Scen
                 static_cast<unsigned long long>(recording.rows));
   const ImVec2 size = text_size(style.fonts().body, text);
   const ImVec2 at(area.at.x + area.size.x - size.x - size.y, area.at.y + 0.9F * size.y);
-  back().AddCircleFilled({at.x - 0.7F * size.y, at.y + 0.55F * size.y}, 0.35F * size.y, ink(style.colours().text));
+  back().AddCircleFilled({at.x - 0.7F * size.y, at.y + 0.55F * size.y}, 0.35F * size.y,
+                         ink(style.colours().text));
   text_at(style.fonts().body, at, ink(style.colours().text), text);
 }
 
@@ -196,7 +212,8 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
   for (const Toast& toast : toasts) {
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, wrap, toast.text.c_str());
     const float x = area.at.x + 0.5F * (area.size.x - size.x);
-    list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised), 6.0F);
+    list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised),
+                       6.0F);
     list.AddRectFilled({x - pad, y - pad}, {x - 0.6F * pad, y + size.y + pad},
                        ink(toast.problem ? style.colours().fault : kReferenceColour), 3.0F);
     list.AddText(font, font->FontSize, {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
@@ -206,20 +223,24 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
 
 void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
   if (!away_from_data(session)) return;
-  const std::string text =
-      "Nothing like this was recorded: here " + session.slot(session.selected()).name + " only follows the trend";
+  const std::string text = "Nothing like this was recorded: here " + session.slot(session.selected()).name +
+                           " only follows the trend";
   const ImVec2 size = text_size(style.fonts().body, text);
   const float pad = 0.4F * size.y;
   const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.2F * size.y);
-  back().AddRectFilled({at.x - 2.0F * pad, at.y - pad}, {at.x + size.x + 2.0F * pad, at.y + size.y + pad}, ink(style.colours().raised), 6.0F);
+  back().AddRectFilled({at.x - 2.0F * pad, at.y - pad}, {at.x + size.x + 2.0F * pad, at.y + size.y + pad},
+                       ink(style.colours().raised), 6.0F);
   text_at(style.fonts().body, at, ink(style.colours().text), text);
 }
 
 void draw_help(ViewState& view, const UiStyle& style, const SceneArea& area) {
   if (!view.help) return;
-  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.5F * area.size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.5F * area.size.y}, ImGuiCond_Always,
+                          {0.5F, 0.5F});
   ImGui::SetNextWindowFocus();
-  ImGui::Begin("Keys", &view.help, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
+  ImGui::Begin("Keys", &view.help,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
   const auto line = [&](const char* key, const char* text) {
     ImGui::TextColored(paint(style.colours().text), "%s", key);
     ImGui::SameLine(7.0F * ImGui::GetFontSize());
@@ -239,12 +260,16 @@ void draw_help(ViewState& view, const UiStyle& style, const SceneArea& area) {
 
 void draw_file_list(LiveSession& session, ViewState& view, const SceneArea& area) {
   if (!view.file_list) return;
-  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.5F * area.size.y}, ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::Begin("Load a model", &view.file_list, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
+  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.5F * area.size.y}, ImGuiCond_Always,
+                          {0.5F, 0.5F});
+  ImGui::Begin("Load a model", &view.file_list,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
   ImGui::TextUnformatted("Drop a model file onto the window, or choose one:");
   bool any = false;
   const auto assets = find_assets();
-  for (const std::string& folder : {assets ? *assets + "/models" : std::string(), std::string("."), std::string("build/run")}) {
+  for (const std::string& folder :
+       {assets ? *assets + "/models" : std::string(), std::string("."), std::string("build/run")}) {
     std::error_code missing;
     if (folder.empty()) continue;
     for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
@@ -256,7 +281,8 @@ void draw_file_list(LiveSession& session, ViewState& view, const SceneArea& area
       }
     }
   }
-  if (!any) ImGui::TextDisabled("no .json file in assets/models, here or in build/run; `palpate fit` makes one");
+  if (!any)
+    ImGui::TextDisabled("no .json file in assets/models, here or in build/run; `palpate fit` makes one");
   ImGui::End();
 }
 
@@ -284,21 +310,28 @@ std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t blo
     if (session.slot(i).state == SlotState::ready) slots.push_back(i);
   }
   if (slots.size() == 3) slots.pop_back();  // one, two or four
-  const bool selectable = session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready;
-  if (selectable && std::find(slots.begin(), slots.end(), session.selected()) == slots.end() && !slots.empty()) {
+  const bool selectable =
+      session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready;
+  if (selectable && std::find(slots.begin(), slots.end(), session.selected()) == slots.end() &&
+      !slots.empty()) {
     slots.back() = session.selected();
   }
   return slots;
 }
 
-std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, const BlockView& blocks, const ViewState& view,
-                                                 const SceneArea& area, const ImVec2& point) const {
+std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, const BlockView& blocks,
+                                                 const ViewState& view, const SceneArea& area,
+                                                 const ImVec2& point) const {
   const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
   float nearest_px = 1e9F;
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const glm::vec2 middle = blocks.on_screen(i, slots.size(), {0.0F, -0.5F * static_cast<float>(blocks.geometry().height_m), 0.0F}, {area.size.x, area.size.y});
-    const glm::vec2 side = blocks.on_screen(i, slots.size(), {0.5F * static_cast<float>(blocks.geometry().width_m), 0.0F, 0.0F}, {area.size.x, area.size.y});
+    const glm::vec2 middle = blocks.on_screen(
+        i, slots.size(), {0.0F, -0.5F * static_cast<float>(blocks.geometry().height_m), 0.0F},
+        {area.size.x, area.size.y});
+    const glm::vec2 side =
+        blocks.on_screen(i, slots.size(), {0.5F * static_cast<float>(blocks.geometry().width_m), 0.0F, 0.0F},
+                         {area.size.x, area.size.y});
     const float away = std::hypot(area.at.x + middle.x - point.x, area.at.y + middle.y - point.y);
     if (away > 1.25F * glm::length(side - middle) || away > nearest_px) continue;
     nearest_px = away;
@@ -307,8 +340,9 @@ std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, con
   return found;
 }
 
-void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style, const SceneArea& area,
-                        const std::vector<Toast>& toasts, const std::function<void(Command)>& run) {
+void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
+                        const SceneArea& area, const std::vector<Toast>& toasts,
+                        const std::function<void(Command)>& run) {
   const float line = style.fonts().body->FontSize;
   const float buttons = 2.4F * line;
   const float bars = buttons + (session.replay().present ? 2.4F * line : 0.0F);

@@ -27,7 +27,16 @@ struct SceneArea {
 
 // What can be asked for by button or key.
 enum class Command {
-  next_block_count, pause_curves, reset_figures, next_reference, record, file_list, details, theme, help, fullscreen
+  next_block_count,
+  pause_curves,
+  reset_figures,
+  next_reference,
+  record,
+  file_list,
+  details,
+  theme,
+  help,
+  fullscreen
 };
 struct CommandEntry {
   Command command;
@@ -40,12 +49,12 @@ const std::vector<CommandEntry>& commands();
 class SceneOverlay {
  public:
   // Controls call `run`.
-  void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style, const SceneArea& area,
-            const std::vector<Toast>& toasts, const std::function<void(Command)>& run);
+  void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
+            const SceneArea& area, const std::vector<Toast>& toasts, const std::function<void(Command)>& run);
 
   // The slot whose block or label is at `point`.
-  std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks, const ViewState& view,
-                                     const SceneArea& area, const ImVec2& point) const;
+  std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks,
+                                     const ViewState& view, const SceneArea& area, const ImVec2& point) const;
 };
 
 }  // namespace palpate

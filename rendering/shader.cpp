@@ -23,7 +23,8 @@ std::string shader_log(unsigned shader) {
 
 Id compile(const std::string& path, unsigned kind) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
+  if (!file)
+    return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const unsigned shader = glCreateShader(kind);
   const char* source = text.c_str();
@@ -70,9 +71,15 @@ void Shader::use() const { glUseProgram(program_); }
 int Shader::place(const char* name) const { return glGetUniformLocation(program_, name); }
 void Shader::set(const char* name, float value) const { glUniform1f(place(name), value); }
 void Shader::set(const char* name, int value) const { glUniform1i(place(name), value); }
-void Shader::set(const char* name, const glm::vec2& value) const { glUniform2fv(place(name), 1, glm::value_ptr(value)); }
-void Shader::set(const char* name, const glm::vec3& value) const { glUniform3fv(place(name), 1, glm::value_ptr(value)); }
-void Shader::set(const char* name, const glm::vec4& value) const { glUniform4fv(place(name), 1, glm::value_ptr(value)); }
+void Shader::set(const char* name, const glm::vec2& value) const {
+  glUniform2fv(place(name), 1, glm::value_ptr(value));
+}
+void Shader::set(const char* name, const glm::vec3& value) const {
+  glUniform3fv(place(name), 1, glm::value_ptr(value));
+}
+void Shader::set(const char* name, const glm::vec4& value) const {
+  glUniform4fv(place(name), 1, glm::value_ptr(value));
+}
 void Shader::set(const char* name, const glm::mat4& value) const {
   glUniformMatrix4fv(place(name), 1, GL_FALSE, glm::value_ptr(value));
 }

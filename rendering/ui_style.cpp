@@ -29,7 +29,8 @@ constexpr const char* kFontFiles[] = {
     "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
 
 // Latin, and the few signs that the panel uses.
-constexpr ImWchar kGlyphs[] = {0x20, 0xFF, 0x2013, 0x2026, 0x2190, 0x2193, 0x2264, 0x2265, 0x25A0, 0x25CF, 0x3BC, 0x3C4, 0};
+constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
+                               0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
 
 ImFont* add_font(const std::string& path, float size_px) {
   ImGuiIO& io = ImGui::GetIO();
@@ -51,7 +52,8 @@ std::string find_font() {
 
 void UiStyle::update(int height_px, float content_scale, bool large, Theme theme) {
   const float by_height = static_cast<float>(height_px) / kDesignHeight_px;
-  float wanted = std::clamp(by_height, kSmallestScale * content_scale, kLargestScale) * (large ? kKiosk : 1.0F);
+  float wanted =
+      std::clamp(by_height, kSmallestScale * content_scale, kLargestScale) * (large ? kKiosk : 1.0F);
   wanted = kScaleStep * std::round(wanted / kScaleStep);
   if (wanted != scale_) {
     scale_ = wanted;
@@ -89,7 +91,9 @@ void UiStyle::set_colours() {
   style.CellPadding = {5.0F, 1.0F};
   style.ScaleAllSizes(std::max(scale_, 0.5F));
   const Palette& p = colours();
-  const auto set = [&](ImGuiCol what, const Rgb& colour, float alpha = 1.0F) { style.Colors[what] = paint(colour, alpha); };
+  const auto set = [&](ImGuiCol what, const Rgb& colour, float alpha = 1.0F) {
+    style.Colors[what] = paint(colour, alpha);
+  };
   set(ImGuiCol_Text, p.text);
   set(ImGuiCol_TextDisabled, p.quiet);
   set(ImGuiCol_WindowBg, p.panel);
@@ -98,11 +102,14 @@ void UiStyle::set_colours() {
   set(ImGuiCol_Border, p.grid);
   const Rgb hovered = glm::mix(p.raised, p.text, 0.12F);
   const Rgb pressed = glm::mix(p.raised, p.text, 0.22F);
-  for (const ImGuiCol what : {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_Header, ImGuiCol_TableHeaderBg, ImGuiCol_Tab}) {
+  for (const ImGuiCol what :
+       {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_Header, ImGuiCol_TableHeaderBg, ImGuiCol_Tab}) {
     set(what, p.raised);
   }
-  for (const ImGuiCol what : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered}) set(what, hovered);
-  for (const ImGuiCol what : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive}) set(what, pressed);
+  for (const ImGuiCol what : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered})
+    set(what, hovered);
+  for (const ImGuiCol what : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive})
+    set(what, pressed);
   set(ImGuiCol_SliderGrab, p.quiet);
   set(ImGuiCol_SliderGrabActive, p.text);
   set(ImGuiCol_CheckMark, p.text);

@@ -19,14 +19,14 @@ inline constexpr double kShown_s = 10.0;  // of the curves at a time
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
-  int hidden_choice = 0;  // above 0: which model is in the hand is a secret, shown as this
+  int hidden_choice = 0;        // above 0: which model is in the hand is a secret, shown as this
   std::size_t block_count = 1;  // 1, 2 or 4
   bool help = false;
-  bool details = false;   // of the loop, faults
-  bool file_list = false; // models to load
+  bool details = false;    // of the loop, faults
+  bool file_list = false;  // models to load
   // Curves stand still, and end so long before now.
   bool paused = false;
-  double paused_at_s = 0.0;   // loop time
+  double paused_at_s = 0.0;  // loop time
   double scrolled_back_s = 0.0;
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot

@@ -13,14 +13,16 @@ TEST(Camera, SeesWhatItFrames) {
   camera.frame(0.1F, 0.5F, true);
   const glm::vec2 size(768.0F, 720.0F);
   const glm::mat4 view = camera.view_projection(size.x / size.y);
-  for (const glm::vec3 point : {glm::vec3(0.09F, 0.0F, 0.0F), glm::vec3(-0.09F, 0.0F, 0.0F), glm::vec3(0.0F, 0.0F, 0.09F)}) {
+  for (const glm::vec3 point :
+       {glm::vec3(0.09F, 0.0F, 0.0F), glm::vec3(-0.09F, 0.0F, 0.0F), glm::vec3(0.0F, 0.0F, 0.09F)}) {
     const glm::vec2 at = project(view, point, size);
     EXPECT_GT(at.x, 0.0F);
     EXPECT_LT(at.x, size.x);
     EXPECT_GT(at.y, 0.0F);
     EXPECT_LT(at.y, size.y);
   }
-  EXPECT_LT(project(view, {0.0F, 0.05F, 0.0F}, size).y, project(view, {0.0F, 0.0F, 0.0F}, size).y) << "up is up";
+  EXPECT_LT(project(view, {0.0F, 0.05F, 0.0F}, size).y, project(view, {0.0F, 0.0F, 0.0F}, size).y)
+      << "up is up";
 }
 
 TEST(Camera, NeverGoesBelowTheTableOrOverTheTop) {

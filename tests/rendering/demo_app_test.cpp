@@ -66,7 +66,8 @@ class DemoAppTest : public ::testing::Test {
   bool until(Done done) {
     const auto start = std::chrono::steady_clock::now();
     while (!done()) {
-      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s) return false;
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s)
+        return false;
       app_->frame();
     }
     return true;
@@ -93,7 +94,8 @@ class DemoAppTest : public ::testing::Test {
   }
   bool told(const std::string& words) const {
     const auto& toasts = app_->toasts();
-    return std::any_of(toasts.begin(), toasts.end(), [&](const Toast& toast) { return toast.text.find(words) != std::string::npos; });
+    return std::any_of(toasts.begin(), toasts.end(),
+                       [&](const Toast& toast) { return toast.text.find(words) != std::string::npos; });
   }
 
   TemporaryFolder folder_;
@@ -117,7 +119,8 @@ TEST_F(DemoAppTest, ShowsAPictureThatIsNotEmpty) {
   std::set<std::uint32_t> scene;
   std::set<std::uint32_t> panel;
   for (std::size_t i = 0; i < pixels.size(); i += 3) {
-    const std::uint32_t colour = (std::uint32_t{pixels[i]} << 16) | (std::uint32_t{pixels[i + 1]} << 8) | pixels[i + 2];
+    const std::uint32_t colour =
+        (std::uint32_t{pixels[i]} << 16) | (std::uint32_t{pixels[i + 1]} << 8) | pixels[i + 2];
     (i / 3 % image.width < 768 ? scene : panel).insert(colour);
   }
   EXPECT_GT(scene.size(), 2000u) << "shaded blocks";
@@ -171,7 +174,8 @@ TEST_F(DemoAppTest, SwitchingWhilePressingFadesTheForce) {
     const auto from_N = static_cast<double>(history[i - 1].rendered_N);
     const auto to_N = static_cast<double>(history[i].rendered_N);
     // A tick that comes late may go as far as the time that has passed, up to 10 ms.
-    const double allowed_N = session.jnd().at(std::min(from_N, to_N)) * std::clamp(step_s, 0.001, 0.01) / 0.01;
+    const double allowed_N =
+        session.jnd().at(std::min(from_N, to_N)) * std::clamp(step_s, 0.001, 0.01) / 0.01;
     worst = std::max(worst, std::abs(to_N - from_N) / allowed_N);
   }
   // The tool gives way while the force changes, and the models' own forces with it:

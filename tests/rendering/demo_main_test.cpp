@@ -34,7 +34,9 @@ void expect_error(const ProgramRun& run, const std::string& words) {
 
 class DemoMain : public ::testing::Test {
  protected:
-  void SetUp() override { ASSERT_FALSE(test::virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb"; }
+  void SetUp() override {
+    ASSERT_FALSE(test::virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
+  }
   TemporaryFolder folder_;
 };
 
@@ -63,13 +65,15 @@ TEST_F(DemoMain, WrongUsageIsExitCode2) {
 TEST_F(DemoMain, RunsForItsSecondsAndWritesStatsAndPicture) {
   const std::string stats = folder_.file("stats.json");
   const std::string picture = folder_.file("window.png");
-  const ProgramRun run = demo({"--seconds", "3", "--model", "random", "--stats", stats, "--screenshot", picture});
+  const ProgramRun run =
+      demo({"--seconds", "3", "--model", "random", "--stats", stats, "--screenshot", picture});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   std::ifstream file(stats);
   const nlohmann::json json = nlohmann::json::parse(file);
   EXPECT_GT(json.at("haptics").at("ticks"), 500);
-  for (const char* key : {"missed_deadlines", "lateness_us", "tick_us", "scheduling"}) EXPECT_TRUE(json["haptics"].contains(key));
+  for (const char* key : {"missed_deadlines", "lateness_us", "tick_us", "scheduling"})
+    EXPECT_TRUE(json["haptics"].contains(key));
   for (const char* key : {"p50", "p99", "p99_9", "max"}) {
     EXPECT_TRUE(json["haptics"]["lateness_us"].contains(key));
     EXPECT_TRUE(json["haptics"]["tick_us"].contains(key));

@@ -41,7 +41,8 @@ class Server {
     dup2(silence, STDOUT_FILENO);
     dup2(silence, STDERR_FILENO);
     const std::string number = std::to_string(descriptor);
-    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1080x24", "-nolisten", "tcp", nullptr);
+    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1080x24", "-nolisten", "tcp",
+           nullptr);
     _exit(127);
   }
 
