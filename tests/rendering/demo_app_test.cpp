@@ -251,6 +251,24 @@ TEST_F(DemoAppTest, SaysWhenTheProbeIsAwayFromTheData) {
   EXPECT_TRUE(until([&] { return away_from_data(app_->session()); }));
 }
 
+TEST_F(DemoAppTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
+  open("auto");
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  frames(3);
+  EXPECT_TRUE(app_->session().hand_is_exploring());
+  // Beside the block nothing happens; over it, lower is deeper.
+  glfwSetCursorPos(window, 20.0, 300.0);
+  frames(5);
+  EXPECT_TRUE(app_->session().hand_is_exploring());
+  glfwSetCursorPos(window, 384.0, 380.0);
+  ASSERT_TRUE(until([&] { return !app_->session().hand_is_exploring(); }));
+  frames(30);
+  const double high_m = app_->session().newest().tick.position_m;
+  glfwSetCursorPos(window, 384.0, 430.0);
+  ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
+}
+
 TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
   open("hand");
   glfwSetWindowSize(app_->window().handle(), 1920, 1080);
