@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "engine/device_health.h"
 #include "engine/force_limiter.h"
 #include "engine/result.h"
 #include "engine/tool_sample.h"
@@ -52,6 +53,17 @@ class Device {
   virtual bool read(double now_s, DeviceSample& sample) noexcept = 0;
   // The force to render from now on, limited and finite.
   virtual void write(double force_N) noexcept = 0;
+  // Haptics thread, wait-free: how the device is at `now_s`. What may fail says
+  // so here; the loop gives no force while `may_push()` is false.
+  virtual DeviceHealth health(double) noexcept { return {}; }
+
+  // Any thread, wait-free: the tool is at its marked rest position now. Answered
+  // in `health`; ignored by a device that needs no zeroing.
+  virtual void start_zeroing() noexcept {}
+
+  // Slow side: what people should know of the choice of this device, e.g. what
+  // "auto" fell back to and why; empty when there is nothing to say.
+  virtual std::string note() const { return {}; }
 };
 
 }  // namespace palpate

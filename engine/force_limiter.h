@@ -1,24 +1,46 @@
 // The last word on every force before a device gets it. In this order:
 //
-//   finite   a force that is not a number counts as 0 and as a fault
+//   stop     no force while the sample is stale, the device has a fault or the
+//            dead-man switch is released; a force that is not a number is a
+//            fault as well
 //   ramp     the share that is let through grows from 0 to 1 over `ramp_s` from
-//            the start, and again after each fault
-//   clamp    |force| <= largest_N
+//            the start, and again after each stop
+//   clamp    |force| <= largest_N, and less as the motor warms up (below)
 //   slew     |change| <= fastest_N_per_s x the time since the last force, so
-//            that neither a fault nor a jump is felt as a kick
+//            that neither a fault nor a jump is felt as a kick; only a stop may
+//            be quicker, so that it takes `stop_s` at most
+//
+// Thermal budget. A motor's winding warms with the square of the force and cools
+// by itself: tau dH/dt = F^2 - H, with H in N^2 and continuous_N^2 what it bears
+// for ever. From kFoldback of that on the clamp falls,
+//   F^2 <= c^2 + (largest^2 - c^2) (1 - H / c^2) / (1 - kFoldback),
+// and at H = c^2 it is the continuous force: H never exceeds it.
 //
 // Thread guarantee: one thread at a time; wait-free, never throws.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace palpate {
 
 struct ForceLimits {
-  double largest_N = 10.0;            // > 0
+  double largest_N = 10.0;            // peak, > 0
   double fastest_N_per_s = 5000.0;    // > 0
   double ramp_s = 0.3;                // >= 0
+  // May be held for ever, > 0; infinite: no thermal budget.
+  double continuous_N = std::numeric_limits<double>::infinity();
+  double thermal_time_s = 10.0;       // tau, > 0
+  double stale_after_s = 0.01;        // age of a sample that is too old to push by
+  double stop_s = 0.01;               // from any force to none; >= 0
+};
+
+// What is known of the moment beside the force that is wanted.
+struct ForceConditions {
+  double sample_age_s = 0.0;  // NaN counts as stale
+  bool device_fault = false;
+  bool released = false;      // a dead-man switch is in use and nobody holds it
 };
 
 // What the limiter did to one force; bits, for TickSnapshot's neighbours.
@@ -27,28 +49,50 @@ inline constexpr std::uint32_t kNotFinite = 1;  // fault
 inline constexpr std::uint32_t kClamped = 2;
 inline constexpr std::uint32_t kSlewed = 4;
 inline constexpr std::uint32_t kRamping = 8;
+inline constexpr std::uint32_t kThermal = 16;      // clamped below largest_N by the budget
+inline constexpr std::uint32_t kStale = 32;        // fault
+inline constexpr std::uint32_t kDeviceFault = 64;  // fault
+inline constexpr std::uint32_t kReleased = 128;
 }  // namespace force_limit
 
 class ForceLimiter {
  public:
-  explicit ForceLimiter(const ForceLimits& limits) noexcept : limits_(limits) {}
+  // Share of the thermal budget from which on the peak is no longer allowed, and
+  // what it begins with: nobody knows what the motor did before.
+  static constexpr double kFoldback = 0.8;
+
+  explicit ForceLimiter(const ForceLimits& limits) noexcept
+      : limits_(limits), heat_(kFoldback * limits.continuous_N * limits.continuous_N) {}
 
   // `wanted_N`: anything; `step_s`: since the last call, counted as between 0
   // and 10 ms, so that a stall does not license a jump. Returns the force to
   // render, finite, and sets `flags`.
-  double limit(double wanted_N, double step_s) noexcept;
+  double limit(double wanted_N, double step_s, const ForceConditions& conditions = {}) noexcept;
 
-  // The next force is 0 and the ramp begins again; for a fault found elsewhere.
-  void fault() noexcept { share_ = 0.0; }
+  // No force in the next call and the ramp begins again; for a fault found
+  // elsewhere.
+  void fault() noexcept { stop_asked_ = true; }
 
   std::uint32_t flags() const noexcept { return flags_; }
   double force_N() const noexcept { return force_N_; }
+  // Of the thermal budget; 0 without one.
+  double heat_share() const noexcept;
 
  private:
+  bool stops(double wanted_N, const ForceConditions& conditions) noexcept;
+  void warm(double step_s) noexcept;
+  double clamp_N() const noexcept;
+  double ramped(double wanted_N, double step_s) noexcept;
+  void change(double target_N, double most_N) noexcept;
+
   ForceLimits limits_;
   double share_ = 0.0;
   double force_N_ = 0.0;
+  double heat_ = 0.0;  // N^2
+  double stop_N_per_s_ = 0.0;
   std::uint32_t flags_ = 0;
+  bool stopping_ = false;
+  bool stop_asked_ = false;
 };
 
 static_assert(std::is_trivially_copyable_v<ForceLimiter>);

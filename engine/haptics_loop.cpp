@@ -93,6 +93,7 @@ void HapticsLoop::let_go(Pacer& pacer, Deadlines& deadlines) noexcept {
     if (live_.release(seconds(woke_ns))) break;
   }
   device_.write(0.0);
+  live_.fault_recorder().finish();
 }
 
 LoopStatistics HapticsLoop::statistics() const noexcept {

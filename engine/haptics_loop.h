@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "engine/live_tick.h"
 #include "engine/pacer.h"
@@ -85,6 +87,10 @@ class HapticsLoop {
   // Any thread, wait-free; the figures of `statistics` that cost nothing.
   std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
   double age_s() const noexcept;
+
+  // One slow-side thread, after each `newest` or so: the ticks around a fault, see
+  // FaultRecorder; write_fault_file makes a file of them.
+  std::optional<std::vector<FaultTick>> take_fault_ticks() { return live_.fault_recorder().take(); }
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;

@@ -37,6 +37,8 @@ std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
   if ((flags & force_limit::kNotFinite) != 0) bits |= loop_fault::kForceNotFinite;
   if ((flags & force_limit::kClamped) != 0) bits |= loop_fault::kForceClamped;
   if ((flags & force_limit::kSlewed) != 0) bits |= loop_fault::kForceSlewed;
+  if ((flags & force_limit::kThermal) != 0) bits |= loop_fault::kForceThermal;
+  if ((flags & force_limit::kStale) != 0) bits |= loop_fault::kStaleSample;
   return bits;
 }
 
@@ -168,14 +170,52 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
   return force_N;
 }
 
-void LiveTick::render(double wanted_N, double step_s) noexcept {
+void LiveTick::acknowledge(const LoopControls& controls) noexcept {
+  if (controls.acknowledged == acknowledged_) return;
+  acknowledged_ = controls.acknowledged;
+  snapshot_.faults_latched = 0;
+  snapshot_.device_faults_latched = 0;
+}
+
+bool LiveTick::released(const LoopControls& controls) const noexcept {
+  switch (controls.dead_man) {
+    case DeadMan::key: return !(now_s_ - controls.held_s < kDeadManHold_s);
+    case DeadMan::grip: return !snapshot_.device.grip_held;
+    case DeadMan::off: break;
+  }
+  return false;
+}
+
+void LiveTick::render(double wanted_N, double step_s, bool released) noexcept {
+  const DeviceHealth& device = snapshot_.device;
   // A sample that cannot be true: no force until there is one that can.
   if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
+  if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.mixed_N = wanted_N;
-  snapshot_.rendered_N = limiter_.limit(wanted_N, step_s);
+  snapshot_.released = released;
+  snapshot_.rendered_N = limiter_.limit(wanted_N, step_s, {device.sample_age_s, !device.may_push(), released});
   snapshot_.faults |= limiter_bits(limiter_.flags());
   snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
+  snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
   device_.write(snapshot_.rendered_N);
+  record_fault();
+}
+
+void LiveTick::record_fault() noexcept {
+  FaultTick tick;
+  tick.loop_time_s = now_s_;
+  tick.sample_time_s = snapshot_.tick.time_s;
+  tick.position_m = snapshot_.tick.position_m;
+  tick.velocity_m_per_s = snapshot_.tick.velocity_m_per_s;
+  tick.wanted_N = snapshot_.mixed_N;
+  tick.rendered_N = snapshot_.rendered_N;
+  tick.sample_age_s = snapshot_.device.sample_age_s;
+  tick.round_trip_s = snapshot_.device.round_trip_s;
+  tick.faults = snapshot_.faults;
+  tick.device_faults = snapshot_.device.faults;
+  tick.limiter_flags = limiter_.flags();
+  tick.samples = snapshot_.samples;
+  recorder_.add(tick, (snapshot_.faults & loop_fault::kStops) != 0);
 }
 
 const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) noexcept {
@@ -185,10 +225,13 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   snapshot_.loop_time_s = now_s;
   snapshot_.faults = 0;
   recording_ = controls.recording;
+  acknowledge(controls);
   take_models();
   take_samples(now_s);
-  render(mix(controls, step_s), step_s);
+  snapshot_.device = device_.health(now_s);
+  render(mix(controls, step_s), step_s, released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
+  snapshot_.device_faults_latched |= snapshot_.device.faults;
   if (models_ != nullptr) {
     for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
       snapshot_.evaluation_ns[i] =
@@ -202,7 +245,8 @@ bool LiveTick::release(double now_s) noexcept {
   const double step_s = now_s - now_s_;
   now_s_ = now_s;
   snapshot_.faults = 0;
-  render(0.0, step_s);
+  snapshot_.device = device_.health(now_s);
+  render(0.0, step_s, false);
   return snapshot_.rendered_N == 0.0;
 }
 

@@ -17,6 +17,7 @@
 #include <type_traits>
 
 #include "engine/device.h"
+#include "engine/fault_recorder.h"
 #include "engine/force_limiter.h"
 #include "engine/force_mixer.h"
 #include "engine/haptics_tick.h"
@@ -52,11 +53,28 @@ struct LiveModels {
   std::uint32_t written_model = kMaxModels;
 };
 
+// What has to be held for the device to push.
+enum class DeadMan : std::uint8_t {
+  off,   // nothing
+  key,   // a key or a button, see LoopControls::held_s
+  grip,  // the switch on the device's handle
+};
+
+// How long a key counts as held after it was last seen held: a window that
+// hangs holds nothing.
+inline constexpr double kDeadManHold_s = 0.2;
+
 // What the user wants of the loop.
 struct LoopControls {
   std::uint32_t models_id = 0;  // the set that `selected` speaks of
   std::uint32_t selected = 0;   // the model in the hand
   std::uint32_t recording = 0;  // above 0: every sample goes into the ring under this number
+  DeadMan dead_man = DeadMan::off;
+  // When the dead-man key was last seen held, on the loop's steady clock: set it
+  // anew in every frame.
+  double held_s = -std::numeric_limits<double>::infinity();
+  // Raised by one each time the user has seen the latched faults: they are cleared.
+  std::uint32_t acknowledged = 0;
 };
 
 // What a tick found wrong, bits.
@@ -68,6 +86,11 @@ inline constexpr std::uint32_t kForceNotFinite = 8;   // reached the limiter
 inline constexpr std::uint32_t kForceClamped = 16;
 inline constexpr std::uint32_t kForceSlewed = 32;
 inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop
+inline constexpr std::uint32_t kStaleSample = 128;    // too old to push by
+inline constexpr std::uint32_t kDeviceFault = 256;    // see LoopSnapshot::device
+inline constexpr std::uint32_t kForceThermal = 512;   // clamped by the motor's thermal budget
+// Those that take the force away.
+inline constexpr std::uint32_t kStops = kBadSample | kModelNotFinite | kForceNotFinite | kStaleSample | kDeviceFault;
 }  // namespace loop_fault
 
 inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
@@ -86,7 +109,11 @@ struct LoopSnapshot {
   std::uint32_t selected = 0;
   std::uint32_t samples = 0;  // taken from the device in this tick; 0: state as before
   std::uint32_t faults = 0;          // of this tick, loop_fault
-  std::uint32_t faults_latched = 0;  // of all ticks
+  std::uint32_t faults_latched = 0;  // of all ticks since the last were acknowledged
+  DeviceHealth device;               // at this tick
+  std::uint32_t device_faults_latched = 0;
+  float heat_share = 0.0F;  // of the motor's thermal budget
+  bool released = false;    // nobody holds the dead-man switch: no force
   bool ramping = false;  // the limiter still holds back
   bool fading = false;   // the hand is on its way from one model to another
   bool restarted = false;  // a new stream began in this tick
@@ -136,6 +163,9 @@ class LiveTick {
   // As `run`, towards no force; true once the device was given 0.
   bool release(double now_s) noexcept;
 
+  // Of the last second before a fault; see there for the threads.
+  FaultRecorder& fault_recorder() noexcept { return recorder_; }
+
   // The last sample's tick, for tests of live against replay.
   const HapticsTick* models() const noexcept { return models_ != nullptr ? &models_->tick : nullptr; }
 
@@ -146,7 +176,10 @@ class LiveTick {
   void step_models(const DeviceSample& sample) noexcept;
   void hand_over_sample(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
-  void render(double wanted_N, double step_s) noexcept;
+  void acknowledge(const LoopControls& controls) noexcept;
+  bool released(const LoopControls& controls) const noexcept;
+  void render(double wanted_N, double step_s, bool released) noexcept;
+  void record_fault() noexcept;
 
   Device& device_;
   ModelSlot<LiveModels>& slot_;
@@ -158,6 +191,8 @@ class LiveTick {
   LoopSnapshot snapshot_;
   TakenRing* taken_;
   std::uint32_t recording_ = 0;
+  FaultRecorder recorder_;
+  std::uint32_t acknowledged_ = 0;
   double ns_per_cycle_;
   double now_s_ = 0.0;
   bool started_ = false;
