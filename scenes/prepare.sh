@@ -8,9 +8,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
-  fonts-dejavu-core)
-# For the tests of the window: a display in memory.
-test_packages=(xvfb xkb-data x11-xkb-utils)
+  fonts-dejavu-core libhidapi-dev)
+# For the tests: of the window a display in memory, of devices an emulated one.
+test_packages=(xvfb xkb-data x11-xkb-utils libumockdev-dev umockdev)
 ci_packages=(clang-14 libclang-rt-14-dev)
 
 say() { printf '== %s\n' "$*"; }

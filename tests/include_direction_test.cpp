@@ -42,7 +42,7 @@ const std::map<std::string, Names> kOnlyIn = {
     {"libudev", {"devices"}},
     {"CLI", {"scenes", "rendering"}},
     {"hwy", {"models"}},
-    {"nlohmann", {"models", "scenes", "rendering"}},
+    {"nlohmann", {"models", "devices", "scenes", "rendering"}},
 };
 
 // What is wrong with one include in a file of `folder`; empty if nothing is.

@@ -1,0 +1,256 @@
+// Host and device in simulated time, without threads: a HidEndpoint behind a
+// LiveTick on one side, the reference firmware (or what is known of the others)
+// on the other, reports between them that a test may hold back, change or lose.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "devices/firmware/paddle/paddle_firmware.h"
+#include "devices/hid_endpoint.h"
+#include "engine/live_tick.h"
+#include "tests/support/live_doubles.h"
+
+namespace palpate::test {
+
+using Report = std::vector<std::uint8_t>;
+
+inline HidCalibration example_calibration(HidKind kind) {
+  HidCalibration calibration;
+  calibration.kind = kind;
+  calibration.counts_per_metre = 50000.0;
+  calibration.rest_position_m = -0.01;
+  calibration.fastest_m_per_s = 5.0;
+  calibration.force_N_per_unit = kind == HidKind::openffboard ? 0.0003 : 0.004;
+  calibration.stuck_after_s = 0.5;
+  calibration.limits = {5.0, 200.0, 0.1};
+  calibration.limits.continuous_N = 4.5;
+  calibration.limits.stale_after_s = 0.008;
+  return calibration;
+}
+
+// The device's end. Time in microseconds; `step` once every 250 us.
+class DeviceModel {
+ public:
+  virtual ~DeviceModel() = default;
+  virtual void hear(const Report& report) = 0;  // without the report id 0
+  virtual void step(std::uint32_t now_us, std::int32_t counts) = 0;
+  virtual void restart() {}
+  virtual double force_units() const = 0;  // what the motor gets
+  std::deque<Report> outbox;
+};
+
+class PaddleModel final : public DeviceModel, public paddle::Board {
+ public:
+  PaddleModel() { restart(); }
+  void restart() override { firmware_ = std::make_unique<paddle::Firmware>(*this, std::int16_t{1250}, ++boot_); }
+  void hear(const Report& report) override { inbox_.push_back(report); }
+  void step(std::uint32_t now_us, std::int32_t counts) override {
+    now_us_ = now_us;
+    counts_ = counts;
+    firmware_->loop();
+  }
+  double force_units() const override { return current_mA_; }
+  bool motor_fault_now = false;
+  bool grip_now = false;
+
+ private:
+  std::uint32_t now_us() override { return now_us_; }
+  std::int32_t counts() override { return counts_; }
+  bool encoder_fault() override { return false; }
+  bool motor_fault() override { return motor_fault_now; }
+  bool grip() override { return grip_now; }
+  void set_current_mA(std::int16_t current_mA) override { current_mA_ = current_mA; }
+  bool receive(std::uint8_t* report) override {
+    if (inbox_.empty()) return false;
+    const Report first = inbox_.front();
+    inbox_.pop_front();
+    if (first.size() != paddle::kReportBytes) return false;
+    std::copy(first.begin(), first.end(), report);
+    return true;
+  }
+  void send(const std::uint8_t* report) override { outbox.emplace_back(report, report + paddle::kReportBytes); }
+
+  std::unique_ptr<paddle::Firmware> firmware_;
+  std::deque<Report> inbox_;
+  std::uint32_t now_us_ = 0;
+  std::int32_t counts_ = 0;
+  std::int16_t current_mA_ = 0;
+  std::uint16_t boot_ = 0;
+};
+
+class PolhemModel final : public DeviceModel {
+ public:
+  void hear(const Report& report) override {
+    units_ = static_cast<std::int16_t>(paddle::read16(report.data()));
+    heard_us_ = now_us_;
+  }
+  void step(std::uint32_t now_us, std::int32_t counts) override {
+    now_us_ = now_us;
+    if (now_us - heard_us_ > 500'000) units_ = 0.0;  // its own watchdog
+    if (now_us % 1000 != 0) return;
+    Report report(64, 0);
+    paddle::write16(report.data(), static_cast<std::uint16_t>(counts));
+    outbox.push_back(report);
+  }
+  double force_units() const override { return units_; }
+
+ private:
+  std::uint32_t now_us_ = 0, heard_us_ = 0;
+  double units_ = 0.0;
+};
+
+class OpenFfBoardModel final : public DeviceModel {
+ public:
+  void hear(const Report& report) override {
+    if (report.size() != 25 || report[0] != 0xA1) return;
+    const std::uint16_t object = paddle::read16(report.data() + 2);
+    if (object == 0xA03 && paddle::read32(report.data() + 5) == 4) {
+      units_ = static_cast<std::int32_t>(paddle::read32(report.data() + 9));
+    }
+    if (object != 0xA01) return;
+    Report answer = report;
+    answer[1] = 10;
+    paddle::write32(answer.data() + 9, static_cast<std::uint32_t>(counts_));
+    paddle::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
+    outbox.push_back(answer);
+  }
+  void step(std::uint32_t, std::int32_t counts) override { counts_ = counts; }
+  double force_units() const override { return units_; }
+
+ private:
+  std::int32_t counts_ = 0;
+  double units_ = 0.0;
+};
+
+inline std::unique_ptr<DeviceModel> device_model(HidKind kind) {
+  if (kind == HidKind::polhem) return std::make_unique<PolhemModel>();
+  if (kind == HidKind::openffboard) return std::make_unique<OpenFfBoardModel>();
+  return std::make_unique<PaddleModel>();
+}
+
+// The endpoint as a device of the live tick.
+class EndpointDevice final : public Device {
+ public:
+  explicit EndpointDevice(const HidCalibration& calibration) : endpoint(calibration) {}
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return {1.0 / endpoint.calibration().counts_per_metre}; }
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return endpoint.calibration().limits; }
+  bool read(double, DeviceSample& sample) noexcept override { return endpoint.read(sample); }
+  void write(double force_N) noexcept override { endpoint.write(force_N); }
+  DeviceHealth health(double now_s) noexcept override { return endpoint.health(now_s); }
+  void start_zeroing() noexcept override { endpoint.start_zeroing(); }
+  HidEndpoint endpoint;
+
+ private:
+  std::string name_ = "simulated";
+};
+
+class SimulatedDevice {
+ public:
+  static constexpr double kStiffness_N_per_m = 1300.0;  // nearly 4 N where the tool is held
+  static constexpr double kStart_s = 100.0;
+  static constexpr int kStep_us = 250;
+
+  explicit SimulatedDevice(HidKind kind)
+      : calibration(example_calibration(kind)), device(calibration), model(device_model(kind)), live(device, slot_) {
+    slot_.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(kStiffness_N_per_m)}));
+    live.warm_up();
+    device.endpoint.connected(kStart_s);
+    hear(encode_start(kind));
+  }
+
+  // The tool, as the hand moves it, m after `time_s`; with tremor unless frozen.
+  double position_m() const {
+    const double tremor_m = 1e-4 * std::sin(2.0 * 3.14159265358979 * 9.0 * (now_s - kStart_s));
+    return calibration.rest_position_m + inside_ * (3e-3 + tremor_m - calibration.rest_position_m);
+  }
+  double motor_N() const { return std::abs(model->force_units() * calibration.force_N_per_unit); }
+
+  // One haptics tick, and what the device and the two I/O threads do meanwhile.
+  const LoopSnapshot& tick() {
+    inside_ = rest ? 0.0 : std::min(1.0, inside_ + 0.02);
+    for (int i = 0; i < 1000 / kStep_us; ++i) {
+      now_us += kStep_us;
+      now_s = kStart_s + 1e-6 * static_cast<double>(now_us);
+      const double counts = calibration.counts_per_metre * (position_m() - calibration.rest_position_m);
+      if (!encoder_frozen) counts_ = static_cast<std::int32_t>(std::lround(counts)) + counts_offset;
+      model->step(static_cast<std::uint32_t>(now_us), counts_);
+      deliver();
+    }
+    snapshot = live.run(now_s, controls);
+    if (!writer_hangs) {
+      const OutReports reports = device.endpoint.next(now_s);
+      if (reports.count > 0) device.endpoint.written(now_s);
+      hear(reports);
+    }
+    return snapshot;
+  }
+  void run_s(double span_s) {
+    for (int i = 0; i < static_cast<int>(std::lround(1e3 * span_s)); ++i) tick();
+  }
+  // Zeroed at rest, then pressed into the block until the force is steady.
+  void press() {
+    rest = true;
+    run_s(0.1);
+    device.start_zeroing();
+    run_s(0.3);
+    rest = false;
+    run_s(1.0);
+  }
+
+  std::int32_t counts() const { return counts_; }
+
+  HidCalibration calibration;
+  EndpointDevice device;
+  std::unique_ptr<DeviceModel> model;
+  LoopControls controls;
+  LoopSnapshot snapshot;
+  double now_s = kStart_s;
+  std::int64_t now_us = 0;
+  bool rest = true;
+  bool encoder_frozen = false;
+  bool writer_hangs = false;
+  bool unplugged = false;
+  std::int32_t counts_offset = 0;
+  // What becomes of the reports on their way in: may change, drop or hold them
+  // back. Those it returns are delivered.
+  std::function<std::vector<Report>(const Report&)> on_the_way_in;
+  std::function<bool(Report&)> on_the_way_out;  // false: lost
+
+ private:
+  void deliver() {
+    while (!model->outbox.empty()) {
+      const Report report = model->outbox.front();
+      model->outbox.pop_front();
+      if (unplugged) continue;
+      for (const Report& one : on_the_way_in ? on_the_way_in(report) : std::vector<Report>{report}) {
+        device.endpoint.take(one.data(), one.size(), now_s);
+      }
+    }
+  }
+  void hear(const OutReports& reports) {
+    for (std::size_t i = 0; i < reports.count; ++i) {
+      const std::uint8_t* from = reports.bytes[i].data();
+      const std::size_t skip = from[0] == 0 ? 1 : 0;
+      Report report(from + skip, from + reports.sizes[i]);
+      if (!unplugged && (!on_the_way_out || on_the_way_out(report))) model->hear(report);
+    }
+  }
+
+  ModelSlot<LiveModels> slot_;
+  std::int32_t counts_ = 0;
+  double inside_ = 0.0;  // 0 at rest, 1 pressed in
+
+ public:
+  LiveTick live;
+};
+
+}  // namespace palpate::test
