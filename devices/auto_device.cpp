@@ -3,6 +3,7 @@
 namespace palpate {
 
 bool AutoDevice::read(double now_s, DeviceSample& sample) noexcept {
+  if (space_mouse_ != nullptr) space_mouse_->axis().drive(mouse_, now_s);
   const bool exploring = mouse_.idle(now_s);
   // Only this thread writes it.
   const bool was_exploring = exploring_.load(std::memory_order_relaxed);

@@ -12,6 +12,7 @@
 #include <cstdint>
 
 #include "devices/hid_calibration.h"
+#include "devices/hid_link.h"
 #include "devices/report_monitor.h"
 #include "engine/device.h"
 #include "engine/triple_buffer.h"
@@ -25,7 +26,7 @@ struct LinkState {
   bool connected = false;
 };
 
-class HidEndpoint {
+class HidEndpoint final : public HidLinkUser {
  public:
   static constexpr double kHapticsSilent_s = 0.02;
   // Without a written or a confirmed command for so long, the device hears nothing.
@@ -36,14 +37,14 @@ class HidEndpoint {
   explicit HidEndpoint(const HidCalibration& calibration) noexcept;
 
   // Reader thread, wait-free. `now_s`: steady clock, never back.
-  void connected(double now_s) noexcept;
-  void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept;
-  void unplugged() noexcept;
+  void connected(double now_s) noexcept override;
+  void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void unplugged() noexcept override;
 
   // Writer thread, wait-free. What to write now; nothing when there is no need.
-  OutReports next(double now_s) noexcept;
+  OutReports next(double now_s) noexcept override;
   // After it was written; `now_s`: when that was done.
-  void written(double now_s) noexcept;
+  void written(double now_s) noexcept override;
 
   // Haptics thread, wait-free; as Device.
   bool read(DeviceSample& sample) noexcept;
