@@ -1,0 +1,150 @@
+#include "tests/devices/emulated/emulated_paddle.h"
+
+#include <cerrno>
+#include <cstring>
+
+namespace {
+
+// Vendor-defined page 0xFFAB, usage 0x0200, 64 bytes each way.
+constexpr guint8 kDescriptor[] = {0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 0x08, 0x15, 0x00, 0x26, 0xFF,
+                                  0x00, 0x95, 0x40, 0x09, 0x01, 0x81, 0x02, 0x95, 0x40, 0x09, 0x02, 0x91, 0x02, 0xC0};
+
+constexpr char kDescription[] =
+    "P: /devices/usb1/1-1\n"
+    "N: bus/usb/001/002\n"
+    "E: DEVTYPE=usb_device\n"
+    "E: SUBSYSTEM=usb\n"
+    "A: idVendor=16c0\n"
+    "A: idProduct=0486\n"
+    "A: bcdDevice=0100\n"
+    "A: manufacturer=Teensyduino\n"
+    "A: product=Teensyduino RawHID\n"
+    "A: serial=12345\n"
+    "\n"
+    "P: /devices/usb1/1-1/1-1:1.0\n"
+    "E: DEVTYPE=usb_interface\n"
+    "E: SUBSYSTEM=usb\n"
+    "A: bInterfaceNumber=00\n"
+    "\n"
+    "P: /devices/usb1/1-1/1-1:1.0/0003:16C0:0486.0001\n"
+    "E: SUBSYSTEM=hid\n"
+    "E: HID_ID=0003:000016C0:00000486\n"
+    "E: HID_NAME=Teensyduino RawHID\n"
+    "E: HID_UNIQ=12345\n"
+    "H: report_descriptor=06ABFF0A0002A1017508150026FF00954009018102954009029102C0\n"
+    "\n"
+    "P: /devices/usb1/1-1/1-1:1.0/0003:16C0:0486.0001/hidraw/hidraw0\n"
+    "N: hidraw0\n"
+    "L: device=../../../0003:16C0:0486.0001\n"
+    "E: SUBSYSTEM=hidraw\n"
+    "E: DEVNAME=/dev/hidraw0\n";
+
+// The subclass of UMockdevIoctlBase that passes everything on.
+struct NodeHandler {
+  UMockdevIoctlBase parent;
+  palpate::test::EmulatedPaddle* paddle;
+};
+struct NodeHandlerClass {
+  UMockdevIoctlBaseClass parent;
+};
+
+G_GNUC_BEGIN_IGNORE_DEPRECATIONS
+G_DEFINE_TYPE(NodeHandler, node_handler, UMOCKDEV_TYPE_IOCTL_BASE)
+G_GNUC_END_IGNORE_DEPRECATIONS
+
+palpate::test::EmulatedPaddle& paddle_of(UMockdevIoctlBase* self) {
+  return *reinterpret_cast<NodeHandler*>(self)->paddle;
+}
+
+void node_handler_init(NodeHandler*) {}
+void node_handler_class_init(NodeHandlerClass* type) {
+  type->parent.handle_ioctl = [](UMockdevIoctlBase* self, UMockdevIoctlClient* client) -> gboolean {
+    return paddle_of(self).ioctl(client);
+  };
+  type->parent.handle_read = [](UMockdevIoctlBase* self, UMockdevIoctlClient* client) -> gboolean {
+    return paddle_of(self).read(client);
+  };
+  type->parent.handle_write = [](UMockdevIoctlBase* self, UMockdevIoctlClient* client) -> gboolean {
+    return paddle_of(self).write(client);
+  };
+}
+
+}  // namespace
+
+namespace palpate::test {
+
+EmulatedPaddle::EmulatedPaddle()
+    : testbed_(umockdev_testbed_new()),
+      handler_(UMOCKDEV_IOCTL_BASE(g_object_new(node_handler_get_type(), nullptr))) {
+  reinterpret_cast<NodeHandler*>(handler_)->paddle = this;
+  GError* error = nullptr;
+  if (!umockdev_testbed_add_from_string(testbed_, kDescription, &error) ||
+      !umockdev_testbed_attach_ioctl(testbed_, "/dev/hidraw0", handler_, &error)) {
+    g_error("umockdev: %s", error->message);
+  }
+}
+
+EmulatedPaddle::~EmulatedPaddle() {
+  umockdev_testbed_detach_ioctl(testbed_, "/dev/hidraw0", nullptr);
+  g_object_unref(handler_);
+  g_object_unref(testbed_);
+}
+
+bool EmulatedPaddle::ioctl(UMockdevIoctlClient* client) {
+  UMockdevIoctlData* const argument = umockdev_ioctl_client_get_arg(client);
+  const gulong request = umockdev_ioctl_client_get_request(client);
+  if (request == HIDIOCGRDESCSIZE) {
+    int size = sizeof kDescriptor;
+    UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(argument, 0, sizeof size, nullptr);
+    umockdev_ioctl_data_update(data, 0, reinterpret_cast<guint8*>(&size), sizeof size);
+    umockdev_ioctl_data_unref(data);
+  } else if (request == HIDIOCGRDESC) {
+    UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(argument, 0, sizeof(hidraw_report_descriptor), nullptr);
+    std::vector<guint8> bytes(kDescriptor, kDescriptor + sizeof kDescriptor);
+    umockdev_ioctl_data_update(data, offsetof(hidraw_report_descriptor, value), bytes.data(),
+                               static_cast<gint>(bytes.size()));
+    umockdev_ioctl_data_unref(data);
+  } else {
+    return false;
+  }
+  umockdev_ioctl_client_complete(client, 0, 0);
+  return true;
+}
+
+bool EmulatedPaddle::read(UMockdevIoctlClient* client) {
+  ++reads;
+  if (gone) {
+    umockdev_ioctl_client_complete(client, -1, EIO);
+    return true;
+  }
+  while (paddle_.outbox.empty()) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    const auto since = std::chrono::steady_clock::now() - start_;
+    const auto us = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
+    paddle_.step(static_cast<std::uint32_t>(us), 1000);
+  }
+  motor_mA = paddle_.force_units();
+  Report report = paddle_.outbox.back();
+  paddle_.outbox.clear();
+  report[1] = static_cast<std::uint8_t>(report_version);
+  UMockdevIoctlData* const data = umockdev_ioctl_client_get_arg(client);
+  const gint size = std::min(data->data_len, static_cast<gint>(report.size()));
+  umockdev_ioctl_data_update(data, 0, report.data(), size);
+  umockdev_ioctl_client_complete(client, size, 0);
+  return true;
+}
+
+bool EmulatedPaddle::write(UMockdevIoctlClient* client) {
+  UMockdevIoctlData* const data = umockdev_ioctl_client_get_arg(client);
+  ++writes;
+  last_write_size = static_cast<std::size_t>(data->data_len);
+  if (gone) {
+    umockdev_ioctl_client_complete(client, -1, EIO);
+    return true;
+  }
+  paddle_.hear(Report(data->data + 1, data->data + data->data_len));
+  umockdev_ioctl_client_complete(client, data->data_len, 0);
+  return true;
+}
+
+}  // namespace palpate::test

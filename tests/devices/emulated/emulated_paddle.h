@@ -1,0 +1,49 @@
+// A haptic paddle as the system would show it: sysfs and a hidraw node made by
+// umockdev, which the real libhidapi enumerates, opens, reads and writes. Behind
+// the node runs the reference firmware.
+//
+// What umockdev 0.17 cannot do: its node never polls readable, so that only a
+// blocking hid_read gets a report.
+#pragma once
+
+#include <linux/hidraw.h>
+#include <sys/ioctl.h>
+#include <umockdev.h>
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/simulated_device.h"
+
+namespace palpate::test {
+
+class EmulatedPaddle {
+ public:
+  EmulatedPaddle();
+  EmulatedPaddle(const EmulatedPaddle&) = delete;
+  EmulatedPaddle& operator=(const EmulatedPaddle&) = delete;
+  ~EmulatedPaddle();
+
+  // Asked by the node; the thread of umockdev.
+  bool ioctl(UMockdevIoctlClient* client);
+  bool read(UMockdevIoctlClient* client);
+  bool write(UMockdevIoctlClient* client);
+
+  std::atomic<bool> gone{false};       // reads and writes fail
+  std::atomic<int> report_version{1};  // of the protocol
+  std::atomic<double> motor_mA{0.0};
+  std::atomic<int> reads{0};
+  std::atomic<int> writes{0};
+  std::atomic<std::size_t> last_write_size{0};
+
+ private:
+  UMockdevTestbed* testbed_;
+  UMockdevIoctlBase* handler_;
+  PaddleModel paddle_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace palpate::test

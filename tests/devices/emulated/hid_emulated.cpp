@@ -1,0 +1,123 @@
+// The real libhidapi on an emulated paddle: found, opened, read, written, lost.
+// A program of its own: it runs with the preload library of umockdev.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+
+#include "devices/hid_device.h"
+#include "devices/hidapi_bus.h"
+#include "engine/pacer.h"
+#include "tests/devices/emulated/emulated_paddle.h"
+
+namespace palpate {
+namespace {
+
+using test::EmulatedPaddle;
+
+double now_s() { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
+
+class HidEmulated : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const preload = std::getenv("LD_PRELOAD");
+    if (preload == nullptr || std::strstr(preload, "umockdev") == nullptr) {
+      GTEST_SKIP() << "not run under umockdev (LD_PRELOAD=libumockdev-preload.so.0)";
+    }
+  }
+  HidapiBus bus{-1};
+};
+
+TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
+  EmulatedPaddle paddle;
+  const std::vector<HidFound> found = bus.list();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].path, "/dev/hidraw0");
+  EXPECT_EQ(found[0].product, "Teensyduino RawHID");
+  EXPECT_EQ(found[0].vendor_id, 0x16C0);
+  EXPECT_EQ(found[0].product_id, 0x0486);
+  EXPECT_EQ(found[0].usage_page, 0xFFAB);
+  EXPECT_EQ(found[0].usage, 0x0200);
+  const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
+  ASSERT_EQ(diagnosis.size(), 1u);
+  EXPECT_EQ(diagnosis[0].kind, HidKind::paddle);
+  EXPECT_EQ(diagnosis[0].problem, "");
+}
+
+TEST_F(HidEmulated, SaysThatTheFirmwareIsOfAnotherVersion) {
+  EmulatedPaddle paddle;
+  paddle.report_version = 3;
+  EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: wrong firmware: speaks version 3 of the paddle protocol, "
+                                         "expected 1; install devices/firmware/paddle");
+}
+
+TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
+  EmulatedPaddle paddle;
+  Result<HidOpened> first = open_first(bus, {HidKind::paddle});
+  ASSERT_TRUE(first.ok());
+  EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: in use by another program; close it");
+}
+
+TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
+  EmulatedPaddle paddle;
+  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  std::uint8_t bytes[65] = {};
+  ASSERT_EQ(opened->line->read(bytes, sizeof bytes), 64);
+  HidReading reading;
+  ASSERT_EQ(decode_report(HidKind::paddle, bytes, 64, reading), ReportVerdict::position);
+  EXPECT_EQ(reading.counts, 1000);
+  const OutReports stop = encode_stop(HidKind::paddle);
+  ASSERT_TRUE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  EXPECT_EQ(paddle.last_write_size, 65u) << "the report id comes first";
+  paddle.gone = true;
+  EXPECT_LT(opened->line->read(bytes, sizeof bytes), 0);
+  EXPECT_FALSE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+}
+
+bool tick_until(HidDevice& device, double force_N, const std::function<bool(const DeviceHealth&)>& done) {
+  for (int i = 0; i < 10'000; ++i) {
+    DeviceSample sample;
+    device.read(now_s(), sample);
+    device.write(force_N);
+    if (done(device.health(now_s()))) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
+  EmulatedPaddle paddle;
+  HidCalibration calibration = test::example_calibration(HidKind::paddle);
+  calibration.limits.stale_after_s = 1.0;  // this machine may be slow, the device is not
+  calibration.stuck_after_s = 60.0;
+  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  HidDevice device(bus, calibration, std::move(*opened));
+  ASSERT_TRUE(device.open().ok());
+  device.start_zeroing();
+  ASSERT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); }));
+  EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
+  const DeviceHealth health = device.health(now_s());
+  std::printf("emulated: round trip %.2f ms, age of the sample %.2f ms\n", 1e3 * health.round_trip_s,
+              1e3 * health.sample_age_s);
+  EXPECT_GT(health.round_trip_s, 0.0);
+  paddle.gone = true;
+  EXPECT_TRUE(tick_until(device, 2.0, [](const DeviceHealth& lost) {
+    return (lost.faults & device_fault::kUnplugged) != 0;
+  }));
+  paddle.gone = false;
+  EXPECT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& back) {
+    return back.faults == device_fault::kUnplugged && back.zeroing == Zeroing::needed;
+  }));
+  device.start_zeroing();
+  EXPECT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& again) { return again.may_push(); }));
+  EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
+  device.close();
+  EXPECT_GT(paddle.writes, 10);
+}
+
+}  // namespace
+}  // namespace palpate
