@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cerrno>
-
-#include "devices/hidapi_bus.h"
 #include "tests/support/fake_hid_bus.h"
 
 namespace palpate {
@@ -69,20 +66,6 @@ TEST(HidBus, SaysWhyADeviceCannotBeUsed) {
                                        "another one, install devices/firmware/paddle");
   EXPECT_EQ(problem_of(Report(64, 7)),
             "/dev/hidraw7: its reports are none that this program knows; install devices/firmware/paddle");
-}
-
-TEST(HidBus, SaysWhatToDoAboutAnErrorOfTheSystem) {
-  EXPECT_EQ(open_error_words("/dev/hidraw0", EACCES),
-            "/dev/hidraw0: no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
-            "device in again");
-  EXPECT_EQ(open_error_words("/dev/hidraw0", EBUSY), "/dev/hidraw0: in use by another program; close it");
-  EXPECT_EQ(open_error_words("/dev/hidraw0", ENOENT).rfind("/dev/hidraw0: no node although", 0), 0u);
-  EXPECT_EQ(open_error_words("/dev/hidraw0", EIO), "/dev/hidraw0: Input/output error");
-}
-
-TEST(HidBus, TheRealOneWorksWithoutAnyDevice) {
-  for (const HidFound& found : system_hid_bus().list()) EXPECT_FALSE(found.path.empty());
-  EXPECT_FALSE(system_hid_bus().open({"/dev/no-such-node", "", 0, 0, 0, 0}).ok());
 }
 
 }  // namespace

@@ -80,21 +80,6 @@ TEST(HidDevice, ComesBackAfterItWasPluggedInAgain) {
   EXPECT_TRUE(tick_until(*device, 0.0, zeroed));
 }
 
-TEST(HidDevice, TriesAgainWhenItCannotBeOpenedAtFirst) {
-  FakeHidBus bus;
-  bus.refusals = 2;
-  EXPECT_TRUE(open_first(bus, {HidKind::paddle}).ok());
-  EXPECT_EQ(bus.opened, 3);
-  bus.refusals = 100;
-  bool none_found = true;
-  EXPECT_EQ(open_first(bus, {HidKind::paddle}, &none_found).error().message, "/dev/hidraw7: no permission");
-  EXPECT_FALSE(none_found);
-  bus.plugged_in = false;
-  EXPECT_EQ(open_first(bus, {HidKind::paddle}, &none_found).error().message,
-            "no device that the program knows is plugged in");
-  EXPECT_TRUE(none_found);
-}
-
 LoopStatistics run_loop(int write_ms, int& writes) {
   FakeHidBus bus;
   bus.write_ms = write_ms;

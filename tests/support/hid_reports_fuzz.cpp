@@ -1,0 +1,125 @@
+#include "tests/support/hid_reports_fuzz.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "devices/firmware/paddle/paddle_protocol.h"
+#include "devices/hid_endpoint.h"
+#include "devices/spacemouse.h"
+
+namespace palpate::test {
+namespace {
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "hid report: %s\n", what);
+  std::abort();
+}
+
+HidCalibration calibration_of(HidKind kind) {
+  HidCalibration calibration;
+  calibration.kind = kind;
+  calibration.counts_per_metre = 50000.0;
+  calibration.rest_position_m = -0.01;
+  calibration.fastest_m_per_s = 5.0;
+  calibration.force_N_per_unit = 0.004;
+  calibration.stuck_after_s = 0.5;
+  calibration.limits = {5.0, 200.0, 0.1};
+  return calibration;
+}
+
+void check_decoder(HidKind kind, const std::uint8_t* bytes, std::size_t size) {
+  HidReading reading;
+  const ReportVerdict verdict = decode_report(kind, bytes, size, reading);
+  HidReading again;
+  require(decode_report(kind, bytes, size, again) == verdict && again.counts == reading.counts, "not repeatable");
+  if (verdict != ReportVerdict::position) return;
+  if (kind == HidKind::spacemouse) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
+  if (kind == HidKind::polhem) require(std::abs(reading.counts) <= 32768, "beyond 16 bits");
+  if (kind == HidKind::openffboard) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
+  if (kind != HidKind::paddle) return;
+  require(size == paddle::kReportBytes, "not 64 bytes");
+  require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt), "checksum");
+}
+
+void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_s) {
+  DeviceSample sample;
+  if (endpoint.read(sample)) {
+    require(std::isfinite(sample.tool.position_m) && std::isfinite(sample.tool.time_s), "sample not finite");
+    require(sample.tool.time_s > last_sample_s, "time does not go on");
+    last_sample_s = sample.tool.time_s;
+  }
+  const DeviceHealth health = endpoint.health(now_s);
+  require((health.faults & ~device_fault::kAll) == 0, "unknown fault");
+  require(health.sample_age_s >= 0.0, "a sample from the future");
+  require(!std::isnan(health.zeroing_progress) && health.zeroing_progress <= 1.0F, "progress");
+}
+
+void check_sent(HidKind kind, const OutReports& reports) {
+  require(reports.count <= reports.sizes.size(), "too many reports");
+  for (std::size_t i = 0; i < reports.count; ++i) require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
+  if (kind != HidKind::paddle || reports.count == 0) return;
+  paddle::FromHost out{};
+  require(paddle::decode(reports.bytes[0].data() + 1, out) == paddle::kGood, "sent a bad report");
+  require(std::abs(out.current_mA) <= 1250, "above the peak");
+}
+
+// One stream of reports into everything that reads them.
+class Stream {
+ public:
+  explicit Stream(HidKind kind) : kind_(kind), endpoint_(calibration_of(kind)), cap_(calibration_of(HidKind::spacemouse)) {
+    endpoint_.connected(now_s_);
+    cap_.connected(now_s_);
+  }
+
+  void take(const std::uint8_t* bytes, std::size_t size, std::uint8_t step) {
+    now_s_ += 50e-6 * step;
+    check_decoder(kind_, bytes, size);
+    if (step == 255) endpoint_.start_zeroing();
+    if (step == 254) endpoint_.unplugged();
+    endpoint_.take(bytes, size, now_s_);
+    check_handed_over(endpoint_, now_s_, last_sample_s_);
+    endpoint_.write(step * 1e3);
+    check_sent(kind_, endpoint_.next(now_s_));
+    endpoint_.written(now_s_);
+    cap_.take(bytes, size, now_s_);
+    require(std::isfinite(cap_.target_m(now_s_)), "target not finite");
+  }
+
+ private:
+  HidKind kind_;
+  HidEndpoint endpoint_;
+  SpaceMouseAxis cap_;
+  double now_s_ = 100.0;
+  double last_sample_s_ = 0.0;
+};
+
+}  // namespace
+
+std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const HidKind kind = kHidKinds[data[0] % kHidKinds.size()];
+  // The first bit above: paddle reports get the checksum they need to be read.
+  const bool mended = (data[0] & 4) != 0;
+  Stream stream(kind);
+  std::size_t count = 0;
+  for (std::size_t at = 1; at + 2 <= size; ++count) {
+    const std::size_t length = std::min<std::size_t>(data[at] % 80u, size - at - 2);
+    // A copy of just its length, for the address sanitizer to watch.
+    std::vector<std::uint8_t> report(data + at + 2, data + at + 2 + length);
+    if (mended && kind == HidKind::paddle && length == paddle::kReportBytes) {
+      report[0] = paddle::kMagic;
+      report[1] = paddle::kVersion;
+      report[2] = paddle::kFromDevice;
+      paddle::write32(report.data() + paddle::kChecksumAt, paddle::crc32(report.data(), paddle::kChecksumAt));
+    }
+    stream.take(report.data(), report.size(), data[at + 1]);
+    at += 2 + length;
+  }
+  return count;
+}
+
+}  // namespace palpate::test
