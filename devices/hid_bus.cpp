@@ -32,10 +32,14 @@ bool speaks_by_itself(HidKind kind) { return kind == HidKind::paddle || kind == 
 
 const char* hid_kind_words(HidKind kind) noexcept {
   switch (kind) {
-    case HidKind::paddle: return "haptic paddle";
-    case HidKind::polhem: return "Polhem / WoodenHaptics, one axis";
-    case HidKind::openffboard: return "OpenFFBoard, one axis";
-    case HidKind::spacemouse: return "SpaceMouse, input only: no force";
+    case HidKind::paddle:
+      return "haptic paddle";
+    case HidKind::polhem:
+      return "Polhem / WoodenHaptics, one axis";
+    case HidKind::openffboard:
+      return "OpenFFBoard, one axis";
+    case HidKind::spacemouse:
+      return "SpaceMouse, input only: no force";
   }
   return "";
 }
@@ -46,7 +50,8 @@ std::vector<HidKind> possible_kinds(const HidFound& found) {
     if (found.usage_page == kRawHidPage) return {HidKind::paddle, HidKind::polhem};
     return {};
   }
-  if (found.vendor_id == kOpenFfBoardVendor && found.product_id == kOpenFfBoard) return {HidKind::openffboard};
+  if (found.vendor_id == kOpenFfBoardVendor && found.product_id == kOpenFfBoard)
+    return {HidKind::openffboard};
   if (is_space_mouse(found)) return {HidKind::spacemouse};
   return {};
 }
@@ -68,7 +73,8 @@ Result<HidKind> identify(HidLine& line, const std::vector<HidKind>& kinds) {
     ++seen;
     for (const HidKind kind : kinds) {
       HidReading reading;
-      const ReportVerdict verdict = decode_report(kind, bytes.data(), static_cast<std::size_t>(size), reading);
+      const ReportVerdict verdict =
+          decode_report(kind, bytes.data(), static_cast<std::size_t>(size), reading);
       if (verdict == ReportVerdict::position) ++good[static_cast<std::size_t>(kind)];
       if (verdict == ReportVerdict::wrong_version) {
         wrong_version = true;
@@ -76,7 +82,8 @@ Result<HidKind> identify(HidLine& line, const std::vector<HidKind>& kinds) {
       }
     }
   }
-  if (seen == 0) return Error{"sends no reports; is its firmware running? reset it or install devices/firmware/paddle"};
+  if (seen == 0)
+    return Error{"sends no reports; is its firmware running? reset it or install devices/firmware/paddle"};
   for (const HidKind kind : kinds) {
     if (2 * good[static_cast<std::size_t>(kind)] > seen) return kind;
   }
@@ -85,7 +92,8 @@ Result<HidKind> identify(HidLine& line, const std::vector<HidKind>& kinds) {
                  " of the paddle protocol, expected 1; install devices/firmware/paddle"};
   }
   if (size != static_cast<int>(kLargestHidReport)) {
-    return Error{"wrong report size: found " + std::to_string(size) + " bytes, expected 64; its firmware is another one, "
+    return Error{"wrong report size: found " + std::to_string(size) +
+                 " bytes, expected 64; its firmware is another one, "
                  "install devices/firmware/paddle"};
   }
   return Error{"its reports are none that this program knows; install devices/firmware/paddle"};

@@ -43,11 +43,13 @@ class CalibrationReader {
       document_ = Json::parse(text_);
     } catch (const Json::parse_error& error) {
       const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-      return Error{position_prefix(path_, position_of_offset(text_, offset)) + "not JSON; expected one object"};
+      return Error{position_prefix(path_, position_of_offset(text_, offset)) +
+                   "not JSON; expected one object"};
     } catch (const std::exception& error) {
       return Error{path_ + ": " + error.what()};
     }
-    if (!document_.is_object()) return Error{position_prefix(path_, {}) + found(document_) + ", expected an object"};
+    if (!document_.is_object())
+      return Error{position_prefix(path_, {}) + found(document_) + ", expected an object"};
     read_kind();
     calibration_.counts_per_metre = number("counts_per_metre", {1.0, 1e9});
     calibration_.direction = number("direction", {-1.0, 1.0});
@@ -63,7 +65,8 @@ class CalibrationReader {
 
  private:
   void complain(const std::string& key, const std::string& words) {
-    if (!error_) error_ = Error{position_prefix(path_, position_of_value(text_, "/" + key)) + key + ": " + words};
+    if (!error_)
+      error_ = Error{position_prefix(path_, position_of_value(text_, "/" + key)) + key + ": " + words};
   }
 
   void read_kind() {
@@ -79,13 +82,15 @@ class CalibrationReader {
 
   double number(const char* key, Range range) {
     known_.emplace_back(key);
-    const std::string expected = ", expected a number from " + as_text(range.from) + " to " + as_text(range.up_to);
+    const std::string expected =
+        ", expected a number from " + as_text(range.from) + " to " + as_text(range.up_to);
     if (!document_.contains(key)) {
       complain(key, "missing" + expected);
       return range.from;
     }
     const Json& value = document_[key];
-    const bool good = value.is_number() && value.get<double>() >= range.from && value.get<double>() <= range.up_to;
+    const bool good =
+        value.is_number() && value.get<double>() >= range.from && value.get<double>() <= range.up_to;
     if (good) return value.get<double>();
     complain(key, found(value) + expected);
     return range.from;
@@ -146,8 +151,8 @@ Result<HidCalibration> read_hid_calibration(const std::string& folder, HidKind k
   text << file.rdbuf();
   Result<HidCalibration> calibration = parse_hid_calibration(text.str(), path);
   if (calibration && calibration->kind != kind) {
-    return Error{path + ": found the calibration of \"" + hid_kind_name(calibration->kind) + "\", expected \"" +
-                 hid_kind_name(kind) + "\", as the file's name says"};
+    return Error{path + ": found the calibration of \"" + hid_kind_name(calibration->kind) +
+                 "\", expected \"" + hid_kind_name(kind) + "\", as the file's name says"};
   }
   return calibration;
 }

@@ -20,8 +20,8 @@ struct HidCalibration {
   // block then is a command of the sign -direction: positive commands drive the
   // counts up.
   double direction = 1.0;
-  double rest_position_m = 0.0;   // of the tool while it is zeroed; negative: outside
-  double fastest_m_per_s = 0.0;   // of the tool; anything above is a jump of the encoder
+  double rest_position_m = 0.0;  // of the tool while it is zeroed; negative: outside
+  double fastest_m_per_s = 0.0;  // of the tool; anything above is a jump of the encoder
   // The rest is of devices that push.
   double force_N_per_unit = 0.0;  // unit: see HidCommand
   double stuck_after_s = 0.0;     // not a count for so long while pushing: the encoder is stuck

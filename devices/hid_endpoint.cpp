@@ -41,7 +41,8 @@ void HidEndpoint::take(const std::uint8_t* bytes, std::size_t size, double now_s
   monitor_.take(bytes, size, now_s, commanded_N_.load(std::memory_order_relaxed));
   link_.monitor = monitor_.state();
   if (link_.monitor.confirmed != confirmed) {
-    const double sent_s = sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
+    const double sent_s =
+        sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
     if (sent_s > 0.0) link_.round_trip_s = now_s - sent_s;
   }
   state_.write(link_);

@@ -68,7 +68,7 @@ class HidEndpoint final : public HidLinkUser {
 
   HidCalibration calibration_;
   std::atomic<bool> zeroing_asked_{false};
-  std::atomic<double> commanded_N_{0.0};    // last sent
+  std::atomic<double> commanded_N_{0.0};  // last sent
   std::atomic<double> last_written_s_{0.0};
   std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence
   static_assert(std::atomic<double>::is_always_lock_free);

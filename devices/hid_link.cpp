@@ -63,7 +63,11 @@ Result<HidOpened> open_first(HidBus& bus, const std::vector<HidKind>& kinds, boo
 }
 
 HidLink::HidLink(HidBus& bus, HidLinkUser& user, HidOpened opened)
-    : bus_(bus), user_(user), found_(std::move(opened.found)), kind_(opened.kind), line_(std::move(opened.line)) {}
+    : bus_(bus),
+      user_(user),
+      found_(std::move(opened.found)),
+      kind_(opened.kind),
+      line_(std::move(opened.line)) {}
 
 HidLink::~HidLink() { stop(); }
 
@@ -87,7 +91,8 @@ Status HidLink::start() {
     if (pushes(kind_)) writer_ = std::thread([this] { write_all(); });
   } catch (const std::system_error& error) {
     stop();
-    return Error{std::string("cannot start a thread for the device: ") + error.what() + "; close other programs"};
+    return Error{std::string("cannot start a thread for the device: ") + error.what() +
+                 "; close other programs"};
   }
   return {};
 }

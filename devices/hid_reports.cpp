@@ -22,9 +22,18 @@ constexpr std::uint8_t kFfbReport = 0xA1;
 constexpr std::uint16_t kFfbAxis = 0xA01;
 constexpr std::uint32_t kFfbPosition = 0x9;
 constexpr std::uint16_t kFfbEffects = 0xA03;
-constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4, kFfbState = 0x5;
+constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4,
+                        kFfbState = 0x5;
 constexpr std::uint64_t kFfbConstantForce = 1;
-enum FfbType : std::uint8_t { kWrite = 0, kRequest = 1, kWriteTo = 3, kAck = 10, kNotFound = 13, kNotify = 14, kErr = 15 };
+enum FfbType : std::uint8_t {
+  kWrite = 0,
+  kRequest = 1,
+  kWriteTo = 3,
+  kAck = 10,
+  kNotFound = 13,
+  kNotify = 14,
+  kErr = 15
+};
 
 // Far beyond any deflection of a SpaceMouse.
 constexpr int kSpaceMouseMost = 1000;
@@ -33,9 +42,12 @@ ReportVerdict decode_paddle(const std::uint8_t* bytes, std::size_t size, HidRead
   if (size != paddle::kReportBytes) return ReportVerdict::corrupt;
   paddle::FromDevice in{};
   switch (paddle::decode(bytes, in)) {
-    case paddle::kGood: break;
-    case paddle::kBadVersion: return ReportVerdict::wrong_version;
-    default: return ReportVerdict::corrupt;
+    case paddle::kGood:
+      break;
+    case paddle::kBadVersion:
+      return ReportVerdict::wrong_version;
+    default:
+      return ReportVerdict::corrupt;
   }
   reading.counts = in.counts;
   reading.sequence = in.sequence;
@@ -84,7 +96,8 @@ ReportVerdict decode_spacemouse(const std::uint8_t* bytes, std::size_t size, Hid
   if (bytes[0] != 1) return ReportVerdict::nothing;  // rotation, buttons, battery
   if (size < 7) return ReportVerdict::corrupt;
   for (const std::size_t at : {1u, 3u, 5u}) {
-    if (std::abs(static_cast<std::int16_t>(read16(bytes + at))) > kSpaceMouseMost) return ReportVerdict::corrupt;
+    if (std::abs(static_cast<std::int16_t>(read16(bytes + at))) > kSpaceMouseMost)
+      return ReportVerdict::corrupt;
   }
   reading.counts = static_cast<std::int16_t>(read16(bytes + 5));
   return ReportVerdict::position;
@@ -104,8 +117,8 @@ std::uint8_t* append(OutReports& reports, std::uint8_t id, std::size_t size) noe
   return bytes + 1;
 }
 
-void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::uint32_t command, std::uint64_t data,
-                std::uint64_t address) noexcept {
+void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::uint32_t command,
+                std::uint64_t data, std::uint64_t address) noexcept {
   std::uint8_t* at = append(reports, kFfbReport, kFfbBytes - 1);
   at[0] = type;
   write16(at + 1, object);
@@ -126,10 +139,14 @@ void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
 
 const char* hid_kind_name(HidKind kind) noexcept {
   switch (kind) {
-    case HidKind::paddle: return "paddle";
-    case HidKind::polhem: return "polhem";
-    case HidKind::openffboard: return "openffboard";
-    case HidKind::spacemouse: return "spacemouse";
+    case HidKind::paddle:
+      return "paddle";
+    case HidKind::polhem:
+      return "polhem";
+    case HidKind::openffboard:
+      return "openffboard";
+    case HidKind::spacemouse:
+      return "spacemouse";
   }
   return "";
 }
@@ -138,10 +155,14 @@ ReportVerdict decode_report(HidKind kind, const std::uint8_t* bytes, std::size_t
                             HidReading& reading) noexcept {
   reading = {};
   switch (kind) {
-    case HidKind::paddle: return decode_paddle(bytes, size, reading);
-    case HidKind::polhem: return decode_polhem(bytes, size, reading);
-    case HidKind::openffboard: return decode_openffboard(bytes, size, reading);
-    case HidKind::spacemouse: return decode_spacemouse(bytes, size, reading);
+    case HidKind::paddle:
+      return decode_paddle(bytes, size, reading);
+    case HidKind::polhem:
+      return decode_polhem(bytes, size, reading);
+    case HidKind::openffboard:
+      return decode_openffboard(bytes, size, reading);
+    case HidKind::spacemouse:
+      return decode_spacemouse(bytes, size, reading);
   }
   return ReportVerdict::corrupt;
 }
@@ -161,8 +182,8 @@ OutReports encode_command(HidKind kind, const HidCommand& command) noexcept {
   const std::int16_t units = command.drive ? as_int16(command.units) : static_cast<std::int16_t>(0);
   switch (kind) {
     case HidKind::paddle:
-      paddle::encode(paddle::FromHost{command.drive ? paddle::kDrive : std::uint8_t{0}, command.sequence, units,
-                                      command.heartbeat},
+      paddle::encode(paddle::FromHost{command.drive ? paddle::kDrive : std::uint8_t{0}, command.sequence,
+                                      units, command.heartbeat},
                      append(reports, 0, paddle::kReportBytes));
       break;
     case HidKind::polhem:
@@ -172,7 +193,8 @@ OutReports encode_command(HidKind kind, const HidCommand& command) noexcept {
       append_ffb(reports, kRequest, kFfbAxis, kFfbPosition, 0, 0);
       append_ffb_force(reports, units);
       break;
-    case HidKind::spacemouse: break;
+    case HidKind::spacemouse:
+      break;
   }
   return reports;
 }

@@ -53,7 +53,8 @@ struct HidReading {
 };
 
 // `bytes` as read from hidraw, a report id included where there is one.
-ReportVerdict decode_report(HidKind kind, const std::uint8_t* bytes, std::size_t size, HidReading& reading) noexcept;
+ReportVerdict decode_report(HidKind kind, const std::uint8_t* bytes, std::size_t size,
+                            HidReading& reading) noexcept;
 
 // Width of the counter behind `counts`; it wraps.
 constexpr int count_bits(HidKind kind) noexcept { return kind == HidKind::polhem ? 16 : 32; }

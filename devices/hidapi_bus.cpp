@@ -43,7 +43,8 @@ class HidapiLine final : public HidLine {
   }
 
   int read(std::uint8_t* bytes, std::size_t capacity) noexcept override {
-    return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity) : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
+    return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity)
+                        : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
   }
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
     return hid_write(writer_, bytes, size) >= 0;
@@ -62,7 +63,9 @@ class HidapiLine final : public HidLine {
 };
 
 // hidapi lists a node once for each usage of its descriptor.
-bool better(const HidFound& a, const HidFound& b) { return possible_kinds(a).size() > possible_kinds(b).size(); }
+bool better(const HidFound& a, const HidFound& b) {
+  return possible_kinds(a).size() > possible_kinds(b).size();
+}
 
 }  // namespace
 
@@ -71,15 +74,19 @@ std::string open_error_words(const std::string& path, int error_number) {
     case ENOENT:
     case ENXIO:
     case ENODEV:
-      return path + ": no node although the device is plugged in; unplug it and plug it in again (in a container: "
-                    "pass the node in)";
+      return path +
+             ": no node although the device is plugged in; unplug it and plug it in again (in a container: "
+             "pass the node in)";
     case EACCES:
     case EPERM:
-      return path + ": no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
-                    "device in again";
+      return path +
+             ": no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
+             "device in again";
     case EBUSY:
-    case EWOULDBLOCK: return path + ": in use by another program; close it";
-    default: return path + ": " + std::strerror(error_number);
+    case EWOULDBLOCK:
+      return path + ": in use by another program; close it";
+    default:
+      return path + ": " + std::strerror(error_number);
   }
 }
 
@@ -95,8 +102,8 @@ std::vector<HidFound> HidapiBus::list() {
     found.product_id = info->product_id;
     found.usage_page = info->usage_page;
     found.usage = info->usage;
-    const auto same = std::find_if(all.begin(), all.end(),
-                                   [&](const HidFound& other) { return other.path == found.path; });
+    const auto same =
+        std::find_if(all.begin(), all.end(), [&](const HidFound& other) { return other.path == found.path; });
     if (same == all.end()) {
       all.push_back(found);
     } else if (better(found, *same)) {

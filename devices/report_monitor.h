@@ -33,16 +33,16 @@ struct MonitorSettings {
 
 // What is known after a report; handed to the haptics thread as a whole.
 struct MonitorState {
-  std::uint64_t samples = 0;     // accepted so far; 0: none
-  std::int64_t counts = 0;       // unwrapped, of the newest accepted
-  double sample_time_s = 0.0;    // host clock, strictly increasing
+  std::uint64_t samples = 0;   // accepted so far; 0: none
+  std::int64_t counts = 0;     // unwrapped, of the newest accepted
+  double sample_time_s = 0.0;  // host clock, strictly increasing
   double zero_counts = 0.0;
   double transient_until_s = 0.0;
-  double confirmed_at_s = 0.0;   // when `confirmed` last went on
+  double confirmed_at_s = 0.0;  // when `confirmed` last went on
   std::uint32_t confirmed = 0;
-  std::uint32_t transient = 0;   // device_fault, until transient_until_s
-  std::uint32_t lost = 0;        // device_fault, until zeroed
-  std::uint32_t zeroings = 0;    // done so far
+  std::uint32_t transient = 0;  // device_fault, until transient_until_s
+  std::uint32_t lost = 0;       // device_fault, until zeroed
+  std::uint32_t zeroings = 0;   // done so far
   Zeroing zeroing = Zeroing::needed;
   float zeroing_progress = 0.0F;
   bool grip = false;
@@ -81,8 +81,8 @@ class ReportMonitor {
   MonitorState state_;
   DeviceClock clock_;
   HidReading last_;
-  bool connected_ = false;  // a report was accepted since the start or since unplugging
-  double read_time_s_ = 0.0;  // of the reading in hand
+  bool connected_ = false;                     // a report was accepted since the start or since unplugging
+  double read_time_s_ = 0.0;                   // of the reading in hand
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three reports, newest first
   double still_since_s_ = 0.0;
   double zeroing_since_s_ = -1.0;  // below 0: not begun

@@ -28,12 +28,14 @@ void SpaceMouseAxis::unplugged() noexcept {
 void SpaceMouseAxis::take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   HidReading reading;
   switch (decode_report(HidKind::spacemouse, bytes, size, reading)) {
-    case ReportVerdict::position: break;
+    case ReportVerdict::position:
+      break;
     case ReportVerdict::corrupt:
       deflection_.corrupt_until_s = now_s + kHold_s;
       newest_.write(deflection_);
       return;
-    default: return;
+    default:
+      return;
   }
   deflection_.interval_s = std::clamp(now_s - deflection_.at_s, kShortest_s, kLongest_s);
   deflection_.at_s = now_s;

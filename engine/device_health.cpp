@@ -15,12 +15,14 @@ constexpr std::array<Words, 11> kWords = {{
     {device_fault::kOutOfOrder, "a report came out of order: no force until they are in order again"},
     {device_fault::kBurst, "old reports came in a burst: no force until they are on time again"},
     {device_fault::kCorrupt, "a report was corrupted: no force until they are good again; check the cable"},
-    {device_fault::kStuck, "the position is stuck although the motor pushes: check the encoder, then zero the device"},
+    {device_fault::kStuck,
+     "the position is stuck although the motor pushes: check the encoder, then zero the device"},
     {device_fault::kJump, "the position jumped: check the encoder, then zero the device"},
     {device_fault::kReset, "the firmware started again: check its supply, then zero the device"},
     {device_fault::kWriteStalled, "commands do not reach the device: no force until they do"},
     {device_fault::kOwn, "the device reports a fault of its own: check its motor and encoder"},
-    {device_fault::kWrongFirmware, "the firmware speaks another version of the protocol: install the one in devices/"},
+    {device_fault::kWrongFirmware,
+     "the firmware speaks another version of the protocol: install the one in devices/"},
 }};
 
 }  // namespace
@@ -35,12 +37,14 @@ std::vector<std::string> device_fault_words(std::uint32_t faults) {
 
 std::string zeroing_words(const DeviceHealth& health) {
   switch (health.zeroing) {
-    case Zeroing::needed: return "bring the tool to its marked rest position and start zeroing; no force before";
+    case Zeroing::needed:
+      return "bring the tool to its marked rest position and start zeroing; no force before";
     case Zeroing::hold_still:
       return "zeroing: hold the tool still (" +
              std::to_string(static_cast<int>(std::lround(100.0F * health.zeroing_progress))) + " %)";
     case Zeroing::not_needed:
-    case Zeroing::done: break;
+    case Zeroing::done:
+      break;
   }
   return {};
 }

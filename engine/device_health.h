@@ -40,9 +40,9 @@ enum class Zeroing : std::uint8_t {
 struct DeviceHealth {
   std::uint32_t faults = 0;  // device_fault, now
   Zeroing zeroing = Zeroing::not_needed;
-  bool grip_held = false;          // of a dead-man switch on the handle
-  float zeroing_progress = 0.0F;   // 0 to 1 while hold_still
-  double sample_age_s = 0.0;       // of the newest sample
+  bool grip_held = false;         // of a dead-man switch on the handle
+  float zeroing_progress = 0.0F;  // 0 to 1 while hold_still
+  double sample_age_s = 0.0;      // of the newest sample
   // From a command to the report that confirms it; NaN: the device confirms none.
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
 

@@ -48,8 +48,9 @@ std::optional<std::vector<FaultTick>> FaultRecorder::take() {
 Status write_fault_file(const std::string& path, const std::vector<FaultTick>& ticks) {
   Result<AtomicFile> file = AtomicFile::create(path, false);
   if (!file) return file.error();
-  file->write("loop_time_s,sample_time_s,position_m,velocity_m_per_s,wanted_N,rendered_N,sample_age_s,"
-              "round_trip_s,samples,faults,device_faults,limiter_flags\n");
+  file->write(
+      "loop_time_s,sample_time_s,position_m,velocity_m_per_s,wanted_N,rendered_N,sample_age_s,"
+      "round_trip_s,samples,faults,device_faults,limiter_flags\n");
   for (const FaultTick& tick : ticks) {
     std::string line;
     for (const double value : {tick.loop_time_s, tick.sample_time_s, tick.position_m, tick.velocity_m_per_s,

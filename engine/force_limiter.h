@@ -26,21 +26,21 @@
 namespace palpate {
 
 struct ForceLimits {
-  double largest_N = 10.0;            // peak, > 0
-  double fastest_N_per_s = 5000.0;    // > 0
-  double ramp_s = 0.3;                // >= 0
+  double largest_N = 10.0;          // peak, > 0
+  double fastest_N_per_s = 5000.0;  // > 0
+  double ramp_s = 0.3;              // >= 0
   // May be held for ever, > 0; infinite: no thermal budget.
   double continuous_N = std::numeric_limits<double>::infinity();
-  double thermal_time_s = 10.0;       // tau, > 0
-  double stale_after_s = 0.01;        // age of a sample that is too old to push by
-  double stop_s = 0.01;               // from any force to none; >= 0
+  double thermal_time_s = 10.0;  // tau, > 0
+  double stale_after_s = 0.01;   // age of a sample that is too old to push by
+  double stop_s = 0.01;          // from any force to none; >= 0
 };
 
 // What is known of the moment beside the force that is wanted.
 struct ForceConditions {
   double sample_age_s = 0.0;  // NaN counts as stale
   bool device_fault = false;
-  bool released = false;      // a dead-man switch is in use and nobody holds it
+  bool released = false;  // a dead-man switch is in use and nobody holds it
 };
 
 // What the limiter did to one force; bits, for TickSnapshot's neighbours.

@@ -36,8 +36,8 @@ Ended run(void (*before)(), void (*end)()) {
   waitpid(child, &ended.status, 0);
   std::uint8_t bytes[65];
   paddle::FromHost out{};
-  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == 65 && paddle::decode(bytes + 1, out) == paddle::kGood &&
-               out.flags == 0 && out.current_mA == 0;
+  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == 65 &&
+               paddle::decode(bytes + 1, out) == paddle::kGood && out.flags == 0 && out.current_mA == 0;
   close(pipe_ends[0]);
   return ended;
 }

@@ -55,15 +55,18 @@ TEST(HidBus, SaysWhyADeviceCannotBeUsed) {
   bus.refusals = 1;
   EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw7: no permission");
   bus.silent = true;
-  EXPECT_EQ(diagnose(bus).at(0).problem,
-            "/dev/hidraw7: sends no reports; is its firmware running? reset it or install devices/firmware/paddle");
+  EXPECT_EQ(
+      diagnose(bus).at(0).problem,
+      "/dev/hidraw7: sends no reports; is its firmware running? reset it or install devices/firmware/paddle");
   Report newer(64, 0);
   paddle::encode(paddle::FromDevice{}, newer.data());
   newer[1] = 2;
-  EXPECT_EQ(problem_of(newer), "/dev/hidraw7: wrong firmware: speaks version 2 of the paddle protocol, expected 1; "
-                               "install devices/firmware/paddle");
-  EXPECT_EQ(problem_of(Report(32, 7)), "/dev/hidraw7: wrong report size: found 32 bytes, expected 64; its firmware is "
-                                       "another one, install devices/firmware/paddle");
+  EXPECT_EQ(problem_of(newer),
+            "/dev/hidraw7: wrong firmware: speaks version 2 of the paddle protocol, expected 1; "
+            "install devices/firmware/paddle");
+  EXPECT_EQ(problem_of(Report(32, 7)),
+            "/dev/hidraw7: wrong report size: found 32 bytes, expected 64; its firmware is "
+            "another one, install devices/firmware/paddle");
   EXPECT_EQ(problem_of(Report(64, 7)),
             "/dev/hidraw7: its reports are none that this program knows; install devices/firmware/paddle");
 }

@@ -51,18 +51,22 @@ TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
             "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 to 10");
   EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
-            "paddle.json:2:11: kind: found \"joystick\", expected \"paddle\", \"polhem\", \"openffboard\" or \"spacemouse\"");
-  EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3")).rfind(
-                "paddle.json:13:28: colour: unknown; expected kind, counts_per_metre", 0), 0u);
+            "paddle.json:2:11: kind: found \"joystick\", expected \"paddle\", \"polhem\", \"openffboard\" or "
+            "\"spacemouse\"");
+  EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
+                .rfind("paddle.json:13:28: colour: unknown; expected kind, counts_per_metre", 0),
+            0u);
 }
 
 TEST(HidCalibration, SaysWhenTheFileIsNotThereOrOfAnotherKind) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(read_hid_calibration(folder.path(), HidKind::polhem).error().message,
-            folder.file("polhem.json") + ": cannot read the calibration; put the file there, see assets/devices/");
+  EXPECT_EQ(
+      read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+      folder.file("polhem.json") + ": cannot read the calibration; put the file there, see assets/devices/");
   folder.with_file("polhem.json", good());
   EXPECT_EQ(read_hid_calibration(folder.path(), HidKind::polhem).error().message,
-            folder.file("polhem.json") + ": found the calibration of \"paddle\", expected \"polhem\", as the file's name says");
+            folder.file("polhem.json") +
+                ": found the calibration of \"paddle\", expected \"polhem\", as the file's name says");
 }
 
 }  // namespace

@@ -91,7 +91,8 @@ TEST(HidReports, ReadsTheSpaceMouse) {
   HidReading reading;
   ASSERT_EQ(decode(HidKind::spacemouse, {1, 0, 0, 0, 0, 0xA2, 0xFE}, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, -350);
-  ASSERT_EQ(decode(HidKind::spacemouse, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading), ReportVerdict::position)
+  ASSERT_EQ(decode(HidKind::spacemouse, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading),
+            ReportVerdict::position)
       << "the wireless ones send six axes";
   EXPECT_EQ(reading.counts, 5);
   EXPECT_EQ(decode(HidKind::spacemouse, {2, 0, 0, 0, 0, 5, 0}, reading), ReportVerdict::nothing);

@@ -84,7 +84,8 @@ TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
   test::FakeHidBus bus(test::found_space_mouse());
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
   AutoDevice device;
-  device.use(std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {HidKind::spacemouse}))));
+  device.use(
+      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {HidKind::spacemouse}))));
   DeviceSample sample;
   for (int ms = 0; ms < 5; ++ms) device.read(1e-3 * ms, sample);
   EXPECT_TRUE(device.hand_is_exploring());
@@ -100,7 +101,8 @@ TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
 TEST(SpaceMouse, IsADeviceWithoutForce) {
   test::FakeHidBus bus(test::found_space_mouse());
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
-  SpaceMouseDevice device(std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {HidKind::spacemouse}))));
+  SpaceMouseDevice device(
+      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {HidKind::spacemouse}))));
   EXPECT_FALSE(device.renders_force());
   EXPECT_EQ(device.note(), "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8");
   ASSERT_TRUE(device.open().ok());

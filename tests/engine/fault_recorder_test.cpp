@@ -91,7 +91,8 @@ TEST(FaultRecorder, WritesATable) {
   const std::string line = "1.5,0,0.0025,0,3,0,0,0,1,256,1,0\n";
   EXPECT_EQ(test::read_text(folder.file("fault.csv")),
             "loop_time_s,sample_time_s,position_m,velocity_m_per_s,wanted_N,rendered_N,sample_age_s,"
-            "round_trip_s,samples,faults,device_faults,limiter_flags\n" + line + line);
+            "round_trip_s,samples,faults,device_faults,limiter_flags\n" +
+                line + line);
   EXPECT_FALSE(write_fault_file(folder.file("fault.csv"), {}).ok()) << "never writes over";
 }
 

@@ -14,14 +14,18 @@
 
 namespace palpate::test {
 
-inline HidFound found_teensy() { return {"/dev/hidraw7", "Teensyduino RawHID", 0x16C0, 0x0486, 0xFFAB, 0x0200}; }
+inline HidFound found_teensy() {
+  return {"/dev/hidraw7", "Teensyduino RawHID", 0x16C0, 0x0486, 0xFFAB, 0x0200};
+}
 inline HidFound found_space_mouse() { return {"/dev/hidraw8", "SpaceNavigator", 0x046D, 0xC626, 1, 8}; }
 
 class FakeHidBus final : public HidBus {
  public:
   explicit FakeHidBus(HidFound found = found_teensy()) : found_(std::move(found)) {}
 
-  std::vector<HidFound> list() override { return plugged_in ? std::vector<HidFound>{found_} : std::vector<HidFound>{}; }
+  std::vector<HidFound> list() override {
+    return plugged_in ? std::vector<HidFound>{found_} : std::vector<HidFound>{};
+  }
   Result<std::unique_ptr<HidLine>> open(const HidFound&) override {
     ++opened;
     if (refusals > 0) {
@@ -41,8 +45,8 @@ class FakeHidBus final : public HidBus {
   std::atomic<int> refusals{0};
   std::atomic<int> opened{0};
   std::atomic<int> writes{0};
-  std::atomic<int> write_ms{0};      // how long each takes
-  std::atomic<int> counts{0};        // of the encoder
+  std::atomic<int> write_ms{0};  // how long each takes
+  std::atomic<int> counts{0};    // of the encoder
   std::atomic<bool> silent{false};
   Report report;  // instead of the firmware's; before the threads start
 

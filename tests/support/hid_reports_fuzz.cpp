@@ -35,14 +35,16 @@ void check_decoder(HidKind kind, const std::uint8_t* bytes, std::size_t size) {
   HidReading reading;
   const ReportVerdict verdict = decode_report(kind, bytes, size, reading);
   HidReading again;
-  require(decode_report(kind, bytes, size, again) == verdict && again.counts == reading.counts, "not repeatable");
+  require(decode_report(kind, bytes, size, again) == verdict && again.counts == reading.counts,
+          "not repeatable");
   if (verdict != ReportVerdict::position) return;
   if (kind == HidKind::spacemouse) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
   if (kind == HidKind::polhem) require(std::abs(reading.counts) <= 32768, "beyond 16 bits");
   if (kind == HidKind::openffboard) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
   if (kind != HidKind::paddle) return;
   require(size == paddle::kReportBytes, "not 64 bytes");
-  require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt), "checksum");
+  require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt),
+          "checksum");
 }
 
 void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_s) {
@@ -60,7 +62,8 @@ void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_
 
 void check_sent(HidKind kind, const OutReports& reports) {
   require(reports.count <= reports.sizes.size(), "too many reports");
-  for (std::size_t i = 0; i < reports.count; ++i) require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
+  for (std::size_t i = 0; i < reports.count; ++i)
+    require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
   if (kind != HidKind::paddle || reports.count == 0) return;
   paddle::FromHost out{};
   require(paddle::decode(reports.bytes[0].data() + 1, out) == paddle::kGood, "sent a bad report");
@@ -70,7 +73,8 @@ void check_sent(HidKind kind, const OutReports& reports) {
 // One stream of reports into everything that reads them.
 class Stream {
  public:
-  explicit Stream(HidKind kind) : kind_(kind), endpoint_(calibration_of(kind)), cap_(calibration_of(HidKind::spacemouse)) {
+  explicit Stream(HidKind kind)
+      : kind_(kind), endpoint_(calibration_of(kind)), cap_(calibration_of(HidKind::spacemouse)) {
     endpoint_.connected(now_s_);
     cap_.connected(now_s_);
   }

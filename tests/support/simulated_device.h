@@ -49,7 +49,9 @@ class DeviceModel {
 class PaddleModel final : public DeviceModel, public paddle::Board {
  public:
   PaddleModel() { restart(); }
-  void restart() override { firmware_ = std::make_unique<paddle::Firmware>(*this, std::int16_t{1250}, ++boot_); }
+  void restart() override {
+    firmware_ = std::make_unique<paddle::Firmware>(*this, std::int16_t{1250}, ++boot_);
+  }
   void hear(const Report& report) override { inbox_.push_back(report); }
   void step(std::uint32_t now_us, std::int32_t counts) override {
     now_us_ = now_us;
@@ -75,7 +77,9 @@ class PaddleModel final : public DeviceModel, public paddle::Board {
     std::copy(first.begin(), first.end(), report);
     return true;
   }
-  void send(const std::uint8_t* report) override { outbox.emplace_back(report, report + paddle::kReportBytes); }
+  void send(const std::uint8_t* report) override {
+    outbox.emplace_back(report, report + paddle::kReportBytes);
+  }
 
   std::unique_ptr<paddle::Firmware> firmware_;
   std::deque<Report> inbox_;
@@ -160,7 +164,10 @@ class SimulatedDevice {
   static constexpr int kStep_us = 250;
 
   explicit SimulatedDevice(HidKind kind)
-      : calibration(example_calibration(kind)), device(calibration), model(device_model(kind)), live(device, slot_) {
+      : calibration(example_calibration(kind)),
+        device(calibration),
+        model(device_model(kind)),
+        live(device, slot_) {
     slot_.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(kStiffness_N_per_m)}));
     live.warm_up();
     device.endpoint.connected(kStart_s);

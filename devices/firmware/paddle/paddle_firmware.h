@@ -3,11 +3,10 @@
 //
 // A report from the host is obeyed when its checksum is right and it is newer
 // than the last; one without drive stops the motor whatever its number, and the
-// count goes on from that number, as for a host that starts again. The motor stops by itself when there was no such report for kWatchdog_us, when the
-// heartbeat stood still for kHeartbeat_us, and on a fault of motor or encoder.
-// It starts again only after a report without drive, or with no current, so
-// that it does not resume in the middle of a push.
-// Thread guarantee: one thread.
+// count goes on from that number, as for a host that starts again. The motor stops by itself when there was
+// no such report for kWatchdog_us, when the heartbeat stood still for kHeartbeat_us, and on a fault of motor
+// or encoder. It starts again only after a report without drive, or with no current, so that it does not
+// resume in the middle of a push. Thread guarantee: one thread.
 #pragma once
 
 #ifndef ARDUINO  // a sketch includes the files of its folder itself
@@ -84,8 +83,9 @@ class Firmware {
 
   void drive_to(int16_t current_mA, bool driving) {
     driving_ = driving;
-    current_mA_ = current_mA > most_mA_ ? most_mA_
-                                        : (current_mA < -most_mA_ ? static_cast<int16_t>(-most_mA_) : current_mA);
+    current_mA_ = current_mA > most_mA_
+                      ? most_mA_
+                      : (current_mA < -most_mA_ ? static_cast<int16_t>(-most_mA_) : current_mA);
     board_.set_current_mA(current_mA_);
   }
 
@@ -97,9 +97,9 @@ class Firmware {
 
   void tell(uint32_t now_us) {
     FromDevice in;
-    in.status = static_cast<uint8_t>((driving_ ? kDriving : 0) | (watchdog_ ? kStopped : 0) |
-                                     (board_.motor_fault() ? kMotorFault : 0) |
-                                     (board_.encoder_fault() ? kEncoderFault : 0) | (board_.grip() ? kGrip : 0));
+    in.status = static_cast<uint8_t>(
+        (driving_ ? kDriving : 0) | (watchdog_ ? kStopped : 0) | (board_.motor_fault() ? kMotorFault : 0) |
+        (board_.encoder_fault() ? kEncoderFault : 0) | (board_.grip() ? kGrip : 0));
     in.sequence = ++sequence_;
     in.time_us = now_us - started_us_;
     in.counts = board_.counts();

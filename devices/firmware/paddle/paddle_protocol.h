@@ -25,11 +25,11 @@ constexpr uint32_t kHeartbeat_us = 50000;
 constexpr uint32_t kReportPeriod_us = 1000;
 
 // Status of the device, bits.
-constexpr uint8_t kDriving = 1;        // the motor is on
-constexpr uint8_t kStopped = 2;        // by the watchdog; until a valid report comes
-constexpr uint8_t kMotorFault = 4;     // over-current or over-temperature
+constexpr uint8_t kDriving = 1;     // the motor is on
+constexpr uint8_t kStopped = 2;     // by the watchdog; until a valid report comes
+constexpr uint8_t kMotorFault = 4;  // over-current or over-temperature
 constexpr uint8_t kEncoderFault = 8;
-constexpr uint8_t kGrip = 16;          // the switch on the handle is held
+constexpr uint8_t kGrip = 16;  // the switch on the handle is held
 constexpr uint8_t kKnownStatus = 31;
 
 // Flags of the host, bits.
@@ -37,20 +37,20 @@ constexpr uint8_t kDrive = 1;  // without it the current counts as 0
 
 struct FromDevice {
   uint8_t status;
-  uint32_t sequence;     // one more for each report
-  uint32_t time_us;      // since the start, wraps
-  int32_t counts;        // of the encoder
-  int16_t current_mA;    // that the motor gets
-  uint16_t boot;         // another number after each start of the firmware
-  uint32_t confirmed;    // sequence of the last valid report from the host
-  uint16_t rejected;     // reports from the host that were not valid, wraps
+  uint32_t sequence;   // one more for each report
+  uint32_t time_us;    // since the start, wraps
+  int32_t counts;      // of the encoder
+  int16_t current_mA;  // that the motor gets
+  uint16_t boot;       // another number after each start of the firmware
+  uint32_t confirmed;  // sequence of the last valid report from the host
+  uint16_t rejected;   // reports from the host that were not valid, wraps
 };
 
 struct FromHost {
   uint8_t flags;
-  uint32_t sequence;     // one more for each report; a report with no drive is obeyed whatever it says
-  int16_t current_mA;    // positive: towards growing counts
-  uint16_t heartbeat;    // one more for each tick of the host's haptics thread, wraps
+  uint32_t sequence;   // one more for each report; a report with no drive is obeyed whatever it says
+  int16_t current_mA;  // positive: towards growing counts
+  uint16_t heartbeat;  // one more for each tick of the host's haptics thread, wraps
 };
 
 enum Verdict : uint8_t { kGood, kBadMagic, kBadVersion, kBadKind, kBadChecksum, kBadContent };

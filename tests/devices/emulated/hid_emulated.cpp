@@ -49,8 +49,9 @@ TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
 TEST_F(HidEmulated, SaysThatTheFirmwareIsOfAnotherVersion) {
   EmulatedPaddle paddle;
   paddle.report_version = 3;
-  EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: wrong firmware: speaks version 3 of the paddle protocol, "
-                                         "expected 1; install devices/firmware/paddle");
+  EXPECT_EQ(diagnose(bus).at(0).problem,
+            "/dev/hidraw0: wrong firmware: speaks version 3 of the paddle protocol, "
+            "expected 1; install devices/firmware/paddle");
 }
 
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
@@ -105,9 +106,8 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
               1e3 * health.sample_age_s);
   EXPECT_GT(health.round_trip_s, 0.0);
   paddle.gone = true;
-  EXPECT_TRUE(tick_until(device, 2.0, [](const DeviceHealth& lost) {
-    return (lost.faults & device_fault::kUnplugged) != 0;
-  }));
+  EXPECT_TRUE(tick_until(
+      device, 2.0, [](const DeviceHealth& lost) { return (lost.faults & device_fault::kUnplugged) != 0; }));
   paddle.gone = false;
   EXPECT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& back) {
     return back.faults == device_fault::kUnplugged && back.zeroing == Zeroing::needed;

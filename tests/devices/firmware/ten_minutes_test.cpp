@@ -1,0 +1,91 @@
+// The reference firmware and the host, talking for ten minutes of simulated time.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "engine/random_stream.h"
+#include "tests/support/simulated_device.h"
+
+namespace palpate {
+namespace {
+
+using test::Report;
+using test::SimulatedDevice;
+
+// Ten minutes, with losses, corruption and reports out of order on both ways,
+// stalls and restarts; whatever happens, the motor never gets a force that no
+// model could have asked for, nor a step, nor any force on old data.
+TEST(PaddleFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
+  SimulatedDevice simulated(HidKind::paddle);
+  RandomStream random(1, 0);
+  std::int64_t lost = 0, corrupted = 0, swapped = 0, restarts = 0, stalls = 0;
+  int silent_in = 0, silent_out = 0;
+  Report waiting;
+  const auto trouble = [&](double share) { return random.uniform(0.0, 1.0) < share; };
+  simulated.on_the_way_in = [&](const Report& report) {
+    if (silent_in > 0) --silent_in;
+    if (silent_in > 0 || trouble(0.02)) {
+      ++lost;
+      return std::vector<Report>{};
+    }
+    std::vector<Report> some = {report};
+    if (trouble(0.0003)) {
+      ++corrupted;
+      some[0][random.index(64)] ^= static_cast<std::uint8_t>(1 + random.index(255));
+    }
+    if (!waiting.empty()) some.push_back(std::exchange(waiting, {}));
+    if (trouble(0.0003)) {
+      ++swapped;
+      waiting = std::exchange(some[0], some.back());
+      some.pop_back();
+    }
+    return some;
+  };
+  simulated.on_the_way_out = [&](Report& report) {
+    if (silent_out > 0) --silent_out;
+    if (silent_out > 0 || trouble(0.02)) {
+      ++lost;
+      return false;
+    }
+    if (trouble(0.001)) report[random.index(64)] ^= static_cast<std::uint8_t>(1 + random.index(255));
+    return true;
+  };
+  simulated.press();
+  double last_N = simulated.snapshot.rendered_N, pushed_s = 0.0, age_of_push_s = 0.0;
+  for (int tick = 0; tick < 600'000; ++tick) {
+    if (trouble(0.0001)) silent_in = static_cast<int>(random.index(100)), ++stalls;
+    if (trouble(0.0001)) silent_out = static_cast<int>(random.index(100)), ++stalls;
+    if (trouble(0.00001)) simulated.model->restart(), ++restarts;
+    // Someone who zeroes it whenever it asks.
+    if (simulated.snapshot.device.zeroing == Zeroing::needed) {
+      simulated.rest = true;
+      simulated.device.start_zeroing();
+    } else if (simulated.snapshot.device.zeroing == Zeroing::done) {
+      simulated.rest = false;
+    }
+    const LoopSnapshot& snapshot = simulated.tick();
+    const double motor_N = simulated.motor_N();
+    ASSERT_TRUE(std::isfinite(motor_N));
+    ASSERT_LE(motor_N, SimulatedDevice::kStiffness_N_per_m * 3.3e-3) << tick;
+    ASSERT_LE(std::abs(snapshot.rendered_N - last_N), 0.45) << tick;
+    last_N = snapshot.rendered_N;
+    if (snapshot.device.sample_age_s <= 0.008) age_of_push_s = simulated.now_s;
+    // The host needs 20 ms at most; a device that hears nothing, 50 ms.
+    ASSERT_TRUE(snapshot.rendered_N == 0.0 || simulated.now_s - age_of_push_s <= 0.0205) << tick;
+    ASSERT_TRUE(motor_N == 0.0 || simulated.now_s - age_of_push_s <= 0.0755) << tick;
+    if (motor_N > 0.5) pushed_s += 1e-3;
+  }
+  std::printf(
+      "ten minutes: %lld lost, %lld corrupted, %lld out of order, %lld stalls, %lld restarts; pushed for "
+      "%.0f s\n",
+      static_cast<long long>(lost), static_cast<long long>(corrupted), static_cast<long long>(swapped),
+      static_cast<long long>(stalls), static_cast<long long>(restarts), pushed_s);
+  EXPECT_GT(restarts, 0);
+  EXPECT_GT(pushed_s, 60.0) << "or nothing was shown";
+}
+
+}  // namespace
+}  // namespace palpate
