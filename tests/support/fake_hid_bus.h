@@ -59,9 +59,9 @@ class FakeHidBus final : public HidBus {
       if (!bus_.plugged_in) return -1;
       if (bus_.silent) return 0;
       const std::lock_guard<std::mutex> lock(bus_.mutex_);
-      const Report report = bus_.report.empty() ? bus_.from_paddle() : bus_.report;
-      std::copy(report.begin(), report.end(), bytes);
-      return static_cast<int>(report.size());
+      const Report next = bus_.report.empty() ? bus_.from_paddle() : bus_.report;
+      std::copy(next.begin(), next.end(), bytes);
+      return static_cast<int>(next.size());
     }
     bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
       std::this_thread::sleep_for(std::chrono::milliseconds(bus_.write_ms));
