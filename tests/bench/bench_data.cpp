@@ -1,0 +1,110 @@
+#include "tests/bench/bench_data.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "scenes/material/rig.h"
+#include "scenes/scene.h"
+#include "tests/support/random_points.h"
+
+namespace palpate::bench {
+namespace {
+
+template <typename T>
+T must(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return std::move(*result);
+}
+
+PreparedTraining prepare() {
+  RigSettings settings;
+  settings.seconds = 60.0;
+  const auto recording = std::make_shared<const Recording>(must(record(settings)).recording);
+  const Scene scene = must(load_scene("silicone_block"));
+  TrainingRequest request;
+  request.scene = scene.name;
+  request.features = scene.features;
+  request.jnd = scene.jnd;
+  MotionSource source({{"", recording}});
+  return must(prepare_training(source, request));
+}
+
+// A line "name: 123 kB" of this process's status.
+double status_bytes(const std::string& name) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind(name, 0) == 0) return 1024.0 * std::stod(line.substr(name.size()));
+  return 0.0;
+}
+
+}  // namespace
+
+const PreparedTraining& recorded() {
+  static const PreparedTraining prepared = prepare();
+  return prepared;
+}
+
+const Sites& recorded_sites() {
+  static const Sites sites = [] {
+    const Sites& all = recorded().sites;
+    const Eigen::Index count = std::min(all.count(), kPaperSites);
+    Sites some;
+    some.points.resize(all.dimension(), count);
+    some.target_N.resize(count);
+    some.row_scale.resize(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::Index i = k * all.count() / count;
+      some.points.col(k) = all.points.col(i);
+      some.target_N[k] = all.target_N[i];
+      some.row_scale[k] = all.row_scale[i];
+      some.group.push_back(all.group[static_cast<std::size_t>(i)]);
+    }
+    return some;
+  }();
+  return sites;
+}
+
+const Eigen::VectorXd& recorded_jnd_N() {
+  static const Eigen::VectorXd jnd_N = recorded_sites().row_scale.cwiseInverse();
+  return jnd_N;
+}
+
+RbfFunction recorded_function(Eigen::Index centres) {
+  const Sites& sites = recorded_sites();
+  RbfFunction function = test::random_function(KernelKind::cubic, sites.dimension(), static_cast<int>(centres), 1);
+  for (Eigen::Index j = 0; j < centres; ++j) function.centres.col(j) = sites.points.col(j * sites.count() / centres);
+  return function;
+}
+
+Sites made_sites(int dimension, Eigen::Index count) {
+  return test::smooth_sites(dimension, static_cast<int>(count), 0.005, 1);
+}
+
+VoxelGrid even_grid(const Sites& sites, const std::vector<int>& sizes) {
+  VoxelGrid grid;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const auto row = sites.points.row(static_cast<Eigen::Index>(k));
+    const double low = row.minCoeff();
+    const double step = (row.maxCoeff() - low) / (sizes[k] - 1);
+    std::vector<double> nodes;
+    for (int i = 0; i < sizes[k]; ++i) nodes.push_back(low + i * step);
+    grid.nodes.push_back(std::move(nodes));
+  }
+  return grid;
+}
+
+double peak_memory_of(const std::function<void()>& work) {
+  malloc_trim(0);  // what earlier work left in the heap would hide this one's
+  const double before = status_bytes("VmRSS:");
+  std::ofstream("/proc/self/clear_refs") << "5";  // Linux: the peak starts anew
+  work();
+  return std::max(0.0, status_bytes("VmHWM:") - before);
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,34 @@
+// What palpate-bench measures on: one recording of the virtual silicone block,
+// and smooth made-up sites where N or the dimension varies. Made once, always
+// the same.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "models/fit.h"
+
+namespace palpate::bench {
+
+// The number of sites of Hoever & Harders (2009).
+inline constexpr Eigen::Index kPaperSites = 6850;
+
+// The prepared recording: about 7,000 sites, four features.
+const PreparedTraining& recorded();
+// kPaperSites of its sites, evenly spread in time, and their thresholds.
+const Sites& recorded_sites();
+const Eigen::VectorXd& recorded_jnd_N();
+// `centres` of these sites with random weights.
+RbfFunction recorded_function(Eigen::Index centres);
+
+// A smooth force at random points with 5 mN of noise; thresholds are 1 / row_scale.
+Sites made_sites(int dimension, Eigen::Index count);
+
+// Equally spaced nodes over the sites' bounding box.
+VoxelGrid even_grid(const Sites& sites, const std::vector<int>& sizes);
+
+// Largest memory in use while `work` ran, less what was in use before, in
+// bytes; 0 where the system does not say.
+double peak_memory_of(const std::function<void()>& work);
+
+}  // namespace palpate::bench

@@ -1,0 +1,54 @@
+// palpate-bench: every figure of speed, in one run on one machine.
+//
+//   build/palpate-bench                                       all, about 5 minutes
+//   build/palpate-bench --benchmark_filter='^(evaluate|fit)/' the table, 1 minute
+//   build/palpate-bench --benchmark_filter='^evaluate/(scalar|rbf)/'   seconds
+//   build/palpate-bench --benchmark_out=bench.json --benchmark_out_format=json
+//   build/palpate-bench --benchmark_list_tests
+//
+// evaluate/   one query at a time, each waiting for the last
+// fit/        fits at 6,850 sites of a recording, `peak_MB` above what was there
+// size/       fits against the number of sites, 1,000 to 1,000,000
+// dimension/  fits and evaluation against the number of features, 1 to 8
+// peer/       other libraries on the same data, where they are installed
+//
+// Figures are medians over repetitions, of processor time for evaluate/, of wall
+// time for fits (which use all cores); only ratios within one run compare.
+#include <benchmark/benchmark.h>
+
+#include <fstream>
+#include <string>
+
+#include "models/parallel.h"
+#include "models/rbf_simd.h"
+#include "tests/bench/bench_report.h"
+
+namespace {
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0 || line.rfind("CPU part", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::AddCustomContext("cpu", cpu_name());
+  benchmark::AddCustomContext("threads of a fit", std::to_string(palpate::thread_count()));
+#ifdef __clang__
+  benchmark::AddCustomContext("compiler", "clang " __clang_version__);
+#else
+  benchmark::AddCustomContext("compiler", "g++ " __VERSION__);
+#endif
+  benchmark::AddCustomContext("build type", PALPATE_BUILD_TYPE);
+  benchmark::AddCustomContext("instructions", palpate::simd::target_name());
+  benchmark::AddCustomContext("commit", *PALPATE_COMMIT != '\0' ? PALPATE_COMMIT : "unknown");
+  palpate::bench::MedianReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  benchmark::Shutdown();
+  return 0;
+}
