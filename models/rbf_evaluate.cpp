@@ -12,7 +12,6 @@ namespace palpate {
 namespace {
 
 constexpr std::align_val_t kAlignment{64};
-constexpr double kTiny = 1e-100;
 
 // Zeroed, aligned to a cache line and to the widest vector.
 template <typename T>
@@ -26,8 +25,6 @@ std::shared_ptr<T[]> aligned_array(std::size_t count) {
 std::size_t round_up(Eigen::Index count, std::size_t multiple) {
   return (static_cast<std::size_t>(count) + multiple - 1) / multiple * multiple;
 }
-
-double without_denormals(double value) { return std::abs(value) < kTiny ? 0.0 : value; }
 
 // Two floats that differ and are both 0 or at least this differ by 1e-18 or
 // more, so that their squared distance is not denormal.
@@ -47,7 +44,8 @@ PointArrays::PointArrays(const Eigen::MatrixXd& points) : count_(points.cols()) 
   auto memory = aligned_array<double>(view_.stride * static_cast<std::size_t>(points.rows()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     for (Eigen::Index k = 0; k < points.rows(); ++k)
-      memory[static_cast<std::ptrdiff_t>(view_.stride) * k + i] = without_denormals(points(k, i));
+      memory[static_cast<std::ptrdiff_t>(view_.stride) * k + i] = simd::without_denormals(points(k, i));
+  if (points.size() > 0) view_.largest = points.cwiseAbs().maxCoeff();
   view_.coordinates = memory.get();
   memory_ = std::move(memory);
 }
@@ -55,12 +53,11 @@ PointArrays::PointArrays(const Eigen::MatrixXd& points) : count_(points.cols()) 
 RbfEvaluator::RbfEvaluator(const RbfFunction& function)
     : centres_(function.centres),
       tail_(function.tail.begin(), function.tail.end()),
-      degree_(tail_degree(function.kernel)),
       dimension_(function.dimension()),
       evaluate_(simd::evaluate_function(function.kernel, function.dimension())) {
   assert(validate_rbf_function(function).ok());
   auto weights = aligned_array<double>(centres_.view().padded);
-  for (Eigen::Index j = 0; j < function.weights.size(); ++j) weights[j] = without_denormals(function.weights[j]);
+  for (Eigen::Index j = 0; j < function.weights.size(); ++j) weights[j] = simd::without_denormals(function.weights[j]);
   weights_ = std::move(weights);
 }
 

@@ -3,12 +3,12 @@
 // object is built (AVX-512, AVX2, SSE4, NEON, SVE or plain), not per call.
 //
 // Accuracy: each phi carries a relative error of at most 4 ulp (thin-plate:
-// 8 ulp of r^2 (1 + |log r|)); sums are taken in double, in an order that
+// 8 ulp of r^2 (1 + |log r|)), distances below 1e-18 counting as that; sums are taken in double, in an order that
 // depends on the target. Two targets, or the plain loop of rbf_value, differ
 // by at most 32 eps (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps = 2^-53.
 //
 // No slow denormals: coordinates and weights below 1e-100 in size count as 0
-// and squared distances are lifted to 1e-60, so no intermediate of the loop is
+// and squared distances are lifted to 1e-36, so no intermediate of the loop is
 // denormal unless the result is. Finite results are promised while |x| and
 // |centres| stay below 1e60 and the result below 1e300; a non-finite x gives a
 // non-finite result.
@@ -54,10 +54,7 @@ class RbfEvaluator {
   // h(x) in newtons. `x`: d values, normalised. Haptics thread, wait-free,
   // O(n), no allocation.
   double evaluate(const double* x) const noexcept {
-    std::array<double, kMaxDimension> query;
-    for (int k = 0; k < dimension_; ++k) query[static_cast<std::size_t>(k)] = x[k] < kTiny && x[k] > -kTiny ? 0.0 : x[k];
-    const double tail = tail_value(tail_.data(), degree_, dimension_, query.data());
-    return tail + evaluate_(centres_.view(), weights_.get(), query.data());
+    return evaluate_(centres_.view(), weights_.get(), tail_.data(), x);
   }
 
   // out[i] = h(points.col(i)). `points`: d x M. Off the tick: spreads large M
@@ -68,12 +65,9 @@ class RbfEvaluator {
   Eigen::Index centre_count() const noexcept { return centres_.count(); }
 
  private:
-  static constexpr double kTiny = 1e-100;
-
   PointArrays centres_;
   std::shared_ptr<const double[]> weights_;
   std::vector<double> tail_;
-  int degree_ = 0;
   int dimension_ = 0;
   simd::EvaluateFunction evaluate_ = nullptr;
 };

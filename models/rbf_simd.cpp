@@ -13,6 +13,8 @@
 #include <limits>
 #include <utility>
 
+#include "models/polynomial_tail.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace palpate::simd {
 namespace HWY_NAMESPACE {
@@ -22,38 +24,55 @@ using Doubles = hn::CappedTag<double, kSimdPad>;
 using Vector = hn::Vec<Doubles>;
 using Floats = hn::CappedTag<float, kSimdPadFloat>;
 
-// Squared distances are lifted to this: keeps 1/sqrt and log finite, and every
-// power of it that is used well above the denormal range. The kernels change
-// by less than 1e-30 (linear), 1e-57 (thin-plate) and 1e-90 (the others).
-constexpr double kSmallestSquared = 1e-60;
+// Squared distances are lifted to this: keeps 1/sqrt and log finite, every power
+// of it that is used well above the denormal range, and itself in that of a
+// float. The kernels change by up to 1e-18 (linear), 5e-35 (thin-plate), 1e-54
+// (cubic) and 1e-90 (quintic).
+constexpr double kSmallestSquared = 1e-36;
+
+// Squared distances of coordinates below this stay in the range of a float.
+constexpr double kFloatRange = 1e18;
 
 // r from r^2 by the square root unit.
 HWY_INLINE Vector root_by_unit(Vector squared) { return hn::Sqrt(squared); }
 
 // r from r^2 and an estimate y of 1/r, by multiplications:
-//   r = r^2 y (1 + e/2 + 3 e^2/8 + 5 e^3/16) with e = 1 - r^2 y^2.
-// For an estimate good to 14 bits, |e| <= 2^-13 and the first term left out is
-// 35/128 e^4 < 2^-53.
+//   r = r^2 y (1 + e/2 + 3 e^2/8 + 5 e^3/16 + 35 e^4/128) with e = 1 - r^2 y^2.
+// An estimate good to 14 bits has |e| <= 2^-13 and needs no fourth term, below
+// 2^-53 then; one of 11 bits (1.5 x 2^-12) does, and the fifth is below 2^-53.
+template <int kTerms>
 HWY_INLINE Vector refine_root(Vector squared, Vector estimate) {
+  static_assert(kTerms == 3 || kTerms == 4);
   const Doubles d;
   const Vector root = hn::Mul(squared, estimate);
   const Vector e = hn::NegMulAdd(root, estimate, hn::Set(d, 1.0));
-  const Vector inner = hn::MulAdd(e, hn::Set(d, 0.3125), hn::Set(d, 0.375));
+  Vector last = hn::Set(d, 0.3125);
+  if constexpr (kTerms == 4) last = hn::MulAdd(e, hn::Set(d, 0.2734375), last);
+  const Vector inner = hn::MulAdd(e, last, hn::Set(d, 0.375));
   const Vector series = hn::MulAdd(e, inner, hn::Set(d, 0.5));
   return hn::MulAdd(hn::Mul(root, e), series, root);
 }
 
-// r from r^2 without the square root unit, where the processor gives such an
-// estimate in double precision: AVX-512. The unit is the bottleneck, so loops
-// take turns between the two. (Starting from integer arithmetic on AVX2 or
-// SSE4 instead was tried: 20 to 50 % slower than the unit alone on a Zen 3.)
+// r from r^2 without the square root unit, which is the bottleneck: loops take
+// turns between the two. AVX-512 has an estimate in double precision, and every
+// other root goes this way. AVX2 has one in single precision only, which takes
+// conversions and a range check: every fourth root, in evaluate() alone.
+// Measured on a Zen 3: 11 % off 6,850 centres, 4 % off 100; every other root
+// costs 8 % more instead. (Integer arithmetic for the estimate was slower.)
 HWY_INLINE Vector root_by_series(Vector squared) {
 #if HWY_TARGET == HWY_AVX3
-  return refine_root(squared, Vector{_mm512_rsqrt14_pd(squared.raw)});
+  return refine_root<3>(squared, Vector{_mm512_rsqrt14_pd(squared.raw)});
+#elif HWY_TARGET == HWY_AVX2
+  const hn::Rebind<float, Doubles> floats;
+  return refine_root<4>(squared,
+                        hn::PromoteTo(Doubles(), hn::ApproximateReciprocalSqrt(hn::DemoteTo(floats, squared))));
 #else
   return root_by_unit(squared);
 #endif
 }
+
+// Whether every other root may go by the series, whatever the distance.
+constexpr bool kSeriesForAll = HWY_TARGET == HWY_AVX3;
 
 template <KernelKind kKind, bool kUnit>
 HWY_INLINE Vector kernel_of_squared(Vector squared) {
@@ -101,23 +120,50 @@ HWY_INLINE Vector kernel_at(const Points& points, size_t i, const Broadcast<kDim
   return kernel_of_squared<kKind, kUnit>(squared_distance<kDimension>(points, i, x));
 }
 
+// Whether all distances from x are in the range of a float.
+template <int kDimension>
+HWY_INLINE bool in_float_range(const Points& points, const double* x) {
+  bool inside = points.largest < kFloatRange;
+  for (int k = 0; k < kDimension; ++k) inside &= x[k] < kFloatRange && x[k] > -kFloatRange;
+  return inside;
+}
+
 template <KernelKind kKind, int kDimension>
-double evaluate(const Points& points, const double* weights, const double* x) noexcept {
+double evaluate(const Points& points, const double* weights, const double* tail, const double* query_point) noexcept {
   const Doubles d;
   const size_t lanes = hn::Lanes(d);
+  double x[kDimension];
+  for (int k = 0; k < kDimension; ++k) x[k] = without_denormals(query_point[k]);
   const Broadcast<kDimension> query = broadcast<kDimension>(x, 1);
   Vector by_unit = hn::Zero(d);
   Vector by_series = hn::Zero(d);
   size_t i = 0;
+  if constexpr (HWY_TARGET == HWY_AVX2 && kKind != KernelKind::thin_plate) {
+    if (in_float_range<kDimension>(points, x)) {
+      Vector more = hn::Zero(d);
+      for (; i + 4 * lanes <= points.padded; i += 4 * lanes) {
+        const Vector first = kernel_at<kKind, kDimension, true>(points, i, query);
+        const Vector second = kernel_at<kKind, kDimension, true>(points, i + lanes, query);
+        const Vector third = kernel_at<kKind, kDimension, true>(points, i + 2 * lanes, query);
+        const Vector fourth = kernel_at<kKind, kDimension, false>(points, i + 3 * lanes, query);
+        by_unit = hn::MulAdd(hn::Load(d, weights + i), first, by_unit);
+        more = hn::MulAdd(hn::Load(d, weights + i + lanes), second, more);
+        by_unit = hn::MulAdd(hn::Load(d, weights + i + 2 * lanes), third, by_unit);
+        by_series = hn::MulAdd(hn::Load(d, weights + i + 3 * lanes), fourth, by_series);
+      }
+      by_unit = hn::Add(by_unit, more);
+    }
+  }
   for (; i + 2 * lanes <= points.padded; i += 2 * lanes) {
     const Vector first = kernel_at<kKind, kDimension, true>(points, i, query);
-    const Vector second = kernel_at<kKind, kDimension, false>(points, i + lanes, query);
+    const Vector second = kernel_at<kKind, kDimension, !kSeriesForAll>(points, i + lanes, query);
     by_unit = hn::MulAdd(hn::Load(d, weights + i), first, by_unit);
     by_series = hn::MulAdd(hn::Load(d, weights + i + lanes), second, by_series);
   }
   if (i < points.padded)
     by_unit = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension, true>(points, i, query), by_unit);
-  return hn::GetLane(hn::SumOfLanes(d, hn::Add(by_unit, by_series)));
+  return tail_value(tail, tail_degree(kKind), kDimension, x) +
+         hn::GetLane(hn::SumOfLanes(d, hn::Add(by_unit, by_series)));
 }
 
 template <KernelKind kKind, int kDimension>
@@ -128,7 +174,7 @@ void column(const Points& points, size_t count, const double* centre, double* ou
   size_t i = 0;
   for (; i + 2 * lanes <= count; i += 2 * lanes) {
     hn::StoreU(kernel_at<kKind, kDimension, true>(points, i, query), d, out + i);
-    hn::StoreU(kernel_at<kKind, kDimension, false>(points, i + lanes, query), d, out + i + lanes);
+    hn::StoreU(kernel_at<kKind, kDimension, !kSeriesForAll>(points, i + lanes, query), d, out + i + lanes);
   }
   for (; i < count; i += lanes) {
     HWY_ALIGN double last[kSimdPad];
@@ -151,7 +197,7 @@ void product_tile(const Points& points, size_t row_begin, size_t row_end, size_t
     Vector sum_b = hn::Zero(d);
     for (size_t i = row_begin; i < row_end; i += lanes) {
       const Vector phi_a = kernel_at<kKind, kDimension, true>(points, i, a);
-      const Vector phi_b = kernel_at<kKind, kDimension, false>(points, i, b);
+      const Vector phi_b = kernel_at<kKind, kDimension, !kSeriesForAll>(points, i, b);
       hn::Store(hn::MulAdd(phi_b, v_b, hn::MulAdd(phi_a, v_a, hn::Load(d, y + i))), d, y + i);
       if constexpr (kBoth) {
         const Vector v_i = hn::Load(d, v + i);
@@ -249,9 +295,11 @@ NearestFunction pick_nearest(int dimension, std::integer_sequence<int, kIndex...
 
 NearestFunction get_nearest(int dimension) { return pick_nearest(dimension, Dimensions{}); }
 
-double get_refined_root(double squared, double estimate) {
+double get_refined_root(double squared, double estimate, int terms) {
   const Doubles d;
-  return hn::GetLane(refine_root(hn::Set(d, squared), hn::Set(d, estimate)));
+  const Vector s = hn::Set(d, squared);
+  const Vector y = hn::Set(d, estimate);
+  return hn::GetLane(terms == 3 ? refine_root<3>(s, y) : refine_root<4>(s, y));
 }
 
 int64_t get_target() { return HWY_TARGET; }
@@ -281,8 +329,8 @@ ProductFunction product_function(KernelKind kind, int dimension) {
 }
 NearestFunction nearest_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
 
-double refined_root(double squared, double estimate) {
-  return HWY_DYNAMIC_DISPATCH(get_refined_root)(squared, estimate);
+double refined_root(double squared, double estimate, int terms) {
+  return HWY_DYNAMIC_DISPATCH(get_refined_root)(squared, estimate, terms);
 }
 
 std::vector<std::string> target_names() {

@@ -21,15 +21,22 @@ inline constexpr std::size_t kSimdPad = 8;
 // Floats, for the nearest-point loop.
 inline constexpr std::size_t kSimdPadFloat = 16;
 
+// Smaller than this in size counts as 0: no product of such numbers is denormal.
+inline constexpr double kTiny = 1e-100;
+inline double without_denormals(double value) noexcept { return value < kTiny && value > -kTiny ? 0.0 : value; }
+
 struct Points {
   const double* coordinates = nullptr;
   std::size_t stride = 0;
   std::size_t padded = 0;
   int dimension = 0;
+  double largest = 0.0;  // of |coordinate|
 };
 
-// sum_j weights[j] phi(|x - point_j|), without the tail.
-using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* x) noexcept;
+// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of
+// the kernel's degree (polynomial_tail.h); x as without_denormals() has it.
+using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* tail,
+                                    const double* x) noexcept;
 // out[i] = phi(|point_i - centre|) for i < count.
 using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre,
                                 double* out) noexcept;
@@ -50,10 +57,11 @@ ColumnFunction column_function(KernelKind kind, int dimension);
 ProductFunction product_function(KernelKind kind, int dimension);
 NearestFunction nearest_function(int dimension);
 
-// sqrt(squared) from an estimate of 1/sqrt(squared) good to 14 bits, as the
-// AVX-512 loops take every other root. Here so that tests can check the
-// arithmetic on processors without AVX-512.
-double refined_root(double squared, double estimate);
+// sqrt(squared) from an estimate of 1/sqrt(squared), as the loops take some of
+// their roots: with 3 terms from one good to 14 bits (AVX-512), with 4 from one
+// good to 1.5 x 2^-12 (AVX2). Here so that tests can check the arithmetic on
+// processors without these instructions.
+double refined_root(double squared, double estimate, int terms);
 
 // Names of the instruction sets this processor can run, best first, and the
 // one in use. choose_target takes one of them, or "" for the best; it concerns

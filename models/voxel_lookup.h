@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -33,16 +34,20 @@ class VoxelLookup {
   int dimension() const noexcept { return dimension_; }
 
  private:
+  struct Node {
+    double at = 0.0;
+    double reciprocal_width = 0.0;  // of the cell that begins here
+  };
   // One dimension: cells, and a table from equal intervals to the cell in
   // which the interval starts. Intervals are no longer than the shortest cell
-  // where the table can be, so that at most one step up remains.
+  // where the table can be, so that at most one step up remains. A last node at
+  // infinity ends every search.
   struct Axis {
     double low = 0.0;
     double high = 0.0;
     double intervals_per_unit = 0.0;
-    std::vector<std::size_t> cell_at;
-    std::vector<double> nodes;
-    std::vector<double> reciprocal_width;
+    std::vector<std::uint32_t> cell_at;
+    std::vector<Node> nodes;
     std::size_t stride = 0;  // in values
   };
   struct Place {

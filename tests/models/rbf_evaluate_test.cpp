@@ -70,18 +70,22 @@ TEST_P(RbfEvaluatorOnTarget, KernelsKeepTheirRelativeAccuracyFromTinyToHugeDista
   f.weights.setConstant(1.0 / 16.0);
   f.tail.setZero();
   const RbfEvaluator evaluator(f);
-  for (double r = 1e-25; r < 1e50; r *= 3.7)
+  for (double r = 1.1e-18; r < 1e50; r *= 3.7)
     EXPECT_NEAR(evaluator.evaluate(&r) / (r * r * r), 1.0, 6 * 0x1p-52) << r;
+  for (const double r : {0.0, 1e-90, 1e-25, 0.9e-18}) EXPECT_NEAR(evaluator.evaluate(&r), 1e-54, 1e-66) << r;
 }
 
-// Estimates as far off as rsqrt14 may be, 2^-14, on both sides. The series is
-// good to 2^-53; three roundings without fused operations leave 3 ulp.
-TEST_P(RbfEvaluatorOnTarget, RootFromAnEstimateOf14BitsIsGoodToThreeUlp) {
+// Estimates as far off as rsqrt14 may be, 2^-14, and rsqrt of a float, 1.5 x
+// 2^-12, on both sides. The series is good to 2^-53; three roundings without
+// fused operations leave 3 ulp.
+TEST_P(RbfEvaluatorOnTarget, RootFromAnEstimateIsGoodToThreeUlp) {
   for (double squared = 1e-60; squared < 1e120; squared *= 1.7)
-    for (const double error : {-0x1p-14, -0x1p-17, 0.0, 0x1p-15, 0x1p-14}) {
-      const double estimate = (1.0 + error) / std::sqrt(squared);
-      EXPECT_NEAR(simd::refined_root(squared, estimate) / std::sqrt(squared), 1.0, 3 * 0x1p-52) << squared;
-    }
+    for (const double share : {-1.0, -0.13, 0.0, 0.5, 1.0})
+      for (const int terms : {3, 4}) {
+        const double error = share * (terms == 3 ? 0x1p-14 : 1.5 * 0x1p-12);
+        const double estimate = (1.0 + error) / std::sqrt(squared);
+        EXPECT_NEAR(simd::refined_root(squared, estimate, terms) / std::sqrt(squared), 1.0, 3 * 0x1p-52) << squared;
+      }
 }
 
 TEST_P(RbfEvaluatorOnTarget, IsExactlyTheTailAtACoincidentCentreOfACubic) {
