@@ -61,6 +61,14 @@ class Smoother {
     return static_cast<double>(vectors_.rows()) * left.cwiseProduct(z_).squaredNorm() / (freedom * freedom);
   }
 
+  // exp(2 / rank) of the negative log likelihood, the scale of the prior
+  // profiled out.
+  double likelihood(double smoothing) const {
+    const Eigen::ArrayXd variances = values_.array() + smoothing;
+    return (z_.array().square() / variances).mean() * std::exp(variances.log().mean());
+  }
+  Eigen::Index rank() const { return values_.size(); }
+
   double by_group(double smoothing) const {
     const Eigen::VectorXd left = shares_left(smoothing);
     double sum = 0.0;
@@ -94,7 +102,7 @@ constexpr double kAsGood = 1.01;
 // The smallest criterion over decades, then over quarters of a decade; of
 // those as good, the most smoothing.
 template <typename Criterion>
-SmoothingChoice search(double unit, double smallest, const Criterion& criterion) {
+SmoothingChoice search(double unit, double smallest, const Criterion& criterion, double as_good = kAsGood) {
   std::map<double, double> values;  // criterion by exponent
   const auto look_at = [&](double exponent) {
     const double smoothing = unit * std::pow(10.0, exponent);
@@ -106,7 +114,7 @@ SmoothingChoice search(double unit, double smallest, const Criterion& criterion)
     SmoothingChoice best{smallest, kInfinity, false};
     double best_exponent = 0.0;
     for (const auto& [exponent, value] : values)
-      if (value < kInfinity && value <= kAsGood * lowest) {
+      if (value < kInfinity && value <= as_good * lowest) {
         best = {unit * std::pow(10.0, exponent), value, false};
         best_exponent = exponent;
       }
@@ -131,12 +139,20 @@ Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, 
     return Error{"the eigendecomposition did not converge; check the recording for extreme values"};
   if (smoother.empty()) return SmoothingChoice{smallest, 0.0, false};
   const BlasThreads one_thread(1);
+  SmoothingChoice choice{0.0, kInfinity, false};
   if (by_group && smoother.has_groups()) {
-    SmoothingChoice choice = search(unit, smallest, [&](double s) { return smoother.by_group(s); });
+    choice = search(unit, smallest, [&](double s) { return smoother.by_group(s); });
     choice.by_group = true;
-    if (choice.criterion < kInfinity) return choice;
   }
-  return search(unit, smallest, [&](double s) { return smoother.generalised(s); });
+  if (choice.criterion == kInfinity) choice = search(unit, smallest, [&](double s) { return smoother.generalised(s); });
+  // Within two units of log likelihood.
+  const double as_good = 1.0 + 4.0 / static_cast<double>(smoother.rank());
+  const SmoothingChoice likely = search(unit, smallest, [&](double s) { return smoother.likelihood(s); }, as_good);
+  if (likely.smoothing > choice.smoothing) {
+    choice.smoothing = likely.smoothing;
+    choice.criterion = choice.by_group ? smoother.by_group(likely.smoothing) : smoother.generalised(likely.smoothing);
+  }
+  return choice;
 }
 
 }  // namespace palpate

@@ -8,9 +8,15 @@
 // out single samples would choose too little). With fewer than four strokes,
 // or where that is singular, generalised cross-validation:
 //   N |(I - H) y|^2 / trace(I - H)^2.
+// What was left out lies where other samples are; both criteria are blind to what
+// happens between clusters of samples, and may by luck choose next to nothing.
+// So the smoothing is never below the most likely one (noise and function normal):
+//   N ln(sum_i z_i^2 / (e_i + smoothing)) + sum_i ln(e_i + smoothing) least,
+// e the eigenvalues and z the data's shares. On recordings it is the smaller one.
 // The smoothing is the variance of the noise over that of the prior, which
 // does not depend on N: what is best for the subset serves for all the sites.
-// Source: Craven & Wahba (1979); the group form follows from the block inverse.
+// Sources: Craven & Wahba (1979); the group form follows from the block inverse;
+// Wahba (1985) for the likelihood.
 #pragma once
 
 #include "engine/result.h"

@@ -172,7 +172,7 @@ Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, c
   if (!finished) return interrupted();
   Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
   for (Eigen::Index j = 0; j < centres.cols(); ++j) centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
-  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres);
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, {}, Ridge::by_evidence);
   if (!fitted) return fitted;
   fitted->report.centres_asked = options.centres;
   if (centres.cols() < options.centres)

@@ -133,7 +133,7 @@ Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, c
     fit.set(pair, {lower, upper});
   }
   const Eigen::Index used = options.centres > 0 ? tree.leaf_count() : 0;
-  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres.leftCols(used));
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres.leftCols(used), {}, Ridge::by_evidence);
   if (!fitted) return fitted;
   fitted->report.centres_asked = options.centres;
   if (used < options.centres)

@@ -23,7 +23,7 @@ Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, c
     std::swap(order[static_cast<std::size_t>(j)], order[pick]);
     centres.col(j) = sites.points.col(order[static_cast<std::size_t>(j)]);
   }
-  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, control);
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, control, Ridge::by_evidence);
   if (!fitted) return fitted;
   fitted->report.centres_asked = options.centres;
   if (count < options.centres)

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "models/lapack.h"
@@ -77,15 +78,40 @@ class RowFolder {
   Eigen::Index block_rows_;
 };
 
+// The ridge of the largest evidence, see solve_weights.h. `s`: the singular
+// values that count, descending; `z`: the data's shares along them; `rest`: the
+// squared length of what lies outside; `rows`: how many there are.
+double ridge_by_evidence(const Eigen::ArrayXd& s, const Eigen::ArrayXd& z, double rest, double rows) {
+  constexpr int kStepsPerDecade = 4;
+  constexpr int kLowestDecade = -24;  // of the square: the truncation
+  // From a handful of rows, or hardly more than unknowns, a force cannot be told
+  // from noise; then the large directions, which carry the mean, stay as they are.
+  const int highest_decade = rows < 20.0 + 2.0 * static_cast<double>(s.size()) ? -5 : 0;
+  if (s.size() == 0 || !(z.square().sum() > 0.0)) return 0.0;
+  double best = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int step = kLowestDecade * kStepsPerDecade; step <= highest_decade * kStepsPerDecade; ++step) {
+    const double lambda = s[0] * s[0] * std::pow(10.0, static_cast<double>(step) / kStepsPerDecade);
+    const Eigen::ArrayXd left = lambda / (s.square() + lambda);
+    const double cost = rows * std::log((left * z.square()).sum() + rest) - left.log().sum();
+    if (cost < lowest) {
+      lowest = cost;
+      best = lambda;
+    }
+  }
+  return best;
+}
+
 struct SmallSolution {
   Eigen::VectorXd unknowns;
+  double ridge = 0.0;  // of the square of the largest singular value
   double residual_squared = 0.0;
   Eigen::Index rank = 0;
   double condition = 0.0;
 };
 
-// The triangle is [R z; 0 rho]: minimises |R x - z|^2 + rho^2.
-bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, SmallSolution& out) {
+// The triangle is [R z; 0 rho]: minimises |R x - z|^2 + rho^2, and the ridge.
+bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, Ridge ridge, double rows, SmallSolution& out) {
   const Eigen::Index n = triangle.cols() - 1;
   Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
   Eigen::VectorXd scale = r.colwise().stableNorm().transpose();
@@ -99,8 +125,13 @@ bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, SmallSol
   out.rank = (parts.s.array() > smallest && parts.s.array() > 0.0).count();
   Eigen::VectorXd z = parts.u.transpose() * triangle.col(n).head(n);
   const double rho = triangle(n, n);
-  out.residual_squared = rho * rho + z.tail(n - out.rank).squaredNorm();
-  z.head(out.rank).array() /= parts.s.head(out.rank).array();
+  const double rest = rho * rho + z.tail(n - out.rank).squaredNorm();
+  const Eigen::ArrayXd kept = parts.s.head(out.rank);
+  const double lambda = ridge == Ridge::by_evidence ? ridge_by_evidence(kept, z.head(out.rank), rest, rows) : 0.0;
+  out.ridge = lambda > 0.0 ? lambda / (kept[0] * kept[0]) : 0.0;
+  const Eigen::ArrayXd left = lambda / (kept.square() + lambda);
+  out.residual_squared = rest + (left * z.head(out.rank).array()).square().sum();
+  z.head(out.rank).array() *= kept / (kept.square() + lambda);
   out.unknowns = parts.vt.topRows(out.rank).transpose() * z.head(out.rank);
   out.unknowns.array() /= scale.array();
   out.condition = parts.s[n - 1] > 0.0 ? parts.s[0] / parts.s[n - 1] : 1e300;
@@ -110,7 +141,7 @@ bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, SmallSol
 }  // namespace
 
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                const FitControl& control, double truncation) {
+                                const FitControl& control, Ridge ridge, double truncation) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   if (centres.rows() != sites.points.rows() || !centres.allFinite())
     return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
@@ -120,7 +151,8 @@ Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eig
   Eigen::MatrixXd triangle;
   if (!RowFolder(sites, kernel, centres).fold(control, triangle)) return interrupted();
   SmallSolution solution;
-  if (!solve_triangle(triangle, truncation, solution))
+  const auto rows = static_cast<double>((sites.row_scale.array() > 0.0).count());
+  if (!solve_triangle(triangle, truncation, ridge, rows, solution))
     return Error{"the singular value decomposition did not converge; check the recording for extreme values"};
   FittedRbf fitted;
   fitted.function = {kernel, centres, solution.unknowns.head(centres.cols()),
@@ -130,6 +162,7 @@ Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eig
   report.columns = solution.unknowns.size();
   report.rank = solution.rank;
   report.condition = solution.condition;
+  report.smoothing = solution.ridge;
   report.residual_rms = std::sqrt(solution.residual_squared / static_cast<double>(sites.count()));
   if (report.rank < report.columns)
     report.notes.push_back("the data determine " + std::to_string(report.rank) + " of " +

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -211,6 +212,39 @@ TEST(Features, HaveNamesWithUnits) {
   EXPECT_EQ(feature_name(lowpass(0.17)), "feature_lowpass_velocity_0.17s_m_per_s");
   EXPECT_EQ(feature_name(lowpass(1.0 / 3.0)), "feature_lowpass_velocity_0.3333s_m_per_s");
   EXPECT_EQ(feature_name(maxwell(1.27, stiffening())), "feature_maxwell_branch_1.27s_N");
+}
+
+// A million ticks of a sine: the low-pass's steady state is the closed form
+//   y = A w / sqrt(1 + (w tau)^2) cos(w t - atan(w tau)),
+// to the error of taking the depth as straight between ticks, (w h)^2 / 8.
+TEST(Features, AMillionTicksDoNotDrift) {
+  const double tau_s = 1.27;
+  const double w = 2.0 * std::numbers::pi * 0.5;
+  const double amplitude_m = 2e-3;
+  FeatureFilter filter({lowpass(tau_s)});
+  double worst = 0.0;
+  for (int i = 0; i <= 1000000; ++i) {
+    const double t = 1e-3 * i;
+    const double value = feed(filter, t, 3e-3 + amplitude_m * std::sin(w * t)).values[0];
+    if (t < 40.0 * tau_s) continue;
+    const double expected = amplitude_m * w / std::hypot(1.0, w * tau_s) * std::cos(w * t - std::atan(w * tau_s));
+    worst = std::max(worst, std::abs(value - expected));
+  }
+  EXPECT_LT(worst, 3e-6 * amplitude_m * w);
+}
+
+// An hour at rest, pressed in: filters are exactly zero, by way of no denormal.
+TEST(Features, AnHourAtRestLeavesZero) {
+  FeatureFilter filter({lowpass(0.17), maxwell(1.27, stiffening())});
+  feed(filter, 0.0, 0.0);
+  FeatureVector vector;
+  for (int i = 1; i <= 3600000; ++i) {
+    vector = feed(filter, 1e-3 * i, 4e-3);
+    for (std::size_t k = 0; k < 2; ++k)
+      if (std::fpclassify(vector.values[k]) == FP_SUBNORMAL) FAIL() << i;
+  }
+  EXPECT_EQ(vector.values[0], 0.0);
+  EXPECT_EQ(vector.values[1], 0.0);
 }
 
 TEST(Features, ADriveCurveContinuesAlongItsTangent) {

@@ -51,7 +51,8 @@ TEST(FitRandom, IdenticalSitesGiveTheirWeightedMean) {
   sites.row_scale.setOnes();
   const auto fitted = fit_random(sites, {});
   ASSERT_TRUE(fitted.ok());
-  EXPECT_NEAR(rbf_value(fitted->function, sites.points.data()), 3.0, 1e-12);
+  // The ridge of four sites may take a share of up to 1e-5 off.
+  EXPECT_NEAR(rbf_value(fitted->function, sites.points.data()), 3.0, 1e-4);
 }
 
 }  // namespace

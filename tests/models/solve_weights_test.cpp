@@ -81,6 +81,34 @@ TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
   for (int j = 0; j < 3; ++j) EXPECT_NEAR(fitted->function.weights[j], fitted->function.weights[j + 3], 1e-10);
 }
 
+// Forty places with six sites each, 1e-6 apart: 44 unknowns, of which the data
+// tell 40. Least squares turns the noise within a place into slopes of 1e4.
+TEST(SolveWeights, TheEvidenceKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
+  Sites sites = smooth_sites(3, 240, 0.01, 1);
+  const Sites base = smooth_sites(3, 40, 0.0, 1);
+  for (Eigen::Index i = 0; i < 240; ++i) {
+    sites.points.col(i) = base.points.col(i % 40) + 1e-6 * sites.points.col(i);
+    sites.target_N[i] = base.target_N[i % 40] + 0.01 * std::sin(1e3 * static_cast<double>(i));
+  }
+  const Sites truth = smooth_sites(3, 200, 0.0, 99);
+  const auto least_squares = solve_weights(sites, KernelKind::cubic, base.points);
+  const auto evident = solve_weights(sites, KernelKind::cubic, base.points, {}, Ridge::by_evidence);
+  ASSERT_TRUE(least_squares.ok() && evident.ok());
+  EXPECT_GT(worst_error(least_squares->function, truth), 100.0);
+  EXPECT_LT(worst_error(evident->function, truth), 2.0);  // 40 places for a cube of forces up to 5 N
+  EXPECT_GT(evident->report.smoothing, 0.0);
+  EXPECT_LT(evident->report.residual_rms, 1.1 * least_squares->report.residual_rms);
+}
+
+// Plenty of sites, hardly any noise: the ridge costs nothing.
+TEST(SolveWeights, TheEvidenceLeavesAGoodFitAlone) {
+  const Sites sites = smooth_sites(3, 2000, 0.001, 1);
+  const auto least_squares = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100));
+  const auto evident = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100), {}, Ridge::by_evidence);
+  ASSERT_TRUE(least_squares.ok() && evident.ok());
+  EXPECT_LT(evident->report.residual_rms, 1.01 * least_squares->report.residual_rms);
+}
+
 TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
   Sites sites = smooth_sites(3, 300, 0.0, 2);
   sites.points.row(1).setConstant(0.25);

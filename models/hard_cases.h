@@ -1,0 +1,46 @@
+// What the five methods do with data that break numerics, and models with
+// motions far from their data: every method meets every case.
+//
+// Three kinds of case, all made up and always the same:
+//   sites       coinciding, clustered, flat and badly scaled points; as few as
+//               one; more centres than sites. Judged at other points nearby.
+//   recording   what sensors and hands do wrong: noise, drift, outliers, lost
+//               and jittered samples, extreme rates. Judged on a clean press.
+//   motion      presses unlike the training: deeper, faster, longer, abrupt.
+// The truth is a closed form, so the error is known. Of direct interpolation the
+// system of eq. 4 is also solved in long double, where it is small enough.
+//
+// `safe` means: every value finite and bounded (a site case: held-out values
+// within 1.2 times the range of the forces beyond it; the others: forces from 0
+// to 1.2 times the largest training force), or the fit refused with a message.
+// `outcome` says how near the truth that is.
+// Source: Hoever & Harders (2009), eqs. 2-8, for the system.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+struct HardCaseResult {
+  std::string name;     // of the case
+  std::string method;   // direct, voxel, random, kdtree, greedy
+  std::string outcome;  // in words
+  double condition = 0.0;   // of the system solved, see FitReport
+  double residual = 0.0;    // RMS over the sites, times row_scale: in JNDs
+  double smoothing = 0.0;   // chosen (direct, voxel)
+  double worst_over_jnd = 0.0;  // largest error on what was held out
+  double within_jnd = 0.0;      // share of what was held out
+  bool safe = false;
+};
+
+// All of them, case by case, methods in the order of kMethods. Some seconds.
+// Deterministic. Slow side.
+std::vector<HardCaseResult> run_hard_cases();
+
+// The three parts of it.
+std::vector<HardCaseResult> run_hard_sites();
+std::vector<HardCaseResult> run_hard_recordings();
+std::vector<HardCaseResult> run_hard_motions();
+
+}  // namespace palpate
