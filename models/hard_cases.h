@@ -28,7 +28,7 @@ struct HardCaseResult {
   std::string outcome;  // in words
   double condition = 0.0;   // of the system solved, see FitReport
   double residual = 0.0;    // RMS over the sites, times row_scale: in JNDs
-  double smoothing = 0.0;   // chosen (direct, voxel)
+  double smoothing = 0.0;   // chosen, see FitReport
   double worst_over_jnd = 0.0;  // largest error on what was held out
   double within_jnd = 0.0;      // share of what was held out
   bool safe = false;

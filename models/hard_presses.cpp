@@ -21,8 +21,10 @@ class Block {
   explicit Block(const Path& path) : path_(path), position_m_(path(0.0)) {}
 
   double force_at(double time_s) {
-    while (time_s_ + kStep_s < time_s) advance(kStep_s);
-    if (time_s > time_s_) advance(time_s - time_s_);
+    // In equal steps: a last one of rounding alone would spoil the velocity.
+    const double steps = std::ceil((time_s - time_s_) / kStep_s - 1e-6);
+    const double from_s = time_s_;
+    for (double i = 1.0; i <= steps; ++i) advance(from_s + (time_s - from_s) * i / steps);
     const double depth_m = std::max(0.0, position_m_);
     if (depth_m == 0.0) return 0.0;
     return std::max(0.0, kStiffness_N_per_m * depth_m + kStiffening_N_per_m2 * depth_m * depth_m +
@@ -31,14 +33,15 @@ class Block {
   double position_m() const { return position_m_; }
 
  private:
-  void advance(double step_s) {
-    const double next_m = path_(time_s_ + step_s);
+  void advance(double to_s) {
+    const double step_s = to_s - time_s_;
+    const double next_m = path_(to_s);
     const double keep = std::exp(-step_s / kRelaxationTime_s);
     const double rate = (std::max(0.0, next_m) - std::max(0.0, position_m_)) / step_s;
     branch_N_ = keep * branch_N_ + kBranchStiffness_N_per_m * kRelaxationTime_s * (1.0 - keep) * rate;
     velocity_m_per_s_ = (next_m - position_m_) / step_s;
     position_m_ = next_m;
-    time_s_ += step_s;
+    time_s_ = to_s;
   }
 
   const Path& path_;

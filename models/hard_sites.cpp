@@ -13,10 +13,10 @@
 #include "models/fit_kdtree.h"
 #include "models/fit_random.h"
 #include "models/hard_cases.h"
+#include "models/hard_outcome.h"
 #include "models/lapack.h"
 #include "models/polynomial_tail.h"
 #include "models/voxel_lookup.h"
-#include "models/hard_outcome.h"
 
 namespace palpate {
 namespace {

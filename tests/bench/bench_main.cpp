@@ -10,7 +10,6 @@
 // fit/        fits at 6,850 sites of a recording, `peak_MB` above what was there
 // size/       fits against the number of sites, 1,000 to 1,000,000
 // dimension/  fits and evaluation against the number of features, 1 to 8
-// peer/       other libraries on the same data, where they are installed
 //
 // Figures are medians over repetitions, of processor time for evaluate/, of wall
 // time for fits (which use all cores); only ratios within one run compare.

@@ -26,8 +26,7 @@ void expect_safe(const std::vector<HardCaseResult>& results) {
 
 TEST(HardCases, EveryMethodIsSafeWithEverySetOfSites) { expect_safe(run_hard_sites()); }
 
-// What a rig does wrong every day must not cost accuracy: single samples at
-// first touch are all that may miss the JND.
+// What a rig does wrong every day must not cost accuracy.
 TEST(HardCases, EveryMethodIsSafeWithEveryRecording) {
   const std::vector<HardCaseResult> results = run_hard_recordings();
   expect_safe(results);
@@ -35,7 +34,7 @@ TEST(HardCases, EveryMethodIsSafeWithEveryRecording) {
     for (const char* name : {"nothing wrong", "one outlier of 100 N", "20 % noise", "dropped samples", "10 Hz",
                              "jittered time stamps", "never leaves the surface", "forces near zero, weights 1/f"})
       if (r.name == name) {
-        EXPECT_GE(r.within_jnd, 0.998) << r.name << ", " << r.method;
+        EXPECT_GE(r.within_jnd, 0.999) << r.name << ", " << r.method;
       }
   }
 }
