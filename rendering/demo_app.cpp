@@ -268,6 +268,12 @@ void DemoApp::run(Command command) {
     case Command::file_list:
       view_.file_list = !view_.file_list;
       break;
+    case Command::zero:
+      session_->start_zeroing();
+      break;
+    case Command::dead_man:
+      next_dead_man();
+      break;
     case Command::details:
       view_.details = !view_.details;
       break;
@@ -292,6 +298,20 @@ void DemoApp::record() {
   const Status status = session_->start_recording(path);
   const double until_s = now() + (status ? kToast_s : kProblemToast_s);
   toasts_.push_back({status ? "recording to " + path : status.error().message, !status, until_s});
+}
+
+void DemoApp::next_dead_man() {
+  switch (session_->dead_man()) {
+    case DeadMan::off:
+      session_->use_dead_man(DeadMan::key);
+      break;
+    case DeadMan::key:
+      session_->use_dead_man(DeadMan::grip);
+      break;
+    case DeadMan::grip:
+      session_->use_dead_man(DeadMan::off);
+      break;
+  }
 }
 
 void DemoApp::next_reference() {

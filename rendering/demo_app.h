@@ -76,6 +76,7 @@ class DemoApp {
   SceneArea scene_area() const;
   void record();
   void next_reference();
+  void next_dead_man();
 
   // The window last: OpenGL things go before it.
   std::unique_ptr<Window> window_;

@@ -35,7 +35,9 @@ constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_M, Command::file_list},
                                                     {GLFW_KEY_L, Command::details},
                                                     {GLFW_KEY_T, Command::theme},
-                                                    {GLFW_KEY_F11, Command::fullscreen}};
+                                                    {GLFW_KEY_Z, Command::zero},
+    {GLFW_KEY_D, Command::dead_man},
+    {GLFW_KEY_F11, Command::fullscreen}};
 
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
   if (!view.paused || session.history().size() == 0) return;
@@ -50,6 +52,7 @@ void DemoApp::press_key(int key, int modifiers) { keys_.push_back({key, modifier
 void DemoApp::handle_keys() {
   if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) session_->nudge_tool(kKeyStep_m);
   if (ImGui::IsKeyDown(GLFW_KEY_UP)) session_->nudge_tool(-kKeyStep_m);
+  if (ImGui::IsKeyDown(GLFW_KEY_G) && session_->dead_man() == DeadMan::key) session_->hold();
   if (ImGui::IsKeyDown(GLFW_KEY_LEFT)) scroll_back(*session_, view_, kScrollStep_s);
   if (ImGui::IsKeyDown(GLFW_KEY_RIGHT)) scroll_back(*session_, view_, -kScrollStep_s);
   for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);

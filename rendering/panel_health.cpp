@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "rendering/panel.h"
@@ -61,8 +62,18 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
 
 }  // namespace
 
+// Age of the sample, round trip and heat, of a device that has them.
+std::string device_line(const LiveSession& session) {
+  const DeviceHealth& device = session.newest().device;
+  if (device.zeroing == Zeroing::not_needed && device.faults == 0) return {};
+  std::string line = "device: " + session.device_name() + text_of(", sample %.1f ms old", 1e3 * device.sample_age_s);
+  if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
+  line += text_of(", motor %.0f %% of its thermal budget", 100.0 * static_cast<double>(session.newest().heat_share));
+  return line;
+}
+
 int health_lines(const LiveSession& session, const ViewState& view) {
-  const int quiet = 3;
+  const int quiet = device_line(session).empty() ? 3 : 4;
   if (!view.details) return quiet;
   const int fix = session.scheduling().fix.empty() ? 0 : 8;
   return quiet + fix + 5 +
@@ -75,6 +86,9 @@ HealthWords health_words(const LiveSession& session, const FrameFigures& frames)
     return {
         text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s),
         true};
+  }
+  if (const auto words = device_fault_words(session.newest().device.faults); !words.empty()) {
+    return {"Device: " + words.front(), true};
   }
   for (auto fault = session.faults().rbegin(); fault != session.faults().rend(); ++fault) {
     if (session.newest().loop_time_s - fault->loop_time_s > kTold_s) break;
@@ -119,6 +133,7 @@ void draw_health(const LiveSession& session, ViewState& view, const UiStyle& sty
     ImGui::TextDisabled(view.details ? "" : "(L: how to get better)");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scheduling.fix.c_str());
   }
+  if (const std::string line = device_line(session); !line.empty()) ImGui::TextDisabled("%s", line.c_str());
   if (!view.details) return;
   if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
   draw_times(session.statistics(), frames);

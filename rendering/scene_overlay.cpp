@@ -233,6 +233,21 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
   text_at(style.fonts().body, at, ink(style.colours().text), text);
 }
 
+// What the device wants of whoever holds it, large and in the middle.
+void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
+  const std::string words = session.device_words();
+  if (words.empty()) return;
+  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.32F * area.size.y}, ImGuiCond_Always,
+                          {0.5F, 0.5F});
+  ImGui::SetNextWindowSize({0.8F * area.size.x, 0.0F});
+  ImGui::Begin("device", nullptr, kFloating & ~ImGuiWindowFlags_NoBackground);
+  ImGui::PushFont(style.fonts().heading);
+  ImGui::TextWrapped("%s", words.c_str());
+  ImGui::PopFont();
+  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)")) session.start_zeroing();
+  ImGui::End();
+}
+
 void draw_help(ViewState& view, const UiStyle& style, const SceneArea& area) {
   if (!view.help) return;
   ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.5F * area.size.y}, ImGuiCond_Always,
@@ -296,6 +311,8 @@ const std::vector<CommandEntry>& commands() {
       {Command::reset_figures, "C", "Clear", "forget the errors so far"},
       {Command::next_reference, "F", "Reference", "choose what the models are compared with"},
       {Command::file_list, "M", "Load", "load a model file"},
+      {Command::zero, "Z", "", "the device's tool is at its rest position: zero it there"},
+      {Command::dead_man, "D", "", "push only while G, then while the handle's switch is held, and off again"},
       {Command::theme, "T", "Theme", "light or dark"},
       {Command::details, "L", "Loop", "all figures of the loop, and its faults"},
       {Command::next_block_count, "B", "", "one, two or four blocks side by side"},
@@ -356,6 +373,7 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons);
   if (!view.kiosk) draw_buttons(session, view, area, run);
+  draw_device_words(session, style, area);
   draw_toasts(toasts, style, area);
   draw_file_list(session, view, area);
   draw_help(view, style, area);

@@ -33,6 +33,8 @@ enum class Command {
   next_reference,
   record,
   file_list,
+  zero,
+  dead_man,
   details,
   theme,
   help,

@@ -1,5 +1,7 @@
 #include "scenes/live/fault_log.h"
 
+static_assert(palpate::device_fault::kAll == (1U << 11) - 1, "a kind for each bit, see kDeviceBits");
+
 namespace palpate {
 namespace {
 
@@ -14,9 +16,13 @@ enum Kind : std::size_t {
   kDeadlineMissed,
   kDropped,
   kStall,
+  kStaleSample,
+  kForceThermal,
+  kDevice,  // and those behind it: device_fault's bits, in their order
 };
+constexpr std::size_t kDeviceBits = 11;
 
-constexpr std::array<const char*, 8> kWords = {
+constexpr std::array<const char*, kDevice> kWords = {
     "the device gave a sample that is not a number; the force let go",
     "the device gave a sample that is not later than the one before; skipped",
     "a model gave a force that is not a number; 0 N instead",
@@ -25,7 +31,14 @@ constexpr std::array<const char*, 8> kWords = {
     "a tick was late and its deadline missed",
     "the window was too slow to show every tick",
     "the haptics loop stood still for more than 50 ms",
+    "the device's newest sample is too old to push by; the force let go",
+    "the motor is near its thermal limit; the force held back",
 };
+
+std::string words_of(std::size_t kind) {
+  if (kind < kDevice) return kWords[kind];
+  return device_fault_words(1U << (kind - kDevice)).front();
+}
 
 struct BitKind {
   std::uint32_t bit;
@@ -33,12 +46,14 @@ struct BitKind {
 };
 // A force that the limiter slews is none of these: it does so at every ramp, and
 // when the tool hits the block hard, and that is what it is for.
-constexpr std::array<BitKind, 5> kAlarms = {{
+constexpr std::array<BitKind, 7> kAlarms = {{
     {loop_fault::kBadSample, kBadSample},
     {loop_fault::kTimeNotLater, kTimeNotLater},
     {loop_fault::kModelNotFinite, kModelNotFinite},
     {loop_fault::kForceNotFinite, kForceNotFinite},
     {loop_fault::kForceClamped, kForceClamped},
+    {loop_fault::kStaleSample, kStaleSample},
+    {loop_fault::kForceThermal, kForceThermal},
 }};
 
 }  // namespace
@@ -50,12 +65,22 @@ TickTrouble FaultLog::see(const LoopSnapshot& snapshot) {
     note(alarm.kind, 1, snapshot.loop_time_s);
     trouble = TickTrouble::alarm;
   }
+  see_device(snapshot.device.faults, snapshot.loop_time_s);
+  if (snapshot.device.faults != 0) trouble = TickTrouble::alarm;
   if (snapshot.missed_deadlines > missed_) {
     note(kDeadlineMissed, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
     missed_ = snapshot.missed_deadlines;
     if (trouble == TickTrouble::none) trouble = TickTrouble::late;
   }
   return trouble;
+}
+
+// Once when it begins, however long it lasts.
+void FaultLog::see_device(std::uint32_t faults, double at_s) {
+  for (std::size_t i = 0; i < kDeviceBits; ++i) {
+    if ((faults & ~device_faults_ & (1U << i)) != 0) note(kDevice + i, 1, at_s);
+  }
+  device_faults_ = faults;
 }
 
 void FaultLog::see_dropped(std::uint64_t dropped, double now_s) {
@@ -82,7 +107,7 @@ void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {
       if (other.event != kMost) other.event = other.event > 0 ? other.event - 1 : kMost;
     }
   }
-  events_.push_back({at_s, kWords[kind], count, kind != kDeadlineMissed && kind != kDropped});
+  events_.push_back({at_s, words_of(kind), count, kind != kDeadlineMissed && kind != kDropped});
   last = {events_.size() - 1, at_s};
 }
 

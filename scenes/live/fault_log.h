@@ -46,7 +46,8 @@ class FaultLog {
   const std::vector<FaultEvent>& events() const noexcept { return events_; }
 
  private:
-  static constexpr std::size_t kKinds = 8;
+  static constexpr std::size_t kKinds = 32;  // the loop's, then the device's by bit
+  void see_device(std::uint32_t faults, double at_s);
   void note(std::size_t kind, std::uint64_t count, double at_s);
 
   struct Last {
@@ -55,6 +56,7 @@ class FaultLog {
   };
   std::vector<FaultEvent> events_;
   std::array<Last, kKinds> last_{};
+  std::uint32_t device_faults_ = 0;
   std::uint64_t missed_ = 0;
   std::uint64_t dropped_ = 0;
   bool stalled_ = false;

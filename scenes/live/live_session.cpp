@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 #include "devices/auto_device.h"
 #include "devices/device_registry.h"
 #include "devices/replay_device.h"
+#include "scenes/assets.h"
 #include "scenes/live/live_slot.h"
 #include "scenes/live/model_supply.h"
 #include "scenes/live/true_force.h"
@@ -18,8 +20,19 @@ namespace {
 constexpr std::size_t kNoSlot = static_cast<std::size_t>(-1);
 constexpr std::size_t kSnapshotsAtOnce = 256;
 constexpr std::size_t kMostNotices = 100;
+// A device that fails all day does not fill the disk.
+constexpr int kMostFaultFiles = 50;
 // A longer gap between snapshots is a stall, in which the picture stood still.
 constexpr double kLongestStep_s = 0.1;
+
+std::string local_time_text(const char* format) {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&time, &local);
+  char text[64];
+  std::strftime(text, sizeof text, format, &local);
+  return text;
+}
 
 double now_s() noexcept { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
 
@@ -42,6 +55,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   DeviceRequest wanted;
   wanted.seed = request.seed + 1;  // other gestures than those of the training recording
   wanted.hand.strongest_press_N = scene->strongest_press_N;
+  if (const auto assets = find_assets()) wanted.calibrations = *assets + "/devices";
   Result<std::unique_ptr<Device>> device = open_device(request.device, wanted);
   if (!device) return device.error();
   std::unique_ptr<LiveSession> session(new LiveSession(request, std::move(*scene), std::move(*device)));
@@ -73,6 +87,7 @@ Status LiveSession::begin() {
   supply_ = std::make_unique<ModelSupply>(scene_, request_.seed);
   for (std::size_t i = 0; i < slots_.size(); ++i) supply_->order(i, slots_[i]->plan);
   outstanding_ = slots_.size();
+  if (std::string note = device_->note(); !note.empty()) say(std::move(note), false);
   if (Status status = supply_->start(); !status) return status;
   return loop_->start();
 }
@@ -176,6 +191,17 @@ void LiveSession::see_faults() {
   const double at_s = now_s();
   faults_.see_dropped(loop_->dropped_snapshots(), at_s);
   faults_.see_age(loop_->age_s(), at_s);
+  save_fault_ticks();
+}
+
+// The last second before a fault, in a file beside wherever the program runs.
+void LiveSession::save_fault_ticks() {
+  const auto ticks = loop_->take_fault_ticks();
+  if (!ticks || fault_files_ == kMostFaultFiles) return;
+  ++fault_files_;
+  const std::string path = local_time_text("fault-%Y%m%d-%H%M%S-") + std::to_string(fault_files_) + ".csv";
+  const Status status = write_fault_file(path, *ticks);
+  say(status ? "the last second before the fault is in " + path : status.error().message, !status);
 }
 
 const LiveSession::PublishedSet* LiveSession::set_of(const LoopSnapshot& snapshot) const noexcept {
@@ -278,6 +304,9 @@ void LiveSession::publish() {
 void LiveSession::send_controls() {
   LoopControls controls;
   controls.recording = recording_;
+  controls.acknowledged = acknowledged_;
+  controls.dead_man = dead_man_;
+  controls.held_s = held_s_;
   if (!sets_.empty()) {
     const std::vector<std::size_t>& in_set = sets_.back().slots;
     const auto place = std::find(in_set.begin(), in_set.end(), selected_);

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -127,7 +128,7 @@ class LiveSession {
   // "true force of the virtual silicone", "force in the recording", ...
   std::string reference_words() const;
   double reference_N() const noexcept { return reference_N_; }  // in the newest tick; NaN: none
-  // Forgets errors so far; curves stay.
+  // Forgets errors so far and faults that are over; curves stay.
   void reset_figures();
 
   // Ticks.
@@ -136,6 +137,16 @@ class LiveSession {
   LoopStatistics statistics() const noexcept;
   const RtStatus& scheduling() const noexcept;
   const std::vector<FaultEvent>& faults() const noexcept { return faults_.events(); }  // the last 200
+
+  // The device: `newest().device` says how it is. Whether it renders force at all;
+  // what to do for it to, empty when nothing; the tool is at its rest position.
+  bool device_pushes() const noexcept;
+  std::string device_words() const;
+  void start_zeroing();
+  // What must be held for the device to push; `hold` says that it is, every frame.
+  DeadMan dead_man() const noexcept { return dead_man_; }
+  void use_dead_man(DeadMan what);
+  void hold();
 
   // The tool by mouse and keys; no effect on a device that takes neither.
   bool takes_mouse() const noexcept;
@@ -181,6 +192,7 @@ class LiveSession {
   void take_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot, double reference_N);
   void show_newest();
   void see_faults();
+  void save_fault_ticks();
   const PublishedSet* set_of(const LoopSnapshot& snapshot) const noexcept;
   double reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept;
   MouseDevice* mouse() const noexcept;
@@ -199,7 +211,11 @@ class LiveSession {
   std::unique_ptr<HapticsLoop> loop_;
   std::unique_ptr<ModelSupply> supply_;
   std::unique_ptr<SessionRecorder> recorder_;
-  std::uint32_t recording_ = 0;  // as in LoopControls
+  std::uint32_t recording_ = 0;  // these four as in LoopControls
+  std::uint32_t acknowledged_ = 0;
+  DeadMan dead_man_ = DeadMan::off;
+  double held_s_ = -std::numeric_limits<double>::infinity();
+  int fault_files_ = 0;
 
   std::vector<std::unique_ptr<Slot>> slots_;
   std::vector<PublishedSet> sets_;  // newest last

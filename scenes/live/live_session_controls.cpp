@@ -53,6 +53,30 @@ std::string LiveSession::reference_words() const {
 
 void LiveSession::reset_figures() {
   for (const auto& slot : slots_) slot->view.errors = {};
+  ++acknowledged_;
+  send_controls();
+}
+
+bool LiveSession::device_pushes() const noexcept { return device_->renders_force(); }
+
+std::string LiveSession::device_words() const {
+  std::string words = zeroing_words(newest_.device);
+  if (words.empty() && newest_.released) {
+    words = dead_man_ == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
+  }
+  return words;
+}
+
+void LiveSession::start_zeroing() { device_->start_zeroing(); }
+
+void LiveSession::use_dead_man(DeadMan what) {
+  dead_man_ = what;
+  send_controls();
+}
+
+void LiveSession::hold() {
+  held_s_ = now_s();
+  send_controls();
 }
 
 MouseDevice* LiveSession::mouse() const noexcept { return auto_ != nullptr ? &auto_->mouse() : mouse_; }
