@@ -16,7 +16,8 @@
 // noise and unknowns are normal: with singular values s_i and z = U^T S f it
 // minimises
 //   N ln(sum_i lambda z_i^2 / (s_i^2 + lambda) + rho^2) + sum_i ln(1 + s_i^2 / lambda).
-// Healthy fits have unknowns of 1e3 and more times the data's size and keep them.
+// It is taken where sites are fewer than ten to an unknown, or where it says that
+// noise rules (lambda above 1e-6 s_1^2); a healthy fit stays plain least squares.
 // Source: Hoever & Harders (2009), eq. 8 and section 4.2.1; MacKay (1992),
 // "Bayesian interpolation", for the evidence.
 #pragma once

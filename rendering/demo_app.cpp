@@ -221,6 +221,7 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   // Before the first model is ready: a block nobody has a model of yet.
   if (poses.empty()) {
     pose.dent_m = std::max(0.0F, pose.tool_m);
+    pose.judged = false;
     poses.push_back(pose);
   }
   return poses;

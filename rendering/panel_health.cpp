@@ -103,7 +103,7 @@ HealthWords health_words(const LiveSession& session, const FrameFigures& frames)
             true};
   }
   if (frames.recent_fps > 0.0 && frames.recent_fps < kFewFrames_per_s) {
-    return {text_of("%.0f frames a second, fewer blocks help; the force is not affected", frames.recent_fps),
+    return {text_of("%.0f frames a second: the picture is slow, the force is not affected", frames.recent_fps),
             true};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
