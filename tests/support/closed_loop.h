@@ -1,0 +1,146 @@
+// A tool in a hand, simulated around the live tick: what a rendered force does
+// to a hand that can feel it. No wall clock; the same settings give the same bits.
+//
+//   m a = k (aim - x) + c (d aim/dt - v) + push - F
+// at 20 kHz. The encoder reads x in whole steps at each tick, the tick is
+// LiveTick::run, and F is what it wrote, held, from `delay_s` after the tick on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "engine/live_tick.h"
+#include "engine/random_stream.h"
+
+namespace palpate::test {
+
+struct Grip {
+  std::string name;
+  double mass_kg = 0.12;  // tool, handle and what of the hand moves with them
+  double stiffness_N_per_m = 800.0;
+  double damping_Ns_per_m = 14.0;
+};
+
+// From a finger that lets the tool rest on it to a clenched fist: stiffness and
+// damping rise together with the grip (Hajian & Howe 1997; Hasser & Cutkosky
+// 2002), the damping 0.5 to 0.7 of critical. `braced` is devices/hand_motion.h.
+// The last is a mass that nothing holds: it has no damping at all.
+const std::array<Grip, 4>& grips();
+
+// When the ticks come.
+enum class Ticking {
+  even,       // every millisecond
+  jittered,   // up to 0.45 ms late, each by itself
+  gaps,       // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
+};
+
+struct LoopSettings {
+  Grip grip;
+  double encoder_step_m = 30e-6;
+  double delay_s = 1e-3;
+  Ticking ticking = Ticking::even;
+  ForceLimits limits{10.0, 5000.0, 0.0};  // as a force-feedback device bears
+};
+
+// What the tool has exchanged with the rendered force, joules: `put_in_J` while
+// the force resisted the motion, `got_out_J` while it drove it.
+struct LoopEnergy {
+  double put_in_J = 0.0;
+  double got_out_J = 0.0;
+  double balance_J() const { return put_in_J - got_out_J; }
+};
+
+class SimulatedTool final : public Device {
+ public:
+  explicit SimulatedTool(const LoopSettings& settings) : settings_(settings) {}
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return {.encoder_step_m = settings_.encoder_step_m}; }
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return settings_.limits; }
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override;
+
+  // One step of 50 us towards `aim_m`, which moves at `aim_m_per_s`.
+  void advance(double aim_m, double aim_m_per_s, double push_N) noexcept;
+  void place(double position_m, double velocity_m_per_s) noexcept;
+
+  double time_s() const noexcept;
+  double position_m() const noexcept { return position_m_; }
+  double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
+  double force_N() const noexcept { return force_N_; }
+  const LoopEnergy& energy() const noexcept { return energy_; }
+
+ private:
+  struct Written {
+    double force_N = 0.0;
+    std::int64_t due = 0;  // step at which it is felt
+  };
+
+  LoopSettings settings_;
+  std::string name_ = "simulated tool";
+  std::int64_t step_ = 0;
+  std::int64_t read_step_ = -1;
+  double position_m_ = -2e-3, velocity_m_per_s_ = 0.0, force_N_ = 0.0;
+  std::array<Written, 16> written_{};
+  std::size_t first_ = 0, count_ = 0;
+  LoopEnergy energy_;
+};
+
+// The loop: the tool, the tick, and when the tick comes.
+class ClosedLoop {
+ public:
+  struct Drive {
+    double aim_m = 0.0;
+    double aim_m_per_s = 0.0;
+    double push_N = 0.0;  // a force that does not depend on where the tool is
+  };
+  using Path = std::function<Drive(double time_s)>;
+  using AfterTick = std::function<void(const LoopSnapshot&)>;
+
+  explicit ClosedLoop(const LoopSettings& settings);
+
+  // A set of one model, to be taken by the next tick.
+  void publish(std::shared_ptr<const ForceModel> model);
+  // For `seconds`; `path` counts its time from here. `after_tick` may be empty.
+  void run(double seconds, const Path& path, const AfterTick& after_tick = {});
+
+  SimulatedTool& tool() { return tool_; }
+  ModelSlot<LiveModels>& slot() { return slot_; }
+  // Of the ticks so far, as RtGuard counts; 0 where it does not work.
+  int offences() const { return offences_; }
+  int ticks() const { return ticks_; }
+  std::uint32_t faults() const { return faults_; }
+
+ private:
+  std::int64_t next_tick();
+
+  SimulatedTool tool_;
+  ModelSlot<LiveModels> slot_;
+  LiveTick live_;
+  Ticking ticking_;
+  RandomStream random_{1, 77};
+  std::int64_t step_ = 0, deadline_ = 0, due_ = 0;
+  std::uint32_t id_ = 0, faults_ = 0;
+  int offences_ = 0, ticks_ = 0;
+};
+
+// Minimum jerk from `from_m` to `to_m` within `duration_s`, then held.
+ClosedLoop::Drive minimum_jerk(double from_m, double to_m, double duration_s, double time_s);
+
+// Smallest and largest of a quantity.
+struct Span {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+  void add(double value) {
+    lowest = value < lowest ? value : lowest;
+    highest = value > highest ? value : highest;
+  }
+  double width() const { return highest - lowest; }
+};
+
+}  // namespace palpate::test
