@@ -6,7 +6,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # The one list of Debian packages: to build and run, and more for .ci/run.
 packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
-  libcli11-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev
+  libcli11-dev nlohmann-json3-dev gnuplot-nox libgtest-dev libbenchmark-dev
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
   fonts-dejavu-core libhidapi-dev)
 # For the tests: of the window a display in memory, of devices an emulated one.

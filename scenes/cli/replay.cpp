@@ -11,7 +11,7 @@
 #include "models/evaluation.h"
 #include "models/model_io.h"
 #include "scenes/cli/forces_file.h"
-#include "scenes/cli/model_timing.h"
+#include "scenes/model_timing.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -34,7 +34,7 @@ struct Contestant {
   ErrorStatistics statistics;
   FeatureSample features;
   ErrorSummary errors;
-  EvaluationTime time;
+  ModelTiming time;
 };
 
 Result<std::vector<Contestant>> load_contestants(const std::vector<std::string>& paths) {
@@ -192,7 +192,7 @@ Status run(const Options& options) {
   }
   for (Contestant& one : *contestants) {
     one.errors = one.statistics.summary();
-    one.time = time_evaluation(*one.model, one.features);
+    one.time = time_model(*one.model, one.features);
   }
   if (options.json) {
     print_json(options, *summary, *contestants);

@@ -24,5 +24,6 @@ void add_fit(CLI::App& app, Verbs& verbs);
 void add_replay(CLI::App& app, Verbs& verbs);
 void add_scenes(CLI::App& app, Verbs& verbs);
 void add_devices(CLI::App& app, Verbs& verbs);
+void add_report(CLI::App& app, Verbs& verbs);
 
 }  // namespace palpate::cli

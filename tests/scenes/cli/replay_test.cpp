@@ -8,7 +8,7 @@
 #include "engine/recording.h"
 #include "models/model_io.h"
 #include "scenes/cli/forces_file.h"
-#include "scenes/cli/model_timing.h"
+#include "scenes/model_timing.h"
 #include "tests/support/example_model.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -247,18 +247,18 @@ TEST(DistinctNames, CountUpPastNamesThatAreTaken) {
 
 // Runs stay whole and evenly spread, whatever the length of the stream.
 TEST(FeatureSample, IsBoundedAndSpreadOverTheWholeStream) {
-  cli::FeatureSample sample;
-  const std::size_t total = cli::FeatureSample::kBlock * cli::FeatureSample::kMaximumBlocks * 5 + 13;
+  FeatureSample sample;
+  const std::size_t total = FeatureSample::kBlock * FeatureSample::kMaximumBlocks * 5 + 13;
   for (std::size_t i = 0; i < total; ++i) {
     FeatureVector features;
     features.values[0] = static_cast<double>(i);
     sample.add(features);
   }
-  EXPECT_LE(sample.size(), cli::FeatureSample::kBlock * cli::FeatureSample::kMaximumBlocks);
+  EXPECT_LE(sample.size(), FeatureSample::kBlock * FeatureSample::kMaximumBlocks);
   EXPECT_GT(sample[sample.size() - 1][0], 0.9 * static_cast<double>(total));
   for (std::size_t i = 0; i < sample.size(); ++i) {
-    const double expected = static_cast<double>(i / cli::FeatureSample::kBlock * cli::FeatureSample::kBlock * 8 +
-                                                i % cli::FeatureSample::kBlock);
+    const double expected = static_cast<double>(i / FeatureSample::kBlock * FeatureSample::kBlock * 8 +
+                                                i % FeatureSample::kBlock);
     ASSERT_EQ(sample[i][0], expected);
   }
 }

@@ -11,9 +11,9 @@
 #include "engine/features.h"
 #include "engine/force_model.h"
 
-namespace palpate::cli {
+namespace palpate {
 
-struct EvaluationTime {
+struct ModelTiming {
   double median_ns = 0.0;
   double p99_ns = 0.0;
   bool measured = false;  // false: there was nothing to evaluate
@@ -40,6 +40,6 @@ class FeatureSample {
 // Evaluates `model` at all of `sample`, kBlock calls at a time, each waiting for
 // the last one's force as in a tick; median and 99th percentile of the blocks'
 // means.
-EvaluationTime time_evaluation(const ForceModel& model, const FeatureSample& sample);
+ModelTiming time_model(const ForceModel& model, const FeatureSample& sample);
 
-}  // namespace palpate::cli
+}  // namespace palpate

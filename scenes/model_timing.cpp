@@ -1,9 +1,9 @@
-#include "scenes/cli/model_timing.h"
+#include "scenes/model_timing.h"
 
 #include <algorithm>
 #include <chrono>
 
-namespace palpate::cli {
+namespace palpate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -44,7 +44,7 @@ void FeatureSample::add(const FeatureVector& features) {
   kept_.push_back(features.values);
 }
 
-EvaluationTime time_evaluation(const ForceModel& model, const FeatureSample& sample) {
+ModelTiming time_model(const ForceModel& model, const FeatureSample& sample) {
   if (sample.size() == 0) return {};
   double force_N = 0.0;
   const std::size_t block = std::min(sample.size(), FeatureSample::kBlock);
@@ -60,4 +60,4 @@ EvaluationTime time_evaluation(const ForceModel& model, const FeatureSample& sam
   return {percentile(means, 50), percentile(means, 99), true};
 }
 
-}  // namespace palpate::cli
+}  // namespace palpate

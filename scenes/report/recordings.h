@@ -1,0 +1,45 @@
+// The recordings of a report and who is trained and tested on which.
+//
+// Thread guarantee: slow side (does I/O, allocates).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/recording.h"
+#include "engine/result.h"
+#include "scenes/report/report_data.h"
+
+namespace palpate {
+
+using SharedRecording = std::shared_ptr<const Recording>;
+
+// Trained on some recordings, tested on others; indices into RecordingSet::all.
+struct Fold {
+  std::vector<std::size_t> train;
+  std::vector<std::size_t> test;
+};
+
+struct RecordingSet {
+  std::vector<SharedRecording> all;
+  std::vector<Fold> folds;  // one, or k when there is no test recording
+  std::vector<RecordingFacts> facts;
+  bool virtual_recordings = false;
+  bool cross_validated = false;
+};
+
+inline constexpr std::size_t kMostFolds = 5;
+
+// Reads the files. Without any, the virtual silicone: seed 1 to train on, seed 2
+// to test on. Without a test recording the training recordings are divided into
+// up to kMostFolds folds, each tested by models that were fitted to the others; a
+// single one is first cut into kMostFolds parts of about the same length, where the
+// tool is out of contact if it ever is. Errors: those of the recordings; a test
+// recording without a training recording; the same file twice; no contact in a
+// test recording; too short to be cut.
+Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
+                                     const std::function<bool(double share)>& progress = {});
+
+}  // namespace palpate

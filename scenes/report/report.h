@@ -1,0 +1,35 @@
+// The whole of `palpate report`: recordings in, a folder out.
+//
+// Thread guarantee: slow side (does I/O, starts gnuplot and threads).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/fit_control.h"
+#include "scenes/report/page.h"
+
+namespace palpate {
+
+struct ReportRequest {
+  std::vector<std::string> train;  // files; none: the virtual silicone
+  std::vector<std::string> test;   // none: k-fold over `train`
+  std::string scene = "silicone_block";
+  bool quick = false;
+  std::string out;
+  bool force = false;
+  std::string command_line;
+  std::string version;
+};
+
+struct ReportSummary {
+  std::vector<std::string> findings;
+  std::vector<std::string> files;  // of the folder, sorted
+};
+
+// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into
+// `request.out`, which appears only when all is there. Errors: gnuplot is missing; the
+// folder exists without `force`; those of the recordings and fits; interrupted.
+Result<ReportSummary> make_report(const ReportRequest& request, const FitControl& control = {});
+
+}  // namespace palpate

@@ -1,0 +1,152 @@
+#include "scenes/report/table.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace palpate {
+namespace {
+
+std::string shortest(double value) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+std::string fixed(double value, int decimals) {
+  char text[400];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+// 1234567.5 -> 1,234,567.5; `digits` as printf has it.
+std::string with_thousands(const std::string& digits) {
+  const std::size_t first = !digits.empty() && digits[0] == '-' ? 1 : 0;
+  std::size_t end = digits.find('.');
+  if (end == std::string::npos) end = digits.size();
+  std::string text;
+  for (std::size_t at = 0; at < digits.size(); ++at) {
+    if (at > first && at < end && (end - at) % 3 == 0) text.push_back(',');
+    text.push_back(digits[at]);
+  }
+  return text;
+}
+
+std::string quoted_if_needed(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted(1, '"');
+  for (const char letter : text) {
+    if (letter == '"') quoted += '"';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+std::string csv_cell(const TableCell& cell) {
+  if (cell.kind == TableCell::Kind::text) return quoted_if_needed(cell.text);
+  if (cell.kind == TableCell::Kind::count) return std::to_string(cell.count);
+  return std::isfinite(cell.number) ? shortest(cell.number) : "";
+}
+
+std::string shown(const TableCell& cell, const TableColumn& column) {
+  if (cell.kind == TableCell::Kind::text) return escape_html(cell.text);
+  if (cell.kind == TableCell::Kind::count) return with_thousands(std::to_string(cell.count));
+  const double value = cell.number * column.scale;
+  if (!std::isfinite(value)) return "–";
+  return column.decimals == TableColumn::kThreeDigits ? three_digits(value)
+                                                      : with_thousands(fixed(value, column.decimals));
+}
+
+bool is_text(const Table& table, std::size_t column) {
+  for (const auto& row : table.rows) {
+    if (row[column].kind != TableCell::Kind::text) return false;
+  }
+  return !table.rows.empty();
+}
+
+}  // namespace
+
+std::string three_digits(double value) {
+  if (!std::isfinite(value)) return "–";
+  if (value == 0.0) return "0";
+  const double size = std::abs(value);
+  if (size >= 1e7 || size < 1e-4) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2e", value);
+    return text;
+  }
+  // Rounded first, so that 9.999 has as many digits as the 10.0 it becomes.
+  const double magnitude = std::pow(10.0, std::floor(std::log10(size)) - 2.0);
+  const double rounded = std::round(value / magnitude) * magnitude;
+  const int decimals = 2 - static_cast<int>(std::floor(std::log10(std::abs(rounded)) + 1e-12));
+  return with_thousands(fixed(rounded, std::max(0, decimals)));
+}
+
+std::string escape_html(std::string_view text) {
+  std::string safe;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&': safe += "&amp;"; break;
+      case '<': safe += "&lt;"; break;
+      case '>': safe += "&gt;"; break;
+      case '"': safe += "&quot;"; break;
+      case '\'': safe += "&#39;"; break;
+      default: safe += letter;
+    }
+  }
+  return safe;
+}
+
+std::string table_csv(const Table& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (i > 0) text.push_back(',');
+    text += table.columns[i].key;
+  }
+  text.push_back('\n');
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0) text.push_back(',');
+      text += csv_cell(row[i]);
+    }
+    text.push_back('\n');
+  }
+  return text;
+}
+
+nlohmann::ordered_json table_json(const Table& table) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& row : table.rows) {
+    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      nlohmann::ordered_json& value = object[table.columns[i].key];
+      switch (row[i].kind) {
+        case TableCell::Kind::text: value = row[i].text; break;
+        case TableCell::Kind::count: value = row[i].count; break;
+        case TableCell::Kind::number: value = row[i].number; break;  // not finite: dumped as null
+      }
+    }
+    list.push_back(std::move(object));
+  }
+  return list;
+}
+
+std::string table_html(const Table& table) {
+  std::string html = "<div class=\"table\"><table>\n<thead><tr>";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    html += is_text(table, i) ? "<th class=\"text\">" : "<th>";
+    html += escape_html(table.columns[i].title) + "</th>";
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
+      html += shown(row[i], table.columns[i]) + "</td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace palpate

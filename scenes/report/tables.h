@@ -1,0 +1,28 @@
+// The report's tables, from what was measured.
+//
+// Thread guarantee: pure functions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/report/report_data.h"
+
+namespace palpate {
+
+// All tables in the order of the page; those with a caption are shown on it. Measured
+// times are in tables of their own (`Table::has_times`).
+std::vector<Table> make_tables(const ReportData& data);
+
+// The table of that name; a programmer's mistake when there is none.
+const Table& table_named(const std::vector<Table>& tables, const std::string& name);
+
+// What to conclude, a sentence each: the smallest model with 99.9 % within the JND,
+// the most accurate within 1 us, ... `with_times`: those that rest on measured times.
+std::vector<std::string> findings(const ReportData& data, bool with_times);
+
+inline constexpr double kGoodShare = 0.999;   // within the JND
+inline constexpr double kQuick_ns = 1000.0;   // 1 us
+inline constexpr double kBudget_ns = 1e6;     // a tick of 1 ms
+
+}  // namespace palpate
