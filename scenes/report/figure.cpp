@@ -1,8 +1,10 @@
 #include "scenes/report/figure.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace palpate {
 namespace {
@@ -35,6 +37,18 @@ set grid back
   text = replaced(text, "INK", kInk);
   text = replaced(text, "GRID", kGrid);
   return replaced(text, "MINOR", kMinorGrid);
+}
+
+// The ways in which gnuplot writes "#d8d8d8".
+std::vector<std::string> spellings(std::string_view colour) {
+  const auto part = [&](std::size_t at) { return std::stoi(std::string(colour.substr(at, 2)), nullptr, 16); };
+  char wide[40];
+  char narrow[40];
+  std::snprintf(wide, sizeof wide, "rgb(%3d, %3d, %3d)", part(1), part(3), part(5));
+  std::snprintf(narrow, sizeof narrow, "rgb(%d,%d,%d)", part(1), part(3), part(5));
+  std::string upper(colour);
+  for (char& letter : upper) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return {std::string(colour), upper, wide, narrow};
 }
 
 // 1, 2 or 5 times a power of ten, at or below / at or above `value` > 0.
@@ -89,12 +103,9 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
       {kInk, "var(--ink)"},         {kMuted, "var(--muted)"}, {kGrid, "var(--grid)"}, {kMinorGrid, "var(--minor-grid)"},
       {kBand, "var(--band)"},       {kPaper, "var(--paper)"}, {kDirect, "var(--direct)"}};
   for (const auto& [colour, variable] : variables) {
-    body = replaced(body, colour, variable);
-    std::string upper(colour);
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
-    body = replaced(body, upper, variable);
+    for (const std::string& form : spellings(colour)) body = replaced(body, form, variable);
   }
+  body = replaced(body, "\"black\"", "\"var(--ink)\"");
   return "<svg viewBox=\"" + view + "\" role=\"img\" aria-label=\"" + escape_html(title) + "\">" + body;
 }
 
@@ -140,6 +151,26 @@ double AxisRange::fraction(double value) const {
 std::string AxisRange::text() const {
   std::string text("[");
   return text.append(number(low)).append(":").append(number(high)).append("]");
+}
+
+std::string AxisRange::tics(const std::string& axis) const {
+  if (!logarithmic) return {};
+  // Over few decades 2 and 5 are labelled too.
+  const bool few = high / low < 200.0;
+  std::string text("set ");
+  text.append(axis).append("tics (");
+  bool first = true;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low) + 1e-9)); decade <= high; decade *= 10.0) {
+    for (int step = 1; step < 10; ++step) {
+      const double at = step * decade;
+      if (at < low * 0.999 || at > high * 1.001) continue;
+      const bool labelled = step == 1 || (few && (step == 2 || step == 5));
+      text.append(first ? "" : ", ").append(quoted(labelled ? number(at) : "")).append(" ");
+      text.append(number(at)).append(labelled ? "" : " 1");
+      first = false;
+    }
+  }
+  return text.append(")\n");
 }
 
 AxisRange log_range(const std::vector<double>& values) {

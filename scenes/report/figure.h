@@ -58,6 +58,9 @@ struct AxisRange {
 
   double fraction(double value) const;
   std::string text() const;  // "[low:high]"
+  // "set ytics (...)" of a logarithmic axis: 1, 2 and 5 labelled where there is room,
+  // the rest as minor tics. Nothing for a linear one.
+  std::string tics(const std::string& axis) const;
 };
 // Just beyond the positive ones of `values`, at 1, 2 or 5 times a power of ten.
 AxisRange log_range(const std::vector<double>& values);

@@ -42,7 +42,9 @@ std::vector<TraceRow> fewer(const std::vector<TraceRow>& rows, std::size_t model
 Figure trace_figure(const ReportData& data) {
   Figure figure;
   figure.name = "worst_trace";
-  figure.title = "The worst five seconds";
+  const double length_s =
+      data.trace.rows.empty() ? 0.0 : data.trace.rows.back().time_s - data.trace.rows.front().time_s;
+  figure.title = std::string("The worst ") + (length_s > 0.95 * TraceFinder::kTraceSeconds ? std::string("five") : three_digits(length_s)) + " seconds";
   figure.caption = "The stretch of " + data.trace.recording + " with the largest errors over all six models: measured "
                    "force in the JND band, every model's force, and the errors over the JND. Where all models leave "
                    "the band together, the recording asks for more than any of them has seen.";

@@ -56,7 +56,7 @@ Figure force_figure(const ReportData& data, const Curve& curve) {
   const double end = 1e3 * data.jnd.at(last_N) / (curve.relative ? 10.0 * last_N : 1.0);
   labels.push_back({axis.fraction(end), "JND", std::string(kMuted)});
   figure.commands = "set rmargin 17\nset logscale y\nset xrange [0:" + std::to_string(last_N) + "]\nset yrange " + axis.text() +
-                    "\nset xlabel \"Measured force [N]\"\nset ylabel \"" +
+                    "\n" + axis.tics("y") + "set xlabel \"Measured force [N]\"\nset ylabel \"" +
                     (curve.largest ? "Largest error [" : "Mean + standard deviation [") +
                     (curve.relative ? "%" : "mN") + "]\"\njnd(x) = " + line + "\n" +
                     side_labels(labels, "graph 1.02", 0.07, 1) +

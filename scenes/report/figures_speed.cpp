@@ -81,10 +81,11 @@ const Measure kFit = [](const ModelResult& model) { return model.fit_seconds; };
 const Measure kRms = [](const ModelResult& model) { return 1e3 * model.pooled.rms_error_N; };
 const Measure kWorst = [](const ModelResult& model) { return model.pooled.max_error_over_jnd; };
 
-std::string horizontal(double y, const std::string& text, int tag) {
+// Ends at `to`, before the labels of the curves begin.
+std::string horizontal(double y, const std::string& text, double to, int tag) {
   const std::string at = std::to_string(y);
-  return "set arrow " + std::to_string(tag) + " from graph 0, first " + at + " to graph 1, first " + at +
-         " nohead linewidth 1.5 dashtype 2 linecolor rgb \"" + std::string(kMuted) + "\"\nset label " +
+  return "set arrow " + std::to_string(tag) + " from graph 0, first " + at + " to first " + std::to_string(to) +
+         ", first " + at + " nohead linewidth 1.5 dashtype 2 linecolor rgb \"" + std::string(kMuted) + "\"\nset label " +
          std::to_string(tag) + " " + quoted(text) + " at graph 0.015, first " + at +
          " left offset 0,0.55 noenhanced textcolor rgb \"" + std::string(kMuted) + "\"\n";
 }
@@ -105,16 +106,18 @@ std::string time_tics() {
 }
 
 Figure against_time(const ReportData& data, const std::string& name, const Measure& y, AxisRange axis,
-                    const std::string& y_label, const std::string& line) {
+                    const std::string& y_label, double line, const std::string& line_text) {
   Figure figure;
   figure.name = name;
   figure.has_times = true;
-  AxisRange time = log_range(values(data, kEvaluation));
+  std::vector<double> times = values(data, kEvaluation);
+  times.push_back(90.0);  // so that the axis begins with a labelled decade or before it
+  const AxisRange time = log_range(times);
   const Scatter plot = scatter(data, kEvaluation, y, axis);
   figure.data = plot.data;
   figure.commands = "set logscale xy\nset xrange [" + std::to_string(time.low) + ":2e6]\nset yrange " + axis.text() +
-                    "\n" + time_tics() + "set xlabel \"One evaluation, median\"\nset ylabel \"" + y_label + "\"\n" +
-                    line + budget_line() +
+                    "\n" + axis.tics("y") + time_tics() + "set xlabel \"One evaluation, median\"\nset ylabel \"" + y_label + "\"\n" +
+                    horizontal(line, line_text, 1.35 * plot.rightmost, 91) + budget_line() +
                     side_labels(plot.labels, "first " + std::to_string(1.5 * plot.rightmost), 0.075, 1) +
                     plot.plots + "\n";
   return figure;
@@ -128,11 +131,13 @@ std::vector<double> with(std::vector<double> list, double value) {
 Figure rms_figure(const ReportData& data) {
   const double jnd_mN = 1e3 * data.jnd.at(0.0);
   Figure figure = against_time(data, "pareto", kRms, log_range(with(values(data, kRms), jnd_mN)), "RMS error [mN]",
-                               horizontal(jnd_mN, "JND at no force, " + three_digits(jnd_mN) + " mN", 91));
-  figure.title = "Speed against error";
+                               jnd_mN,
+                               "JND at no force, " + three_digits(jnd_mN) + " mN");
+  figure.title = "Evaluation time against RMS error";
   figure.caption = "Further left is faster, further down is more accurate. Numbers: fewest and most centres (or grid "
-                   "nodes). Filled: at least 99.9 % of the samples within the JND. Take the first filled circle from "
-                   "the left; everything left of the dashed line at 1 ms fits a tick of the loop.";
+                   "nodes). Filled: at least 99.9 % of the samples within the JND. Everything left "
+                   "of the dashed line at 1 ms fits a tick of the loop; below the other one the typical error is less "
+                   "than a hand can notice even at the lightest touch.";
   return figure;
 }
 
@@ -144,8 +149,8 @@ Figure share_figure(const ReportData& data) {
     return std::max(floor, 100.0 * (1.0 - model.pooled.within_jnd));
   };
   Figure figure = against_time(data, "pareto_share", above, log_range(with(values(data, above), 0.1)),
-                               "Samples above the JND [%]", horizontal(0.1, "0.1 %: 99.9 % within the JND", 91));
-  figure.title = "Speed against what a hand can notice";
+                               "Samples above the JND [%]", 0.1, "0.1 %: 99.9 % within the JND");
+  figure.title = "Evaluation time against what a hand can notice";
   figure.caption = "The share of the samples in contact with an error that a hand can notice; a model without any "
                    "is drawn at half a sample.";
   return figure;
@@ -153,10 +158,10 @@ Figure share_figure(const ReportData& data) {
 
 Figure worst_figure(const ReportData& data) {
   Figure figure = against_time(data, "pareto_worst", kWorst, log_range(with(values(data, kWorst), 1.0)),
-                               "Worst error [JND]", horizontal(1.0, "JND", 91));
-  figure.title = "Speed against the worst error";
+                               "Worst error [JND]", 1.0, "JND");
+  figure.title = "Evaluation time against the worst error";
   figure.caption = "One sample decides: a model whose worst error lies below the line never differs noticeably from "
-                   "the measurement. What stays above it for every model lies in the recording, not in the method.";
+                   "the measurement. What all models have in common above it is not for another method to mend.";
   return figure;
 }
 
@@ -172,7 +177,7 @@ Figure fit_figure(const ReportData& data) {
   const Scatter plot = scatter(data, kFit, kRms, y_axis);
   figure.data = plot.data;
   figure.commands = "set logscale xy\nset rmargin 21\nset xrange " + x_axis.text() + "\nset yrange " + y_axis.text() +
-                    "\nset format x \"%g\"\nset xlabel \"Fit [s]\"\nset ylabel \"RMS error [mN]\"\n" +
+                    "\n" + x_axis.tics("x") + y_axis.tics("y") + "set xlabel \"Fit [s]\"\nset ylabel \"RMS error [mN]\"\n" +
                     side_labels(plot.labels, "graph 1.02", 0.075, 1) + plot.plots + "\n";
   return figure;
 }
@@ -207,7 +212,7 @@ Figure sites_figure(const ReportData& data) {
     labels.push_back({axis.fraction(rows.back()[1]), model_label(plan), std::string(method_colour(plan.request.method))});
   }
   figure.commands = "set logscale xy\nset rmargin 16\nset yrange " + axis.text() +
-                    "\nset xtics (500, 1000, 2000, 4000, 6850)\nset format y \"%g\"\nset xlabel \"Sites\"\n"
+                    "\n" + axis.tics("y") + "set xtics (500, 1000, 2000, 4000, 6850)\nset xlabel \"Sites\"\n"
                     "set ylabel \"Fit [s]\"\n" + side_labels(labels, "graph 1.02", 0.075, 1) + plots + "\n";
   return figure;
 }
@@ -238,7 +243,7 @@ Figure dimension_figure(const ReportData& data) {
     labels.push_back({axis.fraction(rows.back()[i + 1]), curves[i].first, colour});
   }
   figure.commands = "set logscale y\nset rmargin 16\nset xtics 1\nset yrange " + axis.text() +
-                    "\nset format y \"%g\"\nset xlabel \"Features\"\nset ylabel \"Seconds\"\n" +
+                    "\n" + axis.tics("y") + "set xlabel \"Features\"\nset ylabel \"Seconds\"\n" +
                     side_labels(labels, "graph 1.02", 0.075, 1) + plots + "\n";
   return figure;
 }

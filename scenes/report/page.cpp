@@ -11,7 +11,7 @@ const char* const kStyle = R"(
 @media (prefers-color-scheme: dark) { :root { --paper: #16181b; --ink: #e6e6e6; --muted: #a0a0a0; --grid: #3a3d41;
   --minor-grid: #26292d; --band: #34383d; --direct: #ffffff; --rule: #3a3d41; --note: #202327; } }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 1rem; max-width: 54rem; background: var(--paper); color: var(--ink);
+body { margin: 0 auto; padding: 1rem; max-width: 60rem; background: var(--paper); color: var(--ink);
   font: 1.0625rem/1.5 "DejaVu Sans", system-ui, sans-serif; overflow-wrap: break-word; }
 h1 { font-size: 1.75rem; line-height: 1.2; margin: 0.5rem 0; }
 h2 { font-size: 1.3rem; margin: 2.2rem 0 0.5rem; border-top: 1px solid var(--rule); padding-top: 1rem; }
@@ -22,11 +22,11 @@ p, li { max-width: 46rem; }
 .warning { border-left-color: #E69F00; }
 figure { margin: 1.6rem 0; break-inside: avoid; }
 figure svg { display: block; width: 100%; height: auto; max-width: 45rem; }
-figure svg text { font-family: "DejaVu Sans", system-ui, sans-serif; }
+figure svg text, figure svg tspan { font-family: "DejaVu Sans", system-ui, sans-serif; }
 figcaption, .caption { color: var(--muted); font-size: 0.9375rem; margin: 0.3rem 0; }
 .table { overflow-x: auto; margin: 0.5rem 0 1rem; }
-table { border-collapse: collapse; font-size: 0.875rem; font-variant-numeric: tabular-nums; line-height: 1.35; }
-th, td { padding: 0.2rem 0.55rem; text-align: right; border-bottom: 1px solid var(--rule); vertical-align: bottom; }
+table { border-collapse: collapse; font-size: 0.8125rem; font-variant-numeric: tabular-nums; line-height: 1.35; }
+th, td { padding: 0.2rem 0.45rem; text-align: right; border-bottom: 1px solid var(--rule); vertical-align: bottom; }
 td { white-space: nowrap; vertical-align: top; }
 th { font-weight: 600; }
 th.text, td.text { text-align: left; }

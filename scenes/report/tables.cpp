@@ -147,6 +147,7 @@ Table coverage_table(const ReportData& data) {
                             {{"model", "model"}, {"where", "where"}});
   for (const CoverageErrors& errors : data.coverage.errors) {
     for (const bool inside : {true, false}) {
+      if ((inside ? errors.inside : errors.outside).samples == 0) continue;
       std::vector<TableCell> row{errors.model, std::string(inside ? "near the data" : "away from it")};
       add_errors(row, inside ? errors.inside : errors.outside);
       table.rows.push_back(std::move(row));

@@ -1,0 +1,165 @@
+// palpate report as a program, once from recordings to page, on short recordings.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using test::run_palpate;
+
+// One report for all cases: it is what takes the time.
+class ReportVerb : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TemporaryFolder;
+    for (const char* seed : {"1", "2"}) {
+      const auto ran = run_palpate({"synth", "--material", "silicone", "--seed", seed, "--seconds", "4", "--rate",
+                                    "100", "--out", folder_->file(std::string("r") + seed + ".csv")});
+      ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    }
+    report_ = run_palpate({"report", "--quick", "--train", folder_->file("r1.csv"), "--test", folder_->file("r2.csv"),
+                           "--out", out()});
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  void SetUp() override { ASSERT_EQ(report_.exit_code, 0) << report_.err; }
+
+  static std::string out() { return folder_->file("report"); }
+
+  static test::TemporaryFolder* folder_;
+  static test::ProgramRun report_;
+};
+
+test::TemporaryFolder* ReportVerb::folder_ = nullptr;
+test::ProgramRun ReportVerb::report_;
+
+TEST_F(ReportVerb, WritesTheWholeFolderAndNothingBesideIt) {
+  EXPECT_EQ(report_.err, "");
+  EXPECT_NE(report_.out.find("within the JND"), std::string::npos) << report_.out;
+  EXPECT_EQ(folder_->entries(), (std::vector<std::string>{"r1.csv", "r2.csv", "report"}));
+  const Json report = Json::parse(test::read_text(out() + "/report.json"));
+  EXPECT_EQ(report["format"], "palpate-report");
+  EXPECT_EQ(report["quick"], true);
+  EXPECT_EQ(report["folds"], 0);
+  EXPECT_EQ(report["seeds"].size(), 10u);
+  ASSERT_GE(report["figures"].size(), 13u);
+  for (const Json& figure : report["figures"]) {
+    const std::string stem = out() + "/figures/" + figure["name"].get<std::string>();
+    EXPECT_GT(fs::file_size(stem + ".svg"), 1000u) << stem;
+    EXPECT_GT(fs::file_size(stem + ".png"), 1000u) << stem;
+  }
+  for (const auto& [name, rows] : report["tables"].items()) {
+    EXPECT_TRUE(fs::exists(out() + "/tables/" + name + ".csv")) << name;
+  }
+}
+
+TEST_F(ReportVerb, PageNeedsNothingElse) {
+  const std::string page = test::read_text(out() + "/index.html");
+  EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
+  EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
+  EXPECT_NE(page.find("<svg viewBox"), std::string::npos);
+  for (const char* outside : {"http:", "https:", "<script", "<link", "<img", "@import", "src="}) {
+    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  }
+  // Every reference is to an id of the page itself; ids are unique.
+  std::map<std::string, int> ids;
+  const std::regex id("\\bid=[\"']([^\"']+)[\"']");
+  for (std::sregex_iterator it(page.begin(), page.end(), id), end; it != end; ++it) {
+    if ((*it)[1].str().find("gnuplot_plot") == std::string::npos) ++ids[(*it)[1]];
+  }
+  const std::regex reference("href=[\"']([^\"']+)[\"']");
+  for (std::sregex_iterator it(page.begin(), page.end(), reference), end; it != end; ++it) {
+    const std::string target = (*it)[1];
+    ASSERT_EQ(target[0], '#') << target;
+    EXPECT_EQ(ids[target.substr(1)] > 0, true) << target;
+  }
+}
+
+TEST_F(ReportVerb, NothingIsWrittenOverWithoutForce) {
+  const std::string before = test::read_text(out() + "/report.json");
+  const auto again = run_palpate({"report", "--quick", "--out", out()});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_EQ(again.err, "error: " + out() + " exists; pass --force to replace it\n");
+  EXPECT_EQ(test::read_text(out() + "/report.json"), before);
+}
+
+TEST_F(ReportVerb, SaysWhatIsWrongAndLeavesNothing) {
+  const std::string bad = folder_->with_file("bad.csv", "time_s,position_m\n0,0\n");
+  const auto before = folder_->entries();
+  auto ran = run_palpate({"report", "--train", bad, "--out", folder_->file("other")});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err.rfind("error: " + bad + ":1:", 0), 0u) << ran.err;
+  ran = run_palpate({"report", "--test", bad, "--out", folder_->file("other")});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.err, "error: found --test without --train, expected recordings to train on as well; give them with "
+                     "--train\n");
+  EXPECT_EQ(run_palpate({"report"}).exit_code, 2);
+  EXPECT_EQ(folder_->entries(), before);
+  fs::remove(bad);
+}
+
+TEST_F(ReportVerb, TheSameRecordingsGiveTheSameFiguresButForTimes) {
+  const std::string other = folder_->file("again");
+  const auto again = run_palpate({"report", "--quick", "--train", folder_->file("r1.csv"), "--test",
+                                  folder_->file("r2.csv"), "--out", other});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const Json first = Json::parse(test::read_text(out() + "/report.json"));
+  const Json second = Json::parse(test::read_text(other + "/report.json"));
+  EXPECT_EQ(first["tables"], second["tables"]);
+  EXPECT_EQ(first["findings"], second["findings"]);
+  for (const Json& figure : first["figures"]) {
+    if (figure["has_times"]) continue;
+    const std::string name = "/figures/" + figure["name"].get<std::string>() + ".svg";
+    EXPECT_TRUE(test::read_text(out() + name) == test::read_text(other + name)) << name;
+  }
+  fs::remove_all(other);
+}
+
+TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
+  const std::string other = folder_->file("folds");
+  const auto ran = run_palpate(
+      {"report", "--quick", "--train", folder_->file("r1.csv"), folder_->file("r2.csv"), "--out", other});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  const Json report = Json::parse(test::read_text(other + "/report.json"));
+  EXPECT_EQ(report["folds"], 2);
+  EXPECT_NE(test::read_text(other + "/index.html").find("2-fold cross-validation"), std::string::npos);
+  // Both recordings were tested, so the pooled samples are those of both.
+  std::uint64_t contact = 0;
+  for (const Json& recording : report["tables"]["recordings"]) contact += recording["contact_samples"].get<std::uint64_t>();
+  EXPECT_EQ(report["tables"]["speed_error"][0]["contact_samples"], contact);
+  fs::remove_all(other);
+}
+
+// The main table again, from the forces that `palpate replay` writes, by a script that
+// shares no code with the program.
+TEST_F(ReportVerb, TableAgreesWithAnIndependentScript) {
+  if (test::run_program({"python3", "-c", ""}).exit_code != 0) GTEST_SKIP() << "no python3 here";
+  for (const char* method : {"direct", "greedy"}) {
+    const std::string model = folder_->file("model.json");
+    const std::string forces = folder_->file("forces.csv");
+    auto ran = run_palpate({"fit", "--recording", folder_->file("r1.csv"), "--method", method, "--out", model});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    ran = run_palpate({"replay", "--recording", folder_->file("r2.csv"), "--model", model, "--out", forces});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const std::string name = std::string(method) == "direct" ? "direct" : "greedy-100";
+    const auto checked = test::run_program(
+        {"python3", std::string(PALPATE_SOURCE_DIR) + "/tests/scenes/report/check_tables.py", out(), forces, name});
+    EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+    fs::remove(model);
+    fs::remove(forces);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,52 @@
+#include "scenes/report/table.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace palpate {
+namespace {
+
+Table example() {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return {"example",
+          "caption",
+          false,
+          {{"model", "model"}, {"count", "count"}, {"rms_error_N", "RMS [mN]", 1e3}, {"share", "share [%]", 100.0, 2}},
+          {{std::string("a,\"b\""), std::uint64_t{12345}, 0.1, 0.99954}, {std::string("<i>"), std::uint64_t{0}, none, 1.0}}};
+}
+
+TEST(Table, CsvHoldsTheStoredValuesInFull) {
+  EXPECT_EQ(table_csv(example()),
+            "model,count,rms_error_N,share\n\"a,\"\"b\"\"\",12345,0.1,0.99954\n<i>,0,,1\n");
+}
+
+TEST(Table, JsonHasNullForNoFigure) {
+  EXPECT_EQ(table_json(example()).dump(),
+            "[{\"model\":\"a,\\\"b\\\"\",\"count\":12345,\"rms_error_N\":0.1,\"share\":0.99954},"
+            "{\"model\":\"<i>\",\"count\":0,\"rms_error_N\":null,\"share\":1.0}]");
+}
+
+TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
+  const std::string html = table_html(example());
+  EXPECT_NE(html.find("<th class=\"text\">model</th><th>count</th><th>RMS [mN]</th>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<td class=\"text\">a,&quot;b&quot;</td><td>12,345</td><td>100</td><td>99.95</td>"),
+            std::string::npos)
+      << html;
+  EXPECT_NE(html.find("&lt;i&gt;</td><td>0</td><td>–</td><td>100.00</td>"), std::string::npos) << html;
+}
+
+TEST(ThreeDigits, RoundsToThreeAndKeepsThousandsApart) {
+  EXPECT_EQ(three_digits(8.8749), "8.87");
+  EXPECT_EQ(three_digits(0.012345), "0.0123");
+  EXPECT_EQ(three_digits(9.999), "10.0");
+  EXPECT_EQ(three_digits(99.96), "100");
+  EXPECT_EQ(three_digits(12345.0), "12,300");
+  EXPECT_EQ(three_digits(-1234567.0), "-1,230,000");
+  EXPECT_EQ(three_digits(0.0), "0");
+  EXPECT_EQ(three_digits(4.5e9), "4.50e+09");
+  EXPECT_EQ(three_digits(std::numeric_limits<double>::infinity()), "–");
+}
+
+}  // namespace
+}  // namespace palpate
