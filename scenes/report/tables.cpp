@@ -235,6 +235,29 @@ std::vector<Table> make_tables(const ReportData& data) {
   return tables;
 }
 
+Table hard_case_table(const std::vector<HardCaseResult>& results) {
+  Table table{"hard_cases",
+              "Every method on data that break numerics and on motions far from the training; made up, the same in "
+              "every report. Safe: finite and bounded everywhere, or refused with a message. Errors are over what was "
+              "held out.",
+              false,
+              {{"case", "case"},
+               {"method", "method"},
+               {"safe", "safe"},
+               {"within_jnd", "within the JND [%]", kPercent, 1},
+               {"worst_over_jnd", "worst [JND]"},
+               {"condition", "condition"},
+               {"smoothing", "smoothing"},
+               {"residual", "residual [JND]"},
+               {"outcome", "outcome"}},
+              {}};
+  for (const HardCaseResult& result : results) {
+    table.rows.push_back({result.name, result.method, std::string(result.safe ? "yes" : "no"), result.within_jnd,
+                          result.worst_over_jnd, result.condition, result.smoothing, result.residual, result.outcome});
+  }
+  return table;
+}
+
 const Table& table_named(const std::vector<Table>& tables, const std::string& name) {
   for (const Table& table : tables) {
     if (table.name == name) return table;

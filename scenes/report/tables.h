@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "models/hard_cases.h"
 #include "scenes/report/report_data.h"
 
 namespace palpate {
@@ -13,6 +14,9 @@ namespace palpate {
 // All tables in the order of the page; those with a caption are shown on it. Measured
 // times are in tables of their own (`Table::has_times`).
 std::vector<Table> make_tables(const ReportData& data);
+
+// The stability suite's cases as a table for ReportData::hard_cases.
+Table hard_case_table(const std::vector<HardCaseResult>& results);
 
 // The table of that name; a programmer's mistake when there is none.
 const Table& table_named(const std::vector<Table>& tables, const std::string& name);

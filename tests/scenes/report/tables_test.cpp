@@ -63,6 +63,19 @@ TEST(Tables, TimesStandApart) {
   }
 }
 
+TEST(Tables, HardCasesSayWhetherTheyAreSafe) {
+  HardCaseResult result;
+  result.name = "two sites";
+  result.method = "greedy";
+  result.outcome = "bounded";
+  result.worst_over_jnd = 3.0;
+  result.within_jnd = 0.5;
+  result.safe = true;
+  EXPECT_EQ(table_csv(hard_case_table({result})),
+            "case,method,safe,within_jnd,worst_over_jnd,condition,smoothing,residual,outcome\n"
+            "two sites,greedy,yes,0.5,3,0,0,0,bounded\n");
+}
+
 TEST(Findings, NameTheSmallestGoodAndTheQuickest) {
   const ReportData data = example();
   const auto plain = findings(data, false);
