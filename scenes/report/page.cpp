@@ -53,9 +53,9 @@ std::string finding_box(const std::vector<std::string>& sentences, bool warning 
 
 class Page {
  public:
-  Page(const ReportData& data, const std::vector<Table>& tables, const std::vector<Figure>& figures,
+  Page(const std::vector<Table>& tables, const std::vector<Figure>& figures,
        const std::map<std::string, std::string>& svgs)
-      : data_(data), tables_(tables), figures_(figures), svgs_(svgs) {}
+      : tables_(tables), figures_(figures), svgs_(svgs) {}
 
   void add(const std::string& html) { html_ += html; }
   void heading(const std::string& text) { html_ += "<h2>" + escape_html(text) + "</h2>\n"; }
@@ -82,7 +82,6 @@ class Page {
   std::string take() { return std::move(html_); }
 
  private:
-  const ReportData& data_;
   const std::vector<Table>& tables_;
   const std::vector<Figure>& figures_;
   const std::map<std::string, std::string>& svgs_;
@@ -136,7 +135,7 @@ std::string origin_html(const ReportOrigin& origin) {
 
 std::string make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
                       const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs) {
-  Page page(data, tables, figures, svgs);
+  Page page(tables, figures, svgs);
   page.add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<title>Palpate: speed against error</title>\n<style>");
