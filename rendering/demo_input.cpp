@@ -36,8 +36,8 @@ constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_L, Command::details},
                                                     {GLFW_KEY_T, Command::theme},
                                                     {GLFW_KEY_Z, Command::zero},
-    {GLFW_KEY_D, Command::dead_man},
-    {GLFW_KEY_F11, Command::fullscreen}};
+                                                    {GLFW_KEY_D, Command::dead_man},
+                                                    {GLFW_KEY_F11, Command::fullscreen}};
 
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
   if (!view.paused || session.history().size() == 0) return;

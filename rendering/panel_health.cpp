@@ -66,9 +66,11 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
 std::string device_line(const LiveSession& session) {
   const DeviceHealth& device = session.newest().device;
   if (device.zeroing == Zeroing::not_needed && device.faults == 0) return {};
-  std::string line = "device: " + session.device_name() + text_of(", sample %.1f ms old", 1e3 * device.sample_age_s);
+  std::string line =
+      "device: " + session.device_name() + text_of(", sample %.1f ms old", 1e3 * device.sample_age_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
-  line += text_of(", motor %.0f %% of its thermal budget", 100.0 * static_cast<double>(session.newest().heat_share));
+  line += text_of(", motor %.0f %% of its thermal budget",
+                  100.0 * static_cast<double>(session.newest().heat_share));
   return line;
 }
 
@@ -103,8 +105,9 @@ HealthWords health_words(const LiveSession& session, const FrameFigures& frames)
             true};
   }
   if (frames.recent_fps > 0.0 && frames.recent_fps < kFewFrames_per_s) {
-    return {text_of("%.0f frames a second: the picture is slow, the force is not affected", frames.recent_fps),
-            true};
+    return {
+        text_of("%.0f frames a second: the picture is slow, the force is not affected", frames.recent_fps),
+        true};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) +

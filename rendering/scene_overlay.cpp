@@ -204,7 +204,7 @@ void draw_recording(const LiveSession& session, const UiStyle& style, const Scen
 }
 
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 3.6F * style.fonts().heading->FontSize;
+  float y = area.at.y + 4.6F * style.fonts().heading->FontSize;
   ImFont* font = style.fonts().body;
   const float pad = 0.6F * font->FontSize;
   const float wrap = 0.86F * area.size.x;
@@ -244,7 +244,8 @@ void draw_device_words(LiveSession& session, const UiStyle& style, const SceneAr
   ImGui::PushFont(style.fonts().heading);
   ImGui::TextWrapped("%s", words.c_str());
   ImGui::PopFont();
-  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)")) session.start_zeroing();
+  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)"))
+    session.start_zeroing();
   ImGui::End();
 }
 
@@ -312,7 +313,8 @@ const std::vector<CommandEntry>& commands() {
       {Command::next_reference, "F", "Reference", "choose what the models are compared with"},
       {Command::file_list, "M", "Load", "load a model file"},
       {Command::zero, "Z", "", "the device's tool is at its rest position: zero it there"},
-      {Command::dead_man, "D", "", "push only while G, then while the handle's switch is held, and off again"},
+      {Command::dead_man, "D", "",
+       "push only while G, then while the handle's switch is held, and off again"},
       {Command::theme, "T", "Theme", "light or dark"},
       {Command::details, "L", "Loop", "all figures of the loop, and its faults"},
       {Command::next_block_count, "B", "", "one, two or four blocks side by side"},
