@@ -64,6 +64,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       slot_(slot),
       mixer_(settings.jnd),
       limiter_(device.limits()),
+      source_(settings.source),
       outgoing_mixer_(settings.jnd),
       taken_(settings.taken),
       ns_per_cycle_(ns_per_cycle()) {
@@ -229,7 +230,9 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   take_models();
   take_samples(now_s);
   snapshot_.device = device_.health(now_s);
-  render(mix(controls, step_s), step_s, released(controls));
+  const double wanted_N =
+      source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
+  render(wanted_N, step_s, released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
   if (models_ != nullptr) {

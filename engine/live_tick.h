@@ -36,6 +36,16 @@ class ReferenceForce {
   virtual double step(const TickSnapshot& snapshot, bool restart) noexcept = 0;
 };
 
+// A force that comes from no model, in the models' place: what a study presents.
+class ForceSource {
+ public:
+  virtual ~ForceSource() = default;
+  // Haptics thread, once a tick. Wait-free, never throws. `rendered_N`: what the
+  // device got in the tick before. Returns what it should get now, finite or not:
+  // the limiter comes behind it.
+  virtual double next_force_N(double rendered_N) noexcept = 0;
+};
+
 // Everything that is exchanged at once when the models change.
 struct LiveModels {
   // Slow side: sizes all workspaces and evaluates every model once. `id`, above
@@ -143,6 +153,7 @@ using TakenRing = SpscRing<TakenSample, kTakenRing>;
 struct LiveTickSettings {
   JndLine jnd;
   TakenRing* taken = nullptr;  // outlives the tick; null: nobody records
+  ForceSource* source = nullptr;  // outlives the tick; null: the models
 };
 
 class LiveTick {
@@ -185,6 +196,7 @@ class LiveTick {
   ModelSlot<LiveModels>& slot_;
   ForceMixer mixer_;
   ForceLimiter limiter_;
+  ForceSource* source_;
   LiveModels* models_ = nullptr;
   LiveModels* outgoing_ = nullptr;  // still felt; retired when it is not
   ForceMixer outgoing_mixer_;

@@ -1,7 +1,5 @@
 #include "rendering/demo_app.h"
 
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 // After epoxy, which brings OpenGL's functions.
 #define GLFW_INCLUDE_NONE
@@ -10,7 +8,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -71,19 +68,14 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
-  start_imgui();
+  listen();
   if (find_font().empty())
     toasts_.push_back({"no font found; install fonts-dejavu-core", true, now() + kProblemToast_s});
   frame_began_s_ = last_frame_s_ = second_began_s_ = now();
   return {};
 }
 
-void DemoApp::start_imgui() {
-  IMGUI_CHECKVERSION();
-  ImGui::CreateContext();
-  imgui_ = true;
-  ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // the window remembers nothing between runs
+void DemoApp::listen() {
   glfwSetWindowUserPointer(window_->handle(), this);
   glfwSetDropCallback(window_->handle(), [](GLFWwindow* handle, int count, const char** paths) {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
@@ -93,9 +85,8 @@ void DemoApp::start_imgui() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     if (action == GLFW_PRESS) app->press_key(key, modifiers);
   });
-  // Calls the callbacks that are there already after its own.
-  ImGui_ImplGlfw_InitForOpenGL(window_->handle(), true);
-  ImGui_ImplOpenGL3_Init("#version 330 core");
+  // After these callbacks, which it calls behind its own.
+  ui_ = std::make_unique<UiContext>(window_->handle());
 }
 
 DemoApp::~DemoApp() {
@@ -103,10 +94,6 @@ DemoApp::~DemoApp() {
   if (window_ != nullptr) glfwHideWindow(window_->handle());
   session_.reset();
   blocks_.reset();
-  if (!imgui_) return;
-  ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
 }
 
 bool DemoApp::closing() const noexcept {
@@ -148,10 +135,7 @@ void DemoApp::draw() {
   float content_scale = 1.0F;
   glfwGetWindowContentScale(window_->handle(), &content_scale, nullptr);
   style_.update(height, content_scale, view_.kiosk, view_.theme);
-  ImGui_ImplOpenGL3_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
-  forget_mouse_outside();
-  ImGui::NewFrame();
+  ui_->begin_frame();
   draw_blocks();
   clear_panel();
   const SceneArea area = scene_area();
@@ -164,8 +148,7 @@ void DemoApp::draw() {
   } else {
     panel_.draw(*session_, view_, style_, frames_, at, size);
   }
-  ImGui::Render();
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  ui_->end_frame();
 }
 
 void DemoApp::draw_blocks() {
@@ -179,13 +162,6 @@ void DemoApp::draw_blocks() {
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
   blocks_framed_ = poses.size();
   blocks_->draw(poses, viewport, view_.theme);
-}
-
-// The mouse has left: nothing is under it any more.
-void DemoApp::forget_mouse_outside() {
-  const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
-  if (held || glfwGetWindowAttrib(window_->handle(), GLFW_HOVERED) != 0) return;
-  ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
 }
 
 // Clearing costs less than filling a rectangle, where the processor draws.

@@ -13,6 +13,7 @@
 #include "rendering/open_day.h"
 #include "rendering/panel.h"
 #include "rendering/scene_overlay.h"
+#include "rendering/ui_context.h"
 #include "rendering/ui_style.h"
 #include "rendering/view_state.h"
 #include "rendering/window.h"
@@ -56,7 +57,7 @@ class DemoApp {
  private:
   DemoApp() = default;
   Status set_up(const DemoRequest& request);
-  void start_imgui();
+  void listen();
   struct KeyPress {
     int key = 0;  // GLFW's
     int modifiers = 0;
@@ -72,16 +73,16 @@ class DemoApp {
   void clear_panel();
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
-  void forget_mouse_outside();
   SceneArea scene_area() const;
   void record();
   void next_reference();
   void next_dead_man();
 
-  // The window last: OpenGL things go before it.
+  // What lies on the window goes before it.
   std::unique_ptr<Window> window_;
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<BlockView> blocks_;
+  std::unique_ptr<UiContext> ui_;
   UiStyle style_;
   Panel panel_;
   SceneOverlay overlay_;
@@ -95,7 +96,6 @@ class DemoApp {
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
-  bool imgui_ = false;
   bool orbiting_ = false;
   bool leaving_ = false;  // a kiosk's only way out
 };

@@ -11,6 +11,7 @@
 #include "engine/pacer.h"
 #include "rendering/demo_app.h"
 #include "rendering/stats_file.h"
+#include "rendering/study_app.h"
 
 namespace palpate {
 namespace {
@@ -21,6 +22,8 @@ constexpr int kWrongUsage = 2;
 constexpr double kSPerNs = 1e-9;
 // A picture without --seconds: by then all models are fitted and the curves full.
 constexpr double kPictureAfter_s = 12.0;
+// No block to press: two forces to tell apart.
+constexpr const char* kStudyScene = "jnd_study";
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
@@ -47,7 +50,7 @@ int fail(const std::string& message) {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
-  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`")->capture_default_str();
+  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`; jnd_study measures a hand")->capture_default_str();
   app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")
       ->capture_default_str();
   app.add_option("--model", session.models,
@@ -73,26 +76,40 @@ Status check_outputs(const Arguments& arguments) {
   return {};
 }
 
+// Frame after frame until closed, stopped, or so many seconds have passed.
+template <typename App>
+void run_frames(App& app, double seconds) {
+  SteadyPacer clock;
+  const std::int64_t start_ns = clock.now_ns();
+  while (!app.closing() && !stop_asked.load(std::memory_order_relaxed)) {
+    app.frame();
+    if (seconds > 0.0 && kSPerNs * static_cast<double>(clock.now_ns() - start_ns) >= seconds) break;
+  }
+}
+
+Status run_study(const Arguments& arguments) {
+  StudyRequest request;
+  request.device = arguments.demo.session.device;
+  request.window = arguments.demo.window;
+  auto app = StudyApp::create(request);
+  if (!app) return app.error();
+  run_frames(**app, arguments.seconds);
+  return arguments.screenshot.empty() ? Status() : (*app)->screenshot(arguments.screenshot, arguments.force);
+}
+
 Status run_demo(Arguments& arguments) {
   if (Status status = check_outputs(arguments); !status) return status;
   if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
+  if (arguments.demo.session.scene == kStudyScene) return run_study(arguments);
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
-  SteadyPacer clock;
-  const std::int64_t start_ns = clock.now_ns();
-  while (!(*app)->closing() && !stop_asked.load(std::memory_order_relaxed)) {
-    (*app)->frame();
-    if (arguments.seconds > 0.0 &&
-        kSPerNs * static_cast<double>(clock.now_ns() - start_ns) >= arguments.seconds)
-      break;
-  }
+  run_frames(**app, arguments.seconds);
   if (!arguments.screenshot.empty()) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()),
-                               arguments.force);
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()), arguments.force);
 }
 
 int run_program(int argc, char** argv) {

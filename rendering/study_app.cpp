@@ -1,0 +1,252 @@
+#include "rendering/study_app.h"
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cctype>
+#include <ctime>
+#include <utility>
+
+#include "rendering/screenshot.h"
+
+namespace palpate {
+namespace {
+
+constexpr float kColumnShare = 0.62F;  // of the window's width
+constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
+
+std::string local_time() {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&time, &local);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
+  return text;
+}
+
+constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
+
+}  // namespace
+
+Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) {
+  if (Status status = Window::find_display(); !status) return status.error();
+  auto window = Window::open(request.window);
+  if (!window) return window.error();
+  std::unique_ptr<StudyApp> app(new StudyApp(request));
+  app->window_ = std::move(*window);
+  GLFWwindow* handle = app->window_->handle();
+  glfwSetWindowUserPointer(handle, app.get());
+  glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
+    if (action == GLFW_PRESS) static_cast<StudyApp*>(glfwGetWindowUserPointer(from))->press_key(key);
+  });
+  // After this callback, which it calls behind its own.
+  app->ui_ = std::make_unique<UiContext>(handle);
+  return app;
+}
+
+StudyApp::~StudyApp() { study_.reset(); }
+
+bool StudyApp::closing() const noexcept { return glfwWindowShouldClose(window_->handle()) != 0; }
+
+void StudyApp::begin(const std::string& code, ProcedureKind procedure) {
+  LiveStudyRequest request;
+  request.device = request_.device;
+  request.realtime = request_.realtime;
+  request.header.subject = code;
+  request.header.procedure = procedure;
+  request.path = "study-" + code + ".csv";
+  problem_.clear();
+  if (Status status = check_subject_code(code); !status) {
+    problem_ = status.error().message;
+    return;
+  }
+  auto study = LiveStudy::open(request);
+  if (study) {
+    study_ = std::move(*study);
+  } else {
+    problem_ = study.error().message;
+  }
+}
+
+void StudyApp::frame() {
+  glfwPollEvents();
+  if (study_ != nullptr) study_->update();
+  handle_keys();
+  draw();
+  window_->show_frame();
+}
+
+void StudyApp::handle_keys() {
+  for (const int key : std::exchange(keys_, {})) take_key(key);
+}
+
+void StudyApp::take_key(int key) {
+  if (study_ == nullptr) {
+    if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_.data(), procedure_);
+    if (key == GLFW_KEY_TAB) {
+      procedure_ = procedure_ == ProcedureKind::constant ? ProcedureKind::adaptive : ProcedureKind::constant;
+    }
+    return;
+  }
+  StudySession& session = study_->session();
+  switch (key) {
+    case GLFW_KEY_ESCAPE: session.abort(); break;
+    case GLFW_KEY_Y: session.accept_consent(local_time()); break;
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER: session.proceed(); break;
+    case GLFW_KEY_1:
+    case GLFW_KEY_KP_1: session.answer(false); break;
+    case GLFW_KEY_2:
+    case GLFW_KEY_KP_2: session.answer(true); break;
+    case GLFW_KEY_R: session.retry(); break;
+    case GLFW_KEY_Z: study_->start_zeroing(); break;
+    default: break;
+  }
+}
+
+void StudyApp::draw() {
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(window_->handle(), &width, &height);
+  float content_scale = 1.0F;
+  glfwGetWindowContentScale(window_->handle(), &content_scale, nullptr);
+  style_.update(height, content_scale, true, kTheme);
+  ui_->begin_frame();
+  const Rgb& background = style_.colours().background;
+  glViewport(0, 0, width, height);
+  glClearColor(background.r, background.g, background.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.10F * all.y});
+  ImGui::SetNextWindowSize({kColumnShare * all.x, 0.86F * all.y});
+  ImGui::Begin("study", nullptr, kFixed);
+  if (study_ == nullptr) {
+    draw_entry();
+  } else {
+    draw_session();
+  }
+  ImGui::End();
+  ui_->end_frame();
+}
+
+// True when clicked; its key does the same.
+bool StudyApp::button(const char* label, int key) {
+  const bool clicked = ImGui::Button(label);
+  if (clicked) keys_.push_back(key);
+  return clicked;
+}
+
+void StudyApp::draw_entry() {
+  ImGui::PushFont(style_.fonts().heading);
+  ImGui::TextUnformatted("How small a difference can a hand feel?");
+  ImGui::PopFont();
+  ImGui::Spacing();
+  ImGui::TextWrapped("Two pushes, one after the other: which was larger? The code stands for the person; no name is kept.");
+  ImGui::Spacing();
+  ImGui::SetNextItemWidth(10.0F * ImGui::GetFontSize());
+  if (code_[0] == '\0' && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+  ImGui::InputText("subject code, such as S01", code_.data(), code_.size(), ImGuiInputTextFlags_CharsUppercase);
+  const auto choice = [&](const char* label, ProcedureKind kind) {
+    if (ImGui::RadioButton(label, procedure_ == kind)) procedure_ = kind;
+  };
+  choice("constant stimuli, as in the paper: 320 trials", ProcedureKind::constant);
+  choice("adaptive (QUEST+): 80 trials", ProcedureKind::adaptive);
+  ImGui::TextDisabled("Tab changes the procedure");
+  ImGui::Spacing();
+  button("Begin (Enter)", GLFW_KEY_ENTER);
+  ImGui::TextDisabled("A code that has begun goes on after its last answer.");
+  if (problem_.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
+  ImGui::TextWrapped("%s", problem_.c_str());
+  ImGui::PopStyleColor();
+}
+
+void StudyApp::draw_session() {
+  const StudyView view = study_->session().view();
+  if (view.trials > 0 && view.state != StudyState::consent) {
+    ImGui::TextDisabled("%s   %zu of %zu", view.training ? "training" : "study", view.answered, view.trials);
+    const float share = static_cast<float>(view.answered) / static_cast<float>(view.trials);
+    ImGui::ProgressBar(share, {-1.0F, 0.4F * ImGui::GetFontSize()}, "");
+  }
+  ImGui::Spacing();
+  const bool to_read = view.state == StudyState::consent;
+  if (!to_read) ImGui::PushFont(style_.fonts().heading);
+  ImGui::TextWrapped("%s", view.message.c_str());
+  if (!to_read) ImGui::PopFont();
+  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0) {
+    ImGui::TextDisabled(view.was_correct ? "The last answer was right." : "The last answer was wrong.");
+  }
+  ImGui::Spacing();
+  if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
+  draw_choices(view);
+  ImGui::Spacing();
+  if (const std::string words = study_->device_words(); !words.empty()) ImGui::TextWrapped("%s", words.c_str());
+  if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
+  if (!study_->device_pushes()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
+    ImGui::TextWrapped("No haptic device: nobody can feel this, it is a rehearsal.");
+    ImGui::PopStyleColor();
+  }
+}
+
+// Which push it is, as two boxes that light up.
+void StudyApp::draw_intervals(const StudyView& view) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImFont* font = style_.fonts().big;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float side = 1.8F * font->FontSize;
+  for (const int interval : {1, 2}) {
+    const float x = at.x + (interval == 1 ? 0.0F : 1.3F * side);
+    const bool on = view.interval == interval;
+    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
+                       ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
+    const char text[2] = {static_cast<char>('0' + interval), '\0'};
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
+    list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
+                 ink(style_.colours().text), text);
+  }
+  ImGui::Dummy({2.3F * side, side});
+  ImGui::Spacing();
+}
+
+void StudyApp::draw_choices(const StudyView& view) {
+  switch (view.state) {
+    case StudyState::consent: button("I have read this and agree (Y)", GLFW_KEY_Y); break;
+    case StudyState::ready: button("Go on (Enter)", GLFW_KEY_ENTER); break;
+    case StudyState::rest:
+      if (view.rest_ticks_left > 0) {
+        ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
+      } else {
+        button("Go on (Enter)", GLFW_KEY_ENTER);
+      }
+      break;
+    case StudyState::answering:
+      button("The first (1)", GLFW_KEY_1);
+      ImGui::SameLine();
+      button("The second (2)", GLFW_KEY_2);
+      break;
+    case StudyState::unsaved: button("Try again (R)", GLFW_KEY_R); break;
+    case StudyState::presenting:
+    case StudyState::done:
+    case StudyState::aborted: break;
+  }
+  if (view.state == StudyState::done || view.state == StudyState::aborted) return;
+  ImGui::SameLine(0.0F, 2.0F * ImGui::GetFontSize());
+  button("End the session (Esc)", GLFW_KEY_ESCAPE);
+}
+
+Status StudyApp::screenshot(const std::string& path, bool overwrite) {
+  draw();
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(window_->handle(), &width, &height);
+  const Status status = save_screenshot(path, width, height, overwrite);
+  window_->show_frame();
+  return status;
+}
+
+}  // namespace palpate

@@ -1,0 +1,70 @@
+// The window of the force-discrimination study (--scene jnd_study): who takes part,
+// then one screen after the other, in words that a subject reads at a glance.
+//
+// Every button has a key; Esc ends the session at any time, and what was answered
+// is kept. No curve and no number that could be an answer is shown.
+// Thread guarantee: main thread only.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/result.h"
+#include "rendering/ui_context.h"
+#include "rendering/ui_style.h"
+#include "rendering/window.h"
+#include "scenes/study/live_study.h"
+
+namespace palpate {
+
+struct StudyRequest {
+  std::string device = "auto";
+  WindowRequest window;
+  bool realtime = true;
+};
+
+class StudyApp {
+ public:
+  // Errors: those of Window.
+  static Result<std::unique_ptr<StudyApp>> create(const StudyRequest& request);
+  StudyApp(const StudyApp&) = delete;
+  StudyApp& operator=(const StudyApp&) = delete;
+  ~StudyApp();
+
+  void frame();
+  bool closing() const noexcept;
+  Status screenshot(const std::string& path, bool overwrite);
+
+  // What the entry screen does: opens or takes up study-CODE.csv in this folder.
+  // Trouble is shown there.
+  void begin(const std::string& code, ProcedureKind procedure);
+  void press_key(int key) { keys_.push_back(key); }
+  // Null before `begin` succeeded.
+  LiveStudy* study() noexcept { return study_.get(); }
+  const std::string& problem() const noexcept { return problem_; }
+
+ private:
+  explicit StudyApp(const StudyRequest& request) : request_(request) {}
+  void draw();
+  void draw_entry();
+  void draw_session();
+  void draw_choices(const StudyView& view);
+  void draw_intervals(const StudyView& view);
+  void handle_keys();
+  void take_key(int key);
+  bool button(const char* label, int key);
+
+  StudyRequest request_;
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<LiveStudy> study_;
+  std::unique_ptr<UiContext> ui_;
+  UiStyle style_;
+  std::vector<int> keys_;  // since the last frame
+  std::array<char, 16> code_{};
+  ProcedureKind procedure_ = ProcedureKind::constant;
+  std::string problem_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,72 @@
+#include "scenes/study/live_study.h"
+
+#include <array>
+#include <utility>
+
+#include "devices/device_registry.h"
+#include "scenes/assets.h"
+#include "scenes/study/study_file.h"
+
+namespace palpate {
+
+// The session as the loop sees it.
+class LiveStudy::Presented final : public ForceSource {
+ public:
+  explicit Presented(StudySession& session) : session_(session) {}
+  double next_force_N(double rendered_N) noexcept override { return session_.tick(rendered_N); }
+
+ private:
+  StudySession& session_;
+};
+
+Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& request) {
+  if (Status status = check_subject_code(request.header.subject); !status) return status.error();
+  auto file = StudyFile::open(request.path, request.header);
+  if (!file) return file.error();
+  auto session = StudySession::create(request.header, std::move(*file));
+  if (!session) return session.error();
+  DeviceRequest wanted;
+  if (const auto assets = find_assets()) wanted.calibrations = *assets + "/devices";
+  auto device = open_device(request.device, wanted);
+  if (!device) return device.error();
+  std::unique_ptr<LiveStudy> study(new LiveStudy(std::move(*device), std::move(*session)));
+  LoopSettings settings;
+  settings.realtime = request.realtime;
+  settings.tick.source = study->presented_.get();
+  study->loop_ = std::make_unique<HapticsLoop>(*study->device_, settings);
+  if (Status status = study->loop_->start(); !status) return status.error();
+  return study;
+}
+
+LiveStudy::LiveStudy(std::unique_ptr<Device> device, std::unique_ptr<StudySession> session)
+    : device_(std::move(device)),
+      session_(std::move(session)),
+      presented_(std::make_unique<Presented>(*session_)) {}
+
+LiveStudy::~LiveStudy() {
+  if (loop_ != nullptr) loop_->stop();
+  loop_.reset();
+  device_->close();
+}
+
+void LiveStudy::update() {
+  newest_ = loop_->newest();
+  // Every sample is the study's own business; the ring is only kept from filling up.
+  std::array<LoopSnapshot, 64> passed;
+  while (loop_->read_snapshots(passed.data(), passed.size()) == passed.size()) {
+  }
+  session_->update();
+}
+
+bool LiveStudy::device_pushes() const noexcept {
+  return device_->renders_force() && newest_.device.zeroing != Zeroing::not_needed;
+}
+
+std::string LiveStudy::device_words() const {
+  const auto faults = device_fault_words(newest_.device.faults);
+  if (!faults.empty()) return faults.front();
+  const std::string zeroing = zeroing_words(newest_.device);
+  return zeroing.empty() ? device_->note() : zeroing;
+}
+
+}  // namespace palpate

@@ -1,0 +1,57 @@
+// A study session with a device: the haptics loop renders what the session
+// presents. No window, no drawing.
+//
+// Thread guarantee: one thread (the window's) for everything here.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "engine/haptics_loop.h"
+#include "engine/result.h"
+#include "scenes/study/study_session.h"
+
+namespace palpate {
+
+struct LiveStudyRequest {
+  std::string device = "auto";
+  StudyHeader header;  // who, and by which procedure
+  std::string path;    // of the answers; taken up where it ends
+  bool realtime = true;
+};
+
+class LiveStudy {
+ public:
+  // Errors: the device cannot be opened; the file is in use or of another study; a
+  // subject code that is none.
+  static Result<std::unique_ptr<LiveStudy>> open(const LiveStudyRequest& request);
+  LiveStudy(const LiveStudy&) = delete;
+  LiveStudy& operator=(const LiveStudy&) = delete;
+  // Lets the force go to zero.
+  ~LiveStudy();
+
+  // Once a frame.
+  void update();
+
+  StudySession& session() noexcept { return *session_; }
+  const LoopSnapshot& newest() const noexcept { return newest_; }
+  LoopStatistics statistics() const noexcept { return loop_->statistics(); }
+  const RtStatus& scheduling() const noexcept { return loop_->scheduling(); }
+  // Whether a hand can feel it; else this is a rehearsal.
+  bool device_pushes() const noexcept;
+  // What the device needs first, or what it is; may be empty.
+  std::string device_words() const;
+  void start_zeroing() { device_->start_zeroing(); }
+
+ private:
+  class Presented;
+  LiveStudy(std::unique_ptr<Device> device, std::unique_ptr<StudySession> session);
+
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<StudySession> session_;
+  std::unique_ptr<Presented> presented_;
+  std::unique_ptr<HapticsLoop> loop_;
+  LoopSnapshot newest_;
+};
+
+}  // namespace palpate
