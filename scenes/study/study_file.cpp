@@ -1,0 +1,183 @@
+#include "scenes/study/study_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <system_error>
+
+namespace palpate {
+namespace {
+
+bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
+
+// The shortest text that reads back the same.
+std::string number_text(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return {text, end.ptr};
+}
+
+std::string checksum(const std::string& text) {
+  std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
+  for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x01000193u;
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%08x", static_cast<unsigned>(hash));
+  return digits;
+}
+
+std::string header_text(const StudyHeader& header) {
+  const StudyTiming& timing = header.timing;
+  return "# palpate-study 1\n# subject " + header.subject + "\n# procedure " + procedure_name(header.procedure) +
+         "\n# timing_ms lead_in " + std::to_string(timing.lead_in) + " ramp " + std::to_string(timing.ramp) +
+         " hold " + std::to_string(timing.hold) + " pause " + std::to_string(timing.pause) + "\n";
+}
+
+// Whether `text` is a header that was cut off while it was written: nothing was
+// answered yet. `start`: all of it but the consent and the columns.
+bool is_cut_header(std::string_view text, std::string_view start) {
+  if (text.size() <= start.size()) return begins_with(start, text);
+  if (!begins_with(text, start)) return false;
+  text.remove_prefix(start.size());
+  const std::size_t line_end = text.find('\n');
+  return line_end == std::string_view::npos || begins_with(kStudyColumns, text.substr(line_end + 1));
+}
+
+// Appended and confirmed, or an errno.
+int write_durably(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : EIO;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return fsync(descriptor) == 0 ? 0 : errno;
+}
+
+void flush_folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
+Result<std::string> read_all(int descriptor, const std::string& path) {
+  std::string text;
+  char block[65536];
+  for (;;) {
+    const ssize_t got = ::read(descriptor, block, sizeof block);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return Error{"cannot read " + path + ": " + std::generic_category().message(errno)};
+    if (got == 0) return text;
+    text.append(block, static_cast<std::size_t>(got));
+  }
+}
+
+}  // namespace
+
+std::string study_row(const StudyRecord& record) {
+  return std::string(record.training ? "training," : "study,") + std::to_string(record.number) + "," +
+         number_text(record.trial.reference_N) + "," + number_text(record.trial.comparison_N) +
+         (record.trial.comparison_first ? ",1," : ",0,") + number_text(record.first_rendered_N) + "," +
+         number_text(record.second_rendered_N) + (record.limited ? ",1," : ",0,") +
+         (record.answered_second ? "second," : "first,") + std::to_string(record.response_ms) + "\n";
+}
+
+Result<std::unique_ptr<StudyFile>> StudyFile::open(const std::string& path, const StudyHeader& header) {
+  std::unique_ptr<StudyFile> file(new StudyFile(path, header));
+  file->descriptor_ = ::open(path.c_str(), O_RDWR | O_APPEND | O_CLOEXEC);
+  if (file->descriptor_ < 0) {
+    if (errno != ENOENT) return file->failure(errno);
+    return file;
+  }
+  if (const Status taken = file->take_up(); !taken) return taken.error();
+  return file;
+}
+
+StudyFile::~StudyFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+Error StudyFile::failure(int error_number) const {
+  return Error{"cannot write " + path_ + ": " + std::generic_category().message(error_number)};
+}
+
+Status StudyFile::lock() {
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return {};
+  if (errno != EWOULDBLOCK) return failure(errno);
+  return Error{path_ + " is in use by another session; end that one first, or take another subject code"};
+}
+
+// What an earlier session left.
+Status StudyFile::take_up() {
+  struct stat status {};
+  if (fstat(descriptor_, &status) != 0) return failure(errno);
+  if (!S_ISREG(status.st_mode)) return Error{path_ + " is not a regular file; name one"};
+  if (const Status locked = lock(); !locked) return locked;
+  const Result<std::string> text = read_all(descriptor_, path_);
+  if (!text) return text.error();
+  if (is_cut_header(*text, header_text(header_))) return {};
+  const Result<StudyData> data = parse_study(*text, path_);
+  if (!data) return data.error();
+  const StudyHeader& found = data->header;
+  if (found.subject != header_.subject || found.procedure != header_.procedure || !(found.timing == header_.timing)) {
+    return Error{path_ + ": found a study of subject " + found.subject + ", procedure " +
+                 procedure_name(found.procedure) + ", expected subject " + header_.subject + ", procedure " +
+                 procedure_name(header_.procedure) + " and the same timing; take another folder or subject code"};
+  }
+  if (data->whole_bytes < text->size() && ftruncate(descriptor_, static_cast<off_t>(data->whole_bytes)) != 0) {
+    return failure(errno);
+  }
+  size_ = data->whole_bytes;
+  consented_ = true;
+  records_ = data->records;
+  return {};
+}
+
+// All of it, or as it was before.
+Status StudyFile::write_whole(const std::string& text) {
+  if (const int error_number = write_durably(descriptor_, text); error_number != 0) {
+    // Should this fail too, the next append or the next session cuts it off.
+    [[maybe_unused]] const int taken_back = ftruncate(descriptor_, static_cast<off_t>(size_));
+    return failure(error_number);
+  }
+  size_ += text.size();
+  return {};
+}
+
+Status StudyFile::consent(const std::string& text, const std::string& when) {
+  if (consented_) return {};
+  if (descriptor_ < 0) {
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno == EEXIST) {
+      return Error{path_ + " was made by another session meanwhile; start again to take it up"};
+    }
+    if (descriptor_ < 0) return failure(errno);
+    if (const Status locked = lock(); !locked) return locked;
+  }
+  if (ftruncate(descriptor_, 0) != 0) return failure(errno);
+  const std::string consent_line = "# consent accepted, text " + checksum(text) + (when.empty() ? "" : ", " + when) +
+                                   "\n";
+  const Status written = write_whole(header_text(header_) + consent_line + std::string(kStudyColumns) + "\n");
+  if (!written) return written;
+  flush_folder_of(path_);
+  consented_ = true;
+  return {};
+}
+
+Status StudyFile::append(const StudyRecord& record) {
+  if (!consented_) return Error{"cannot write " + path_ + ": there is no consent yet"};
+  // What a refused row may have left behind.
+  if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
+  if (const Status written = write_whole(study_row(record)); !written) return written;
+  records_.push_back(record);
+  return {};
+}
+
+}  // namespace palpate

@@ -1,0 +1,99 @@
+#include "scenes/study/study_plan.h"
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed: codes alone differ
+constexpr std::size_t kMostLetters = 3;
+constexpr std::size_t kMostDigits = 4;
+constexpr std::size_t kAdaptiveRounds = 20;  // of one trial for each reference
+constexpr std::uint64_t kConstantStream = 1;
+constexpr std::uint64_t kTrainingStream = 2;
+constexpr std::uint64_t kAdaptiveStream = 3;
+
+bool is_code(const std::string& text) {
+  std::size_t letters = 0;
+  while (letters < text.size() && text[letters] >= 'A' && text[letters] <= 'Z') ++letters;
+  std::size_t digits = 0;
+  while (letters + digits < text.size() && text[letters + digits] >= '0' && text[letters + digits] <= '9') ++digits;
+  return letters >= 1 && letters <= kMostLetters && digits >= 1 && digits <= kMostDigits &&
+         letters + digits == text.size();
+}
+
+}  // namespace
+
+double percent_of(double reference_N, double percent) noexcept {
+  return std::round(reference_N * percent * 100.0) / 1e4;
+}
+
+Status check_subject_code(const std::string& code) {
+  if (is_code(code)) return {};
+  return Error{"found the subject \"" + code +
+               "\", expected a code of one to three capital letters and one to four digits, such as S01; "
+               "names are not stored"};
+}
+
+RandomStream subject_random(const std::string& code, std::uint64_t stream) noexcept {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (const char letter : code) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
+  return {hash ^ kStudySeed, stream};
+}
+
+std::vector<bool> balanced_flags(std::size_t count, RandomStream& random) {
+  std::vector<std::uint8_t> flags(count, 0);
+  for (std::size_t i = 0; i < count / 2; ++i) flags[i] = 1;
+  shuffle(flags, random);
+  return {flags.begin(), flags.end()};
+}
+
+std::vector<StudyTrial> plan_constant_trials(const std::string& code) {
+  RandomStream random = subject_random(code, kConstantStream);
+  std::vector<std::vector<StudyTrial>> rounds(kRepetitions);
+  for (const double reference_N : kReferenceForces_N) {
+    for (const int percent : kComparisonPercent) {
+      const std::vector<bool> first = balanced_flags(kRepetitions, random);
+      for (std::size_t i = 0; i < rounds.size(); ++i) {
+        rounds[i].push_back({reference_N, percent_of(reference_N, percent), first[i]});
+      }
+    }
+  }
+  std::vector<StudyTrial> trials;
+  for (std::vector<StudyTrial>& round : rounds) {
+    shuffle(round, random);
+    trials.insert(trials.end(), round.begin(), round.end());
+  }
+  return trials;
+}
+
+std::vector<StudyTrial> plan_training_trials(const std::string& code) {
+  RandomStream random = subject_random(code, kTrainingStream);
+  const std::vector<bool> first = balanced_flags(2 * kReferenceForces_N.size(), random);
+  std::vector<StudyTrial> trials;
+  for (const double reference_N : kReferenceForces_N) {
+    for (const int percent : {kComparisonPercent.front(), kComparisonPercent.back()}) {
+      trials.push_back({reference_N, percent_of(reference_N, percent), first[trials.size()]});
+    }
+  }
+  shuffle(trials, random);
+  return trials;
+}
+
+std::vector<AdaptiveSlot> plan_adaptive_slots(const std::string& code) {
+  RandomStream random = subject_random(code, kAdaptiveStream);
+  std::vector<std::vector<AdaptiveSlot>> rounds(kAdaptiveRounds);
+  for (const double reference_N : kReferenceForces_N) {
+    const std::vector<bool> larger = balanced_flags(kAdaptiveRounds, random);
+    const std::vector<bool> first = balanced_flags(kAdaptiveRounds, random);
+    for (std::size_t i = 0; i < rounds.size(); ++i) rounds[i].push_back({reference_N, larger[i], first[i]});
+  }
+  std::vector<AdaptiveSlot> slots;
+  for (std::vector<AdaptiveSlot>& round : rounds) {
+    shuffle(round, random);
+    slots.insert(slots.end(), round.begin(), round.end());
+  }
+  return slots;
+}
+
+}  // namespace palpate

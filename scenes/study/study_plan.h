@@ -1,0 +1,75 @@
+// Which forces a subject compares, and in which order.
+//
+// Two-alternative forced choice without movement: a reference force and a
+// comparison force one after the other, "which was larger?". Method of constant
+// stimuli as in Hoever & Harders (2009), section 4.1: reference forces 0.3, 0.5,
+// 1.0 and 2.5 N, comparison forces from 60 % to 140 % of the reference in eight
+// steps (100 % is none: there is nothing to tell apart), each pair ten times: 320
+// trials. The order is drawn anew for each subject, and balanced: each pair comes
+// once in every 32 trials, five times with the comparison first and five times
+// second.
+// Deterministic: the subject code alone decides.
+// Thread guarantee: values and pure functions; slow side (they allocate).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/random_stream.h"
+#include "engine/result.h"
+
+namespace palpate {
+
+inline constexpr std::array<double, 4> kReferenceForces_N = {0.3, 0.5, 1.0, 2.5};
+inline constexpr std::array<int, 8> kComparisonPercent = {60, 70, 80, 90, 110, 120, 130, 140};
+inline constexpr int kRepetitions = 10;  // of each pair; even, for the balance
+
+struct StudyTrial {
+  double reference_N = 0.0;
+  double comparison_N = 0.0;
+  bool comparison_first = false;
+
+  double first_N() const noexcept { return comparison_first ? comparison_N : reference_N; }
+  double second_N() const noexcept { return comparison_first ? reference_N : comparison_N; }
+  bool operator==(const StudyTrial&) const = default;
+};
+
+// A comparison force to 0.1 mN, so that it is written as it is.
+double percent_of(double reference_N, double percent) noexcept;
+
+// A subject is known by a code, never by a name: one to three capital letters
+// and one to four digits, such as S01. Errors: anything else.
+Status check_subject_code(const std::string& code);
+
+// Random numbers of this subject; `stream` tells the uses apart.
+RandomStream subject_random(const std::string& code, std::uint64_t stream) noexcept;
+
+// Shuffled in place (Fisher & Yates).
+template <typename T>
+void shuffle(std::vector<T>& values, RandomStream& random) {
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);
+}
+
+// `count` flags (even), half of them set, shuffled.
+std::vector<bool> balanced_flags(std::size_t count, RandomStream& random);
+
+// The 320 trials.
+std::vector<StudyTrial> plan_constant_trials(const std::string& code);
+
+// Eight easy trials to learn the task: each reference against 60 % and 140 %.
+std::vector<StudyTrial> plan_training_trials(const std::string& code);
+
+// What the adaptive procedure leaves to the plan: everything but how large the
+// difference is. Each reference 20 times, once in every four trials; balanced for
+// order and for the side of the difference.
+struct AdaptiveSlot {
+  double reference_N = 0.0;
+  bool comparison_larger = false;
+  bool comparison_first = false;
+};
+std::vector<AdaptiveSlot> plan_adaptive_slots(const std::string& code);
+
+}  // namespace palpate

@@ -1,0 +1,105 @@
+// Two forces one after the other, exact to the tick.
+//
+//   idle --present--> lead_in -> first -> pause -> second -> finished --present--> ...
+//   any  --stop-----> stopped, for good
+//
+// Time is counted in ticks of 1 ms, never read from a clock. Within `first` and
+// `second` the force rises for `ramp` ticks as half a cosine, stays for `hold` and
+// falls for `ramp`; everywhere else it is zero, so that no force outlasts the one
+// interval whatever the slow side does. Behind it a ForceLimiter has the last word:
+// 4 N at most, 100 N/s at most, which also takes the force away gently (40 ms at
+// most) when the presentation is stopped in the middle.
+// Positive forces push towards the hand.
+// Thread guarantee: `tick` on the haptics thread, `stop` on any, both wait-free
+// and without allocation; the rest on one slow thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "engine/force_limiter.h"
+#include "engine/result.h"
+#include "engine/triple_buffer.h"
+
+namespace palpate {
+
+inline constexpr double kStudyTick_s = 1e-3;
+inline constexpr double kLargestStudyForce_N = 4.0;
+inline constexpr double kFastestStudyForce_N_per_s = 100.0;
+inline constexpr std::uint32_t kLongestStudyForce_ticks = 5000;  // ramps included
+
+// Ticks.
+struct StudyTiming {
+  std::uint32_t lead_in = 400;
+  std::uint32_t ramp = 100;
+  std::uint32_t hold = 900;
+  std::uint32_t pause = 500;
+
+  std::uint32_t interval() const noexcept { return 2 * ramp + hold; }
+  std::uint32_t presentation() const noexcept { return lead_in + 2 * interval() + pause; }
+  bool operator==(const StudyTiming&) const = default;
+};
+
+// Errors: a ramp so short that the limiter would bend it (60 ticks at least), no
+// hold, a force above the time cap, a lead-in or pause above a minute.
+Status check_study_timing(const StudyTiming& timing);
+
+enum class PresentationPhase : std::uint8_t { idle, lead_in, first, pause, second, finished, stopped };
+
+struct PresentationState {
+  std::uint64_t presentation = 0;  // which; 0: none yet
+  std::uint64_t tick = 0;          // since the beginning
+  std::uint64_t finished_at = 0;   // tick at which the second interval had ended
+  PresentationPhase phase = PresentationPhase::idle;
+  double force_N = 0.0;  // wanted now
+  // What was rendered: the mean over the ticks of `hold`.
+  double first_rendered_N = 0.0;
+  double second_rendered_N = 0.0;
+  bool limited = false;  // a force of this presentation was held back
+};
+
+class StudyPresenter {
+ public:
+  // `timing`: one that check_study_timing accepts.
+  explicit StudyPresenter(const StudyTiming& timing) noexcept : timing_(timing), limiter_(kLimits) {}
+
+  // Slow side. Begins a presentation at the next tick (one that runs is given up);
+  // returns its number.
+  std::uint64_t present(double first_N, double second_N) noexcept;
+  void stop() noexcept { stopped_.store(true, std::memory_order_release); }
+  const PresentationState& newest() noexcept { return states_.newest(); }
+
+  // Haptics thread. `rendered_N`: what the device was sent for the force that the
+  // tick before returned, after whatever else limits it. Returns the force to send.
+  double tick(double rendered_N) noexcept;
+
+ private:
+  static constexpr ForceLimits kLimits{kLargestStudyForce_N, kFastestStudyForce_N_per_s, 0.0};
+  struct Order {
+    std::uint64_t presentation = 0;
+    double first_N = 0.0;
+    double second_N = 0.0;
+  };
+  std::uint32_t length(PresentationPhase phase) const noexcept;
+  bool is_held() const noexcept;
+  double share() const noexcept;
+  void take_orders() noexcept;
+  void record(double rendered_N) noexcept;
+  void advance() noexcept;
+
+  StudyTiming timing_;
+  TripleBuffer<Order> orders_;
+  TripleBuffer<PresentationState> states_;
+  std::atomic<bool> stopped_{false};
+  std::uint64_t ordered_ = 0;  // slow side's
+
+  // Haptics thread's.
+  ForceLimiter limiter_;
+  Order order_;
+  PresentationState state_;
+  std::uint32_t in_phase_ = 0;  // ticks since the phase began
+  PresentationPhase sent_phase_ = PresentationPhase::idle;  // of the force sent last
+  bool sent_held_ = false;
+};
+
+}  // namespace palpate

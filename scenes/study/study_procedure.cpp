@@ -1,0 +1,76 @@
+#include "scenes/study/study_procedure.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "scenes/study/quest_plus.h"
+
+namespace palpate {
+namespace {
+
+class ConstantStimuli final : public StudyProcedure {
+ public:
+  explicit ConstantStimuli(const std::string& code) : trials_(plan_constant_trials(code)) {}
+
+  std::size_t trial_count() const noexcept override { return trials_.size(); }
+  std::size_t trials_per_block() const noexcept override { return 64; }  // two repetitions of each pair
+  StudyTrial next() const override { return trials_[answered_]; }
+  void answered(bool) override { ++answered_; }
+
+ private:
+  std::vector<StudyTrial> trials_;
+};
+
+class Adaptive final : public StudyProcedure {
+ public:
+  explicit Adaptive(const std::string& code) : slots_(plan_adaptive_slots(code)) { choose(); }
+
+  std::size_t trial_count() const noexcept override { return slots_.size(); }
+  std::size_t trials_per_block() const noexcept override { return 40; }
+  StudyTrial next() const override { return trial_; }
+
+  void answered(bool comparison_judged_larger) override {
+    const double difference = (trial_.comparison_N - trial_.reference_N) / trial_.reference_N;
+    beliefs_[reference_index()].answered(difference, trial_.comparison_first, comparison_judged_larger);
+    ++answered_;
+    if (!done()) choose();
+  }
+
+ private:
+  std::size_t reference_index() const {
+    const auto at = std::find(kReferenceForces_N.begin(), kReferenceForces_N.end(), slots_[answered_].reference_N);
+    return static_cast<std::size_t>(at - kReferenceForces_N.begin());
+  }
+
+  void choose() {
+    const AdaptiveSlot& slot = slots_[answered_];
+    const double difference =
+        beliefs_[reference_index()].next_difference(slot.comparison_larger, slot.comparison_first);
+    const double percent = 100.0 + (slot.comparison_larger ? 100.0 : -100.0) * difference;
+    trial_ = {slot.reference_N, percent_of(slot.reference_N, percent), slot.comparison_first};
+  }
+
+  std::vector<AdaptiveSlot> slots_;
+  std::array<QuestPlus, kReferenceForces_N.size()> beliefs_;
+  StudyTrial trial_;
+};
+
+}  // namespace
+
+const char* procedure_name(ProcedureKind kind) noexcept {
+  return kind == ProcedureKind::constant ? "constant" : "adaptive";
+}
+
+Result<ProcedureKind> find_procedure(const std::string& name) {
+  if (name == "constant") return ProcedureKind::constant;
+  if (name == "adaptive") return ProcedureKind::adaptive;
+  return Error{"found the procedure \"" + name + "\", expected constant or adaptive"};
+}
+
+std::unique_ptr<StudyProcedure> StudyProcedure::create(ProcedureKind kind, const std::string& code) {
+  if (kind == ProcedureKind::constant) return std::make_unique<ConstantStimuli>(code);
+  return std::make_unique<Adaptive>(code);
+}
+
+}  // namespace palpate

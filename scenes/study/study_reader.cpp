@@ -1,0 +1,158 @@
+// Reading a study file: header, then rows, each checked in every field.
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "engine/json_position.h"
+#include "scenes/study/study_file.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kColumnCount = 10;
+
+template <typename T>
+bool read_number(std::string_view text, T& value) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+class StudyReader {
+ public:
+  StudyReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+
+  Result<StudyData> read() {
+    if (take_line("# palpate-study 1") != "") return refuse("the first line of a study file, \"# palpate-study 1\"");
+    data_.header.subject = take_line("# subject ");
+    if (!check_subject_code(data_.header.subject)) return refuse("\"# subject \" and a code such as S01");
+    const Result<ProcedureKind> procedure = find_procedure(take_line("# procedure "));
+    if (!procedure) return refuse("\"# procedure constant\" or \"# procedure adaptive\"");
+    data_.header.procedure = *procedure;
+    if (!read_timing(take_line("# timing_ms "))) {
+      return refuse("\"# timing_ms lead_in 400 ramp 100 hold 900 pause 500\" or such");
+    }
+    data_.consent = take_line("# consent accepted, ");
+    if (failed_) return refuse("\"# consent accepted, \" and which text");
+    if (take_line(kStudyColumns) != "") return refuse("the columns " + std::string(kStudyColumns));
+    data_.whole_bytes = next_;
+    while (text_.find('\n', next_) != std::string_view::npos) {
+      if (const Status row = read_row(); !row) return row.error();
+      data_.whole_bytes = next_;
+    }
+    return data_;
+  }
+
+ private:
+  // What follows `start` in the next line, which must begin so.
+  std::string take_line(std::string_view start) {
+    line_start_ = next_;
+    const std::size_t end = text_.find('\n', next_);
+    const std::string_view line = text_.substr(next_, end == std::string_view::npos ? end : end - next_);
+    failed_ = end == std::string_view::npos || line.substr(0, start.size()) != start;
+    if (failed_) return "?";
+    next_ = end + 1;
+    return std::string(line.substr(start.size()));
+  }
+
+  Error refuse(const std::string& expected) const {
+    std::string_view line = text_.substr(line_start_, text_.find('\n', line_start_) - line_start_);
+    return refuse_at(line_start_, line, expected);
+  }
+
+  Error refuse_at(std::size_t offset, std::string_view what, const std::string& expected) const {
+    const std::string shown = what.size() > 60 ? std::string(what.substr(0, 57)) + "..." : std::string(what);
+    return Error{position_prefix(path_, position_of_offset(text_, offset)) + "found \"" + shown +
+                 "\", expected " + expected};
+  }
+
+  bool read_timing(const std::string& text) {
+    StudyTiming& timing = data_.header.timing;
+    std::istringstream words(text);
+    const std::array<std::pair<const char*, std::uint32_t*>, 4> parts = {
+        {{"lead_in", &timing.lead_in}, {"ramp", &timing.ramp}, {"hold", &timing.hold}, {"pause", &timing.pause}}};
+    for (const auto& part : parts) {
+      std::string name, number;
+      words >> name >> number;
+      if (name != part.first || !read_number(number, *part.second)) return false;
+    }
+    return check_study_timing(timing).ok();
+  }
+
+  Status read_row() {
+    const std::size_t end = text_.find('\n', next_);
+    std::array<std::string_view, kColumnCount> fields;
+    std::array<std::size_t, kColumnCount> offsets{};
+    std::size_t at = next_;
+    for (std::size_t i = 0; i < kColumnCount; ++i) {
+      const std::size_t comma = text_.find(',', at);
+      const std::size_t stop = comma == std::string_view::npos || comma > end ? end : comma;
+      if ((stop == end) != (i + 1 == kColumnCount)) {
+        return refuse_at(next_, text_.substr(next_, end - next_), "a row of ten fields");
+      }
+      fields[i] = text_.substr(at, stop - at);
+      offsets[i] = at;
+      at = stop + 1;
+    }
+    next_ = end + 1;
+    return take_fields(fields, offsets);
+  }
+
+  Status take_fields(const std::array<std::string_view, kColumnCount>& fields,
+                     const std::array<std::size_t, kColumnCount>& offsets) {
+    StudyRecord record;
+    std::size_t wrong = kColumnCount;
+    std::string expected;
+    const auto check = [&](std::size_t field, bool good, const char* words) {
+      if (good || wrong < kColumnCount) return;
+      wrong = field;
+      expected = words;
+    };
+    const auto flag = [&](std::size_t field, std::string_view no, std::string_view yes, const char* words) {
+      check(field, fields[field] == no || fields[field] == yes, words);
+      return fields[field] == yes;
+    };
+    const auto force = [&](std::size_t field, double least_N) {
+      double value = 0.0;
+      const bool good = read_number(fields[field], value) && std::isfinite(value) && value >= least_N && value <= 10.0;
+      check(field, good, least_N > 0.0 ? "a force above 0 and up to 10 N" : "a force from 0 to 10 N");
+      return value;
+    };
+    record.training = flag(0, "study", "training", "training or study");
+    check(1, read_number(fields[1], record.number) && record.number > 0, "a whole number above 0");
+    record.trial = {force(2, 1e-3), force(3, 1e-3), false};
+    record.trial.comparison_first = flag(4, "0", "1", "0 or 1");
+    record.first_rendered_N = force(5, 0.0);
+    record.second_rendered_N = force(6, 0.0);
+    record.limited = flag(7, "0", "1", "0 or 1");
+    record.answered_second = flag(8, "first", "second", "first or second");
+    check(9, read_number(fields[9], record.response_ms), "a whole number of ms");
+    if (wrong < kColumnCount) return refuse_at(offsets[wrong], fields[wrong], expected);
+    data_.records.push_back(record);
+    return {};
+  }
+
+  std::string_view text_;
+  const std::string& path_;
+  StudyData data_;
+  std::size_t next_ = 0;
+  std::size_t line_start_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace
+
+Result<StudyData> parse_study(std::string_view text, const std::string& path) {
+  return StudyReader(text, path).read();
+}
+
+Result<StudyData> read_study(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file || !text) return Error{"cannot read the study file " + path + "; does it exist?"};
+  return parse_study(text.str(), path);
+}
+
+}  // namespace palpate

@@ -1,0 +1,202 @@
+#include "scenes/study/study_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+double to_tenth_mN(double force_N) noexcept { return std::round(force_N * 1e4) / 1e4; }
+
+Error unexpected_answer(const StudyRecord& record) {
+  return Error{std::string("the stored ") + (record.training ? "training answer " : "answer ") +
+               std::to_string(record.number) +
+               " is to a trial that this subject's plan does not have there; was the file made by another "
+               "version, or changed? Start a new file"};
+}
+
+}  // namespace
+
+const std::string& study_consent_text() {
+  static const std::string kText =
+      "In this study you hold a device that pushes gently against your hand, with at most 4 N (the weight "
+      "of 400 g). Each time you feel two pushes, one after the other, and say which was the larger. Hold "
+      "your hand still. There are breaks.\n"
+      "Stored are your answers, how long they took and the code that you were given; not your name.\n"
+      "Taking part is voluntary. You can stop at any time and without a reason with the abort key; the "
+      "force then goes away at once.\n"
+      "Do you agree to take part?";
+  return kText;
+}
+
+double StudyRecord::rendered_difference() const noexcept {
+  const double comparison_N = trial.comparison_first ? first_rendered_N : second_rendered_N;
+  const double reference_N = trial.comparison_first ? second_rendered_N : first_rendered_N;
+  return (comparison_N - reference_N) / reference_N;
+}
+
+Result<std::unique_ptr<StudySession>> StudySession::create(const StudyHeader& header,
+                                                           std::unique_ptr<StudyStore> store,
+                                                           std::uint64_t rest_ticks) {
+  if (const Status code = check_subject_code(header.subject); !code) return code.error();
+  if (const Status timing = check_study_timing(header.timing); !timing) return timing.error();
+  std::unique_ptr<StudySession> session(new StudySession(header, std::move(store), rest_ticks));
+  if (const Status resumed = session->resume(); !resumed) return resumed.error();
+  return session;
+}
+
+StudySession::StudySession(const StudyHeader& header, std::unique_ptr<StudyStore> store, std::uint64_t rest_ticks)
+    : header_(header),
+      store_(std::move(store)),
+      rest_ticks_(rest_ticks),
+      training_(plan_training_trials(header.subject)),
+      procedure_(StudyProcedure::create(header.procedure, header.subject)),
+      presenter_(header.timing) {}
+
+// Gives the stored answers again; each must be to the trial of the plan.
+Status StudySession::resume() {
+  for (const StudyRecord& record : store_->records()) {
+    const bool fits = record.training == training() && (training() || !procedure_->done()) &&
+                      record.trial == (training() ? training_[trained_] : procedure_->next()) &&
+                      record.number == (training() ? trained_ : procedure_->answered_count()) + 1;
+    if (!fits) return unexpected_answer(record);
+    if (record.training) {
+      ++trained_;
+    } else {
+      procedure_->answered(record.comparison_judged_larger());
+    }
+  }
+  if (!store_->consented()) return {};
+  state_ = procedure_->done() ? StudyState::done : StudyState::ready;
+  return {};
+}
+
+void StudySession::accept_consent(const std::string& when) {
+  if (state_ != StudyState::consent) return;
+  const Status written = store_->consent(study_consent_text(), when);
+  problem_ = written ? "" : written.error().message;
+  if (written) state_ = StudyState::ready;
+}
+
+void StudySession::proceed() {
+  const bool rested = state_ == StudyState::rest && presenter_.newest().tick >= rest_from_ + rest_ticks_;
+  if (state_ == StudyState::ready || rested) present_next();
+}
+
+void StudySession::present_next() {
+  trial_ = training() ? training_[trained_] : procedure_->next();
+  presentation_ = presenter_.present(trial_.first_N(), trial_.second_N());
+  state_ = StudyState::presenting;
+}
+
+void StudySession::update() {
+  if (state_ != StudyState::presenting) return;
+  const PresentationState& seen = presenter_.newest();
+  if (seen.presentation == presentation_ && seen.phase == PresentationPhase::finished) {
+    state_ = StudyState::answering;
+  }
+}
+
+void StudySession::answer(bool second_was_larger) {
+  if (state_ != StudyState::answering) return;
+  const PresentationState& seen = presenter_.newest();
+  record_ = {};
+  record_.training = training();
+  record_.number = (training() ? trained_ : procedure_->answered_count()) + 1;
+  record_.trial = trial_;
+  record_.first_rendered_N = to_tenth_mN(seen.first_rendered_N);
+  record_.second_rendered_N = to_tenth_mN(seen.second_rendered_N);
+  record_.limited = seen.limited;
+  record_.answered_second = second_was_larger;
+  record_.response_ms = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(seen.tick - seen.finished_at, std::numeric_limits<std::uint32_t>::max()));
+  save();
+}
+
+void StudySession::retry() {
+  if (state_ == StudyState::unsaved) save();
+}
+
+void StudySession::save() {
+  const Status written = store_->append(record_);
+  if (!written) {
+    problem_ = written.error().message;
+    state_ = StudyState::unsaved;
+    return;
+  }
+  problem_.clear();
+  go_on();
+}
+
+// After an answer that is safe.
+void StudySession::go_on() {
+  if (record_.training) {
+    has_feedback_ = true;
+    was_correct_ = record_.correct();
+    ++trained_;
+    if (training()) return present_next();
+    state_ = StudyState::ready;
+    return;
+  }
+  has_feedback_ = false;
+  procedure_->answered(record_.comparison_judged_larger());
+  if (procedure_->done()) {
+    state_ = StudyState::done;
+  } else if (procedure_->answered_count() % procedure_->trials_per_block() == 0) {
+    rest_from_ = presenter_.newest().tick;
+    state_ = StudyState::rest;
+  } else {
+    present_next();
+  }
+}
+
+void StudySession::abort() {
+  presenter_.stop();
+  if (state_ == StudyState::done || state_ == StudyState::aborted) return;
+  if (state_ == StudyState::unsaved) {
+    const Status written = store_->append(record_);
+    problem_ = written ? "" : written.error().message;
+  }
+  state_ = StudyState::aborted;
+}
+
+StudyView StudySession::view() {
+  StudyView view;
+  view.state = state_;
+  view.training = training();
+  view.answered = training() ? trained_ : procedure_->answered_count();
+  view.trials = training() ? training_.size() : procedure_->trial_count();
+  view.has_feedback = has_feedback_;
+  view.was_correct = was_correct_;
+  const PresentationState& seen = presenter_.newest();
+  if (state_ == StudyState::presenting && seen.presentation == presentation_) {
+    view.interval = seen.phase == PresentationPhase::first ? 1 : seen.phase == PresentationPhase::second ? 2 : 0;
+  }
+  if (state_ == StudyState::rest) {
+    const std::uint64_t until = rest_from_ + rest_ticks_;
+    view.rest_ticks_left = until > seen.tick ? until - seen.tick : 0;
+  }
+  switch (state_) {
+    case StudyState::consent: view.message = problem_.empty() ? study_consent_text() : problem_; break;
+    case StudyState::ready:
+      view.message = view.training ? "First a few trials to learn the task. Which push was larger? Go on when you are ready."
+                                   : "Now the study itself. Go on when you are ready.";
+      break;
+    case StudyState::presenting:
+      view.message = view.interval == 1 ? "First push" : view.interval == 2 ? "Second push" : "Hold still";
+      break;
+    case StudyState::answering: view.message = "Which push was larger, the first or the second?"; break;
+    case StudyState::unsaved: view.message = "Your answer could not be stored: " + problem_ + ". Call the experimenter."; break;
+    case StudyState::rest: view.message = "A break. Relax your hand; go on when you are ready."; break;
+    case StudyState::done: view.message = "That was all. Thank you!"; break;
+    case StudyState::aborted:
+      view.message = problem_.empty() ? "The session was ended; all answers are stored."
+                                      : "The session was ended; the last answer could not be stored: " + problem_;
+      break;
+  }
+  return view;
+}
+
+}  // namespace palpate

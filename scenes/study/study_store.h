@@ -1,0 +1,79 @@
+// Where answers go. The session keeps nothing of its own: what was answered is
+// what the store holds.
+// Thread guarantee: one thread; slow side (does I/O).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/result.h"
+#include "scenes/study/study_plan.h"
+#include "scenes/study/study_presenter.h"
+#include "scenes/study/study_procedure.h"
+
+namespace palpate {
+
+// What all trials of one subject have in common.
+struct StudyHeader {
+  std::string subject;
+  ProcedureKind procedure = ProcedureKind::constant;
+  StudyTiming timing;
+};
+
+// One answered trial.
+struct StudyRecord {
+  bool training = false;
+  std::size_t number = 1;  // from 1, in its own count
+  StudyTrial trial;
+  double first_rendered_N = 0.0;  // mean while held, to 0.1 mN
+  double second_rendered_N = 0.0;
+  bool limited = false;
+  bool answered_second = false;  // "the second was larger"
+  std::uint32_t response_ms = 0;  // from the end of the second force
+
+  bool comparison_judged_larger() const noexcept { return answered_second != trial.comparison_first; }
+  bool correct() const noexcept { return answered_second == (trial.second_N() > trial.first_N()); }
+  // The difference that was rendered, relative to the reference that was.
+  double rendered_difference() const noexcept;
+  bool operator==(const StudyRecord&) const = default;
+};
+
+class StudyStore {
+ public:
+  virtual ~StudyStore() = default;
+
+  // Whether the subject has consented, now or in an earlier session.
+  virtual bool consented() const noexcept = 0;
+  // Answers of earlier sessions and of this one, in order.
+  virtual const std::vector<StudyRecord>& records() const noexcept = 0;
+
+  // Records the consent; once. `text`: what was shown; `when`: any text without a
+  // line break, may be empty. Errors: not written.
+  virtual Status consent(const std::string& text, const std::string& when) = 0;
+  // When it returns without an error the answer is on the disk. Errors: it is not,
+  // and may be given again.
+  virtual Status append(const StudyRecord& record) = 0;
+};
+
+// Keeps them in memory, for simulations.
+class MemoryStore final : public StudyStore {
+ public:
+  bool consented() const noexcept override { return consented_; }
+  const std::vector<StudyRecord>& records() const noexcept override { return records_; }
+  Status consent(const std::string&, const std::string&) override {
+    consented_ = true;
+    return {};
+  }
+  Status append(const StudyRecord& record) override {
+    records_.push_back(record);
+    return {};
+  }
+
+ private:
+  bool consented_ = false;
+  std::vector<StudyRecord> records_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+#include "scenes/study/study_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+namespace palpate {
+namespace {
+
+TEST(StudyPlan, TakesCodesAndNoNames) {
+  for (const char* code : {"S1", "S01", "AB12", "XYZ9999"}) EXPECT_TRUE(check_subject_code(code).ok()) << code;
+  for (const char* name : {"", "Anna", "S", "01", "s01", "S01 ", "ABCD1", "S12345", "S0A", "../S01", "Müller1"}) {
+    const Status status = check_subject_code(name);
+    ASSERT_FALSE(status.ok()) << name;
+    EXPECT_EQ(status.error().message,
+              std::string("found the subject \"") + name +
+                  "\", expected a code of one to three capital letters and one to four digits, such as S01; "
+                  "names are not stored");
+  }
+}
+
+TEST(StudyPlan, PresentsEachPairTenTimesBalancedForOrder) {
+  for (const char* code : {"S01", "S02", "AB7"}) {
+    const std::vector<StudyTrial> trials = plan_constant_trials(code);
+    ASSERT_EQ(trials.size(), 320u);
+    std::map<std::pair<double, double>, std::pair<int, int>> count;
+    for (const StudyTrial& trial : trials) {
+      auto& [all, first] = count[{trial.reference_N, trial.comparison_N}];
+      ++all;
+      first += trial.comparison_first ? 1 : 0;
+    }
+    ASSERT_EQ(count.size(), 32u);
+    for (const auto& [pair, times] : count) {
+      EXPECT_EQ(times, (std::pair<int, int>{10, 5})) << pair.first << " " << pair.second;
+      EXPECT_GE(pair.second, 0.6 * pair.first - 1e-9);
+      EXPECT_LE(pair.second, 1.4 * pair.first + 1e-9);
+    }
+    // Each pair once in every 32 trials.
+    for (std::size_t from = 0; from < 320; from += 32) {
+      std::map<std::pair<double, double>, int> round;
+      for (std::size_t i = from; i < from + 32; ++i) ++round[{trials[i].reference_N, trials[i].comparison_N}];
+      EXPECT_EQ(round.size(), 32u);
+    }
+  }
+}
+
+TEST(StudyPlan, EachSubjectHasAnOrderOfItsOwnThatStays) {
+  EXPECT_EQ(plan_constant_trials("S01"), plan_constant_trials("S01"));
+  EXPECT_NE(plan_constant_trials("S01"), plan_constant_trials("S02"));
+  EXPECT_EQ(plan_training_trials("S01").size(), 8u);
+  EXPECT_NE(plan_training_trials("S01"), plan_training_trials("S02"));
+}
+
+TEST(StudyPlan, AdaptiveSlotsAreAQuarterAndBalanced) {
+  const std::vector<AdaptiveSlot> slots = plan_adaptive_slots("S01");
+  ASSERT_EQ(slots.size(), 80u);
+  for (const double reference_N : kReferenceForces_N) {
+    const auto count = [&](auto&& which) {
+      return std::count_if(slots.begin(), slots.end(), [&](const AdaptiveSlot& slot) {
+        return slot.reference_N == reference_N && which(slot);
+      });
+    };
+    EXPECT_EQ(count([](const AdaptiveSlot&) { return true; }), 20);
+    EXPECT_EQ(count([](const AdaptiveSlot& slot) { return slot.comparison_larger; }), 10);
+    EXPECT_EQ(count([](const AdaptiveSlot& slot) { return slot.comparison_first; }), 10);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,122 @@
+#include "scenes/study/study_presenter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/support/rt_guard.h"
+
+namespace palpate {
+namespace {
+
+const StudyTiming kTiming{40, 60, 100, 50};
+
+// The forces of `ticks` ticks, each rendered as it is.
+std::vector<double> run(StudyPresenter& presenter, std::size_t ticks, double gain = 1.0) {
+  std::vector<double> forces;
+  double rendered_N = 0.0;
+  for (std::size_t i = 0; i < ticks; ++i) {
+    const double force_N = presenter.tick(rendered_N);
+    forces.push_back(force_N);
+    rendered_N = gain * force_N;
+  }
+  return forces;
+}
+
+TEST(StudyPresenter, PresentsBothForcesExactToTheTick) {
+  StudyPresenter presenter(kTiming);
+  for (const double force_N : run(presenter, 100)) ASSERT_EQ(force_N, 0.0) << "idle";
+  EXPECT_EQ(presenter.present(1.0, 2.5), 1u);
+  const std::vector<double> forces = run(presenter, kTiming.presentation() + 100);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    SCOPED_TRACE(i);
+    const bool first_held = i >= 40 + 60 && i < 40 + 160;
+    const bool second_held = i >= 40 + 220 + 50 + 60 && i < 40 + 220 + 50 + 160;
+    const bool silent = i <= 40 || (i >= 40 + 219 && i <= 40 + 220 + 50) || i + 1 >= kTiming.presentation();
+    if (first_held || second_held || silent) {
+      ASSERT_EQ(forces[i], first_held ? 1.0 : second_held ? 2.5 : 0.0);
+    } else {
+      ASSERT_TRUE(forces[i] > 0.0 && forces[i] < 2.5);
+    }
+  }
+  const PresentationState& state = presenter.newest();
+  EXPECT_EQ(state.phase, PresentationPhase::finished);
+  EXPECT_EQ(state.presentation, 1u);
+  EXPECT_EQ(state.finished_at, 100u + kTiming.presentation());
+  EXPECT_EQ(state.tick, 100u + kTiming.presentation() + 100u);
+  EXPECT_FALSE(state.limited) << "the ramps stay below the limiter's slew";
+}
+
+TEST(StudyPresenter, RecordsWhatWasRenderedNotWhatWasWanted) {
+  StudyPresenter presenter(kTiming);
+  presenter.present(1.0, 2.0);
+  run(presenter, kTiming.presentation() + 2, 0.9);
+  EXPECT_NEAR(presenter.newest().first_rendered_N, 0.9, 1e-12);
+  EXPECT_NEAR(presenter.newest().second_rendered_N, 1.8, 1e-12);
+}
+
+TEST(StudyPresenter, LimitsAForceThatIsTooLarge) {
+  StudyPresenter presenter(kTiming);
+  presenter.present(50.0, std::nan(""));
+  const std::vector<double> forces = run(presenter, kTiming.presentation() + 2);
+  EXPECT_EQ(*std::max_element(forces.begin(), forces.end()), kLargestStudyForce_N);
+  for (std::size_t i = 1; i < forces.size(); ++i) ASSERT_LE(std::abs(forces[i] - forces[i - 1]), 0.1 + 1e-9);
+  EXPECT_TRUE(presenter.newest().limited);
+  EXPECT_EQ(presenter.newest().second_rendered_N, 0.0);
+}
+
+TEST(StudyPresenter, NoForceOutlastsItsIntervalWhenNobodyComesBack) {
+  StudyPresenter presenter(kTiming);
+  presenter.present(1.0, 2.0);
+  run(presenter, kTiming.presentation());
+  for (const double force_N : run(presenter, 20000)) ASSERT_EQ(force_N, 0.0);
+}
+
+TEST(StudyPresenter, StopsAtOnceAndForGood) {
+  StudyPresenter presenter(kTiming);
+  presenter.present(3.0, 2.0);
+  const std::vector<double> before = run(presenter, 150);
+  ASSERT_EQ(before.back(), 3.0);
+  presenter.stop();
+  const std::vector<double> after = run(presenter, 100);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    ASSERT_LT(after[i], i == 0 ? 3.0 : std::max(after[i - 1], 1e-12)) << i;
+    if (i >= 30) {
+      ASSERT_EQ(after[i], 0.0) << i;
+    }
+  }
+  presenter.present(1.0, 1.0);
+  for (const double force_N : run(presenter, 2000)) ASSERT_EQ(force_N, 0.0);
+  EXPECT_EQ(presenter.newest().phase, PresentationPhase::stopped);
+}
+
+TEST(StudyPresenter, ATickAllocatesAndLocksNothing) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  StudyPresenter presenter(kTiming);
+  presenter.present(1.0, 2.0);
+  test::RtGuard guard;
+  double rendered_N = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    if (i == 1000) presenter.present(0.5, 0.6);
+    if (i == 1200) presenter.stop();
+    rendered_N = presenter.tick(rendered_N);
+  }
+  EXPECT_EQ(guard.stop().total(), 0);
+}
+
+TEST(StudyPresenter, RefusesTimingsThatLastTooLongOrKick) {
+  EXPECT_TRUE(check_study_timing({}).ok());
+  EXPECT_EQ(check_study_timing({400, 10, 900, 500}).error().message,
+            "found a ramp of 10 ms, expected 60 to 5000 ms");
+  EXPECT_EQ(check_study_timing({400, 100, 4801, 500}).error().message,
+            "found a hold of 4801 ms, expected 1 ms or more, and 5000 ms at most together with both ramps");
+  EXPECT_FALSE(check_study_timing({400, 100, 0, 500}).ok());
+  EXPECT_FALSE(check_study_timing({400, 100, 4294967295u, 500}).ok());
+  EXPECT_FALSE(check_study_timing({60001, 100, 900, 500}).ok());
+  EXPECT_FALSE(check_study_timing({400, 100, 900, 60001}).ok());
+}
+
+}  // namespace
+}  // namespace palpate

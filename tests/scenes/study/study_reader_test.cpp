@@ -1,0 +1,87 @@
+// What the reader of study files refuses, and how.
+#include <gtest/gtest.h>
+
+#include "scenes/study/study_file.h"
+
+namespace palpate {
+namespace {
+
+const std::string kGood =
+    "# palpate-study 1\n# subject S01\n# procedure adaptive\n# timing_ms lead_in 5 ramp 60 hold 20 pause 5\n"
+    "# consent accepted, text 811c9dc5\n" +
+    std::string(kStudyColumns) +
+    "\ntraining,1,0.3,0.18,1,0.18,0.3,0,second,731\nstudy,1,2.5,3.5,0,2.4,3.5,1,first,20\n";
+
+std::string complaint_after(const std::string& from, const std::string& to) {
+  std::string text = kGood;
+  const std::size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  text.replace(place, from.size(), to);
+  const auto data = parse_study(text, "S01.csv");
+  return data.ok() ? "accepted" : data.error().message;
+}
+
+TEST(StudyReader, ReadsEveryField) {
+  const auto data = parse_study(kGood, "S01.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->header.subject, "S01");
+  EXPECT_EQ(data->header.procedure, ProcedureKind::adaptive);
+  EXPECT_EQ(data->header.timing, (StudyTiming{5, 60, 20, 5}));
+  EXPECT_EQ(data->consent, "text 811c9dc5");
+  ASSERT_EQ(data->records.size(), 2u);
+  EXPECT_TRUE(data->records[0].training);
+  const StudyRecord& record = data->records[1];
+  EXPECT_EQ(record.trial, (StudyTrial{2.5, 3.5, false}));
+  EXPECT_EQ(record.first_rendered_N, 2.4);
+  EXPECT_TRUE(record.limited);
+  EXPECT_FALSE(record.comparison_judged_larger());
+  EXPECT_FALSE(record.correct());
+  EXPECT_DOUBLE_EQ(record.rendered_difference(), 1.1 / 2.4);
+  EXPECT_EQ(study_row(record), "study,1,2.5,3.5,0,2.4,3.5,1,first,20\n");
+}
+
+TEST(StudyReader, IgnoresALastRowWithoutItsEnd) {
+  const auto data = parse_study(kGood + "study,2,2.", "S01.csv");
+  ASSERT_TRUE(data.ok());
+  EXPECT_EQ(data->records.size(), 2u);
+  EXPECT_EQ(data->whole_bytes, kGood.size());
+}
+
+TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
+  EXPECT_EQ(complaint_after("study 1", "study 2"),
+            "S01.csv:1:1: found \"# palpate-study 2\", expected the first line of a study file, \"# palpate-study 1\"");
+  EXPECT_EQ(complaint_after("S01", "Anna"),
+            "S01.csv:2:1: found \"# subject Anna\", expected \"# subject \" and a code such as S01");
+  EXPECT_EQ(complaint_after("adaptive", "other"),
+            "S01.csv:3:1: found \"# procedure other\", expected \"# procedure constant\" or \"# procedure adaptive\"");
+  EXPECT_EQ(complaint_after("ramp 60", "ramp 6"),
+            "S01.csv:4:1: found \"# timing_ms lead_in 5 ramp 6 hold 20 pause 5\", expected \"# timing_ms lead_in 400 "
+            "ramp 100 hold 900 pause 500\" or such");
+  EXPECT_EQ(complaint_after("accepted", "refused"),
+            "S01.csv:5:1: found \"# consent refused, text 811c9dc5\", expected \"# consent accepted, \" and which text");
+  EXPECT_EQ(complaint_after(",response_ms", ""),
+            "S01.csv:6:1: found \"part,trial,reference_N,comparison_N,comparison_first,firs...\", expected the "
+            "columns " + std::string(kStudyColumns));
+  EXPECT_EQ(complaint_after("training,1", "practice,1"),
+            "S01.csv:7:1: found \"practice\", expected training or study");
+  EXPECT_EQ(complaint_after("study,1,", "study,0,"), "S01.csv:8:7: found \"0\", expected a whole number above 0");
+  EXPECT_EQ(complaint_after("3.5,0", "nan,0"), "S01.csv:8:13: found \"nan\", expected a force above 0 and up to 10 N");
+  EXPECT_EQ(complaint_after(",2.4,", ",-2.4,"), "S01.csv:8:19: found \"-2.4\", expected a force from 0 to 10 N");
+  EXPECT_EQ(complaint_after("first,20", "both,20"), "S01.csv:8:29: found \"both\", expected first or second");
+  EXPECT_EQ(complaint_after("first,20", "first,-1"), "S01.csv:8:35: found \"-1\", expected a whole number of ms");
+  EXPECT_EQ(complaint_after(",first,20", ",first"),
+            "S01.csv:8:1: found \"study,1,2.5,3.5,0,2.4,3.5,1,first\", expected a row of ten fields");
+  EXPECT_EQ(complaint_after("first,20", "first,20,1"),
+            "S01.csv:8:1: found \"study,1,2.5,3.5,0,2.4,3.5,1,first,20,1\", expected a row of ten fields");
+  EXPECT_EQ(read_study("/none/S01.csv").error().message, "cannot read the study file /none/S01.csv; does it exist?");
+}
+
+TEST(StudyReader, EveryTruncationIsReadOrRefused) {
+  for (std::size_t length = 0; length < kGood.size(); ++length) {
+    const auto data = parse_study(std::string_view(kGood).substr(0, length), "S01.csv");
+    EXPECT_TRUE(!data.ok() || data->whole_bytes <= length) << length;
+  }
+}
+
+}  // namespace
+}  // namespace palpate
