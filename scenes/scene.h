@@ -50,7 +50,9 @@ std::string describe_features(const Scene& scene);
 
 // Reads a scene from the text of its file; `path` stands in the messages and
 // gives the name. Errors: all that is wrong, one per line, each as
-// "path:line:column: found ..., expected ..." (where in the file).
+// "path:line:column: found ..., expected ..." (where in the file). A "jnd_file", in
+// place of "jnd", names a JND file (scenes/study/jnd_file.h) relative to the scene's
+// own folder; it is read too.
 Result<Scene> parse_scene(std::string_view text, const std::string& path);
 
 // The names of all scenes in `folder` (by default the assets' own), sorted.

@@ -10,6 +10,7 @@
 
 #include "engine/json_position.h"
 #include "scenes/scene.h"
+#include "scenes/study/jnd_file.h"
 
 namespace palpate {
 namespace {
@@ -141,7 +142,7 @@ class SceneReader {
 
   void read_document(const Json& document) {
     if (!is_object(document, "",
-                   {"name", "title", "description", "material", "features", "jnd", "block", "colours",
+                   {"name", "title", "description", "material", "features", "jnd", "jnd_file", "block", "colours",
                     "default_models", "strongest_press_N"}))
       return;
     read_name(document);
@@ -220,10 +221,26 @@ class SceneReader {
   }
 
   void read_jnd(const Json& document) {
-    const Json* value = member(document, "", "jnd", "an object with offset_N and weber_fraction");
+    if (document.contains("jnd_file")) return read_jnd_file_of(document);
+    const Json* value = member(document, "", "jnd", "an object with offset_N and weber_fraction, or a \"jnd_file\"");
     if (value == nullptr || !is_object(*value, "/jnd", {"offset_N", "weber_fraction"})) return;
     scene_.jnd.offset_N = number(*value, "/jnd", "offset_N", {0.0, kLargestJndOffset_N});
     scene_.jnd.weber_fraction = number(*value, "/jnd", "weber_fraction", {0.0, 1.0, true});
+  }
+
+  // A JND file beside the scene stands in for its own line.
+  void read_jnd_file_of(const Json& document) {
+    const std::string name = text(document, "", "jnd_file");
+    if (document.contains("jnd")) {
+      complain("/jnd_file", "found a \"jnd\" and a \"jnd_file\", expected one of them");
+    }
+    if (name.empty()) return;
+    const Result<JndLine> line = read_jnd_file((std::filesystem::path(path_).parent_path() / name).string());
+    if (line) {
+      scene_.jnd = *line;
+    } else {
+      complain("/jnd_file", line.error().message);
+    }
   }
 
   void read_block(const Json& document) {

@@ -25,6 +25,7 @@ void add_all_verbs(CLI::App& app, Verbs& verbs) {
   add_report(app, verbs);
   add_scenes(app, verbs);
   add_devices(app, verbs);
+  add_study(app, verbs);
 }
 
 int fail(const std::string& message, int exit_code) {

@@ -25,5 +25,6 @@ void add_replay(CLI::App& app, Verbs& verbs);
 void add_scenes(CLI::App& app, Verbs& verbs);
 void add_devices(CLI::App& app, Verbs& verbs);
 void add_report(CLI::App& app, Verbs& verbs);
+void add_study(CLI::App& app, Verbs& verbs);
 
 }  // namespace palpate::cli

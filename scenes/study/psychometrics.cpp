@@ -11,66 +11,97 @@ namespace {
 
 constexpr double kFlattestSlope = 0.25;  // a JND of 2.7 times the reference
 constexpr double kSteepestSlope = 40.0;    // of 1.7 %: no difference of the study is as small
-constexpr double kPerfect = -0.01;  // log likelihood of answers without one mistake
-constexpr double kLargestShift = 5.0;  // of intercept and order bias
+constexpr double kLargestBias = 3.0;
 constexpr double kLapseStep = 0.01;
 constexpr int kLapseSteps = 6;
 constexpr int kMostIterations = 60;
 constexpr double kConverged = 1e-9;  // of the log likelihood
+// A slope is bounded when the ends of the range explain the answers worse by this in
+// the log likelihood: a likelihood ratio of 1.1, next to nothing.
+constexpr double kNoticeablyWorse = 0.1;
 constexpr double kLeastProbability = 1e-12;
+
+// The slopes and, last, the order bias; no memory of their own.
+constexpr int kMostCoefficients = static_cast<int>(kMostReferences) + 1;
+using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostCoefficients, 1>;
+using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostCoefficients, kMostCoefficients>;
 
 double order_of(bool comparison_first) noexcept { return comparison_first ? -1.0 : 1.0; }
 
-Eigen::Vector3d clamped(Eigen::Vector3d coefficients) noexcept {
-  coefficients[0] = std::clamp(coefficients[0], -kLargestShift, kLargestShift);
-  coefficients[1] = std::clamp(coefficients[1], kFlattestSlope, kSteepestSlope);
-  coefficients[2] = std::clamp(coefficients[2], -kLargestShift, kLargestShift);
+double least(Eigen::Index i, Eigen::Index last) { return i < last ? kFlattestSlope : -kLargestBias; }
+double most(Eigen::Index i, Eigen::Index last) { return i < last ? kSteepestSlope : kLargestBias; }
+
+Coefficients clamped(Coefficients coefficients) {
+  const Eigen::Index last = coefficients.size() - 1;
+  for (Eigen::Index i = 0; i <= last; ++i) coefficients[i] = std::clamp(coefficients[i], least(i, last), most(i, last));
   return coefficients;
 }
 
-Eigen::Vector3d row_of(const AnswerCell& cell) noexcept {
-  return {1.0, cell.difference, order_of(cell.comparison_first)};
+double z_of(const AnswerCell& cell, const Coefficients& coefficients) {
+  return coefficients[static_cast<Eigen::Index>(cell.reference)] * cell.difference +
+         coefficients[coefficients.size() - 1] * order_of(cell.comparison_first);
 }
 
 double probability_at(double z, double lapse) noexcept {
   return std::clamp(lapse + (1.0 - 2.0 * lapse) * normal_cdf(z), kLeastProbability, 1.0 - kLeastProbability);
 }
 
-double log_likelihood(const std::vector<AnswerCell>& cells, const Eigen::Vector3d& coefficients, double lapse) {
+double log_likelihood(const AnswerCell& cell, double z, double lapse) {
+  const double p = probability_at(z, lapse);
   double sum = 0.0;
-  for (const AnswerCell& cell : cells) {
-    const double p = probability_at(row_of(cell).dot(coefficients), lapse);
-    if (cell.judged_larger > 0.0) sum += cell.judged_larger * std::log(p);
-    if (cell.trials > cell.judged_larger) sum += (cell.trials - cell.judged_larger) * std::log1p(-p);
-  }
+  if (cell.judged_larger > 0.0) sum += cell.judged_larger * std::log(p);
+  if (cell.trials > cell.judged_larger) sum += (cell.trials - cell.judged_larger) * std::log1p(-p);
   return sum;
 }
 
-// The step of Fisher scoring: information^-1 x gradient.
-Eigen::Vector3d scoring_step(const std::vector<AnswerCell>& cells, const Eigen::Vector3d& coefficients, double lapse) {
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+double log_likelihood(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse) {
+  double sum = 0.0;
+  for (const AnswerCell& cell : cells) sum += log_likelihood(cell, z_of(cell, coefficients), lapse);
+  return sum;
+}
+
+// The step of Fisher scoring: information^-1 x gradient. What would leave its range
+// stays.
+Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse) {
+  const Eigen::Index last = coefficients.size() - 1;
+  Coefficients gradient = Coefficients::Zero(last + 1);
   // A little more than nothing, so that it can be solved without answers too.
-  Eigen::Matrix3d information = 1e-9 * Eigen::Matrix3d::Identity();
+  Information information = 1e-9 * Information::Identity(last + 1, last + 1);
   for (const AnswerCell& cell : cells) {
-    const Eigen::Vector3d row = row_of(cell);
-    const double z = row.dot(coefficients);
+    const double z = z_of(cell, coefficients);
     const double p = probability_at(z, lapse);
     const double density = (1.0 - 2.0 * lapse) * 0.3989422804014327 * std::exp(-0.5 * z * z);
-    const double variance = p * (1.0 - p);
-    gradient += row * (density * (cell.judged_larger - cell.trials * p) / variance);
-    information += row * row.transpose() * (cell.trials * density * density / variance);
+    const double pull = density * (cell.judged_larger - cell.trials * p) / (p * (1.0 - p));
+    const double weight = cell.trials * density * density / (p * (1.0 - p));
+    const auto i = static_cast<Eigen::Index>(cell.reference);
+    const double order = order_of(cell.comparison_first);
+    gradient[i] += pull * cell.difference;
+    gradient[last] += pull * order;
+    information(i, i) += weight * cell.difference * cell.difference;
+    information(last, last) += weight;
+    information(i, last) += weight * cell.difference * order;
+    information(last, i) = information(i, last);
+  }
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    const bool leaves = (coefficients[i] >= most(i, last) && gradient[i] > 0.0) ||
+                        (coefficients[i] <= least(i, last) && gradient[i] < 0.0);
+    if (!leaves) continue;
+    information.row(i).setZero();
+    information.col(i).setZero();
+    information(i, i) = 1.0;
+    gradient[i] = 0.0;
   }
   return information.ldlt().solve(gradient);
 }
 
-// Climbs from `start` for one lapse rate; halves a step that does not climb.
-double climb(const std::vector<AnswerCell>& cells, double lapse, Eigen::Vector3d& coefficients) {
+// Climbs from `coefficients` for one lapse rate; halves a step that does not climb.
+double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients) {
   double best = log_likelihood(cells, coefficients, lapse);
   for (int i = 0; i < kMostIterations; ++i) {
-    Eigen::Vector3d step = scoring_step(cells, coefficients, lapse);
+    Coefficients step = scoring_step(cells, coefficients, lapse);
     double reached = best;
     for (int halved = 0; halved < 20; ++halved, step *= 0.5) {
-      const Eigen::Vector3d tried = clamped(coefficients + step);
+      const Coefficients tried = clamped(coefficients + step);
       const double there = log_likelihood(cells, tried, lapse);
       if (!(there > best)) continue;
       coefficients = tried;
@@ -81,6 +112,19 @@ double climb(const std::vector<AnswerCell>& cells, double lapse, Eigen::Vector3d
     best = reached;
   }
   return best;
+}
+
+// Whether both ends of the range explain the answers noticeably worse.
+bool bounds_slope(const std::vector<AnswerCell>& cells, std::size_t reference, const PsychometricFunction& fitted) {
+  double at_fit = 0.0, at_flattest = 0.0, at_steepest = 0.0;
+  for (const AnswerCell& cell : cells) {
+    if (cell.reference != reference) continue;
+    const double bias = fitted.order_bias * order_of(cell.comparison_first);
+    at_fit += log_likelihood(cell, fitted.slope * cell.difference + bias, fitted.lapse);
+    at_flattest += log_likelihood(cell, kFlattestSlope * cell.difference + bias, fitted.lapse);
+    at_steepest += log_likelihood(cell, kSteepestSlope * cell.difference + bias, fitted.lapse);
+  }
+  return at_fit > at_flattest + kNoticeablyWorse && at_fit > at_steepest + kNoticeablyWorse;
 }
 
 // How often the same function answers "larger" in a new run of the cell.
@@ -104,35 +148,46 @@ double normal_quantile(double probability) noexcept {
   return 0.5 * (low + high);
 }
 
-void add_answer(std::vector<AnswerCell>& cells, double difference, bool comparison_first, bool judged_larger) {
+void add_answers(std::vector<AnswerCell>& cells, const AnswerCell& answers) {
   // As near as a recorded force can tell: 0.1 mN of the smallest reference.
   const auto same = [&](const AnswerCell& cell) {
-    return cell.comparison_first == comparison_first && std::abs(cell.difference - difference) < 1e-4;
+    return cell.reference == answers.reference && cell.comparison_first == answers.comparison_first &&
+           std::abs(cell.difference - answers.difference) < 1e-4;
   };
-  auto cell = std::find_if(cells.begin(), cells.end(), same);
-  if (cell == cells.end()) cell = cells.insert(cells.end(), {difference, comparison_first, 0.0, 0.0});
-  cell->trials += 1.0;
-  cell->judged_larger += judged_larger ? 1.0 : 0.0;
+  const auto cell = std::find_if(cells.begin(), cells.end(), same);
+  if (cell == cells.end()) {
+    cells.push_back(answers);
+    return;
+  }
+  cell->trials += answers.trials;
+  cell->judged_larger += answers.judged_larger;
 }
 
 double PsychometricFunction::at(double difference, bool comparison_first) const noexcept {
-  const double z = intercept + slope * difference + order_bias * order_of(comparison_first);
+  const double z = slope * difference + order_bias * order_of(comparison_first);
   return lapse + (1.0 - 2.0 * lapse) * normal_cdf(z);
 }
 
-PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells) {
-  PsychometricFit fit;
-  Eigen::Vector3d coefficients(0.0, 3.0, 0.0);
+PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references) {
+  const auto last = static_cast<Eigen::Index>(references);
+  Coefficients coefficients = Coefficients::Constant(last + 1, 4.0);
+  coefficients[last] = 0.0;
+  Coefficients best = coefficients;
+  double most_likely = 0.0, best_lapse = 0.0;
   for (int i = 0; i <= kLapseSteps; ++i) {
     const double lapse = kLapseStep * i;
-    coefficients = clamped(coefficients);
     const double reached = climb(cells, lapse, coefficients);
-    if (i > 0 && !(reached > fit.log_likelihood + kConverged)) continue;
-    fit.function = {coefficients[0], coefficients[1], coefficients[2], lapse};
-    fit.log_likelihood = reached;
+    if (i > 0 && !(reached > most_likely + kConverged)) break;  // the likelihood has one hill
+    most_likely = reached;
+    best = coefficients;
+    best_lapse = lapse;
   }
-  fit.determined = !cells.empty() && fit.function.slope > 1.001 * kFlattestSlope &&
-                   fit.function.slope < 0.999 * kSteepestSlope && fit.log_likelihood < kPerfect;
+  PsychometricFit fit;
+  fit.log_likelihood = most_likely;
+  for (std::size_t i = 0; i < references; ++i) {
+    fit.functions.push_back({best[static_cast<Eigen::Index>(i)], best[last], best_lapse});
+    fit.determined.push_back(bounds_slope(cells, i, fit.functions.back()));
+  }
   return fit;
 }
 
@@ -153,22 +208,28 @@ Estimate bias_corrected_interval(double value, std::vector<double> replicates, d
   return {value, low, high, true};
 }
 
-Estimate bootstrap_jnd(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
-                       const BootstrapSettings& settings, RandomStream random) {
+std::vector<Estimate> bootstrap_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
+                                     const BootstrapSettings& settings, RandomStream random) {
+  const std::size_t references = fit.functions.size();
   // The JND is this many standard deviations, whatever the fit.
   const double deviations = normal_quantile(settings.criterion);
-  std::vector<double> replicates;
+  std::vector<std::vector<double>> replicates(references);
   std::vector<AnswerCell> drawn = cells;
   for (int i = 0; i < settings.resamples; ++i) {
     for (std::size_t c = 0; c < cells.size(); ++c) {
-      const double p = fit.function.at(cells[c].difference, cells[c].comparison_first);
+      const double p = fit.functions[cells[c].reference].at(cells[c].difference, cells[c].comparison_first);
       drawn[c].judged_larger = drawn_answers(p, cells[c].trials, random);
     }
-    replicates.push_back(deviations / fit_psychometric(drawn).function.slope);
+    const PsychometricFit again = fit_psychometric(drawn, references);
+    for (std::size_t r = 0; r < references; ++r) replicates[r].push_back(deviations / again.functions[r].slope);
   }
-  Estimate estimate = bias_corrected_interval(deviations / fit.function.slope, std::move(replicates), settings.level);
-  estimate.determined = fit.determined;
-  return estimate;
+  std::vector<Estimate> estimates;
+  for (std::size_t r = 0; r < references; ++r) {
+    estimates.push_back(
+        bias_corrected_interval(deviations / fit.functions[r].slope, std::move(replicates[r]), settings.level));
+    estimates.back().determined = fit.determined[r];
+  }
+  return estimates;
 }
 
 }  // namespace palpate

@@ -1,16 +1,17 @@
-// From answers to thresholds: the psychometric function and its JND.
+// From answers to thresholds: the psychometric functions of a subject and their JNDs.
 //
-// With x = (comparison - reference) / reference and o = +1 when the comparison
-// came second, -1 when it came first, the comparison is judged the larger with
-//   P(x, o) = lapse + (1 - 2 lapse) Phi(intercept + slope x + order_bias o)
-// a cumulative Gaussian with mean -intercept / slope (the point of subjective
-// equality), standard deviation 1 / slope, a lapse rate, and what a subject adds
-// to whatever comes second (Wichmann & Hill 2001, Perception & Psychophysics
-// 63(8), 1293-1313; the order term is ours: an order bias that the fit does not
-// know would be taken for a flat slope).
+// With x = (comparison - reference) / reference and o = +1 when the comparison came
+// second, -1 when it came first, the comparison is judged the larger with
+//   P(x, o) = lapse + (1 - 2 lapse) Phi(slope x + order_bias o)
+// a cumulative Gaussian with a lapse rate (Wichmann & Hill 2001, Perception &
+// Psychophysics 63(8), 1293-1313). Each reference force has its slope; the lapse rate
+// and what is added to whatever comes second, in multiples of the noise, belong to the
+// subject and are the same for all. There is no other shift: which of two forces is
+// "the reference" is nothing that a subject could know. (Four shifts and lapse rates
+// more, fitted to 80 answers each, made the JND 10 % too small and doubled its error.)
 //
 // The JND at a criterion c is half the distance between the comparisons that are
-// judged larger with probability c and 1 - c, lapses aside:
+// judged larger with probability c and 1 - c, lapses and order aside:
 //   JND = Phi^-1(c) reference / slope.
 // c = 0.75, half the interquartile distance, is the default; the paper does not
 // state its own.
@@ -33,17 +34,18 @@ double normal_quantile(double probability) noexcept;
 // Answers to one kind of trial. Counts need not be whole: expected answers are
 // answers too.
 struct AnswerCell {
-  double difference = 0.0;  // x
+  std::size_t reference = 0;  // which reference force, from 0; at most kMostReferences
+  double difference = 0.0;    // x
   bool comparison_first = false;
   double judged_larger = 0.0;  // how often the comparison was
   double trials = 0.0;
 };
+inline constexpr std::size_t kMostReferences = 8;
 
-// Adds one answer to its cell, which is made when there is none yet.
-void add_answer(std::vector<AnswerCell>& cells, double difference, bool comparison_first, bool judged_larger);
+// Adds answers to the cell of their kind, which is made when there is none yet.
+void add_answers(std::vector<AnswerCell>& cells, const AnswerCell& answers);
 
 struct PsychometricFunction {
-  double intercept = 0.0;
   double slope = 1.0;  // > 0
   double order_bias = 0.0;
   double lapse = 0.0;  // 0 .. 0.06
@@ -54,16 +56,16 @@ struct PsychometricFunction {
 };
 
 struct PsychometricFit {
-  PsychometricFunction function;
+  std::vector<PsychometricFunction> functions;  // of each reference force
+  // Whether the answers bound the slope on both sides: not when they are all right, or
+  // mere guesses. The slope is then an end of its range, 0.25 .. 40, or anywhere near.
+  std::vector<bool> determined;
   double log_likelihood = 0.0;
-  // False when the answers do not bound the slope: all right or mere guesses. The
-  // slope is then the end of its range, 0.25 .. 40.
-  bool determined = true;
 };
 
-// Maximum likelihood; the lapse rate to 0.01, at most 0.06. No answers: not
-// determined.
-PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells);
+// Maximum likelihood for `references` reference forces (1 .. kMostReferences) together;
+// the lapse rate to 0.01, at most 0.06.
+PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
 
 // A value and the interval that holds the truth at the stated rate.
 struct Estimate {
@@ -79,12 +81,12 @@ struct BootstrapSettings {
   int resamples = 999;
 };
 
-// The relative JND with a confidence interval by the parametric bootstrap (Wichmann
-// & Hill 2001, Perception & Psychophysics 63(8), 1314-1329): answers are drawn from
-// the fitted function at the same stimuli and fitted again. The percentiles are
-// bias-corrected (Efron 1987). Counts must be whole.
-Estimate bootstrap_jnd(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
-                       const BootstrapSettings& settings, RandomStream random);
+// The relative JND at each reference force with a confidence interval by the parametric
+// bootstrap (Wichmann & Hill 2001, Perception & Psychophysics 63(8), 1314-1329): answers
+// are drawn from the fitted functions at the same stimuli and fitted again. The
+// percentiles are bias-corrected (Efron 1987). Counts must be whole.
+std::vector<Estimate> bootstrap_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
+                                     const BootstrapSettings& settings, RandomStream random);
 
 // Bias-corrected percentiles of `replicates` (at least one, any order) around
 // `value`.

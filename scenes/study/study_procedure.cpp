@@ -1,7 +1,6 @@
 #include "scenes/study/study_procedure.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "scenes/study/quest_plus.h"
@@ -32,7 +31,7 @@ class Adaptive final : public StudyProcedure {
 
   void answered(bool comparison_judged_larger) override {
     const double difference = (trial_.comparison_N - trial_.reference_N) / trial_.reference_N;
-    beliefs_[reference_index()].answered(difference, trial_.comparison_first, comparison_judged_larger);
+    beliefs_.answered(reference_index(), difference, trial_.comparison_first, comparison_judged_larger);
     ++answered_;
     if (!done()) choose();
   }
@@ -46,13 +45,13 @@ class Adaptive final : public StudyProcedure {
   void choose() {
     const AdaptiveSlot& slot = slots_[answered_];
     const double difference =
-        beliefs_[reference_index()].next_difference(slot.comparison_larger, slot.comparison_first);
+        beliefs_.next_difference(reference_index(), slot.comparison_larger, slot.comparison_first);
     const double percent = 100.0 + (slot.comparison_larger ? 100.0 : -100.0) * difference;
     trial_ = {slot.reference_N, percent_of(slot.reference_N, percent), slot.comparison_first};
   }
 
   std::vector<AdaptiveSlot> slots_;
-  std::array<QuestPlus, kReferenceForces_N.size()> beliefs_;
+  QuestPlus beliefs_;
   StudyTrial trial_;
 };
 

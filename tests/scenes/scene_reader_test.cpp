@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenes/scene.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -60,6 +61,28 @@ TEST(SceneReader, TakesAStrongestPress) {
   EXPECT_EQ(scene->strongest_press_N, 0.9);
   EXPECT_EQ(complaint_after("\"material\": null,", "\"material\": null, \"strongest_press_N\": 0,"),
             "x.json:5:42: found 0, expected a number above 0 up to 20");
+}
+
+TEST(SceneReader, TakesItsJndFromAFile) {
+  const test::TemporaryFolder folder;
+  folder.with_file("own.json", R"({"format": "palpate-jnd", "version": 1, "offset_N": 0.04, "weber_fraction": 0.12})");
+  std::string text = kGood;
+  const std::string line = R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})";
+  text.replace(text.find(line), line.size(), R"("jnd_file": "own.json")");
+  const auto scene = parse_scene(text, folder.file("x.json"));
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->jnd.offset_N, 0.04);
+  EXPECT_EQ(scene->jnd.weber_fraction, 0.12);
+}
+
+TEST(SceneReader, RefusesAJndFileThatIsNone) {
+  EXPECT_EQ(complaint_after("\"jnd\":", "\"jnd_file\": \"none.json\", \"jnd\":"),
+            "x.json:10:15: found a \"jnd\" and a \"jnd_file\", expected one of them\n"
+            "x.json:10:15: cannot read the JND file none.json; does it exist?");
+  EXPECT_EQ(complaint_after("\"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0}", "\"jnd_file\": 3"),
+            "x.json:10:15: found 3, expected a text that is not empty");
+  EXPECT_EQ(complaint_after("  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", ""),
+            "x.json:1:1: found no \"jnd\", expected an object with offset_N and weber_fraction, or a \"jnd_file\"");
 }
 
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {

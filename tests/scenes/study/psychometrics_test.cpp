@@ -8,13 +8,18 @@
 namespace palpate {
 namespace {
 
-// The answers that `truth` gives on average, at the study's differences.
-std::vector<AnswerCell> expected_answers(const PsychometricFunction& truth, double trials) {
+// The answers that subjects with these slopes give on average, at the study's
+// differences.
+std::vector<AnswerCell> expected_answers(std::initializer_list<PsychometricFunction> truths, double trials) {
   std::vector<AnswerCell> cells;
-  for (const double difference : {-0.4, -0.3, -0.2, -0.1, 0.1, 0.2, 0.3, 0.4}) {
-    for (const bool first : {false, true}) {
-      cells.push_back({difference, first, trials * truth.at(difference, first), trials});
+  std::size_t reference = 0;
+  for (const PsychometricFunction& truth : truths) {
+    for (const double difference : {-0.4, -0.3, -0.2, -0.1, 0.1, 0.2, 0.3, 0.4}) {
+      for (const bool first : {false, true}) {
+        cells.push_back({reference, difference, first, trials * truth.at(difference, first), trials});
+      }
     }
+    ++reference;
   }
   return cells;
 }
@@ -26,72 +31,74 @@ TEST(Psychometrics, NormalDistributionMatchesPublishedValues) {
   EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-15);
 }
 
-TEST(Psychometrics, FindsTheFunctionThatMadeTheAnswers) {
-  for (const double slope : {2.0, 5.0, 12.0}) {
-    for (const double lapse : {0.0, 0.02, 0.05}) {
-      const PsychometricFunction truth{0.2, slope, -0.3, lapse};
-      const PsychometricFit fit = fit_psychometric(expected_answers(truth, 5.0));
-      EXPECT_NEAR(fit.function.slope, slope, 2e-3 * slope) << slope << " " << lapse;
-      EXPECT_NEAR(fit.function.intercept, 0.2, 2e-3);
-      EXPECT_NEAR(fit.function.order_bias, -0.3, 2e-3);
-      EXPECT_NEAR(fit.function.lapse, lapse, 1e-9);
-      EXPECT_TRUE(fit.determined);
+TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
+  for (const double lapse : {0.0, 0.02, 0.05}) {
+    const auto cells = expected_answers({{2.0, -0.3, lapse}, {5.0, -0.3, lapse}, {12.0, -0.3, lapse}}, 5.0);
+    const PsychometricFit fit = fit_psychometric(cells, 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double slope = i == 0 ? 2.0 : i == 1 ? 5.0 : 12.0;
+      EXPECT_NEAR(fit.functions[i].slope, slope, 1e-4 * slope) << lapse;
+      EXPECT_NEAR(fit.functions[i].order_bias, -0.3, 1e-4);
+      EXPECT_NEAR(fit.functions[i].lapse, lapse, 1e-9);
+      EXPECT_TRUE(fit.determined[i]);
     }
   }
 }
 
 TEST(Psychometrics, JndIsHalfTheDistanceBetweenTheCriterionPoints) {
-  const PsychometricFunction function{0.4, 5.0, 0.0, 0.0};
+  const PsychometricFunction function{5.0, 0.0, 0.0};
   for (const double criterion : {0.75, 0.84}) {
-    const double jnd = function.jnd(criterion);
-    const double middle = -0.4 / 5.0;
-    EXPECT_NEAR(function.at(middle + jnd, true), criterion, 1e-12);
-    EXPECT_NEAR(function.at(middle - jnd, true), 1.0 - criterion, 1e-12);
+    EXPECT_NEAR(function.at(function.jnd(criterion), true), criterion, 1e-12);
+    EXPECT_NEAR(function.at(-function.jnd(criterion), true), 1.0 - criterion, 1e-12);
   }
 }
 
 TEST(Psychometrics, NoOrderBiasIsTakenForAFlatSlope) {
-  const PsychometricFunction truth{0.0, 5.0, 0.8, 0.0};
-  const double found = fit_psychometric(expected_answers(truth, 5.0)).function.jnd(kJndCriterion);
-  EXPECT_NEAR(found, truth.jnd(kJndCriterion), 1e-4);
+  const PsychometricFunction truth{5.0, 0.8, 0.0};
+  const double found = fit_psychometric(expected_answers({truth}, 5.0), 1).functions[0].jnd(kJndCriterion);
+  EXPECT_NEAR(found, truth.jnd(kJndCriterion), 1e-5);
 }
 
-TEST(Psychometrics, SaysWhenTheAnswersBoundNothing) {
-  std::vector<AnswerCell> right, guessed;
+TEST(Psychometrics, SaysWhichAnswersBoundNothing) {
+  // All right, mere guesses, something between, nothing at all.
+  std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, 5.0);
+  for (AnswerCell& cell : cells) cell.judged_larger = std::round(cell.judged_larger);
   for (const double difference : {-0.4, -0.1, 0.1, 0.4}) {
-    right.push_back({difference, false, difference > 0.0 ? 10.0 : 0.0, 10.0});
-    guessed.push_back({difference, false, 5.0, 10.0});
+    cells.push_back({1, difference, false, difference > 0.0 ? 10.0 : 0.0, 10.0});
+    cells.push_back({2, difference, false, 5.0, 10.0});
   }
-  EXPECT_FALSE(fit_psychometric(right).determined);
-  EXPECT_FALSE(fit_psychometric(guessed).determined);
-  EXPECT_FALSE(fit_psychometric({}).determined);
-  for (const auto* cells : {&right, &guessed}) {
-    const Estimate estimate = bootstrap_jnd(*cells, fit_psychometric(*cells), {0.75, 0.95, 50}, RandomStream(1, 1));
-    EXPECT_FALSE(estimate.determined);
+  const PsychometricFit fit = fit_psychometric(cells, 4);
+  EXPECT_EQ(fit.determined, (std::vector<bool>{true, false, false, false}));
+  const std::vector<Estimate> estimates = bootstrap_jnds(cells, fit, {0.75, 0.95, 50}, RandomStream(1, 1));
+  ASSERT_EQ(estimates.size(), 4u);
+  for (const Estimate& estimate : estimates) {
     EXPECT_TRUE(std::isfinite(estimate.low) && std::isfinite(estimate.high));
+    EXPECT_LE(estimate.low, estimate.high);
   }
+  EXPECT_TRUE(estimates[0].determined);
+  EXPECT_FALSE(estimates[1].determined);
 }
 
 TEST(Psychometrics, AnswersOfOneKindShareACell) {
   std::vector<AnswerCell> cells;
-  add_answer(cells, 0.1, true, true);
-  add_answer(cells, 0.10005, true, false);
-  add_answer(cells, 0.1, false, true);
-  add_answer(cells, 0.102, true, true);
-  ASSERT_EQ(cells.size(), 3u);
+  add_answers(cells, {0, 0.1, true, 1.0, 1.0});
+  add_answers(cells, {0, 0.10005, true, 0.0, 1.0});
+  add_answers(cells, {0, 0.1, false, 1.0, 1.0});
+  add_answers(cells, {0, 0.102, true, 1.0, 1.0});
+  add_answers(cells, {1, 0.1, true, 1.0, 1.0});
+  ASSERT_EQ(cells.size(), 4u);
   EXPECT_EQ(cells[0].trials, 2.0);
   EXPECT_EQ(cells[0].judged_larger, 1.0);
 }
 
 TEST(Psychometrics, IntervalNarrowsWithTheTrialsAndRepeats) {
-  const PsychometricFunction truth{0.0, 5.0, 0.0, 0.0};
   double width = 1e9;
   for (const double trials : {5.0, 50.0}) {
-    std::vector<AnswerCell> cells = expected_answers(truth, trials);
+    std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, trials);
     for (AnswerCell& cell : cells) cell.judged_larger = std::round(cell.judged_larger);
-    const PsychometricFit fit = fit_psychometric(cells);
-    const Estimate one = bootstrap_jnd(cells, fit, {0.75, 0.95, 200}, RandomStream(7, 1));
-    const Estimate again = bootstrap_jnd(cells, fit, {0.75, 0.95, 200}, RandomStream(7, 1));
+    const PsychometricFit fit = fit_psychometric(cells, 1);
+    const Estimate one = bootstrap_jnds(cells, fit, {0.75, 0.95, 200}, RandomStream(7, 1))[0];
+    const Estimate again = bootstrap_jnds(cells, fit, {0.75, 0.95, 200}, RandomStream(7, 1))[0];
     EXPECT_EQ(one.low, again.low);
     EXPECT_LT(one.low, one.value);
     EXPECT_GT(one.high, one.value);

@@ -1,0 +1,253 @@
+// palpate study: the force-discrimination study without a window. Analyses the files
+// of real subjects, simulates subjects, measures how well the study finds the truth.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/atomic_file.h"
+#include "scenes/cli/progress.h"
+#include "scenes/cli/verbs.h"
+#include "scenes/study/jnd_file.h"
+#include "scenes/study/recovery.h"
+#include "scenes/study/simulated_subject.h"
+#include "scenes/study/study_analysis.h"
+#include "scenes/study/study_figure.h"
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPopulationStream = 51;
+
+struct StudyOptions {
+  BootstrapSettings bootstrap;
+  bool with_published = false;
+  std::string out;
+  bool force = false;
+  std::vector<std::string> files;  // analyse
+  std::string procedure = "constant";
+  int subjects = 12;
+  std::uint64_t seed = 1;
+  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N
+  double spread = 0.15;
+};
+
+void print_analysis(const StudyAnalysis& analysis) {
+  std::printf("%-13s %8s %12s %22s\n", "reference [N]", "subjects", "mean JND [%]", "all answers [%], 95 %");
+  for (const PooledJnd& pooled : analysis.pooled) {
+    const double percent = 100.0 / pooled.rendered_N;
+    std::printf("%-13.4g %8zu %7.1f ±%4.1f %9.1f (%.1f to %.1f)\n", pooled.reference_N, pooled.subjects,
+                percent * pooled.mean_N, percent * pooled.standard_error_N, percent * pooled.jnd_N.value,
+                percent * pooled.jnd_N.low, percent * pooled.jnd_N.high);
+  }
+  for (const SubjectJnd& subject : analysis.subjects) {
+    if (subject.unusable == 0) continue;
+    std::printf("%s: %zu trials left out, their forces were not rendered\n", subject.subject.c_str(), subject.unusable);
+  }
+  if (!analysis.lines.ok()) return;
+  const JndLines& lines = *analysis.lines;
+  std::printf("fitted       %.4f N + %.2f %%\nconservative %.4f N + %.2f %%\n", lines.fitted.offset_N,
+              100.0 * lines.fitted.weber_fraction, lines.conservative.offset_N, 100.0 * lines.conservative.weber_fraction);
+}
+
+Status make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Error{"cannot make the folder " + folder + ": " + error.message()};
+  return {};
+}
+
+// Table, JND file, figures.
+Status write_analysis(const StudyAnalysis& analysis, const StudyOptions& options) {
+  if (const Status made = make_folder(options.out); !made) return made;
+  print_analysis(analysis);
+  const Status table = write_file_atomically(options.out + "/results.csv", analysis_table(analysis), options.force);
+  if (!table) return table;
+  if (analysis.lines.ok()) {
+    std::vector<std::string> subjects;
+    for (const SubjectJnd& subject : analysis.subjects) subjects.push_back(subject.subject);
+    const std::string text = jnd_file_text(*analysis.lines, analysis.points, options.bootstrap.criterion, subjects);
+    const Status jnd = write_file_atomically(options.out + "/jnd.json", text, options.force);
+    if (!jnd) return jnd;
+  }
+  if (const Status figures = write_study_figures(analysis, options.out, options.force); !figures) return figures;
+  if (!analysis.lines.ok()) return Error{"no JND file: " + analysis.lines.error().message};
+  return {};
+}
+
+Status analyse(const std::vector<StudyData>& files, const StudyOptions& options) {
+  Result<StudyAnalysis> analysis = Error{""};
+  {
+    ProgressLine line("analysing");
+    analysis = analyse_study(files, options.bootstrap, options.with_published,
+                             [&](double share) { return line.update(share); });
+  }
+  if (!analysis) return analysis.error();
+  return write_analysis(*analysis, options);
+}
+
+Status run_analyse(const StudyOptions& options) {
+  std::vector<StudyData> files;
+  for (const std::string& path : options.files) {
+    Result<StudyData> data = read_study(path);
+    if (!data) return data.error();
+    files.push_back(std::move(*data));
+  }
+  return analyse(files, options);
+}
+
+// One of the population: the JND's factor spreads as e^normal.
+SubjectTraits drawn_subject(const StudyOptions& options, RandomStream& random) {
+  SubjectTraits traits = options.traits;
+  const double factor = std::exp(options.spread * random.normal());
+  traits.jnd = {factor * traits.jnd.offset_N, factor * traits.jnd.weber_fraction};
+  return traits;
+}
+
+std::string file_text(const StudyHeader& header, const std::vector<StudyRecord>& records) {
+  const StudyTiming& timing = header.timing;
+  std::string text = "# palpate-study 1\n# subject " + header.subject + "\n# procedure " +
+                     procedure_name(header.procedure) + "\n# timing_ms lead_in " + std::to_string(timing.lead_in) +
+                     " ramp " + std::to_string(timing.ramp) + " hold " + std::to_string(timing.hold) + " pause " +
+                     std::to_string(timing.pause) + "\n# consent accepted, simulated\n" + std::string(kStudyColumns) + "\n";
+  for (const StudyRecord& record : records) text += study_row(record);
+  return text;
+}
+
+Status run_simulate(const StudyOptions& options) {
+  if (const Status made = make_folder(options.out); !made) return made;
+  std::vector<StudyData> files;
+  {
+    ProgressLine line("simulating");
+    for (int i = 1; i <= options.subjects; ++i) {
+      if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
+      RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
+      const SubjectTraits traits = drawn_subject(options, random);
+      char code[16];
+      std::snprintf(code, sizeof code, "S%02d", i);
+      const StudyHeader header{code, *find_procedure(options.procedure), {}};
+      const auto records = run_simulated_session(header, traits, random.next());
+      if (!records) return records.error();
+      const std::string path = options.out + "/" + code + ".csv";
+      const Status written = write_file_atomically(path, file_text(header, *records), options.force);
+      if (!written) return written;
+      files.push_back({header, "simulated", *records, 0});
+    }
+  }
+  return analyse(files, options);
+}
+
+Status run_recovery(const StudyOptions& options) {
+  std::printf("%-10s %13s %8s %10s %12s %14s %12s %16s\n", "procedure", "reference [N]", "subjects", "determined",
+              "coverage [%]", "estimate/truth", "error [%]", "high/low (median)");
+  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::adaptive}) {
+    RecoverySettings settings;
+    settings.procedure = kind;
+    settings.subjects = options.subjects;
+    settings.seed = options.seed;
+    settings.bootstrap = options.bootstrap;
+    Result<std::vector<RecoveryRow>> rows = Error{""};
+    {
+      ProgressLine line(std::string("recovery, ") + procedure_name(kind));
+      rows = measure_recovery(settings, [&](double share) { return line.update(share); });
+    }
+    if (!rows) return rows.error();
+    for (const RecoveryRow& row : *rows) {
+      std::printf("%-10s %13.4g %8d %10d %12.1f %14.3f %12.1f %16.2f\n", procedure_name(kind), row.reference_N,
+                  row.subjects, row.determined, 100.0 * row.coverage, row.median_ratio,
+                  100.0 * (std::exp(row.rms_log_error) - 1.0), row.median_high_over_low);
+    }
+  }
+  return {};
+}
+
+void add_bootstrap_options(CLI::App* verb, StudyOptions& options) {
+  verb->add_option("--criterion", options.bootstrap.criterion,
+                   "The JND is half the distance between the comparisons judged larger with this probability "
+                   "and with one minus it")
+      ->check(CLI::Range(0.55, 0.99))
+      ->capture_default_str();
+  verb->add_option("--resamples", options.bootstrap.resamples, "Of the bootstrap")
+      ->check(CLI::Range(50, 100000))
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App* verb, StudyOptions& options) {
+  add_bootstrap_options(verb, options);
+  verb->add_flag("--pang", options.with_published, "The line goes below Pang, Tan & Durlach's point (1991) too: 9 % at 2.5 N");
+  verb->add_option("--out", options.out, "Folder for results.csv, jnd.json and figure 3 (a) and (b)")->required();
+  verb->add_flag("--force", options.force, "Replace files that exist");
+}
+
+void add_analyse(CLI::App& study, Verbs& verbs) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* verb = study.add_subcommand("analyse", "From the files of the subjects to the JND line, its file and figure");
+  verb->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
+  add_output_options(verb, *options);
+  verbs.emplace_back(verb, [options] { return run_analyse(*options); });
+}
+
+void add_simulate(CLI::App& study, Verbs& verbs) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* verb = study.add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
+  verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
+  verb->add_option("--procedure", options->procedure, "constant (320 trials) or adaptive (80)")
+      ->check(CLI::IsMember({"constant", "adaptive"}))
+      ->capture_default_str();
+  verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
+  verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  verb->add_option("--weber", options->traits.jnd.weber_fraction, "What it grows by with the force")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--spread", options->spread, "How the subjects differ: standard deviation of ln JND")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--bias", options->traits.order_bias_jnd, "What they add to the second force, multiples of the JND")
+      ->check(CLI::Range(-2.0, 2.0))
+      ->capture_default_str();
+  verb->add_option("--lapse", options->traits.lapse_rate, "Share of answers that are wrong whatever the force")
+      ->check(CLI::Range(0.0, 0.2))
+      ->capture_default_str();
+  add_output_options(verb, *options);
+  verbs.emplace_back(verb, [options] { return run_simulate(*options); });
+}
+
+void add_recovery(CLI::App& study, Verbs& verbs) {
+  auto options = std::make_shared<StudyOptions>();
+  options->subjects = 200;
+  options->bootstrap.resamples = 399;
+  CLI::App* verb = study.add_subcommand("recovery", "How well both procedures find JNDs that are known");
+  verb->add_option("--subjects", options->subjects, "How many for each procedure")
+      ->check(CLI::Range(1, 9999))
+      ->capture_default_str();
+  verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
+  add_bootstrap_options(verb, *options);
+  verbs.emplace_back(verb, [options] { return run_recovery(*options); });
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Verbs& verbs) {
+  CLI::App* study = app.add_subcommand("study", "The force-discrimination study: analyse, simulate, recovery");
+  study->require_subcommand(1);
+  verbs.emplace_back(study, [] { return Status(); });
+  Verbs parts;
+  add_analyse(*study, parts);
+  add_simulate(*study, parts);
+  add_recovery(*study, parts);
+  verbs.back().second = [parts] {
+    for (const auto& [command, run] : parts) {
+      if (command->parsed()) return run();
+    }
+    return Status();
+  };
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,99 @@
+#include "scenes/study/jnd_file.h"
+
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/json_position.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kAdvice = "; write it anew with palpate study analyse";
+
+Error wrong(std::string_view text, const std::string& path, const std::string& pointer, const std::string& words) {
+  return Error{position_prefix(path, position_of_value(text, pointer)) + words + kAdvice};
+}
+
+std::string found(const Json& value) {
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 40) text = text.substr(0, 37) + "...";
+  return "found " + text;
+}
+
+// The number under `key`, above or from `least` up to `most`.
+Result<double> number(const Json& document, std::string_view text, const std::string& path, const char* key,
+                      double most, bool zero_allowed) {
+  const std::string expected = std::string("expected a number ") + (zero_allowed ? "from 0" : "above 0") +
+                               " up to " + std::to_string(static_cast<int>(most));
+  const auto entry = document.find(key);
+  if (entry == document.end()) return wrong(text, path, "", std::string("found no \"") + key + "\", " + expected);
+  const double value = entry->is_number() ? entry->get<double>() : std::nan("");
+  const bool large_enough = zero_allowed ? value >= 0.0 : value > 0.0;
+  if (large_enough && value <= most) return value;
+  return wrong(text, path, std::string("/") + key, found(*entry) + ", " + expected);
+}
+
+Result<JndLine> line_of(const Json& document, std::string_view text, const std::string& path) {
+  if (!document.is_object() || document.value("format", Json()) != "palpate-jnd") {
+    return wrong(text, path, "", "found no \"format\": \"palpate-jnd\", expected a JND file");
+  }
+  const Json version = document.value("version", Json());
+  if (version != 1) return wrong(text, path, "/version", found(version) + ", expected the version 1");
+  const Result<double> offset_N = number(document, text, path, "offset_N", 100.0, false);
+  if (!offset_N) return offset_N.error();
+  const Result<double> weber_fraction = number(document, text, path, "weber_fraction", 1.0, true);
+  if (!weber_fraction) return weber_fraction.error();
+  return JndLine{*offset_N, *weber_fraction};
+}
+
+}  // namespace
+
+std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& points, double criterion,
+                          const std::vector<std::string>& subjects) {
+  Json list = Json::array();
+  for (const JndPoint& point : points) {
+    Json entry = {{"reference_N", point.reference_N}, {"jnd_N", point.jnd_N}};
+    if (point.standard_error_N > 0.0) entry["standard_error_N"] = point.standard_error_N;
+    entry["source"] = point.source;
+    list.push_back(entry);
+  }
+  const Json document = {
+      {"format", "palpate-jnd"},
+      {"version", 1},
+      {"offset_N", lines.conservative.offset_N},
+      {"weber_fraction", lines.conservative.weber_fraction},
+      {"criterion", criterion},
+      {"subjects", subjects},
+      {"fitted", {{"offset_N", lines.fitted.offset_N}, {"weber_fraction", lines.fitted.weber_fraction}}},
+      {"points", list}};
+  return document.dump(2) + "\n";
+}
+
+Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
+  try {
+    return line_of(Json::parse(text), text, path);
+  } catch (const Json::parse_error& error) {
+    const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
+    std::string what = error.what();
+    const std::size_t detail = what.find("syntax error");
+    if (detail != std::string::npos) what = what.substr(detail);
+    return Error{position_prefix(path, position_of_offset(text, offset)) + what + kAdvice};
+  } catch (const std::exception& error) {
+    return Error{path + ": " + error.what() + kAdvice};
+  }
+}
+
+Result<JndLine> read_jnd_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file || !text) return Error{"cannot read the JND file " + path + "; does it exist?"};
+  return parse_jnd_file(text.str(), path);
+}
+
+}  // namespace palpate

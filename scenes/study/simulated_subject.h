@@ -1,0 +1,52 @@
+// Somebody who answers as a psychometric function says, to try the study on.
+//
+// A force F is felt as F + s(F) n, n normal with variance 1, and the second of two
+// as a bias more; the larger is what feels larger. s is such that the JND at the
+// criterion 0.75 is the line JND(F) = offset + weber_fraction F when both forces are
+// felt alike: s(F) = JND(F) / (0.6745 sqrt(2)). Sometimes the subject misses a trial
+// and guesses.
+// Deterministic: the same seed gives the same answers.
+// Thread guarantee: one thread; slow side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/jnd.h"
+#include "engine/random_stream.h"
+#include "engine/result.h"
+#include "scenes/study/study_store.h"
+
+namespace palpate {
+
+struct SubjectTraits {
+  JndLine jnd;
+  double order_bias_jnd = 0.0;  // added to the second force, multiples of the JND
+  double lapse_rate = 0.0;      // 0 .. 0.5: missed trials are 2 x this, half of them wrong
+};
+
+// What a perfect analysis would find: half the distance, relative to the reference,
+// between the comparisons judged larger with probability c and 1 - c, without bias
+// and lapses. The noise of the comparison grows with it, so this is a little more
+// than JND(reference) / reference.
+double true_relative_jnd(const JndLine& jnd, double reference_N, double criterion);
+
+class SimulatedSubject {
+ public:
+  SimulatedSubject(const SubjectTraits& traits, std::uint64_t seed) noexcept
+      : traits_(traits), random_(seed, kStream) {}
+
+  bool second_feels_larger(double first_N, double second_N) noexcept;
+
+ private:
+  static constexpr std::uint64_t kStream = 31;
+  SubjectTraits traits_;
+  RandomStream random_;
+};
+
+// A whole session, tick by tick, from consent to the end, training included. Errors:
+// as StudySession::create.
+Result<std::vector<StudyRecord>> run_simulated_session(const StudyHeader& header, const SubjectTraits& traits,
+                                                       std::uint64_t seed);
+
+}  // namespace palpate

@@ -1,0 +1,69 @@
+// From the answers of all subjects to the JND line.
+//
+// Per subject and reference force: constant stimuli by maximum likelihood with a
+// bootstrap interval (psychometrics.h), adaptive trials by the posterior of the
+// procedure itself (quest_plus.h). For each reference force then the mean over the
+// subjects, as in the paper, and one function for the answers of all, its interval by
+// drawing subjects with replacement. The means are the points of the line
+// (jnd_line_fit.h). Differences and references are those that were rendered, not those
+// that were planned. Training trials do not count, nor do trials whose forces did not
+// reach half of what was planned.
+// Deterministic. Thread guarantee: pure functions; slow side (seconds).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/result.h"
+#include "scenes/study/jnd_line_fit.h"
+#include "scenes/study/psychometrics.h"
+#include "scenes/study/study_file.h"
+
+namespace palpate {
+
+struct ReferenceJnd {
+  double reference_N = 0.0;  // as planned
+  double rendered_N = 0.0;   // mean of what was rendered
+  std::size_t trials = 0;
+  Estimate jnd_N;
+};
+
+struct SubjectJnd {
+  std::string subject;
+  ProcedureKind procedure = ProcedureKind::constant;
+  std::size_t unusable = 0;  // trials
+  std::vector<ReferenceJnd> references;
+};
+
+struct PooledJnd {
+  double reference_N = 0.0;
+  double rendered_N = 0.0;
+  std::size_t subjects = 0;  // whose own JND is determined
+  double mean_N = 0.0;       // of their JNDs
+  double standard_error_N = 0.0;
+  Estimate jnd_N;  // one function for all answers
+};
+
+struct StudyAnalysis {
+  BootstrapSettings settings;
+  std::vector<SubjectJnd> subjects;
+  std::vector<PooledJnd> pooled;
+  std::vector<JndPoint> points;
+  // Line and reason why there is none.
+  Result<JndLines> lines = Error{"not analysed"};
+};
+
+// `criterion`: above 0.5 and below 1.
+SubjectJnd analyse_subject(const StudyData& data, const BootstrapSettings& settings);
+
+// `with_published`: Pang, Tan & Durlach's point belongs to the line too. `progress`
+// gets the share done, and ends it by false ("interrupted"). Errors: no file; a
+// subject twice; a subject without answers.
+Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const BootstrapSettings& settings,
+                                    bool with_published, const std::function<bool(double)>& progress);
+
+// One row per subject and reference force, then pooled: CSV with a header row.
+std::string analysis_table(const StudyAnalysis& analysis);
+
+}  // namespace palpate

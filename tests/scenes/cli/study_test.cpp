@@ -1,0 +1,94 @@
+// palpate study as a user runs it, from the first trial to a scene judged by the result.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "scenes/scene.h"
+#include "scenes/study/jnd_file.h"
+#include "scenes/study/study_file.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+
+// A gnuplot that only makes the files it is told to, so that the tests need none.
+std::string path_with_fake_gnuplot(const test::TemporaryFolder& folder) {
+  std::filesystem::create_directory(folder.file("bin"));
+  const std::string fake = folder.with_file(
+      "bin/gnuplot", "#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'/\\1/p\" \"$1\" | while read -r f; do : >\"$f\"; done\n");
+  std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
+  return "PATH=" + folder.file("bin") + ":" + std::getenv("PATH");
+}
+
+TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
+  const test::TemporaryFolder folder;
+  const std::string path = path_with_fake_gnuplot(folder);
+  const std::string out = folder.file("study");
+  const std::vector<std::string> simulate = {"study",   "simulate",    "--subjects", "3",  "--seed",
+                                             "2",       "--resamples", "50",         "--out", out};
+  const auto run = run_palpate(simulate, {path});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_NE(run.out.find("conservative "), std::string::npos) << run.out;
+  for (const char* name : {"S01.csv", "S03.csv", "results.csv", "jnd.json", "figure3.gp", "figure3a.svg", "figure3b.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  }
+  EXPECT_EQ(read_study(out + "/S02.csv")->records.size(), 328u);
+  const auto again = run_palpate(simulate, {path});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_EQ(again.err, "error: " + out + "/S01.csv exists; pass --force to replace it\n");
+
+  // The same files again: the same result.
+  const auto analysed = run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--resamples",
+                                     "50", "--out", folder.file("again")}, {path});
+  ASSERT_EQ(analysed.exit_code, 0) << analysed.err;
+  EXPECT_EQ(analysed.out, run.out);
+  EXPECT_EQ(test::read_text(folder.file("again/jnd.json")), test::read_text(out + "/jnd.json"));
+
+  const auto scene = load_scene("silicone_block");
+  ASSERT_TRUE(scene.ok());
+  std::string text = test::read_text(std::string(PALPATE_SOURCE_DIR) + "/assets/scenes/silicone_block.json");
+  const std::size_t begin = text.find("\"jnd\""), end = text.find('}', begin);
+  text.replace(begin, end + 1 - begin, "\"jnd_file\": \"jnd.json\"");
+  const auto judged = parse_scene(text, out + "/silicone_block.json");
+  ASSERT_TRUE(judged.ok()) << judged.error().message;
+  EXPECT_EQ(judged->jnd.offset_N, read_jnd_file(out + "/jnd.json")->offset_N);
+  EXPECT_NE(judged->jnd.weber_fraction, scene->jnd.weber_fraction);
+}
+
+TEST(Study, SaysWhatToDoWithoutGnuplot) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.file("study");
+  const auto run = run_palpate({"study", "simulate", "--subjects", "1", "--procedure", "adaptive", "--resamples", "50", "--out", out},
+                               {"PATH=" + folder.path()});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "error: the figures need gnuplot, which is not installed; install gnuplot-nox, then run: gnuplot " + out +
+                         "/figure3.gp\n");
+  EXPECT_TRUE(std::filesystem::exists(out + "/results.csv"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/jnd.json"));
+}
+
+TEST(Study, RecoveryPrintsBothProcedures) {
+  const auto run = run_palpate({"study", "recovery", "--subjects", "2", "--resamples", "50"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 9);
+  EXPECT_NE(run.out.find("adaptive"), std::string::npos);
+}
+
+TEST(Study, RefusesWrongUsage) {
+  EXPECT_EQ(run_palpate({"study"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--procedure", "staircase"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"study", "analyse", "--out", "x"}).exit_code, 2);
+  const auto missing = run_palpate({"study", "analyse", "/none/S01.csv", "--out", "/none/out"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_EQ(missing.err, "error: cannot read the study file /none/S01.csv; does it exist?\n");
+}
+
+}  // namespace
+}  // namespace palpate

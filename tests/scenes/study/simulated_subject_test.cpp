@@ -1,0 +1,53 @@
+#include "scenes/study/simulated_subject.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/study/psychometrics.h"
+#include "tests/support/study_driving.h"
+
+namespace palpate {
+namespace {
+
+double share_of_second(const SubjectTraits& traits, double first_N, double second_N) {
+  SimulatedSubject subject(traits, 3);
+  int second = 0;
+  for (int i = 0; i < 20000; ++i) second += subject.second_feels_larger(first_N, second_N) ? 1 : 0;
+  return second / 20000.0;
+}
+
+// Three standard deviations of 20,000 draws are 0.011 at most.
+TEST(SimulatedSubject, TellsForcesApartAsItsJndSays) {
+  const SubjectTraits traits{{0.065, 0.0633}, 0.0, 0.0};
+  for (const double reference_N : {0.3, 2.5}) {
+    EXPECT_NEAR(share_of_second(traits, reference_N, reference_N), 0.5, 0.011);
+    const double jnd_N = reference_N * true_relative_jnd(traits.jnd, reference_N, 0.75);
+    EXPECT_NEAR(share_of_second(traits, reference_N, reference_N + jnd_N), 0.75, 0.015);
+    EXPECT_NEAR(jnd_N, traits.jnd.at(reference_N), 0.02 * jnd_N);
+  }
+}
+
+TEST(SimulatedSubject, TruthGrowsWithTheCriterion) {
+  const JndLine line{0.05, 0.1};
+  EXPECT_NEAR(true_relative_jnd({0.1, 0.0}, 1.0, 0.75), 0.1, 1e-9) << "noise alike at all forces";
+  EXPECT_GT(true_relative_jnd(line, 1.0, 0.84), 1.4 * true_relative_jnd(line, 1.0, 0.75));
+}
+
+TEST(SimulatedSubject, HasBiasAndLapses) {
+  EXPECT_NEAR(share_of_second({{0.1, 0.0}, 1.0, 0.0}, 1.0, 1.0), 0.75, 0.011) << "one JND for the second";
+  EXPECT_NEAR(share_of_second({{0.01, 0.0}, 0.0, 0.05}, 1.0, 2.0), 0.95, 0.011);
+}
+
+TEST(SimulatedSubject, RunsAWholeSessionAndRepeatsIt) {
+  const StudyHeader header{"S01", ProcedureKind::adaptive, test::kQuickTiming};
+  const auto one = run_simulated_session(header, {}, 7);
+  ASSERT_TRUE(one.ok());
+  EXPECT_EQ(one->size(), 88u);
+  EXPECT_EQ(*one, *run_simulated_session(header, {}, 7));
+  EXPECT_NE(*one, *run_simulated_session(header, {}, 8));
+  EXPECT_FALSE(run_simulated_session({"Anna", ProcedureKind::adaptive, {}}, {}, 7).ok());
+}
+
+}  // namespace
+}  // namespace palpate

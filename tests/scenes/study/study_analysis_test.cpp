@@ -1,0 +1,126 @@
+#include "scenes/study/study_analysis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/study/jnd_file.h"
+#include "scenes/study/simulated_subject.h"
+#include "tests/support/study_driving.h"
+
+namespace palpate {
+namespace {
+
+const BootstrapSettings kQuick{kJndCriterion, 0.95, 50};
+bool go_on(double) { return true; }
+
+// A session of a subject whose answers come out exactly as often as they should:
+// `repetitions` of each pair in each order.
+StudyData average_subject(const std::string& code, const std::vector<double>& relative_jnds, int repetitions) {
+  StudyData data{{code, ProcedureKind::constant, {}}, "", {}, 0};
+  for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
+    const PsychometricFunction truth{normal_quantile(kJndCriterion) / relative_jnds[r], 0.1, 0.0};
+    for (const int percent : kComparisonPercent) {
+      for (const bool first : {false, true}) {
+        StudyRecord record;
+        record.trial = {kReferenceForces_N[r], percent_of(kReferenceForces_N[r], percent), first};
+        record.first_rendered_N = record.trial.first_N();
+        record.second_rendered_N = record.trial.second_N();
+        const double larger = std::round(repetitions * truth.at(record.rendered_difference(), first));
+        for (int i = 0; i < repetitions; ++i) {
+          record.number = data.records.size() + 1;
+          record.answered_second = (i < larger) != first;
+          data.records.push_back(record);
+        }
+      }
+    }
+  }
+  return data;
+}
+
+// Section 4.1: 13.3 % at 2.5 N; the line through their points and Pang, Tan & Durlach's
+// (9 % at 2.5 N) has the slope 6.33 %, and shifted below all points it begins at
+// 0.065 N. Their other points are not printed; these have that outcome: with F - mean F
+// = -1.06, -0.86, -0.36, 1.14, 1.14 N (squares 4.592) the JNDs 0.14, 0.1748, 0.1283,
+// 0.3325 and 0.225 N give 0.0633, and 1.0 N lies lowest.
+TEST(StudyAnalysis, ReproducesThePapersOutcome) {
+  const std::vector<double> relative = {0.14 / 0.3, 0.17477 / 0.5, 0.1283, 0.133};
+  const auto analysis = analyse_study({average_subject("S01", relative, 1000)}, kQuick, true, go_on);
+  ASSERT_TRUE(analysis.ok()) << analysis.error().message;
+  ASSERT_EQ(analysis->points.size(), 5u);
+  EXPECT_NEAR(analysis->points[3].jnd_N / 2.5, 0.133, 5e-4);
+  ASSERT_TRUE(analysis->lines.ok()) << analysis->lines.error().message;
+  EXPECT_NEAR(analysis->lines->conservative.offset_N, 0.065, 5e-4);
+  EXPECT_NEAR(analysis->lines->conservative.weber_fraction, 0.0633, 5e-4);
+  const auto line = parse_jnd_file(jnd_file_text(*analysis->lines, analysis->points, 0.75, {"S01"}), "jnd.json");
+  ASSERT_TRUE(line.ok());
+  EXPECT_EQ(line->offset_N, analysis->lines->conservative.offset_N);
+  // Without the published point another line comes out.
+  const auto own = analyse_study({average_subject("S01", relative, 1000)}, kQuick, false, go_on);
+  EXPECT_GT(own->lines->fitted.weber_fraction, 0.08);
+}
+
+TEST(StudyAnalysis, AveragesOverTheSubjects) {
+  const StudyData one = average_subject("S01", {0.2, 0.2, 0.2, 0.2}, 200);
+  const StudyData two = average_subject("S02", {0.1, 0.1, 0.1, 0.1}, 200);
+  const auto analysis = analyse_study({one, two}, kQuick, false, go_on);
+  ASSERT_TRUE(analysis.ok());
+  ASSERT_EQ(analysis->pooled.size(), 4u);
+  for (const PooledJnd& pooled : analysis->pooled) {
+    EXPECT_EQ(pooled.subjects, 2u);
+    EXPECT_NEAR(pooled.mean_N, 0.15 * pooled.reference_N, 2e-3 * pooled.reference_N);
+    EXPECT_NEAR(pooled.standard_error_N, 0.05 * pooled.reference_N, 2e-3 * pooled.reference_N);
+    EXPECT_GT(pooled.jnd_N.value, 0.1 * pooled.reference_N);
+    EXPECT_LT(pooled.jnd_N.value, 0.2 * pooled.reference_N);
+  }
+  const std::string table = analysis_table(*analysis);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 8 + 8);
+  EXPECT_EQ(table.substr(table.find('\n') + 1, 26), "S01,constant,0.3,0.3,3200,");
+}
+
+TEST(StudyAnalysis, JudgesByWhatWasRendered) {
+  StudyData data = average_subject("S01", {0.3, 0.2, 0.15, 0.13}, 100);
+  for (StudyRecord& record : data.records) {
+    record.first_rendered_N *= 0.8;
+    record.second_rendered_N *= 0.8;
+  }
+  data.records[0].second_rendered_N = 0.0;  // the device was off
+  data.records[1].training = true;
+  const SubjectJnd subject = analyse_subject(data, kQuick);
+  EXPECT_EQ(subject.unusable, 1u);
+  EXPECT_EQ(subject.references[0].trials, 1598u);
+  EXPECT_NEAR(subject.references[3].rendered_N, 2.0, 1e-9);
+  EXPECT_NEAR(subject.references[3].jnd_N.value, 0.13 * 2.0, 6e-3) << "counts are rounded";
+}
+
+TEST(StudyAnalysis, RefusesWhatCannotBeAnalysed) {
+  const StudyData data = average_subject("S01", {0.3, 0.2, 0.15, 0.13}, 1);
+  EXPECT_EQ(analyse_study({}, kQuick, false, go_on).error().message, "found no study file, expected one or more");
+  EXPECT_EQ(analyse_study({data, data}, kQuick, false, go_on).error().message,
+            "found two files of subject S01, expected one; leave one of them out");
+  EXPECT_EQ(analyse_study({{{"S02", ProcedureKind::constant, {}}, "", {}, 0}}, kQuick, false, go_on).error().message,
+            "found no usable answer of subject S02; leave the file out");
+  StudyData other = data;
+  other.records[3].trial.reference_N = 0.7;
+  EXPECT_EQ(analyse_study({other}, kQuick, false, go_on).error().message,
+            "found a reference force of 0.7 N in the file of subject S01, expected 0.3, 0.5, 1 or 2.5 N");
+  EXPECT_EQ(analyse_study({data}, kQuick, false, [](double) { return false; }).error().message, "interrupted");
+}
+
+TEST(StudyAnalysis, TakesFilesThatEndEarly) {
+  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::adaptive}) {
+    const StudyHeader header{"S01", kind, test::kQuickTiming};
+    auto records = run_simulated_session(header, {}, 1);
+    ASSERT_TRUE(records.ok());
+    for (const std::size_t kept : {9u, 12u, 60u}) {
+      const StudyData cut{header, "", {records->begin(), records->begin() + static_cast<std::ptrdiff_t>(kept)}, 0};
+      const auto analysis = analyse_study({cut}, kQuick, false, go_on);
+      ASSERT_TRUE(analysis.ok()) << analysis.error().message;
+      EXPECT_GE(analysis->pooled.size(), 1u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
