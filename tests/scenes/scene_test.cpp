@@ -12,7 +12,7 @@ using test::TemporaryFolder;
 TEST(Scene, EveryShippedSceneReads) {
   const auto names = scene_names();
   ASSERT_TRUE(names.ok());
-  EXPECT_EQ(*names, (std::vector<std::string>{"elastic_block", "foam_block", "silicone_block", "skin",
+  EXPECT_EQ(*names, (std::vector<std::string>{"elastic_block", "foam_block", "jnd_study", "silicone_block", "skin",
                                               "stiff_block"}));
   for (const std::string& name : *names) {
     const auto scene = load_scene(name);
@@ -38,6 +38,7 @@ TEST(Scene, OthersModelOnlyWhatTheyNeed) {
   EXPECT_EQ(describe_features(*load_scene("foam_block")),
             "depth, velocity, velocity low-pass 0.08 s, velocity low-pass 0.9 s");
   EXPECT_FALSE(load_scene("skin")->material.has_value());
+  EXPECT_FALSE(load_scene("jnd_study")->material.has_value());
 }
 
 TEST(Scene, UnknownNameListsTheKnownOnes) {
@@ -45,7 +46,7 @@ TEST(Scene, UnknownNameListsTheKnownOnes) {
     const auto scene = load_scene(name);
     ASSERT_FALSE(scene.ok());
     EXPECT_EQ(scene.error().message, "unknown scene \"" + name +
-                                         "\"; known scenes: elastic_block, foam_block, silicone_block, "
+                                         "\"; known scenes: elastic_block, foam_block, jnd_study, silicone_block, "
                                          "skin, stiff_block");
   }
 }
