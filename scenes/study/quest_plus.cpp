@@ -31,7 +31,7 @@ std::vector<JndLine> make_lines() {
   for (int i = 0; i <= kGridSteps; ++i) {
     for (int k = 0; k <= kGridSteps; ++k) {
       const double weak_jnd_N = weak_N * logarithmic(0.05, 1.2, i);
-      const double strong_jnd_N = strong_N * logarithmic(0.02, 0.6, k);
+      const double strong_jnd_N = strong_N * logarithmic(0.04, 0.6, k);
       const double weber_fraction = (strong_jnd_N - weak_jnd_N) / (strong_N - weak_N);
       const double offset_N = weak_jnd_N - weber_fraction * weak_N;
       if (weber_fraction >= 0.0 && offset_N >= 0.0) lines.push_back({offset_N, weber_fraction});

@@ -4,8 +4,8 @@
 // adaptive psychometric method", Journal of Vision 17(3):10. The stimulus is the
 // one whose answer is expected to leave the least entropy. What is not wanted, order
 // bias and lapse rate, is integrated out first, after N. Prins (2013), "The psi-marginal
-// adaptive method", Journal of Vision 13(7):3; with w(s) the posterior of sigma and p(s)
-// the probability of the answer "comparison larger" given sigma,
+// adaptive method", Journal of Vision 13(7):3; with w the posterior over what is wanted
+// and p the probability of the answer "comparison larger" given that,
 //   h(sum w p) - sum w h(p)
 // is largest, h the entropy of a yes or no.
 //
@@ -13,8 +13,9 @@
 //   JND(F) = offset + weber_fraction F,   neither of them negative,
 // so that the answers at all references determine two numbers: this is what makes 80
 // trials do. (With a JND of its own for each reference, 20 answers each, the intervals
-// spanned a factor of 9, not 3.) Prior: flat in the logarithms of the JNDs at 0.3 N (5 % to
-// 120 %) and 2.5 N (2 % to 60 %); order bias -0.6 .. 0.6, lapse 0, 0.02 or 0.05.
+// spanned a factor of 9, not 3.) Prior: flat in the logarithms of the JNDs at 0.3 N (5 %
+// to 120 %) and 2.5 N (4 %, well below what was ever published, to 60 %); order bias
+// -0.6 .. 0.6, lapse 0, 0.02 or 0.05.
 // Thread guarantee: one thread; slow side (a millisecond).
 #pragma once
 

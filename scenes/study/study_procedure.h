@@ -1,6 +1,6 @@
 // The sequence of trials of one subject: constant stimuli (all known beforehand)
-// or adaptive (QUEST+, a quarter of the trials: each answer decides how large the
-// next difference at that reference is).
+// or adaptive (QUEST+, a quarter of the trials: the answers so far decide how large the
+// next difference is).
 //
 // After a restart the answers so far are given again in order: `next` then
 // continues as if nothing had happened.
