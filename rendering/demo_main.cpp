@@ -50,7 +50,8 @@ int fail(const std::string& message) {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
-  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`; jnd_study measures a hand")->capture_default_str();
+  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`; jnd_study measures a hand")
+      ->capture_default_str();
   app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")
       ->capture_default_str();
   app.add_option("--model", session.models,
@@ -109,7 +110,8 @@ Status run_demo(Arguments& arguments) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()), arguments.force);
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()),
+                               arguments.force);
 }
 
 int run_program(int argc, char** argv) {

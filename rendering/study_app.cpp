@@ -28,7 +28,8 @@ std::string local_time() {
 }
 
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
+                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
+                        ImGuiWindowFlags_NoNav;
 
 }  // namespace
 
@@ -94,17 +95,32 @@ void StudyApp::take_key(int key) {
   }
   StudySession& session = study_->session();
   switch (key) {
-    case GLFW_KEY_ESCAPE: session.abort(); break;
-    case GLFW_KEY_Y: session.accept_consent(local_time()); break;
+    case GLFW_KEY_ESCAPE:
+      session.abort();
+      break;
+    case GLFW_KEY_Y:
+      session.accept_consent(local_time());
+      break;
     case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER: session.proceed(); break;
+    case GLFW_KEY_KP_ENTER:
+      session.proceed();
+      break;
     case GLFW_KEY_1:
-    case GLFW_KEY_KP_1: session.answer(false); break;
+    case GLFW_KEY_KP_1:
+      session.answer(false);
+      break;
     case GLFW_KEY_2:
-    case GLFW_KEY_KP_2: session.answer(true); break;
-    case GLFW_KEY_R: session.retry(); break;
-    case GLFW_KEY_Z: study_->start_zeroing(); break;
-    default: break;
+    case GLFW_KEY_KP_2:
+      session.answer(true);
+      break;
+    case GLFW_KEY_R:
+      session.retry();
+      break;
+    case GLFW_KEY_Z:
+      study_->start_zeroing();
+      break;
+    default:
+      break;
   }
 }
 
@@ -145,11 +161,13 @@ void StudyApp::draw_entry() {
   ImGui::TextUnformatted("How small a difference can a hand feel?");
   ImGui::PopFont();
   ImGui::Spacing();
-  ImGui::TextWrapped("Two pushes, one after the other: which was larger? The code stands for the person; no name is kept.");
+  ImGui::TextWrapped(
+      "Two pushes, one after the other: which was larger? The code stands for the person; no name is kept.");
   ImGui::Spacing();
   ImGui::SetNextItemWidth(10.0F * ImGui::GetFontSize());
   if (code_[0] == '\0' && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
-  ImGui::InputText("subject code, such as S01", code_.data(), code_.size(), ImGuiInputTextFlags_CharsUppercase);
+  ImGui::InputText("subject code, such as S01", code_.data(), code_.size(),
+                   ImGuiInputTextFlags_CharsUppercase);
   const auto choice = [&](const char* label, ProcedureKind kind) {
     if (ImGui::RadioButton(label, procedure_ == kind)) procedure_ = kind;
   };
@@ -184,7 +202,8 @@ void StudyApp::draw_session() {
   if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
   draw_choices(view);
   ImGui::Spacing();
-  if (const std::string words = study_->device_words(); !words.empty()) ImGui::TextWrapped("%s", words.c_str());
+  if (const std::string words = study_->device_words(); !words.empty())
+    ImGui::TextWrapped("%s", words.c_str());
   if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
   if (!study_->device_pushes()) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
@@ -215,11 +234,16 @@ void StudyApp::draw_intervals(const StudyView& view) {
 
 void StudyApp::draw_choices(const StudyView& view) {
   switch (view.state) {
-    case StudyState::consent: button("I have read this and agree (Y)", GLFW_KEY_Y); break;
-    case StudyState::ready: button("Go on (Enter)", GLFW_KEY_ENTER); break;
+    case StudyState::consent:
+      button("I have read this and agree (Y)", GLFW_KEY_Y);
+      break;
+    case StudyState::ready:
+      button("Go on (Enter)", GLFW_KEY_ENTER);
+      break;
     case StudyState::rest:
       if (view.rest_ticks_left > 0) {
-        ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
+        ImGui::TextDisabled("%llu s left",
+                            static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
       } else {
         button("Go on (Enter)", GLFW_KEY_ENTER);
       }
@@ -229,13 +253,16 @@ void StudyApp::draw_choices(const StudyView& view) {
       ImGui::SameLine();
       button("The second (2)", GLFW_KEY_2);
       break;
-    case StudyState::unsaved: button("Try again (R)", GLFW_KEY_R); break;
+    case StudyState::unsaved:
+      button("Try again (R)", GLFW_KEY_R);
+      break;
     case StudyState::presenting:
     case StudyState::done:
-    case StudyState::aborted: break;
+    case StudyState::aborted:
+      break;
   }
   if (view.state == StudyState::done || view.state == StudyState::aborted) return;
-  ImGui::SameLine(0.0F, 2.0F * ImGui::GetFontSize());
+  ImGui::Dummy({1.0F, 1.5F * ImGui::GetFontSize()});
   button("End the session (Esc)", GLFW_KEY_ESCAPE);
 }
 

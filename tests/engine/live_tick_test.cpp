@@ -326,5 +326,29 @@ TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   }
 }
 
+// A study's force takes the models' place, behind the same limiter.
+TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
+  class Source final : public ForceSource {
+   public:
+    double next_force_N(double rendered_N) noexcept override {
+      seen_N = rendered_N;
+      return 1.5;
+    }
+    double seen_N = -1.0;
+  };
+  Source source;
+  PathDevice device(test::held_5mm, {1.0, 1e9, 0.0});
+  ModelSlot<LiveModels> slot;
+  LiveTickSettings settings;
+  settings.source = &source;
+  LiveTick tick(device, slot, settings);
+  tick.run(1.000, {});
+  const LoopSnapshot& snapshot = tick.run(1.001, {});
+  EXPECT_EQ(snapshot.mixed_N, 1.5);
+  EXPECT_EQ(snapshot.rendered_N, 1.0) << "clamped to what the device may be given";
+  EXPECT_EQ(device.force_N(), 1.0);
+  EXPECT_EQ(source.seen_N, 1.0) << "what was rendered in the tick before";
+}
+
 }  // namespace
 }  // namespace palpate
