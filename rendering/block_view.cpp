@@ -76,9 +76,9 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
       table_shader_(std::move(table)),
       block_(block_mesh(static_cast<float>(scene.block.width_m), static_cast<float>(scene.block.length_m),
                         static_cast<float>(scene.block.height_m))),
-      tool_(lathe_mesh(tool_profile(), 36)),
-      shaft_(lathe_mesh(shaft_profile(), 20)),
-      tip_(lathe_mesh(tip_profile(), 28)),
+      tool_(lathe_mesh(tool_profile(), 26)),
+      shaft_(lathe_mesh(shaft_profile(), 14)),
+      tip_(lathe_mesh(tip_profile(), 20)),
       square_(square_mesh()) {
   show(1, true);
 }

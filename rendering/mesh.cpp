@@ -12,8 +12,8 @@ namespace palpate {
 namespace {
 
 constexpr float kPi = 3.14159265F;
-constexpr int kAround = 112;  // steps around the block
-constexpr int kRings = 44;    // rings on its top
+constexpr int kAround = 80;  // steps around the block
+constexpr int kRings = 32;    // rings on its top
 constexpr int kFillet = 6;    // steps over its edge
 constexpr float kCorner_m = 0.012F;
 constexpr float kEdge_m = 0.004F;

@@ -12,8 +12,8 @@ constexpr double kSPerNs = 1e-9;
 constexpr float kReferenceLine_px = 2.4F;
 constexpr float kModelLine_px = 1.4F;
 constexpr float kSelectedLine_px = 2.0F;
-// A column to a pixel and a half: finer is not seen and costs time.
-constexpr float kColumn_px = 1.5F;
+// A column to two pixels: finer is hardly seen and costs time.
+constexpr float kColumn_px = 2.0F;
 
 double now_s() { return kSPerNs * static_cast<double>(SteadyPacer().now_ns()); }
 
