@@ -343,7 +343,8 @@ TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
   settings.source = &source;
   LiveTick tick(device, slot, settings);
   tick.run(1.000, {});
-  const LoopSnapshot& snapshot = tick.run(1.001, {});
+  tick.run(1.001, {});
+  const LoopSnapshot& snapshot = tick.run(1.002, {});
   EXPECT_EQ(snapshot.mixed_N, 1.5);
   EXPECT_EQ(snapshot.rendered_N, 1.0) << "clamped to what the device may be given";
   EXPECT_EQ(device.force_N(), 1.0);
