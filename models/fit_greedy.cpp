@@ -1,6 +1,9 @@
 #include "models/fit_greedy.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,23 +17,6 @@
 namespace palpate {
 namespace {
 
-double gain(const CandidateParts& parts, Eigen::Index j) {
-  const double outside = parts.outside_squared[j];
-  return outside > 0.0 ? parts.correlation[j] * parts.correlation[j] / outside : 0.0;
-}
-
-// The candidate with the largest gain, the first of equals; -1 when none has any.
-Eigen::Index best_of(const CandidateParts& parts) {
-  Eigen::Index best = -1;
-  double best_gain = 0.0;
-  for (Eigen::Index j = 0; j < parts.correlation.size(); ++j)
-    if (gain(parts, j) > best_gain) {
-      best_gain = gain(parts, j);
-      best = j;
-    }
-  return best;
-}
-
 // One way to choose the next centre: adds its column to the basis and returns
 // its site, or -1 when no candidate is of use.
 class Selection {
@@ -43,6 +29,19 @@ class Selection {
   virtual Eigen::Index next() = 0;
 
  protected:
+  // The place of the largest gain among the first `count` sites left, the first of
+  // equals; -1 when none has any.
+  std::ptrdiff_t best_of(std::size_t count) const {
+    std::ptrdiff_t best = -1;
+    double best_gain = 0.0;
+    for (std::size_t j = 0; j < count; ++j)
+      if (const double gain = gains_.gain(left_[j]); gain > best_gain) {
+        best_gain = gain;
+        best = static_cast<std::ptrdiff_t>(j);
+      }
+    return best;
+  }
+
   CandidateGains gains_;
   OrthogonalBasis basis_;
   std::vector<Eigen::Index> left_;  // sites not chosen yet
@@ -57,13 +56,13 @@ class RandomSubsets final : public Selection {
     // A subset without use is followed by another, a few times.
     for (int attempt = 0; attempt < 5 && !left_.empty(); ++attempt) {
       const std::size_t count = draw();
-      const std::vector<Eigen::Index> subset(left_.begin(), left_.begin() + static_cast<std::ptrdiff_t>(count));
-      const Eigen::Index best = best_of(gains_.evaluate(subset, basis_));
+      gains_.update(std::span(left_).first(count), basis_);
+      const std::ptrdiff_t best = best_of(count);
       if (best < 0) continue;
-      const OrthogonalBasis::Outside part = basis_.outside(gains_.column(subset[static_cast<std::size_t>(best)]));
-      basis_.add(part);
+      const Eigen::Index site = left_[static_cast<std::size_t>(best)];
+      basis_.add(basis_.outside(gains_.column(site)));
       left_.erase(left_.begin() + best);
-      return subset[static_cast<std::size_t>(best)];
+      return site;
     }
     return -1;
   }
@@ -86,19 +85,20 @@ class AllSites final : public Selection {
   AllSites(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
       : Selection(sites, options, std::move(distinct)),
         row_scale_(sites.row_scale),
-        product_(options.kernel, gains_.points()),
-        parts_(gains_.evaluate(left_, basis_)),
-        exact_squared_(parts_.outside_squared) {}
+        product_(options.kernel, gains_.points()) {
+    gains_.update(left_, basis_);
+  }
 
   Eigen::Index next() override {
-    for (Eigen::Index best = best_of(parts_); best >= 0; best = best_of(parts_)) {
+    for (std::ptrdiff_t best = best_of(left_.size()); best >= 0; best = best_of(left_.size())) {
       const Eigen::Index site = left_[static_cast<std::size_t>(best)];
       const OrthogonalBasis::Outside part = basis_.outside(gains_.column(site));
-      if (agrees(best, part)) {
-        accept(best, part);
+      if (agrees(site, part)) {
+        left_.erase(left_.begin() + best);
+        accept(part);
         return site;
       }
-      refresh(best, part);
+      gains_.correct(site, part);
     }
     return -1;
   }
@@ -106,38 +106,19 @@ class AllSites final : public Selection {
  private:
   // Whether the recurrence still knows this column; 1 % is far below any
   // difference in gain that matters.
-  bool agrees(Eigen::Index j, const OrthogonalBasis::Outside& part) const {
-    if (part.squared <= kInsideBasis * parts_.length_squared[j]) return false;
-    const double exact = part.correlation * part.correlation / part.squared;
-    return exact >= 0.99 * gain(parts_, j);
+  bool agrees(Eigen::Index site, const OrthogonalBasis::Outside& part) const {
+    return gains_.useful(site, part) &&
+           part.correlation * part.correlation / part.squared >= 0.99 * gains_.gain(site);
   }
 
-  void refresh(Eigen::Index j, const OrthogonalBasis::Outside& part) {
-    const bool useful = part.squared > kInsideBasis * parts_.length_squared[j];
-    parts_.outside_squared[j] = exact_squared_[j] = useful ? part.squared : 0.0;
-    parts_.correlation[j] = useful ? part.correlation : 0.0;
-  }
-
-  void accept(Eigen::Index chosen, const OrthogonalBasis::Outside& part) {
-    const double share = part.correlation / std::sqrt(part.squared);
+  void accept(const OrthogonalBasis::Outside& part) {
+    const double residual_share = part.correlation / std::sqrt(part.squared);
     const Eigen::VectorXd q = basis_.add(part);
-    const Eigen::VectorXd products = product_.multiply(q.cwiseProduct(row_scale_));
-    parts_.outside_squared[chosen] = parts_.correlation[chosen] = 0.0;
-    for (Eigen::Index j = 0; j < parts_.correlation.size(); ++j) {
-      if (parts_.outside_squared[j] <= 0.0) continue;
-      const double along = products[left_[static_cast<std::size_t>(j)]];
-      parts_.outside_squared[j] -= along * along;
-      parts_.correlation[j] -= share * along;
-      // Cancellation has eaten the digits: back to the column itself.
-      if (parts_.outside_squared[j] <= kCancelled * exact_squared_[j])
-        refresh(j, basis_.outside(gains_.column(left_[static_cast<std::size_t>(j)])));
-    }
+    gains_.advance(left_, basis_, product_.multiply(q.cwiseProduct(row_scale_)), residual_share);
   }
 
   const Eigen::VectorXd& row_scale_;
   KernelProduct product_;
-  CandidateParts parts_;
-  Eigen::VectorXd exact_squared_;  // outside_squared when it was last computed from the column
 };
 
 bool select(Selection& selection, Eigen::Index count, const FitControl& control,

@@ -7,6 +7,8 @@
 extern "C" {
 void dgemm_(const char*, const char*, const int*, const int*, const int*, const double*, const double*, const int*,
             const double*, const int*, const double*, double*, const int*);
+void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*,
+            const double*, double*, const int*);
 void dsyr2k_(const char*, const char*, const int*, const int*, const double*, const double*, const int*,
              const double*, const int*, const double*, double*, const int*);
 void dgeqrf_(const int*, const int*, double*, const int*, double*, double*, const int*, int*);
@@ -58,6 +60,14 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
   const int lda = leading(a);
   const int ldb = leading(b);
   const int ldc = leading(c);
+  if (n == 1 && !transpose_b) {
+    // dgemm would copy all of `a` first, which takes longer than the product.
+    const int rows = to_int(a.rows());
+    const int columns = to_int(a.cols());
+    const int one = 1;
+    dgemv_(transpose_a ? "T" : "N", &rows, &columns, &alpha, a.data(), &lda, b.data(), &one, &beta, c.data(), &one);
+    return;
+  }
   dgemm_(transpose_a ? "T" : "N", transpose_b ? "T" : "N", &m, &n, &k, &alpha, a.data(), &lda, b.data(), &ldb, &beta,
          c.data(), &ldc);
 }

@@ -1,8 +1,12 @@
 #include "models/orthogonal_basis.h"
 
+#include <array>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "models/lapack.h"
+#include "models/parallel.h"
 #include "models/polynomial_tail.h"
 
 namespace palpate {
@@ -11,6 +15,10 @@ namespace {
 // Tail columns nearer than this to the span of the others (a constant feature)
 // add nothing but rounding.
 constexpr double kDependent = 1e-10;
+// Sums over rows are taken per part, then in order: the same for any number of cores.
+constexpr int kParts = 4;
+// Products of a pass that take about 0.1 ms, twice what starting a thread does.
+constexpr Eigen::Index kWorthThreads = 300000;
 
 }  // namespace
 
@@ -26,15 +34,37 @@ OrthogonalBasis::OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::I
 }
 
 OrthogonalBasis::Outside OrthogonalBasis::outside(const Eigen::VectorXd& column) const {
-  Outside part{column, 0.0, 0.0};
-  Eigen::MatrixXd shares(size_, 1);
+  Eigen::MatrixXd rest = column;
+  project_out(rest);
+  return {rest.col(0), rest.squaredNorm(), rest.col(0).dot(residual())};
+}
+
+void OrthogonalBasis::project_out(Eigen::MatrixXd& columns) const {
+  const auto rows_of = [&](int part) {
+    const Eigen::Index first = memory_.rows() * part / kParts;
+    return std::pair{first, memory_.rows() * (part + 1) / kParts - first};
+  };
+  // Work that is done sooner than threads are started stays on this one.
+  const bool small = memory_.rows() * size_ * columns.cols() < kWorthThreads;
+  const auto for_parts = [&](const std::function<void(int)>& work) {
+    if (!small) return parallel_for(kParts, work);
+    for (int part = 0; part < kParts; ++part) work(part);
+  };
+  std::array<Eigen::MatrixXd, kParts> shares;
   for (int pass = 0; pass < 2; ++pass) {
-    multiply(columns(), true, part.column, false, 1.0, 0.0, shares);
-    multiply(columns(), false, shares, false, -1.0, 1.0, part.column);
+    for_parts([&](int part) {
+      const auto [first, rows] = rows_of(part);
+      Eigen::MatrixXd& mine = shares[static_cast<std::size_t>(part)];
+      mine.resize(size_, columns.cols());
+      multiply(memory_.block(first, 0, rows, size_), true, columns.middleRows(first, rows), false, 1.0, 0.0, mine);
+    });
+    for (int part = 1; part < kParts; ++part) shares[0] += shares[static_cast<std::size_t>(part)];
+    for_parts([&](int part) {
+      const auto [first, rows] = rows_of(part);
+      multiply(memory_.block(first, 0, rows, size_), false, shares[0], false, -1.0, 1.0,
+               columns.middleRows(first, rows));
+    });
   }
-  part.squared = part.column.squaredNorm();
-  part.correlation = part.column.dot(residual());
-  return part;
 }
 
 Eigen::VectorXd OrthogonalBasis::add(const Outside& part) {
