@@ -11,7 +11,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev lib
   fonts-dejavu-core libhidapi-dev)
 # For the tests: of the window a display in memory, of devices an emulated one.
 test_packages=(xvfb xkb-data x11-xkb-utils libumockdev-dev umockdev)
-ci_packages=(clang-14 libclang-rt-14-dev)
+# libalglib-dev: a library that palpate-bench compares with where it is there.
+ci_packages=(clang-14 libclang-rt-14-dev libalglib-dev)
 
 say() { printf '== %s\n' "$*"; }
 

@@ -4,35 +4,18 @@
 
 #include <algorithm>
 #include <fstream>
-#include <memory>
-#include <stdexcept>
 #include <string>
-#include <utility>
 
-#include "scenes/material/rig.h"
-#include "scenes/scene.h"
+#include "tests/support/fitting.h"
 #include "tests/support/random_points.h"
 
 namespace palpate::bench {
 namespace {
 
-template <typename T>
-T must(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message);
-  return std::move(*result);
-}
-
 PreparedTraining prepare() {
   RigSettings settings;
   settings.seconds = 60.0;
-  const auto recording = std::make_shared<const Recording>(must(record(settings)).recording);
-  const Scene scene = must(load_scene("silicone_block"));
-  TrainingRequest request;
-  request.scene = scene.name;
-  request.features = scene.features;
-  request.jnd = scene.jnd;
-  MotionSource source({{"", recording}});
-  return must(prepare_training(source, request));
+  return test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block"));
 }
 
 // A line "name: 123 kB" of this process's status.

@@ -1,8 +1,9 @@
 // palpate-bench: every figure of speed, in one run on one machine.
 //
-//   build/palpate-bench                                       all, about 5 minutes
-//   build/palpate-bench --benchmark_filter='^(evaluate|fit)/' the table, 1 minute
+//   build/palpate-bench                                       everything
+//   build/palpate-bench --benchmark_filter='^(evaluate|fit)/' the table of speed, 1 minute
 //   build/palpate-bench --benchmark_filter='^evaluate/(scalar|rbf)/'   seconds
+//   build/palpate-bench --benchmark_filter='^size/'           one group
 //   build/palpate-bench --benchmark_out=bench.json --benchmark_out_format=json
 //   build/palpate-bench --benchmark_list_tests
 //
@@ -10,9 +11,12 @@
 // fit/        fits at 6,850 sites of a recording, `peak_MB` above what was there
 // size/       fits against the number of sites, 1,000 to 1,000,000
 // dimension/  fits and evaluation against the number of features, 1 to 8
+// peer/       Palpate's methods beside ALGLIB, dlib and scipy where these are
+//             installed: fit, query and error on the same recordings
 //
-// Figures are medians over repetitions, of processor time for evaluate/, of wall
-// time for fits (which use all cores); only ratios within one run compare.
+// The tables of the README follow at the end, as Markdown. Figures are medians
+// over repetitions, of processor time for queries, of wall time for fits (which
+// use all cores); only ratios within one run compare.
 #include <benchmark/benchmark.h>
 
 #include <fstream>
@@ -31,6 +35,18 @@ std::string cpu_name() {
   return "unknown";
 }
 
+void add_peer_context() {
+#ifndef PALPATE_WITH_ALGLIB
+  benchmark::AddCustomContext("peer ALGLIB", "not installed, apt install libalglib-dev, then configure again");
+#endif
+#ifndef PALPATE_WITH_DLIB
+  benchmark::AddCustomContext("peer dlib", "not installed, apt install libdlib-dev, then configure again");
+#endif
+#ifndef PALPATE_PYTHON
+  benchmark::AddCustomContext("peer scipy", "not installed, apt install python3-scipy, then configure again");
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -46,6 +62,7 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("build type", PALPATE_BUILD_TYPE);
   benchmark::AddCustomContext("instructions", palpate::simd::target_name());
   benchmark::AddCustomContext("commit", *PALPATE_COMMIT != '\0' ? PALPATE_COMMIT : "unknown");
+  add_peer_context();
   palpate::bench::MedianReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();

@@ -1,13 +1,12 @@
-// The display of palpate-bench: one line per median, and at the end the rows
-// that the paper of 2009 has figures for, each also at the pace of a reference
-// machine. (JSON and CSV are Google Benchmark's own, with all statistics.)
+// The display of palpate-bench: one line per median, and at the end the README's
+// tables. (JSON and CSV are Google Benchmark's own, with all statistics.)
 #pragma once
 
 #include <benchmark/benchmark.h>
 
-#include <map>
-#include <string>
 #include <vector>
+
+#include "tests/bench/bench_tables.h"
 
 namespace palpate::bench {
 
@@ -18,7 +17,7 @@ class MedianReporter final : public benchmark::BenchmarkReporter {
   void Finalize() override;
 
  private:
-  std::map<std::string, double> seconds_;  // median by name
+  BenchRows rows_;
 };
 
 }  // namespace palpate::bench

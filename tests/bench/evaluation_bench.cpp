@@ -10,6 +10,7 @@
 #include "models/rbf_simd.h"
 #include "models/voxel_lookup.h"
 #include "tests/bench/bench_data.h"
+#include "tests/bench/bench_queries.h"
 #include "tests/bench/scalar_loop.h"
 
 namespace palpate::bench {
@@ -17,22 +18,6 @@ namespace {
 
 constexpr int kRepetitions = 7;
 constexpr double kSeconds = 0.05;  // per repetition
-
-// Walks over the recorded feature vectors; every query needs the last result.
-template <typename Evaluate>
-void run_queries(benchmark::State& state, const Eigen::MatrixXd& points, const Evaluate& evaluate) {
-  std::array<double, kMaxDimension> query{};
-  Eigen::Index at = 0;
-  double last = 0.0;
-  for (auto _ : state) {
-    const double* point = points.col(at).data();
-    // Adds nothing, but the processor cannot know before `last` is there.
-    for (Eigen::Index k = 0; k < points.rows(); ++k) query[static_cast<std::size_t>(k)] = point[k] + 1e-200 * last;
-    last = evaluate(query.data());
-    at = at + 1 < points.cols() ? at + 1 : 0;
-  }
-  benchmark::DoNotOptimize(last);
-}
 
 void scalar_loop(benchmark::State& state) {
   const RbfFunction f = recorded_function(state.range(0));

@@ -1,0 +1,177 @@
+#include "tests/bench/peer_data.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "engine/replay.h"
+#include "tests/support/fitting.h"
+
+namespace palpate::bench {
+namespace {
+
+using test::must;
+using test::RecordingPtr;
+
+constexpr int kLeaveOut = 5;  // every so-manieth stroke
+
+PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
+  PreparedTraining other = prepared;
+  if (forces) {
+    for (std::size_t i = 0; i < other.set.sites.size(); ++i)
+      other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
+  }
+  // The share within the JND on the training data is not wanted and takes time.
+  other.judge_features.resize(1);
+  other.judge_force_N.resize(1);
+  return other;
+}
+
+PeerData make_data(const std::string& name, const PreparedTraining& prepared,
+                   const std::vector<RecordingPtr>& test_recordings) {
+  PeerData data{name, with_targets(prepared, true), with_targets(prepared, false), {}, {}, {}, {}};
+  const ModelData& common = prepared.common;
+  const auto d = static_cast<Eigen::Index>(common.features.size());
+  const DomainGuard guard(common.cover);
+  const test::ModelPtr model = test::fit(prepared, Method::random);  // only to see its features
+  std::vector<double> points, force_N, trend_N, trust;
+  for (const RecordingPtr& recording : test_recordings) {
+    must(replay(
+        *recording, {model},
+        [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+          if (!snapshot.in_contact) return;
+          const double* features = tick.features_of(0).values.data();
+          const Eigen::VectorXd u =
+              (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
+          points.insert(points.end(), u.begin(), u.end());
+          force_N.push_back(row.force_N);
+          trend_N.push_back(common.trend.at(features, common.features));
+          trust.push_back(guard.trust(u.data()));
+        }));
+  }
+  const auto n = static_cast<Eigen::Index>(force_N.size());
+  data.test_points = Eigen::Map<const Eigen::MatrixXd>(points.data(), d, n);
+  data.test_force_N = Eigen::Map<const Eigen::VectorXd>(force_N.data(), n);
+  data.test_trend_N = Eigen::Map<const Eigen::VectorXd>(trend_N.data(), n);
+  data.test_trust = Eigen::Map<const Eigen::VectorXd>(trust.data(), n);
+  return data;
+}
+
+PeerData make_data(const std::string& name) {
+  if (name == "silicone") {
+    return make_data(name,
+                     test::prepare({test::rig_recording(test::train_settings(name))},
+                                   test::scene_request("silicone_block")),
+                     {test::rig_recording(test::test_settings(name))});
+  }
+  std::vector<RecordingPtr> train, tested;
+  for (const char* force : {"250", "600", "1000"})
+    train.push_back(test::real_recording(std::string("aurora_skin/train_") + force + "mN.csv"));
+  for (const char* force : {"400", "800", "900"})
+    tested.push_back(test::real_recording(std::string("aurora_skin/test_") + force + "mN.csv"));
+  return make_data(name, test::prepare(train, test::scene_request(name)), tested);
+}
+
+PeerError error_of(const PeerData& data, const std::function<double(Eigen::Index i)>& force_N) {
+  const ModelData& common = data.forces.common;
+  ErrorFigures figures;
+  for (Eigen::Index i = 0; i < data.test_force_N.size(); ++i) {
+    double force = force_N(i);
+    if (!(force > 0.0)) force = 0.0;
+    figures.add(std::min(force, kForceMargin * common.largest_force_N), data.test_force_N[i], false,
+                common.jnd);
+  }
+  return {figures.rms_error_N(), figures.within_jnd()};
+}
+
+// Those sites of `all` for which `wanted` holds.
+template <typename Wanted>
+Sites some_sites(const Sites& all, const Wanted& wanted) {
+  std::vector<Eigen::Index> chosen;
+  for (Eigen::Index i = 0; i < all.count(); ++i)
+    if (wanted(i)) chosen.push_back(i);
+  Sites some;
+  some.points = all.points(Eigen::all, chosen);
+  some.target_N = all.target_N(chosen);
+  some.row_scale = all.row_scale(chosen);
+  for (const Eigen::Index i : chosen) some.group.push_back(all.group[static_cast<std::size_t>(i)]);
+  return some;
+}
+
+}  // namespace
+
+std::vector<std::string> peer_data_names() {
+  std::vector<std::string> names{"silicone"};
+  if (std::filesystem::exists(test::real_data() / "aurora_skin")) names.emplace_back("skin");
+  return names;
+}
+
+const PeerData& peer_data(const std::string& name) {
+  static std::map<std::string, PeerData> made;
+  const auto found = made.find(name);
+  return found != made.end() ? found->second : made.emplace(name, make_data(name)).first->second;
+}
+
+PeerError error_of_forces(const PeerData& data, const Eigen::VectorXd& output_N) {
+  return error_of(data, [&](Eigen::Index i) { return output_N[i]; });
+}
+
+PeerError error_of_remainder(const PeerData& data, const Eigen::VectorXd& output_N) {
+  const double limit_N = data.remainder.common.correction_limit_N;
+  return error_of(data, [&](Eigen::Index i) {
+    return data.test_trend_N[i] + data.test_trust[i] * std::clamp(output_N[i], -limit_N, limit_N);
+  });
+}
+
+Eigen::VectorXd output_N(const Function& function, const Eigen::MatrixXd& points) {
+  Eigen::VectorXd output(points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) output[i] = function(points.col(i).data());
+  return output;
+}
+
+PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index count) {
+  PreparedTraining some = prepared;
+  const Eigen::Index all = prepared.sites.count();
+  if (count > 0 && count < all)
+    some.sites =
+        some_sites(prepared.sites, [&](Eigen::Index i) { return (i + 1) * count / all != i * count / all; });
+  return some;
+}
+
+std::vector<bool> left_out_sites(const PreparedTraining& prepared) {
+  const std::set<int> strokes(prepared.sites.group.begin(), prepared.sites.group.end());
+  const int every = std::min(kLeaveOut, static_cast<int>(strokes.size()));
+  std::vector<bool> left_out;
+  for (const int stroke : prepared.sites.group) {
+    const auto rank = static_cast<int>(std::distance(strokes.begin(), strokes.find(stroke)));
+    // The middle one of each five: of three presses not the hardest.
+    left_out.push_back(rank % every == every / 2);
+  }
+  return left_out;
+}
+
+std::size_t best_setting(const Peer& peer, const PreparedTraining& prepared) {
+  if (peer.settings.size() == 1) return 0;
+  const std::vector<bool> left_out = left_out_sites(prepared);
+  PreparedTraining some;
+  const auto is_left_out = [&](Eigen::Index i) { return left_out[static_cast<std::size_t>(i)]; };
+  some.sites = some_sites(prepared.sites, [&](Eigen::Index i) { return !is_left_out(i); });
+  const Sites judged = some_sites(prepared.sites, is_left_out);
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < peer.settings.size(); ++i) {
+    const Result<Function> fitted = peer.settings[i].fit(some);
+    if (!fitted) continue;
+    const double error = (output_N(*fitted, judged.points) - judged.target_N).squaredNorm();
+    if (error < least) {
+      least = error;
+      best = i;
+    }
+  }
+  return best;
+}
+
+}  // namespace palpate::bench

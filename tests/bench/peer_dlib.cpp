@@ -1,0 +1,54 @@
+// dlib's kernel ridge regression with a Gaussian kernel. It picks its basis, a
+// linearly independent subset of the samples, and by leaving out one sample its
+// ridge; the kernel's width is chosen here.
+#include <dlib/matrix.h>
+#include <dlib/svm/krr_trainer.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "tests/bench/peer.h"
+
+namespace palpate::bench {
+namespace {
+
+using Sample = dlib::matrix<double, 0, 1>;
+using Kernel = dlib::radial_basis_kernel<Sample>;
+
+Result<Function> train(const Sites& sites, double gamma, unsigned long basis_size) {
+  const long d = sites.dimension();
+  std::vector<Sample> samples;
+  for (Eigen::Index i = 0; i < sites.count(); ++i) {
+    Sample sample(d);
+    for (long k = 0; k < d; ++k) sample(k) = sites.points(k, i);
+    samples.push_back(std::move(sample));
+  }
+  const std::vector<double> targets(sites.target_N.begin(), sites.target_N.end());
+  dlib::krr_trainer<Kernel> trainer;
+  trainer.set_kernel(Kernel(gamma));
+  trainer.set_max_basis_size(basis_size);
+  return Function([trained = trainer.train(samples, targets), query = Sample(d), d](const double* x) mutable {
+    for (long k = 0; k < d; ++k) query(k) = x[k];
+    return trained(query);
+  });
+}
+
+}  // namespace
+
+std::vector<Peer> dlib_peers() {
+  std::vector<Peer> peers;
+  for (const unsigned long basis_size : {100UL, 400UL}) {  // 400: its default
+    Peer peer{"dlib_krr-" + std::to_string(basis_size), {}};
+    for (const double gamma : {0.1, 0.3, 1.0, 3.0, 10.0, 30.0}) {
+      char text[64];
+      std::snprintf(text, sizeof text, "basis %lu, gamma %g, lambda by its leave-one-out", basis_size, gamma);
+      peer.settings.push_back(
+          {text, [=](const PreparedTraining& prepared) { return train(prepared.sites, gamma, basis_size); }});
+    }
+    peers.push_back(std::move(peer));
+  }
+  return peers;
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,26 @@
+// scipy's RBFInterpolator, run by Debian's Python through peer_scipy.py.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "engine/result.h"
+#include "tests/bench/peer_data.h"
+
+namespace palpate::bench {
+
+struct ScipyPeer {
+  std::string setting;  // for the forces
+  double fit_s = 0.0;
+  double query_s = 0.0;
+  PeerError forces;
+  PeerError remainder;
+};
+
+inline constexpr const char* kScipyPeers[] = {"scipy_all_sites", "scipy_50_neighbours"};
+
+// By name; the script runs once for each data. Errors: it failed, or what it
+// wrote cannot be read.
+const Result<std::map<std::string, ScipyPeer>>& scipy_peers(const PeerData& data);
+
+}  // namespace palpate::bench
