@@ -1,23 +1,26 @@
 #include "scenes/study/study_figure.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "engine/atomic_file.h"
-
-extern char** environ;
+#include "scenes/report/gnuplot.h"
 
 namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kScript = "figure3.gp";
 const std::array<const char*, 4> kFigures = {"figure3a.svg", "figure3a.png", "figure3b.svg", "figure3b.png"};
 
 std::string text_of(const char* format, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
@@ -94,29 +97,52 @@ const char* const kStyles =
     "set style line 6 lc rgb \"#D55E00\" pt 9 ps 1.5\n"
     "set grid lc rgb \"#dddddd\"\nset xlabel \"reference force [N]\"\nset samples 500\n";
 
-// Runs gnuplot on the script; 127 as exit code, or ENOENT, when there is none.
-Status run_gnuplot(const std::string& script) {
-  std::string program = "gnuplot", argument = script;
-  std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
-  pid_t child = 0;
-  const int failed = posix_spawnp(&child, "gnuplot", nullptr, nullptr, arguments.data(), environ);
-  int status = 0;
-  if (failed == 0) {
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+// A folder of its own in `parent`, gone with this object.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::string& parent) : path_(parent + "/.palpate-figures-XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) path_.clear();
   }
-  if (failed == ENOENT || (failed == 0 && WIFEXITED(status) && WEXITSTATUS(status) == 127)) {
-    return Error{"the figures need gnuplot, which is not installed; install gnuplot-nox, then run: gnuplot " + script};
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
   }
-  if (failed != 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    return Error{"gnuplot could not draw the figures; its own message is above, its script is " + script};
+  const std::string& path() const noexcept { return path_; }  // empty: there is none
+
+ private:
+  std::string path_;
+};
+
+Result<std::string> read_figure(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file || !text) return Error{"gnuplot wrote no " + path + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+  return text.str();
+}
+
+// All figures that gnuplot left in `drawn`, each whole, into `folder`.
+Status take_figures(const std::string& drawn, const std::string& folder, bool overwrite) {
+  std::vector<AtomicFile> files;
+  for (const char* figure : kFigures) {
+    const Result<std::string> text = read_figure(drawn + "/" + figure);
+    if (!text) return text.error();
+    Result<AtomicFile> file = AtomicFile::create(folder + "/" + figure, overwrite);
+    if (!file) return file.error();
+    file->write(*text);
+    files.push_back(std::move(*file));
+  }
+  for (AtomicFile& file : files) {
+    if (const Status status = file.commit(); !status) return status;
   }
   return {};
 }
 
 }  // namespace
 
-std::string study_figure_script(const StudyAnalysis& analysis, const std::string& stem) {
+std::string study_figure_script(const StudyAnalysis& analysis) {
   double largest_N = 0.0;
   for (const JndPoint& point : analysis.points) largest_N = std::max(largest_N, point.reference_N);
   std::string text = "# gnuplot 5: the JND over the reference force, as figure 3 of Hoever & Harders (2009)\n";
@@ -130,7 +156,7 @@ std::string study_figure_script(const StudyAnalysis& analysis, const std::string
   for (const bool relative : {false, true}) {
     text += relative ? "set ylabel \"JND [% of the reference]\"\nset key top right\nset yrange [0:80]\n"
                      : "set ylabel \"JND [N]\"\nset key top left\n";
-    const std::string name = stem + (relative ? "b" : "a");
+    const std::string name = relative ? "figure3b" : "figure3a";
     text += "set terminal svg size 720,480 dynamic background \"white\" font \"sans,13\"\nset output '" + name + ".svg'\n";
     text += plot_line(analysis, relative);
     text += "set terminal pngcairo size 1080,720 font \"sans,16\"\nset output '" + name + ".png'\nreplot\n";
@@ -139,17 +165,19 @@ std::string study_figure_script(const StudyAnalysis& analysis, const std::string
 }
 
 Status write_study_figures(const StudyAnalysis& analysis, const std::string& folder, bool overwrite) {
-  if (folder.find_first_of("'\n\r") != std::string::npos) {
-    return Error{"cannot draw figures in " + folder + ": found a quote or a line break in its name, expected none"};
-  }
   for (const char* figure : kFigures) {
     const std::string path = folder + "/" + figure;
     if (!overwrite && fs::exists(path)) return Error{path + " exists; pass --force to replace it"};
   }
-  const std::string script = folder + "/figure3.gp";
-  const Status written = write_file_atomically(script, study_figure_script(analysis, folder + "/figure3"), overwrite);
-  if (!written) return written;
-  return run_gnuplot(script);
+  const std::string text = study_figure_script(analysis);
+  if (const Status status = write_file_atomically(folder + "/" + kScript, text, overwrite); !status) return status;
+  const Result<std::string> gnuplot = find_gnuplot();
+  if (!gnuplot) return gnuplot.error();
+  const ScratchFolder scratch(folder);
+  if (scratch.path().empty()) return Error{"cannot make a folder in " + folder + "; is there space left?"};
+  if (const Status status = write_file_atomically(scratch.path() + "/" + kScript, text, false); !status) return status;
+  if (const Status status = run_gnuplot(*gnuplot, scratch.path(), {kScript}); !status) return status;
+  return take_figures(scratch.path(), folder, overwrite);
 }
 
 }  // namespace palpate

@@ -11,13 +11,14 @@
 
 namespace palpate {
 
-// A gnuplot script that holds its own data and writes `stem`a and `stem`b, each as .svg
-// and .png. `stem`: a path, without quotes or line breaks.
-std::string study_figure_script(const StudyAnalysis& analysis, const std::string& stem);
+// A gnuplot script that holds its own data and writes figure3a and figure3b, each as
+// .svg and .png, into the current folder.
+std::string study_figure_script(const StudyAnalysis& analysis);
 
-// Writes `folder`/figure3.gp and, by it, figure3a and figure3b as .svg and .png.
-// Errors: `folder` has a quote or a line break; a figure exists and `overwrite` is
-// false; gnuplot is not installed or fails. The script is there in either case.
+// Writes `folder`/figure3.gp and, by it, figure3a and figure3b as .svg and .png, each
+// whole or not at all. Errors: a figure exists and `overwrite` is false; gnuplot is not
+// installed or fails; the disk refuses. The script is there in either case, figures
+// of an earlier run stay.
 Status write_study_figures(const StudyAnalysis& analysis, const std::string& folder, bool overwrite);
 
 }  // namespace palpate

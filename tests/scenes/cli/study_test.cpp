@@ -20,7 +20,7 @@ using test::run_palpate;
 std::string path_with_fake_gnuplot(const test::TemporaryFolder& folder) {
   std::filesystem::create_directory(folder.file("bin"));
   const std::string fake = folder.with_file(
-      "bin/gnuplot", "#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'/\\1/p\" \"$1\" | while read -r f; do : >\"$f\"; done\n");
+      "bin/gnuplot", "#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'/\\1/p\" \"$2\" | while read -r f; do echo drawn >\"$f\"; done\n");
   std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
   return "PATH=" + folder.file("bin") + ":" + std::getenv("PATH");
 }
@@ -67,8 +67,8 @@ TEST(Study, SaysWhatToDoWithoutGnuplot) {
   const auto run = run_palpate({"study", "simulate", "--subjects", "1", "--procedure", "adaptive", "--resamples", "50", "--out", out},
                                {"PATH=" + folder.path()});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "error: the figures need gnuplot, which is not installed; install gnuplot-nox, then run: gnuplot " + out +
-                         "/figure3.gp\n");
+  EXPECT_EQ(run.err, "error: found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)\n");
+  EXPECT_TRUE(std::filesystem::exists(out + "/figure3.gp"));
   EXPECT_TRUE(std::filesystem::exists(out + "/results.csv"));
   EXPECT_TRUE(std::filesystem::exists(out + "/jnd.json"));
 }
