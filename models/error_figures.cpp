@@ -21,6 +21,7 @@ void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, c
   if (out_of_domain) ++out_of_domain_;
   squares_N2_ += error_N * error_N;
   max_error_N_ = std::max(max_error_N_, error_N);
+  ratios_ += ratio;
   max_ratio_ = std::max(max_ratio_, ratio);
 
   const std::size_t index = bin_of(reference_N);
@@ -35,6 +36,10 @@ void ErrorFigures::add(double model_N, double reference_N, bool out_of_domain, c
 
 double ErrorFigures::within_jnd() const noexcept {
   return samples_ > 0 ? static_cast<double>(within_) / static_cast<double>(samples_) : 0.0;
+}
+
+double ErrorFigures::mean_error_over_jnd() const noexcept {
+  return samples_ > 0 ? ratios_ / static_cast<double>(samples_) : 0.0;
 }
 
 double ErrorFigures::rms_error_N() const noexcept {

@@ -38,6 +38,7 @@ class ErrorFigures {
   double within_jnd() const noexcept;  // share
   double rms_error_N() const noexcept;
   double max_error_N() const noexcept { return max_error_N_; }
+  double mean_error_over_jnd() const noexcept;
   double max_error_over_jnd() const noexcept { return max_ratio_; }
   std::uint64_t out_of_domain_samples() const noexcept { return out_of_domain_; }
   // From 0 to the largest reference force, kForceBin_N each; forces below 0 (sensor
@@ -57,6 +58,7 @@ class ErrorFigures {
   std::uint64_t out_of_domain_ = 0;
   double squares_N2_ = 0.0;
   double max_error_N_ = 0.0;
+  double ratios_ = 0.0;  // sum
   double max_ratio_ = 0.0;
   std::vector<Moments> bins_;  // at most kMaximumForceBins
 };

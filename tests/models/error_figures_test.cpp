@@ -15,6 +15,7 @@ TEST(ErrorFigures, NothingGivesZeros) {
   EXPECT_EQ(figures.samples(), 0u);
   EXPECT_EQ(figures.within_jnd(), 0.0);
   EXPECT_EQ(figures.rms_error_N(), 0.0);
+  EXPECT_EQ(figures.mean_error_over_jnd(), 0.0);
   EXPECT_TRUE(figures.bins({}).empty());
 }
 
@@ -27,6 +28,7 @@ TEST(ErrorFigures, AddUp) {
   EXPECT_NEAR(figures.rms_error_N(), std::sqrt(1001.0 * 2001.0 / 6.0) * 1e-3, 1e-9);
   EXPECT_NEAR(figures.max_error_N(), 1.0, kRounding);
   EXPECT_NEAR(figures.max_error_over_jnd(), 2.0, kRounding);
+  EXPECT_NEAR(figures.mean_error_over_jnd(), 1.001, 1e-9);
   EXPECT_EQ(figures.out_of_domain_samples(), 10u);
   const std::vector<ForceBin> bins = figures.bins(jnd);
   ASSERT_EQ(bins.size(), 3u);
