@@ -11,7 +11,10 @@
 #include "engine/atomic_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/scene.h"
+#include "scenes/study/discrimination.h"
 #include "scenes/study/jnd_file.h"
+#include "scenes/study/prepare_strokes.h"
 #include "scenes/study/recovery.h"
 #include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_analysis.h"
@@ -35,6 +38,10 @@ struct StudyOptions {
   std::uint64_t seed = 1;
   SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N
   double spread = 0.15;
+  bool discriminates = false;
+  std::string recording;  // to discriminate; empty: virtual
+  std::string strokes_scene = "silicone_block";
+  std::vector<std::string> models;
 };
 
 void print_analysis(const StudyAnalysis& analysis) {
@@ -91,6 +98,39 @@ Status analyse(const std::vector<StudyData>& files, const StudyOptions& options)
   return write_analysis(*analysis, options);
 }
 
+void print_discrimination(const DiscriminationAnalysis& analysis) {
+  const StrokePair& strokes = *analysis.strokes;
+  std::printf("reference    %s\ncomparison   %s\nstroke       %s, %.2f to %.2f s\n", strokes.reference.c_str(),
+              strokes.comparison.c_str(), strokes.recording.c_str(), strokes.from_s, strokes.to_s);
+  std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
+              strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
+  std::printf("%-8s %7s %9s %14s %6s %12s\n", "subject", "answers", "right [%]", "95 %", "d'", "p, guessing");
+  const auto print = [](const Discrimination& one) {
+    const ShareInterval interval = wilson_interval(one.correct, one.trials);
+    std::printf("%-8s %7zu %9.1f %6.1f to %4.1f %6.2f %12.3g\n", one.subject.c_str(), one.trials, 100.0 * one.share(),
+                100.0 * interval.low, 100.0 * interval.high, d_prime(one.correct, one.trials),
+                guessing_probability(one.correct, one.trials));
+  };
+  for (const Discrimination& subject : analysis.subjects) print(subject);
+  if (analysis.subjects.size() > 1) print(analysis.all);
+  if (analysis.all.unusable > 0) std::printf("%zu trials left out, their forces were not rendered\n", analysis.all.unusable);
+  std::printf("%s\n", discrimination_verdict(analysis.all, strokes).c_str());
+}
+
+Status analyse_strokes(const std::vector<StudyData>& files, const StudyOptions& options) {
+  const auto analysis = analyse_discrimination(files);
+  if (!analysis) return analysis.error();
+  if (const Status made = make_folder(options.out); !made) return made;
+  print_discrimination(*analysis);
+  return write_file_atomically(options.out + "/results.csv", discrimination_table(*analysis), options.force);
+}
+
+// By what the first file is.
+Status analyse_files(const std::vector<StudyData>& files, const StudyOptions& options) {
+  const bool strokes = !files.empty() && files.front().header.strokes != nullptr;
+  return strokes ? analyse_strokes(files, options) : analyse(files, options);
+}
+
 Status run_analyse(const StudyOptions& options) {
   std::vector<StudyData> files;
   for (const std::string& path : options.files) {
@@ -98,7 +138,7 @@ Status run_analyse(const StudyOptions& options) {
     if (!data) return data.error();
     files.push_back(std::move(*data));
   }
-  return analyse(files, options);
+  return analyse_files(files, options);
 }
 
 // One of the population: the JND's factor spreads as e^normal.
@@ -110,16 +150,29 @@ SubjectTraits drawn_subject(const StudyOptions& options, RandomStream& random) {
 }
 
 std::string file_text(const StudyHeader& header, const std::vector<StudyRecord>& records) {
-  const StudyTiming& timing = header.timing;
-  std::string text = "# palpate-study 1\n# subject " + header.subject + "\n# procedure " +
-                     procedure_name(header.procedure) + "\n# timing_ms lead_in " + std::to_string(timing.lead_in) +
-                     " ramp " + std::to_string(timing.ramp) + " hold " + std::to_string(timing.hold) + " pause " +
-                     std::to_string(timing.pause) + "\n# consent accepted, simulated\n" + std::string(kStudyColumns) + "\n";
-  for (const StudyRecord& record : records) text += study_row(record);
+  std::string text = study_header_text(header) + "# consent accepted, simulated\n" + study_columns(header.procedure) + "\n";
+  for (const StudyRecord& record : records) text += study_row(record, header.procedure);
   return text;
 }
 
+// What all subjects' headers have in common.
+Result<StudyHeader> common_header(const StudyOptions& options) {
+  StudyHeader header;
+  header.procedure = *find_procedure(options.procedure);
+  if (!options.discriminates) return header;
+  const Result<Scene> scene = load_scene(options.strokes_scene);
+  if (!scene) return scene.error();
+  const auto strokes = prepare_strokes({*scene, options.models, options.recording});
+  if (!strokes) return strokes.error();
+  header.procedure = ProcedureKind::discriminate;
+  header.strokes = *strokes;
+  header.timing = stroke_timing(**strokes);
+  return header;
+}
+
 Status run_simulate(const StudyOptions& options) {
+  Result<StudyHeader> header = common_header(options);
+  if (!header) return header.error();
   if (const Status made = make_folder(options.out); !made) return made;
   std::vector<StudyData> files;
   {
@@ -130,16 +183,16 @@ Status run_simulate(const StudyOptions& options) {
       const SubjectTraits traits = drawn_subject(options, random);
       char code[16];
       std::snprintf(code, sizeof code, "S%02d", i);
-      const StudyHeader header{code, *find_procedure(options.procedure), {}};
-      const auto records = run_simulated_session(header, traits, random.next());
+      header->subject = code;
+      const auto records = run_simulated_session(*header, traits, random.next());
       if (!records) return records.error();
       const std::string path = options.out + "/" + code + ".csv";
-      const Status written = write_file_atomically(path, file_text(header, *records), options.force);
+      const Status written = write_file_atomically(path, file_text(*header, *records), options.force);
       if (!written) return written;
-      files.push_back({header, "simulated", *records, 0});
+      files.push_back({*header, "simulated", *records, 0});
     }
   }
-  return analyse(files, options);
+  return analyse_files(files, options);
 }
 
 Status run_recovery(const StudyOptions& options) {
@@ -180,13 +233,13 @@ void add_bootstrap_options(CLI::App* verb, StudyOptions& options) {
 void add_output_options(CLI::App* verb, StudyOptions& options) {
   add_bootstrap_options(verb, options);
   verb->add_flag("--pang", options.with_published, "The line goes below Pang, Tan & Durlach's point (1991) too: 9 % at 2.5 N");
-  verb->add_option("--out", options.out, "Folder for results.csv, jnd.json and figure 3 (a) and (b)")->required();
+  verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json and figure 3 (a) and (b)")->required();
   verb->add_flag("--force", options.force, "Replace files that exist");
 }
 
 void add_analyse(CLI::App& study, Verbs& verbs) {
   auto options = std::make_shared<StudyOptions>();
-  CLI::App* verb = study.add_subcommand("analyse", "From the files of the subjects to the JND line, its file and figure");
+  CLI::App* verb = study.add_subcommand("analyse", "From the files of the subjects to the JND line, its file and figure, or to who told strokes apart");
   verb->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
   add_output_options(verb, *options);
   verbs.emplace_back(verb, [options] { return run_analyse(*options); });
@@ -199,6 +252,21 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
   verb->add_option("--procedure", options->procedure, "constant (320 trials) or adaptive (80)")
       ->check(CLI::IsMember({"constant", "adaptive"}))
       ->capture_default_str();
+  CLI::Option* discriminate =
+      verb->add_option_function<std::string>(
+              "--discriminate",
+              [options](const std::string& recording) {
+                options->discriminates = true;
+                options->recording = recording;
+              },
+              "Which of two renderings of a stroke is which (100 trials), of this recording [a virtual one]")
+          ->type_name("[REC.csv]")
+          ->expected(0, 1)
+          ->excludes("--procedure");
+  verb->add_option("--scene", options->strokes_scene, "To discriminate in")->capture_default_str()->needs(discriminate);
+  verb->add_option("--model", options->models, "To tell from the recorded force, or two to tell apart [the scene's first]")
+      ->type_name("FILE_OR_METHOD")
+      ->needs(discriminate);
   verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
   verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
       ->check(CLI::Range(0.001, 1.0))

@@ -5,6 +5,12 @@
 // criterion 0.75 is the line JND(F) = offset + weber_fraction F when both forces are
 // felt alike: s(F) = JND(F) / (0.6745 sqrt(2)). Sometimes the subject misses a trial
 // and guesses.
+//
+// Two strokes it tells apart at the moment at which what it was given differs most, in
+// multiples of its JND: it feels both there, as above, and has learned from the
+// reminder which of the two is the larger there. So it is right with the probability
+//   Phi(|F1 - F2| / sqrt(s(F1)^2 + s(F2)^2)),
+// 75 % for one JND; nobody with this noise who attends to one moment does better.
 // Deterministic: the same seed gives the same answers.
 // Thread guarantee: one thread; slow side.
 #pragma once
@@ -37,6 +43,9 @@ class SimulatedSubject {
       : traits_(traits), random_(seed, kStream) {}
 
   bool second_feels_larger(double first_N, double second_N) noexcept;
+  // "The second was like the reference." The forces of each tick, all of one length.
+  bool second_feels_like(const std::vector<double>& reference_N, const std::vector<double>& first_N,
+                         const std::vector<double>& second_N) noexcept;
 
  private:
   static constexpr std::uint64_t kStream = 31;

@@ -145,6 +145,10 @@ Status check_files(const std::vector<StudyData>& files) {
     if (!seen.insert(subject).second) {
       return Error{"found two files of subject " + subject + ", expected one; leave one of them out"};
     }
+    if (file.header.strokes != nullptr) {
+      return Error{"found the procedure discriminate in the file of subject " + subject +
+                   ", expected constant or adaptive as in the first; analyse them apart"};
+    }
     for (const StudyRecord& record : file.records) {
       const auto& planned_N = kReferenceForces_N;
       if (std::find(planned_N.begin(), planned_N.end(), record.trial.reference_N) != planned_N.end()) continue;

@@ -30,21 +30,14 @@ std::string checksum(const std::string& text) {
   return digits;
 }
 
-std::string header_text(const StudyHeader& header) {
-  const StudyTiming& timing = header.timing;
-  return "# palpate-study 1\n# subject " + header.subject + "\n# procedure " + procedure_name(header.procedure) +
-         "\n# timing_ms lead_in " + std::to_string(timing.lead_in) + " ramp " + std::to_string(timing.ramp) +
-         " hold " + std::to_string(timing.hold) + " pause " + std::to_string(timing.pause) + "\n";
-}
-
 // Whether `text` is a header that was cut off while it was written: nothing was
 // answered yet. `start`: all of it but the consent and the columns.
-bool is_cut_header(std::string_view text, std::string_view start) {
+bool is_cut_header(std::string_view text, std::string_view start, std::string_view columns) {
   if (text.size() <= start.size()) return begins_with(start, text);
   if (!begins_with(text, start)) return false;
   text.remove_prefix(start.size());
   const std::size_t line_end = text.find('\n');
-  return line_end == std::string_view::npos || begins_with(kStudyColumns, text.substr(line_end + 1));
+  return line_end == std::string_view::npos || begins_with(columns, text.substr(line_end + 1));
 }
 
 // Appended and confirmed, or an errno.
@@ -81,12 +74,40 @@ Result<std::string> read_all(int descriptor, const std::string& path) {
 
 }  // namespace
 
-std::string study_row(const StudyRecord& record) {
-  return std::string(record.training ? "training," : "study,") + std::to_string(record.number) + "," +
-         number_text(record.trial.reference_N) + "," + number_text(record.trial.comparison_N) +
-         (record.trial.comparison_first ? ",1," : ",0,") + number_text(record.first_rendered_N) + "," +
-         number_text(record.second_rendered_N) + (record.limited ? ",1," : ",0,") +
-         (record.answered_second ? "second," : "first,") + std::to_string(record.response_ms) + "\n";
+std::string study_header_text(const StudyHeader& header) {
+  const StudyTiming& timing = header.timing;
+  std::string text = "# palpate-study 1\n# subject " + header.subject + "\n# procedure " +
+                     procedure_name(header.procedure) + "\n# timing_ms lead_in " + std::to_string(timing.lead_in) +
+                     " ramp " + std::to_string(timing.ramp) + " hold " + std::to_string(timing.hold) + " pause " +
+                     std::to_string(timing.pause) + "\n";
+  if (header.strokes == nullptr) return text;
+  const StrokePair& strokes = *header.strokes;
+  text += "# reference " + strokes.reference + "\n# comparison " + strokes.comparison + "\n# stroke from_s " +
+          number_text(strokes.from_s) + " to_s " + number_text(strokes.to_s) + " of " + strokes.recording + "\n";
+  text += "# forces reference_mean_N " + number_text(strokes.reference_mean_N) + " comparison_mean_N " +
+          number_text(strokes.comparison_mean_N) + " checksum " + std::to_string(strokes.checksum) + "\n";
+  return text + "# predicted mean_over_jnd " + number_text(strokes.mean_over_jnd) + " max_over_jnd " +
+         number_text(strokes.max_over_jnd) + " jnd_offset_N " + number_text(strokes.jnd.offset_N) +
+         " jnd_weber_fraction " + number_text(strokes.jnd.weber_fraction) + "\n";
+}
+
+std::string study_columns(ProcedureKind procedure) {
+  std::string columns(kStudyColumns);
+  if (procedure == ProcedureKind::discriminate) columns += kStrokeColumns;
+  return columns;
+}
+
+std::string study_row(const StudyRecord& record, ProcedureKind procedure) {
+  std::string row = record.training ? "training," : "study,";
+  row += std::to_string(record.number) + "," + number_text(record.trial.reference_N) + "," +
+         number_text(record.trial.comparison_N) + (record.trial.comparison_first ? ",1," : ",0,") +
+         number_text(record.first_rendered_N) + "," + number_text(record.second_rendered_N) +
+         (record.limited ? ",1," : ",0,") + (record.answered_second ? "second," : "first,") + std::to_string(record.response_ms);
+  if (procedure == ProcedureKind::discriminate) {
+    row += ',';
+    row += number_text(record.reminder_rendered_N) + "," + number_text(record.worst_N);
+  }
+  return row + "\n";
 }
 
 Result<std::unique_ptr<StudyFile>> StudyFile::open(const std::string& path, const StudyHeader& header) {
@@ -122,7 +143,7 @@ Status StudyFile::take_up() {
   if (const Status locked = lock(); !locked) return locked;
   const Result<std::string> text = read_all(descriptor_, path_);
   if (!text) return text.error();
-  if (is_cut_header(*text, header_text(header_))) return {};
+  if (is_cut_header(*text, study_header_text(header_), study_columns(header_.procedure))) return {};
   const Result<StudyData> data = parse_study(*text, path_);
   if (!data) return data.error();
   const StudyHeader& found = data->header;
@@ -130,6 +151,12 @@ Status StudyFile::take_up() {
     return Error{path_ + ": found a study of subject " + found.subject + ", procedure " +
                  procedure_name(found.procedure) + ", expected subject " + header_.subject + ", procedure " +
                  procedure_name(header_.procedure) + " and the same timing; take another folder or subject code"};
+  }
+  if (header_.strokes != nullptr && !same_strokes(*found.strokes, *header_.strokes)) {
+    return Error{path_ + ": found strokes of \"" + found.strokes->reference + "\" and \"" + found.strokes->comparison +
+                 "\" in " + found.strokes->recording + ", expected those of this session, \"" +
+                 header_.strokes->reference + "\" and \"" + header_.strokes->comparison + "\" in " +
+                 header_.strokes->recording + ", with the same forces; take another folder or subject code"};
   }
   if (data->whole_bytes < text->size() && ftruncate(descriptor_, static_cast<off_t>(data->whole_bytes)) != 0) {
     return failure(errno);
@@ -164,7 +191,7 @@ Status StudyFile::consent(const std::string& text, const std::string& when) {
   if (ftruncate(descriptor_, 0) != 0) return failure(errno);
   const std::string consent_line = "# consent accepted, text " + checksum(text) + (when.empty() ? "" : ", " + when) +
                                    "\n";
-  const Status written = write_whole(header_text(header_) + consent_line + std::string(kStudyColumns) + "\n");
+  const Status written = write_whole(study_header_text(header_) + consent_line + study_columns(header_.procedure) + "\n");
   if (!written) return written;
   flush_folder_of(path_);
   consented_ = true;
@@ -175,7 +202,7 @@ Status StudyFile::append(const StudyRecord& record) {
   if (!consented_) return Error{"cannot write " + path_ + ": there is no consent yet"};
   // What a refused row may have left behind.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
-  if (const Status written = write_whole(study_row(record)); !written) return written;
+  if (const Status written = write_whole(study_row(record, header_.procedure)); !written) return written;
   records_.push_back(record);
   return {};
 }

@@ -12,6 +12,9 @@ constexpr std::size_t kAdaptiveRounds = 20;  // of one trial for each reference
 constexpr std::uint64_t kConstantStream = 1;
 constexpr std::uint64_t kTrainingStream = 2;
 constexpr std::uint64_t kAdaptiveStream = 3;
+constexpr std::uint64_t kDiscriminationStream = 4;
+constexpr std::uint64_t kDiscriminationTrainingStream = 5;
+constexpr std::size_t kDiscriminationTraining = 4;
 
 bool is_code(const std::string& text) {
   std::size_t letters = 0;
@@ -94,6 +97,27 @@ std::vector<AdaptiveSlot> plan_adaptive_slots(const std::string& code) {
     slots.insert(slots.end(), round.begin(), round.end());
   }
   return slots;
+}
+
+std::vector<StudyTrial> plan_discrimination_trials(const std::string& code, double reference_mean_N,
+                                                   double comparison_mean_N) {
+  RandomStream random = subject_random(code, kDiscriminationStream);
+  std::vector<StudyTrial> trials;
+  while (trials.size() < kDiscriminationTrials) {
+    for (const bool first : balanced_flags(kDiscriminationBlock, random)) {
+      trials.push_back({reference_mean_N, comparison_mean_N, first});
+    }
+  }
+  return trials;
+}
+
+std::vector<StudyTrial> plan_discrimination_training(const std::string& code, double reference_mean_N) {
+  RandomStream random = subject_random(code, kDiscriminationTrainingStream);
+  std::vector<StudyTrial> trials;
+  for (const bool first : balanced_flags(kDiscriminationTraining, random)) {
+    trials.push_back({reference_mean_N, percent_of(reference_mean_N, 100.0 * kEasyShare), first});
+  }
+  return trials;
 }
 
 }  // namespace palpate

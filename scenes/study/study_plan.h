@@ -72,4 +72,14 @@ struct AdaptiveSlot {
 };
 std::vector<AdaptiveSlot> plan_adaptive_slots(const std::string& code);
 
+// Which of two strokes is which: 100 trials, in each kDiscriminationBlock of which the
+// comparison comes first as often as second. The forces are the strokes' means.
+inline constexpr std::size_t kDiscriminationTrials = 100;
+inline constexpr std::size_t kDiscriminationBlock = 20;
+std::vector<StudyTrial> plan_discrimination_trials(const std::string& code, double reference_mean_N,
+                                                   double comparison_mean_N);
+// Four to learn the task: the reference stroke against itself at kEasyShare.
+inline constexpr double kEasyShare = 0.5;
+std::vector<StudyTrial> plan_discrimination_training(const std::string& code, double reference_mean_N);
+
 }  // namespace palpate

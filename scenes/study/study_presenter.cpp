@@ -1,7 +1,9 @@
 #include "scenes/study/study_presenter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -29,14 +31,23 @@ Status check_study_timing(const StudyTiming& timing) {
   return {};
 }
 
-std::uint64_t StudyPresenter::present(double first_N, double second_N) noexcept {
-  orders_.write({++ordered_, first_N, second_N});
+double interval_share(const StudyTiming& timing, std::uint32_t tick) noexcept {
+  const std::uint32_t left = timing.interval() - 1 - tick;
+  const std::uint32_t from_edge = tick < left ? tick : left;
+  if (from_edge >= timing.ramp) return 1.0;
+  return 0.5 - 0.5 * std::cos(kPi * static_cast<double>(from_edge) / static_cast<double>(timing.ramp));
+}
+
+std::uint64_t StudyPresenter::present(const Pushes& pushes) noexcept {
+  orders_.write({++ordered_, pushes});
   return ordered_;
 }
 
 std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
   switch (phase) {
     case PresentationPhase::lead_in: return timing_.lead_in;
+    case PresentationPhase::reminder: return order_.pushes.has_reminder ? timing_.interval() : 0;
+    case PresentationPhase::reminder_pause: return order_.pushes.has_reminder ? timing_.pause : 0;
     case PresentationPhase::first:
     case PresentationPhase::second: return timing_.interval();
     case PresentationPhase::pause: return timing_.pause;
@@ -44,17 +55,28 @@ std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
   }
 }
 
-bool StudyPresenter::is_held() const noexcept {
-  const bool interval = state_.phase == PresentationPhase::first || state_.phase == PresentationPhase::second;
-  return interval && in_phase_ >= timing_.ramp && in_phase_ < timing_.ramp + timing_.hold;
+const Push* StudyPresenter::push() const noexcept {
+  switch (state_.phase) {
+    case PresentationPhase::reminder: return &order_.pushes.reminder;
+    case PresentationPhase::first: return &order_.pushes.first;
+    case PresentationPhase::second: return &order_.pushes.second;
+    default: return nullptr;
+  }
 }
 
-// Of the full force, within an interval.
-double StudyPresenter::share() const noexcept {
-  const std::uint32_t left = timing_.interval() - 1 - in_phase_;
-  const std::uint32_t from_edge = in_phase_ < left ? in_phase_ : left;
-  if (from_edge >= timing_.ramp) return 1.0;
-  return 0.5 - 0.5 * std::cos(kPi * static_cast<double>(from_edge) / static_cast<double>(timing_.ramp));
+bool StudyPresenter::is_held() const noexcept {
+  return push() != nullptr && in_phase_ >= timing_.ramp && in_phase_ < timing_.ramp + timing_.hold;
+}
+
+double StudyPresenter::wanted_N() const noexcept {
+  const Push* now = push();
+  if (now == nullptr) return 0.0;
+  const double force_N = now->size * interval_share(timing_, in_phase_);
+  if (now->kind == PushKind::constant) return force_N;
+  if (strokes_ == nullptr) return 0.0;
+  const std::vector<double>& stroke_N =
+      now->kind == PushKind::reference ? strokes_->reference_N : strokes_->comparison_N;
+  return in_phase_ < stroke_N.size() ? force_N * stroke_N[in_phase_] : 0.0;
 }
 
 void StudyPresenter::take_orders() noexcept {
@@ -66,16 +88,21 @@ void StudyPresenter::take_orders() noexcept {
   order_ = orders_.value();
   state_.presentation = order_.presentation;
   state_.phase = PresentationPhase::lead_in;
-  state_.first_rendered_N = state_.second_rendered_N = 0.0;
+  state_.first_rendered_N = state_.second_rendered_N = state_.reminder_rendered_N = 0.0;
+  state_.worst_N = 0.0;
   state_.limited = false;
   in_phase_ = 0;
 }
 
-// Adds the last tick's force to the mean of its interval.
+// Takes in what became of the last tick's force.
 void StudyPresenter::record(double rendered_N) noexcept {
-  if (!sent_held_ || !std::isfinite(rendered_N)) return;
-  const double share = rendered_N / static_cast<double>(timing_.hold);
-  (sent_phase_ == PresentationPhase::first ? state_.first_rendered_N : state_.second_rendered_N) += share;
+  if (!sent_push_ || !std::isfinite(rendered_N)) return;
+  state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - sent_wanted_N_));
+  if (!sent_held_) return;
+  double& mean_N = sent_phase_ == PresentationPhase::first    ? state_.first_rendered_N
+                   : sent_phase_ == PresentationPhase::second ? state_.second_rendered_N
+                                                              : state_.reminder_rendered_N;
+  mean_N += rendered_N / static_cast<double>(timing_.hold);
 }
 
 void StudyPresenter::advance() noexcept {
@@ -89,17 +116,15 @@ void StudyPresenter::advance() noexcept {
 
 double StudyPresenter::tick(double rendered_N) noexcept {
   record(rendered_N);
-  sent_held_ = false;
   take_orders();
   advance();
-  double wanted_N = 0.0;
-  if (state_.phase == PresentationPhase::first) wanted_N = order_.first_N * share();
-  if (state_.phase == PresentationPhase::second) wanted_N = order_.second_N * share();
-  state_.force_N = limiter_.limit(wanted_N, kStudyTick_s);
+  sent_wanted_N_ = wanted_N();
+  state_.force_N = limiter_.limit(sent_wanted_N_, kStudyTick_s);
   if (limiter_.flags() & (force_limit::kClamped | force_limit::kSlewed | force_limit::kNotFinite)) {
     state_.limited = true;
   }
   sent_phase_ = state_.phase;
+  sent_push_ = push() != nullptr;
   sent_held_ = is_held();
   ++in_phase_;
   ++state_.tick;

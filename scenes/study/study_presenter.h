@@ -1,12 +1,14 @@
-// Two forces one after the other, exact to the tick.
+// Two forces one after the other, exact to the tick; before them a third to compare
+// them with, when there is one.
 //
-//   idle --present--> lead_in -> first -> pause -> second -> finished --present--> ...
+//   idle --present--> lead_in [-> reminder -> pause] -> first -> pause -> second
+//        -> finished --present--> ...
 //   any  --stop-----> stopped, for good
 //
-// Time is counted in ticks of 1 ms, never read from a clock. Within `first` and
-// `second` the force rises for `ramp` ticks as half a cosine, stays for `hold` and
-// falls for `ramp`; everywhere else it is zero, so that no force outlasts the one
-// interval whatever the slow side does. Behind it a ForceLimiter has the last word:
+// Time is counted in ticks of 1 ms, never read from a clock. Within an interval the
+// force, constant or one of a pair of strokes, is let in for `ramp` ticks as half a
+// cosine, let through for `hold` and taken away for `ramp`; everywhere else it is zero,
+// so that no force outlasts the one interval whatever the slow side does. Behind it a ForceLimiter has the last word:
 // 4 N at most, 100 N/s at most, which also takes the force away gently (40 ms at
 // most) when the presentation is stopped in the middle.
 // Positive forces push towards the hand.
@@ -16,10 +18,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <utility>
 
 #include "engine/force_limiter.h"
 #include "engine/result.h"
 #include "engine/triple_buffer.h"
+#include "scenes/study/stroke_pair.h"
 
 namespace palpate {
 
@@ -36,6 +41,7 @@ struct StudyTiming {
   std::uint32_t pause = 500;
 
   std::uint32_t interval() const noexcept { return 2 * ramp + hold; }
+  // Without a reminder.
   std::uint32_t presentation() const noexcept { return lead_in + 2 * interval() + pause; }
   bool operator==(const StudyTiming&) const = default;
 };
@@ -44,7 +50,25 @@ struct StudyTiming {
 // hold, a force above the time cap, a lead-in or pause above a minute.
 Status check_study_timing(const StudyTiming& timing);
 
-enum class PresentationPhase : std::uint8_t { idle, lead_in, first, pause, second, finished, stopped };
+// How much of the force is let through at the tick of an interval.
+double interval_share(const StudyTiming& timing, std::uint32_t tick) noexcept;
+
+// What an interval presents: a force of `size` newtons, or a stroke `size` times.
+enum class PushKind : std::uint8_t { constant, reference, comparison };
+struct Push {
+  double size = 0.0;
+  PushKind kind = PushKind::constant;
+};
+struct Pushes {
+  Push first;
+  Push second;
+  bool has_reminder = false;
+  Push reminder;
+};
+
+enum class PresentationPhase : std::uint8_t {
+  idle, lead_in, reminder, reminder_pause, first, pause, second, finished, stopped
+};
 
 struct PresentationState {
   std::uint64_t presentation = 0;  // which; 0: none yet
@@ -55,17 +79,21 @@ struct PresentationState {
   // What was rendered: the mean over the ticks of `hold`.
   double first_rendered_N = 0.0;
   double second_rendered_N = 0.0;
+  double reminder_rendered_N = 0.0;
+  double worst_N = 0.0;  // largest distance of what was rendered from what it should be
   bool limited = false;  // a force of this presentation was held back
 };
 
 class StudyPresenter {
  public:
-  // `timing`: one that check_study_timing accepts.
-  explicit StudyPresenter(const StudyTiming& timing) noexcept : timing_(timing), limiter_(kLimits) {}
+  // `timing`: one that check_study_timing accepts. `strokes`: forces for each tick of
+  // an interval, or null when all pushes are constant.
+  explicit StudyPresenter(const StudyTiming& timing, std::shared_ptr<const StrokePair> strokes = nullptr) noexcept
+      : timing_(timing), strokes_(std::move(strokes)), limiter_(kLimits) {}
 
   // Slow side. Begins a presentation at the next tick (one that runs is given up);
   // returns its number.
-  std::uint64_t present(double first_N, double second_N) noexcept;
+  std::uint64_t present(const Pushes& pushes) noexcept;
   void stop() noexcept { stopped_.store(true, std::memory_order_release); }
   const PresentationState& newest() noexcept { return states_.newest(); }
 
@@ -77,17 +105,18 @@ class StudyPresenter {
   static constexpr ForceLimits kLimits{kLargestStudyForce_N, kFastestStudyForce_N_per_s, 0.0};
   struct Order {
     std::uint64_t presentation = 0;
-    double first_N = 0.0;
-    double second_N = 0.0;
+    Pushes pushes;
   };
   std::uint32_t length(PresentationPhase phase) const noexcept;
+  const Push* push() const noexcept;  // of this phase; null: none
   bool is_held() const noexcept;
-  double share() const noexcept;
+  double wanted_N() const noexcept;
   void take_orders() noexcept;
   void record(double rendered_N) noexcept;
   void advance() noexcept;
 
   StudyTiming timing_;
+  std::shared_ptr<const StrokePair> strokes_;
   TripleBuffer<Order> orders_;
   TripleBuffer<PresentationState> states_;
   std::atomic<bool> stopped_{false};
@@ -99,6 +128,8 @@ class StudyPresenter {
   PresentationState state_;
   std::uint32_t in_phase_ = 0;  // ticks since the phase began
   PresentationPhase sent_phase_ = PresentationPhase::idle;  // of the force sent last
+  double sent_wanted_N_ = 0.0;
+  bool sent_push_ = false;
   bool sent_held_ = false;
 };
 

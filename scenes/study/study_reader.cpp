@@ -3,7 +3,10 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
+#include <memory>
 #include <sstream>
+#include <utility>
 
 #include "engine/json_position.h"
 #include "scenes/study/study_file.h"
@@ -12,6 +15,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kColumnCount = 10;
+constexpr std::size_t kMostColumns = 12;  // with strokes
 
 template <typename T>
 bool read_number(std::string_view text, T& value) {
@@ -28,14 +32,20 @@ class StudyReader {
     data_.header.subject = take_line("# subject ");
     if (!check_subject_code(data_.header.subject)) return refuse("\"# subject \" and a code such as S01");
     const Result<ProcedureKind> procedure = find_procedure(take_line("# procedure "));
-    if (!procedure) return refuse("\"# procedure constant\" or \"# procedure adaptive\"");
+    if (!procedure) return refuse("\"# procedure \" and constant, adaptive or discriminate");
     data_.header.procedure = *procedure;
     if (!read_timing(take_line("# timing_ms "))) {
       return refuse("\"# timing_ms lead_in 400 ramp 100 hold 900 pause 500\" or such");
     }
+    const bool strokes = *procedure == ProcedureKind::discriminate;
+    if (strokes) {
+      if (const Status read = read_strokes(); !read) return read.error();
+      columns_ = kMostColumns;
+    }
     data_.consent = take_line("# consent accepted, ");
     if (failed_) return refuse("\"# consent accepted, \" and which text");
-    if (take_line(kStudyColumns) != "") return refuse("the columns " + std::string(kStudyColumns));
+    const std::string columns = study_columns(*procedure);
+    if (take_line(columns) != "") return refuse("the columns " + columns);
     data_.whole_bytes = next_;
     while (text_.find('\n', next_) != std::string_view::npos) {
       if (const Status row = read_row(); !row) return row.error();
@@ -67,29 +77,63 @@ class StudyReader {
                  "\", expected " + expected};
   }
 
-  bool read_timing(const std::string& text) {
-    StudyTiming& timing = data_.header.timing;
-    std::istringstream words(text);
-    const std::array<std::pair<const char*, std::uint32_t*>, 4> parts = {
-        {{"lead_in", &timing.lead_in}, {"ramp", &timing.ramp}, {"hold", &timing.hold}, {"pause", &timing.pause}}};
+  // "name number name number ..." in this order.
+  template <typename T>
+  static bool read_named(std::istream& words, std::initializer_list<std::pair<const char*, T*>> parts) {
     for (const auto& part : parts) {
       std::string name, number;
       words >> name >> number;
       if (name != part.first || !read_number(number, *part.second)) return false;
     }
-    return check_study_timing(timing).ok();
+    return true;
+  }
+
+  bool read_timing(const std::string& text) {
+    StudyTiming& timing = data_.header.timing;
+    std::istringstream words(text);
+    return read_named<std::uint32_t>(words, {{"lead_in", &timing.lead_in}, {"ramp", &timing.ramp},
+                                             {"hold", &timing.hold}, {"pause", &timing.pause}}) &&
+           check_study_timing(timing).ok();
+  }
+
+  Status read_strokes() {
+    StrokePair strokes;
+    strokes.reference = take_line("# reference ");
+    if (failed_) return refuse("\"# reference \" and whose force");
+    strokes.comparison = take_line("# comparison ");
+    if (failed_) return refuse("\"# comparison \" and whose force");
+    std::istringstream stroke(take_line("# stroke "));
+    std::string of;
+    const bool placed = read_named<double>(stroke, {{"from_s", &strokes.from_s}, {"to_s", &strokes.to_s}}) &&
+                        stroke >> of && of == "of" && stroke.get() == ' ';
+    if (!placed || !std::getline(stroke, strokes.recording)) return refuse("\"# stroke from_s 1.5 to_s 3 of \" and a recording");
+    std::istringstream forces(take_line("# forces "));
+    if (!read_named<double>(forces, {{"reference_mean_N", &strokes.reference_mean_N},
+                                     {"comparison_mean_N", &strokes.comparison_mean_N}}) ||
+        !read_named<std::uint32_t>(forces, {{"checksum", &strokes.checksum}})) {
+      return refuse("\"# forces reference_mean_N 1.2 comparison_mean_N 1.3 checksum 4711\" or such");
+    }
+    std::istringstream predicted(take_line("# predicted "));
+    if (!read_named<double>(predicted, {{"mean_over_jnd", &strokes.mean_over_jnd},
+                                        {"max_over_jnd", &strokes.max_over_jnd},
+                                        {"jnd_offset_N", &strokes.jnd.offset_N},
+                                        {"jnd_weber_fraction", &strokes.jnd.weber_fraction}})) {
+      return refuse("\"# predicted mean_over_jnd 0.2 max_over_jnd 0.9 jnd_offset_N 0.065 jnd_weber_fraction 0.0633\" or such");
+    }
+    data_.header.strokes = std::make_shared<const StrokePair>(std::move(strokes));
+    return {};
   }
 
   Status read_row() {
     const std::size_t end = text_.find('\n', next_);
-    std::array<std::string_view, kColumnCount> fields;
-    std::array<std::size_t, kColumnCount> offsets{};
+    std::array<std::string_view, kMostColumns> fields;
+    std::array<std::size_t, kMostColumns> offsets{};
     std::size_t at = next_;
-    for (std::size_t i = 0; i < kColumnCount; ++i) {
+    for (std::size_t i = 0; i < columns_; ++i) {
       const std::size_t comma = text_.find(',', at);
       const std::size_t stop = comma == std::string_view::npos || comma > end ? end : comma;
-      if ((stop == end) != (i + 1 == kColumnCount)) {
-        return refuse_at(next_, text_.substr(next_, end - next_), "a row of ten fields");
+      if ((stop == end) != (i + 1 == columns_)) {
+        return refuse_at(next_, text_.substr(next_, end - next_), columns_ == kColumnCount ? "a row of ten fields" : "a row of twelve fields");
       }
       fields[i] = text_.substr(at, stop - at);
       offsets[i] = at;
@@ -99,13 +143,13 @@ class StudyReader {
     return take_fields(fields, offsets);
   }
 
-  Status take_fields(const std::array<std::string_view, kColumnCount>& fields,
-                     const std::array<std::size_t, kColumnCount>& offsets) {
+  Status take_fields(const std::array<std::string_view, kMostColumns>& fields,
+                     const std::array<std::size_t, kMostColumns>& offsets) {
     StudyRecord record;
-    std::size_t wrong = kColumnCount;
+    std::size_t wrong = kMostColumns;
     std::string expected;
     const auto check = [&](std::size_t field, bool good, const char* words) {
-      if (good || wrong < kColumnCount) return;
+      if (good || wrong < kMostColumns) return;
       wrong = field;
       expected = words;
     };
@@ -128,7 +172,11 @@ class StudyReader {
     record.limited = flag(7, "0", "1", "0 or 1");
     record.answered_second = flag(8, "first", "second", "first or second");
     check(9, read_number(fields[9], record.response_ms), "a whole number of ms");
-    if (wrong < kColumnCount) return refuse_at(offsets[wrong], fields[wrong], expected);
+    if (columns_ == kMostColumns) {
+      record.reminder_rendered_N = force(10, 0.0);
+      record.worst_N = force(11, 0.0);
+    }
+    if (wrong < kMostColumns) return refuse_at(offsets[wrong], fields[wrong], expected);
     data_.records.push_back(record);
     return {};
   }
@@ -136,6 +184,7 @@ class StudyReader {
   std::string_view text_;
   const std::string& path_;
   StudyData data_;
+  std::size_t columns_ = kColumnCount;
   std::size_t next_ = 0;
   std::size_t line_start_ = 0;
   bool failed_ = false;

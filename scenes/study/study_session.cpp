@@ -17,18 +17,35 @@ Error unexpected_answer(const StudyRecord& record) {
                "version, or changed? Start a new file"};
 }
 
+Status check_strokes(const StudyHeader& header) {
+  if (header.procedure != ProcedureKind::discriminate) return {};
+  const std::size_t expected = header.timing.interval();
+  if (header.strokes != nullptr && header.strokes->reference_N.size() == expected &&
+      header.strokes->comparison_N.size() == expected) {
+    return {};
+  }
+  return Error{"found no two strokes of " + std::to_string(expected) + " ms, expected them to be told apart"};
+}
+
 }  // namespace
 
-const std::string& study_consent_text() {
-  static const std::string kText =
+const std::string& study_consent_text(ProcedureKind procedure) {
+  static const std::string kBegin =
       "In this study you hold a device that pushes gently against your hand, with at most 4 N (the weight "
-      "of 400 g). Each time you feel two pushes, one after the other, and say which was the larger. Hold "
-      "your hand still. There are breaks.\n"
+      "of 400 g). ";
+  static const std::string kEnd =
+      " Hold your hand still. There are breaks.\n"
       "Stored are your answers, how long they took and the code that you were given; not your name.\n"
       "Taking part is voluntary. You can stop at any time and without a reason with the abort key; the "
       "force then goes away at once.\n"
       "Do you agree to take part?";
-  return kText;
+  static const std::string kForces =
+      kBegin + "Each time you feel two pushes, one after the other, and say which was the larger." + kEnd;
+  static const std::string kStrokes =
+      kBegin +
+      "Each time you feel three pushes, one after the other, and say which of the last two was like the first." +
+      kEnd;
+  return procedure == ProcedureKind::discriminate ? kStrokes : kForces;
 }
 
 double StudyRecord::rendered_difference() const noexcept {
@@ -42,6 +59,7 @@ Result<std::unique_ptr<StudySession>> StudySession::create(const StudyHeader& he
                                                            std::uint64_t rest_ticks) {
   if (const Status code = check_subject_code(header.subject); !code) return code.error();
   if (const Status timing = check_study_timing(header.timing); !timing) return timing.error();
+  if (const Status strokes = check_strokes(header); !strokes) return strokes.error();
   std::unique_ptr<StudySession> session(new StudySession(header, std::move(store), rest_ticks));
   if (const Status resumed = session->resume(); !resumed) return resumed.error();
   return session;
@@ -51,9 +69,9 @@ StudySession::StudySession(const StudyHeader& header, std::unique_ptr<StudyStore
     : header_(header),
       store_(std::move(store)),
       rest_ticks_(rest_ticks),
-      training_(plan_training_trials(header.subject)),
-      procedure_(StudyProcedure::create(header.procedure, header.subject)),
-      presenter_(header.timing) {}
+      procedure_(StudyProcedure::create(header.procedure, header.subject, header.strokes.get())),
+      training_(procedure_->training()),
+      presenter_(header.timing, header.strokes) {}
 
 // Gives the stored answers again; each must be to the trial of the plan.
 Status StudySession::resume() {
@@ -75,7 +93,7 @@ Status StudySession::resume() {
 
 void StudySession::accept_consent(const std::string& when) {
   if (state_ != StudyState::consent) return;
-  const Status written = store_->consent(study_consent_text(), when);
+  const Status written = store_->consent(study_consent_text(header_.procedure), when);
   problem_ = written ? "" : written.error().message;
   if (written) state_ = StudyState::ready;
 }
@@ -87,7 +105,7 @@ void StudySession::proceed() {
 
 void StudySession::present_next() {
   trial_ = training() ? training_[trained_] : procedure_->next();
-  presentation_ = presenter_.present(trial_.first_N(), trial_.second_N());
+  presentation_ = presenter_.present(procedure_->pushes(trial_, training()));
   state_ = StudyState::presenting;
 }
 
@@ -99,7 +117,7 @@ void StudySession::update() {
   }
 }
 
-void StudySession::answer(bool second_was_larger) {
+void StudySession::answer(bool second) {
   if (state_ != StudyState::answering) return;
   const PresentationState& seen = presenter_.newest();
   record_ = {};
@@ -108,8 +126,12 @@ void StudySession::answer(bool second_was_larger) {
   record_.trial = trial_;
   record_.first_rendered_N = to_tenth_mN(seen.first_rendered_N);
   record_.second_rendered_N = to_tenth_mN(seen.second_rendered_N);
+  if (header_.strokes != nullptr) {
+    record_.reminder_rendered_N = to_tenth_mN(seen.reminder_rendered_N);
+    record_.worst_N = to_tenth_mN(seen.worst_N);
+  }
   record_.limited = seen.limited;
-  record_.answered_second = second_was_larger;
+  record_.answered_second = second;
   record_.response_ms = static_cast<std::uint32_t>(
       std::min<std::uint64_t>(seen.tick - seen.finished_at, std::numeric_limits<std::uint32_t>::max()));
   save();
@@ -134,7 +156,7 @@ void StudySession::save() {
 void StudySession::go_on() {
   if (record_.training) {
     has_feedback_ = true;
-    was_correct_ = record_.correct();
+    was_correct_ = header_.strokes != nullptr ? record_.found_reference() : record_.found_larger();
     ++trained_;
     if (training()) return present_next();
     state_ = StudyState::ready;
@@ -171,32 +193,41 @@ StudyView StudySession::view() {
   view.has_feedback = has_feedback_;
   view.was_correct = was_correct_;
   const PresentationState& seen = presenter_.newest();
+  view.has_reminder = header_.strokes != nullptr;
   if (state_ == StudyState::presenting && seen.presentation == presentation_) {
+    view.reminder = seen.phase == PresentationPhase::reminder;
     view.interval = seen.phase == PresentationPhase::first ? 1 : seen.phase == PresentationPhase::second ? 2 : 0;
   }
   if (state_ == StudyState::rest) {
     const std::uint64_t until = rest_from_ + rest_ticks_;
     view.rest_ticks_left = until > seen.tick ? until - seen.tick : 0;
   }
-  switch (state_) {
-    case StudyState::consent: view.message = problem_.empty() ? study_consent_text() : problem_; break;
-    case StudyState::ready:
-      view.message = view.training ? "First a few trials to learn the task. Which push was larger? Go on when you are ready."
-                                   : "Now the study itself. Go on when you are ready.";
-      break;
-    case StudyState::presenting:
-      view.message = view.interval == 1 ? "First push" : view.interval == 2 ? "Second push" : "Hold still";
-      break;
-    case StudyState::answering: view.message = "Which push was larger, the first or the second?"; break;
-    case StudyState::unsaved: view.message = "Your answer could not be stored: " + problem_ + ". Call the experimenter."; break;
-    case StudyState::rest: view.message = "A break. Relax your hand; go on when you are ready."; break;
-    case StudyState::done: view.message = "That was all. Thank you!"; break;
-    case StudyState::aborted:
-      view.message = problem_.empty() ? "The session was ended; all answers are stored."
-                                      : "The session was ended; the last answer could not be stored: " + problem_;
-      break;
-  }
+  view.message = message(view);
   return view;
+}
+
+std::string StudySession::message(const StudyView& view) const {
+  switch (state_) {
+    case StudyState::consent: return problem_.empty() ? study_consent_text(header_.procedure) : problem_;
+    case StudyState::ready:
+      if (!view.training) return "Now the study itself. Go on when you are ready.";
+      return view.has_reminder ? "First a few trials to learn the task. Which of the two pushes was like the "
+                                 "reference? Go on when you are ready."
+                               : "First a few trials to learn the task. Which push was larger? Go on when you are ready.";
+    case StudyState::presenting:
+      if (view.reminder) return "The reference";
+      return view.interval == 1 ? "First push" : view.interval == 2 ? "Second push" : "Hold still";
+    case StudyState::answering:
+      return view.has_reminder ? "Which was like the reference, 1 or 2?"
+                               : "Which push was larger, the first or the second?";
+    case StudyState::unsaved: return "Your answer could not be stored: " + problem_ + ". Call the experimenter.";
+    case StudyState::rest: return "A break. Relax your hand; go on when you are ready.";
+    case StudyState::done: return "That was all. Thank you!";
+    case StudyState::aborted:
+      return problem_.empty() ? "The session was ended; all answers are stored."
+                              : "The session was ended; the last answer could not be stored: " + problem_;
+  }
+  return {};
 }
 
 }  // namespace palpate

@@ -30,7 +30,7 @@
 namespace palpate {
 
 // What a subject reads before anything else.
-const std::string& study_consent_text();
+const std::string& study_consent_text(ProcedureKind procedure);
 
 enum class StudyState : std::uint8_t {
   consent, ready, presenting, answering, unsaved, rest, done, aborted
@@ -42,7 +42,9 @@ struct StudyView {
   bool training = false;
   std::size_t answered = 0;  // of this part: training or study
   std::size_t trials = 0;    // of this part
-  int interval = 0;          // 1 or 2 while that force is presented, else 0
+  bool has_reminder = false;  // before the two forces comes one to compare with
+  bool reminder = false;      // it is presented now
+  int interval = 0;           // 1 or 2 while that force is presented, else 0
   std::uint64_t rest_ticks_left = 0;
   bool has_feedback = false;  // in the training, after an answer
   bool was_correct = false;
@@ -54,7 +56,8 @@ class StudySession {
   static constexpr std::uint64_t kRest_ticks = 30000;
 
   // Takes up where `store` ends. Errors: a code that is none, a timing that is not
-  // accepted, answers in the store that this plan did not ask for.
+  // accepted, strokes that do not fill it, answers in the store that this plan did not
+  // ask for.
   static Result<std::unique_ptr<StudySession>> create(const StudyHeader& header,
                                                       std::unique_ptr<StudyStore> store,
                                                       std::uint64_t rest_ticks = kRest_ticks);
@@ -63,7 +66,7 @@ class StudySession {
   void accept_consent(const std::string& when);
   void proceed();  // leaves `ready`, and `rest` when it has lasted
   void update();   // takes in what the ticks did
-  void answer(bool second_was_larger);
+  void answer(bool second);  // it was the larger, or the one like the reminder
   void retry();    // in `unsaved`
   void abort();
 
@@ -73,6 +76,7 @@ class StudySession {
   const StudyStore& store() const noexcept { return *store_; }
   // What is being presented or asked about.
   const StudyTrial& trial() const noexcept { return trial_; }
+  bool training() const noexcept { return trained_ < training_.size(); }
   const PresentationState& presentation() noexcept { return presenter_.newest(); }
 
   // Haptics thread; see StudyPresenter.
@@ -81,7 +85,7 @@ class StudySession {
  private:
   StudySession(const StudyHeader& header, std::unique_ptr<StudyStore> store, std::uint64_t rest_ticks);
   Status resume();
-  bool training() const noexcept { return trained_ < training_.size(); }
+  std::string message(const StudyView& view) const;
   void present_next();
   void save();
   void go_on();
@@ -89,8 +93,8 @@ class StudySession {
   StudyHeader header_;
   std::unique_ptr<StudyStore> store_;
   std::uint64_t rest_ticks_;
-  std::vector<StudyTrial> training_;
   std::unique_ptr<StudyProcedure> procedure_;
+  std::vector<StudyTrial> training_;
   StudyPresenter presenter_;
 
   StudyState state_ = StudyState::consent;

@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/result.h"
+#include "scenes/study/stroke_pair.h"
 #include "scenes/study/study_plan.h"
 #include "scenes/study/study_presenter.h"
 #include "scenes/study/study_procedure.h"
@@ -20,6 +22,7 @@ struct StudyHeader {
   std::string subject;
   ProcedureKind procedure = ProcedureKind::constant;
   StudyTiming timing;
+  std::shared_ptr<const StrokePair> strokes = nullptr;  // of ProcedureKind::discriminate
 };
 
 // One answered trial.
@@ -30,11 +33,14 @@ struct StudyRecord {
   double first_rendered_N = 0.0;  // mean while held, to 0.1 mN
   double second_rendered_N = 0.0;
   bool limited = false;
-  bool answered_second = false;  // "the second was larger"
+  bool answered_second = false;  // "the second was larger", or "it was like the reminder"
   std::uint32_t response_ms = 0;  // from the end of the second force
+  double reminder_rendered_N = 0.0;  // these two with strokes only
+  double worst_N = 0.0;              // at any tick away from what it should be, to 0.1 mN
 
   bool comparison_judged_larger() const noexcept { return answered_second != trial.comparison_first; }
-  bool correct() const noexcept { return answered_second == (trial.second_N() > trial.first_N()); }
+  bool found_larger() const noexcept { return answered_second == (trial.second_N() > trial.first_N()); }
+  bool found_reference() const noexcept { return answered_second == trial.comparison_first; }
   // The difference that was rendered, relative to the reference that was.
   double rendered_difference() const noexcept;
   bool operator==(const StudyRecord&) const = default;

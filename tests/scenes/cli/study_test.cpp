@@ -80,11 +80,41 @@ TEST(Study, RecoveryPrintsBothProcedures) {
   EXPECT_NE(run.out.find("adaptive"), std::string::npos);
 }
 
+TEST(Study, StrokesAreToldApartByASimulatedHand) {
+  const test::TemporaryFolder folder;
+  const std::string foam = folder.file("foam.csv"), out = folder.file("out");
+  ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "20", "--out", foam}).exit_code, 0);
+  const auto run = run_palpate({"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_NE(run.out.find("comparison   greedy-100\nstroke       foam, "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("Predicted above the JND"), std::string::npos) << "a model of silicone against foam: " << run.out;
+  EXPECT_NE(run.out.find("one JND: consistent."), std::string::npos) << run.out;
+  const auto data = read_study(out + "/S02.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->records.size(), 104u);
+
+  const auto again = run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", "--out", folder.file("again")});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, run.out);
+  EXPECT_EQ(test::read_text(folder.file("again/results.csv")), test::read_text(out + "/results.csv"));
+}
+
+TEST(Study, StrokesOfTheSceneNeedNoFile) {
+  const test::TemporaryFolder folder;
+  const auto run = run_palpate({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("reference    recorded force\ncomparison   greedy-100\nstroke       silicone_2, "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("Predicted below the JND"), std::string::npos) << run.out;
+}
+
 TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--procedure", "staircase"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "analyse", "--out", "x"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--model", "greedy"}).exit_code, 2) << "needs --discriminate";
+  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--discriminate", "--procedure", "adaptive"}).exit_code, 2);
   const auto missing = run_palpate({"study", "analyse", "/none/S01.csv", "--out", "/none/out"});
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_EQ(missing.err, "error: cannot read the study file /none/S01.csv; does it exist?\n");

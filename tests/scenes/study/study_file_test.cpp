@@ -70,7 +70,7 @@ TEST(StudyFile, IsTakenUpWhereItEnded) {
   EXPECT_EQ(file->records(), std::vector<StudyRecord>{example()});
   EXPECT_EQ(read_text(path), whole);
   ASSERT_TRUE(file->append(example()).ok());
-  EXPECT_EQ(read_text(path), whole + study_row(example()));
+  EXPECT_EQ(read_text(path), whole + study_row(example(), ProcedureKind::constant));
 }
 
 TEST(StudyFile, AHeaderThatWasCutOffIsWrittenAnew) {
@@ -174,6 +174,57 @@ TEST(StudyFile, AKilledSessionIsResumed) {
   EXPECT_EQ((*session)->view().answered, 12u);
   test::answer_trials(**session, 1, test::truly_larger);
   EXPECT_EQ(read_study(path)->records.back().number, 13u);
+}
+
+TEST(StudyFile, StrokesAreNamedAndTakenUpWhereTheyEnded) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("S01.csv");
+  const StudyHeader header = test::discrimination_header(0.8);
+  std::vector<StudyRecord> answered;
+  {
+    auto file = StudyFile::open(path, header);
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    auto session = StudySession::create(header, std::move(*file), 0);
+    ASSERT_TRUE(session.ok()) << session.error().message;
+    (*session)->accept_consent("");
+    test::answer_trials(**session, 11, test::truly_like);
+    answered = (*session)->store().records();
+  }
+  const std::string whole = read_text(path);
+  EXPECT_EQ(whole.substr(0, whole.find("# predicted")),
+            "# palpate-study 1\n# subject S01\n# procedure discriminate\n"
+            "# timing_ms lead_in 5 ramp 60 hold 20 pause 5\n"
+            "# reference recorded force\n# comparison greedy-100\n# stroke from_s 12.3 to_s 12.44 of silicone 2\n"
+            "# forces reference_mean_N 1.695 comparison_mean_N 1.356 checksum 800\n");
+  folder.with_file("S01.csv", whole + "study,8,1.69");  // a power cut
+  auto file = StudyFile::open(path, header);
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  EXPECT_EQ((*file)->records(), answered);
+  auto session = StudySession::create(header, std::move(*file), 0);
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  EXPECT_EQ((*session)->view().answered, 7u);
+  test::answer_trials(**session, 1000, test::truly_like);
+  session->reset();
+  const auto data = read_study(path);
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->records.size(), 4 + kDiscriminationTrials);
+  EXPECT_TRUE(same_strokes(*data->header.strokes, *header.strokes));
+  EXPECT_EQ(data->header.strokes->max_over_jnd, header.strokes->max_over_jnd);
+}
+
+TEST(StudyFile, OtherStrokesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("S01.csv");
+  {
+    auto file = StudyFile::open(path, test::discrimination_header(0.8));
+    ASSERT_TRUE(file.ok() && (*file)->consent("", "").ok());
+  }
+  const auto other = StudyFile::open(path, test::discrimination_header(0.9));
+  ASSERT_FALSE(other.ok());
+  EXPECT_EQ(other.error().message,
+            path + ": found strokes of \"recorded force\" and \"greedy-100\" in silicone 2, expected those of this "
+                   "session, \"recorded force\" and \"greedy-100\" in silicone 2, with the same forces; take another "
+                   "folder or subject code");
 }
 
 }  // namespace

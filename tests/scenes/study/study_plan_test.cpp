@@ -67,5 +67,24 @@ TEST(StudyPlan, AdaptiveSlotsAreAQuarterAndBalanced) {
   }
 }
 
+TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
+  for (const char* code : {"S01", "S02", "AB1234"}) {
+    const std::vector<StudyTrial> trials = plan_discrimination_trials(code, 1.2, 1.3);
+    ASSERT_EQ(trials.size(), kDiscriminationTrials);
+    for (std::size_t from = 0; from < trials.size(); from += kDiscriminationBlock) {
+      const auto block = trials.begin() + static_cast<std::ptrdiff_t>(from);
+      EXPECT_EQ(std::count_if(block, block + kDiscriminationBlock, [](const StudyTrial& trial) { return trial.comparison_first; }),
+                static_cast<std::ptrdiff_t>(kDiscriminationBlock / 2));
+    }
+    EXPECT_EQ(trials[7].reference_N, 1.2);
+    EXPECT_EQ(trials[7].comparison_N, 1.3);
+    EXPECT_EQ(trials, plan_discrimination_trials(code, 1.2, 1.3));
+  }
+  EXPECT_NE(plan_discrimination_trials("S01", 1.2, 1.3), plan_discrimination_trials("S02", 1.2, 1.3));
+  const std::vector<StudyTrial> training = plan_discrimination_training("S01", 1.2);
+  ASSERT_EQ(training.size(), 4u);
+  EXPECT_EQ(training[0].comparison_N, 0.6);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -37,7 +37,7 @@ TEST(StudyProcedure, KnowsItsNames) {
   EXPECT_EQ(*find_procedure("constant"), ProcedureKind::constant);
   EXPECT_EQ(*find_procedure(procedure_name(ProcedureKind::adaptive)), ProcedureKind::adaptive);
   EXPECT_EQ(find_procedure("staircase").error().message,
-            "found the procedure \"staircase\", expected constant or adaptive");
+            "found the procedure \"staircase\", expected constant, adaptive or discriminate");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/study/study_file.h"
+#include "tests/support/study_driving.h"
 
 namespace palpate {
 namespace {
@@ -35,9 +36,9 @@ TEST(StudyReader, ReadsEveryField) {
   EXPECT_EQ(record.first_rendered_N, 2.4);
   EXPECT_TRUE(record.limited);
   EXPECT_FALSE(record.comparison_judged_larger());
-  EXPECT_FALSE(record.correct());
+  EXPECT_FALSE(record.found_larger());
   EXPECT_DOUBLE_EQ(record.rendered_difference(), 1.1 / 2.4);
-  EXPECT_EQ(study_row(record), "study,1,2.5,3.5,0,2.4,3.5,1,first,20\n");
+  EXPECT_EQ(study_row(record, ProcedureKind::constant), "study,1,2.5,3.5,0,2.4,3.5,1,first,20\n");
 }
 
 TEST(StudyReader, IgnoresALastRowWithoutItsEnd) {
@@ -53,7 +54,7 @@ TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
   EXPECT_EQ(complaint_after("S01", "Anna"),
             "S01.csv:2:1: found \"# subject Anna\", expected \"# subject \" and a code such as S01");
   EXPECT_EQ(complaint_after("adaptive", "other"),
-            "S01.csv:3:1: found \"# procedure other\", expected \"# procedure constant\" or \"# procedure adaptive\"");
+            "S01.csv:3:1: found \"# procedure other\", expected \"# procedure \" and constant, adaptive or discriminate");
   EXPECT_EQ(complaint_after("ramp 60", "ramp 6"),
             "S01.csv:4:1: found \"# timing_ms lead_in 5 ramp 6 hold 20 pause 5\", expected \"# timing_ms lead_in 400 "
             "ramp 100 hold 900 pause 500\" or such");
@@ -80,6 +81,36 @@ TEST(StudyReader, EveryTruncationIsReadOrRefused) {
   for (std::size_t length = 0; length < kGood.size(); ++length) {
     const auto data = parse_study(std::string_view(kGood).substr(0, length), "S01.csv");
     EXPECT_TRUE(!data.ok() || data->whole_bytes <= length) << length;
+  }
+}
+
+TEST(StudyReader, RefusesWhatIsNotAPairOfStrokes) {
+  const StudyHeader header = test::discrimination_header(0.8);
+  const std::string good = study_header_text(header) + "# consent accepted, text 1\n" + study_columns(header.procedure) +
+                           "\nstudy,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001\n";
+  const auto data = parse_study(good, "S01.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->records.front().worst_N, 0.001);
+  EXPECT_EQ(study_row(data->records.front(), header.procedure), "study,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001\n");
+  EXPECT_EQ(data->header.strokes->recording, "silicone 2");
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    const auto changed = parse_study(text, "S01.csv");
+    return changed.ok() ? "accepted" : changed.error().message;
+  };
+  EXPECT_EQ(complaint("# reference ", "# "), "S01.csv:5:1: found \"# recorded force\", expected \"# reference \" and whose force");
+  EXPECT_EQ(complaint("to_s 12.44 of", "to_s of"),
+            "S01.csv:7:1: found \"# stroke from_s 12.3 to_s of silicone 2\", expected \"# stroke from_s 1.5 to_s 3 of \" and a recording");
+  EXPECT_EQ(complaint("checksum 800", "checksum -1"),
+            "S01.csv:8:1: found \"# forces reference_mean_N 1.695 comparison_mean_N 1.356 c...\", expected \"# forces "
+            "reference_mean_N 1.2 comparison_mean_N 1.3 checksum 4711\" or such");
+  EXPECT_NE(complaint("jnd_offset_N", "offset_N"), "accepted");
+  EXPECT_EQ(complaint(",1.7,0.001", ""), "S01.csv:12:1: found \"study,1,1.7,1.36,0,1.7,1.36,0,first,20\", expected a row of twelve fields");
+  EXPECT_EQ(complaint(",0.001\n", ",-1\n"), "S01.csv:12:44: found \"-1\", expected a force from 0 to 10 N");
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    const auto cut = parse_study(std::string_view(good).substr(0, length), "S01.csv");
+    EXPECT_TRUE(!cut.ok() || cut->whole_bytes <= length) << length;
   }
 }
 

@@ -41,7 +41,7 @@ TEST(StudySession, NothingIsPresentedBeforeTheConsent) {
   auto session = StudySession::create(header(), std::make_unique<MemoryStore>());
   ASSERT_TRUE(session.ok());
   EXPECT_EQ((*session)->state(), StudyState::consent);
-  EXPECT_EQ((*session)->view().message, study_consent_text());
+  EXPECT_EQ((*session)->view().message, study_consent_text(ProcedureKind::constant));
   (*session)->proceed();
   (*session)->answer(true);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ((*session)->tick(0.0), 0.0);
@@ -60,7 +60,7 @@ TEST(StudySession, RunsFromConsentToTheEnd) {
     const std::vector<StudyRecord>& records = session->store().records();
     ASSERT_EQ(records.size(), 8 + trials);
     for (const StudyRecord& record : records) {
-      EXPECT_TRUE(record.correct());
+      EXPECT_TRUE(record.found_larger());
       EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
       EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
       EXPECT_FALSE(record.limited);
@@ -197,6 +197,52 @@ TEST(StudySession, RefusesAnswersThatThePlanDidNotAskFor) {
 TEST(StudySession, RefusesNamesAndTimings) {
   EXPECT_FALSE(StudySession::create({"Anna", ProcedureKind::constant, {}}, std::make_unique<MemoryStore>()).ok());
   EXPECT_FALSE(StudySession::create({"S01", ProcedureKind::constant, {0, 0, 0, 0}}, std::make_unique<MemoryStore>()).ok());
+}
+
+TEST(StudySession, StrokesGoFromConsentToTheEnd) {
+  const StudyHeader with = test::discrimination_header(0.8);
+  auto session = StudySession::create(with, std::make_unique<MemoryStore>(), 0);
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  EXPECT_NE((*session)->view().message.find("which of the last two was like the first"), std::string::npos);
+  (*session)->accept_consent("today");
+  EXPECT_EQ(answer_trials(**session, 1000, test::truly_like), 4 + kDiscriminationTrials);
+  EXPECT_EQ((*session)->state(), StudyState::done);
+  for (const StudyRecord& record : (*session)->store().records()) {
+    EXPECT_TRUE(record.found_reference());
+    EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
+    EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
+    EXPECT_EQ(record.reminder_rendered_N, record.trial.reference_N);
+    EXPECT_EQ(record.worst_N, 0.0);
+  }
+}
+
+TEST(StudySession, ShowsTheReferenceBeforeTheTwoAndTellsRightFromWrongInTheTraining) {
+  const auto session = begun(test::discrimination_header(0.8), std::make_unique<MemoryStore>());
+  session->proceed();
+  std::vector<int> shown;
+  for (int i = 0; session->state() == StudyState::presenting && i < 1000; ++i) {
+    session->tick(0.0);
+    session->update();
+    const int now = session->view().reminder ? 9 : session->view().interval;
+    if (shown.empty() || now != shown.back()) shown.push_back(now);
+  }
+  EXPECT_EQ(shown, (std::vector<int>{0, 9, 0, 1, 0, 2, 0}));
+  session->answer(!test::truly_like(session->trial()));
+  EXPECT_TRUE(session->view().has_feedback);
+  EXPECT_FALSE(session->view().was_correct);
+  answer_trials(*session, 1, test::truly_like);
+  EXPECT_TRUE(session->view().was_correct);
+  answer_trials(*session, 3, test::truly_like);
+  EXPECT_FALSE(session->view().has_feedback) << "none after the training";
+}
+
+TEST(StudySession, RefusesStrokesOfAnotherLength) {
+  StudyHeader with = test::discrimination_header(0.8);
+  with.timing.hold += 1;
+  EXPECT_EQ(StudySession::create(with, std::make_unique<MemoryStore>()).error().message,
+            "found no two strokes of 141 ms, expected them to be told apart");
+  with.strokes = nullptr;
+  EXPECT_FALSE(StudySession::create(with, std::make_unique<MemoryStore>()).ok());
 }
 
 }  // namespace

@@ -1,0 +1,292 @@
+#include "scenes/study/prepare_strokes.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "engine/replay.h"
+#include "models/error_figures.h"
+#include "scenes/live/model_supply.h"
+#include "scenes/live/slot_plan.h"
+#include "scenes/material/rig.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::uint64_t kTrainingSeed = 1;  // as the window has it
+constexpr std::uint64_t kTestSeed = 2;
+constexpr std::size_t kSmoothing_ticks = 10;  // to either side
+constexpr std::array<std::size_t, 4> kWindow_ticks = {2000, 1500, 1000, 500};  // ramps included
+constexpr std::size_t kBetweenWindows_ticks = 100;
+constexpr double kAboutAsHard = 0.75;
+// Away from what the presenter's limiter allows: the ramps add to the slope.
+constexpr double kLargestStroke_N = 0.95 * kLargestStudyForce_N;
+constexpr double kFastestStroke_N_per_s = 0.9 * kFastestStudyForce_N_per_s;
+constexpr double kStrongestStroke_N = 2.5;  // root mean square; with the pauses 2 N, see assets/devices
+constexpr auto kLookAgain = std::chrono::milliseconds(5);
+constexpr double kLongestRecording_s = 3600.0;  // one value per ms of it is kept
+
+using Model = std::shared_ptr<const ForceModel>;
+
+// One value per ms.
+struct Traces {
+  double from_s = 0.0;
+  std::vector<double> reference_N;
+  std::vector<double> comparison_N;
+  std::vector<bool> contact;
+};
+
+// One row, after its tick.
+struct Sample {
+  double time_s = 0.0;
+  double reference_N = 0.0;
+  double comparison_N = 0.0;
+  bool contact = false;
+};
+
+Result<std::vector<Sample>> samples_of(const Recording& recording, const Model& reference, const Model& comparison) {
+  ForceModels models{comparison};
+  if (reference != nullptr) models.push_back(reference);
+  std::vector<Sample> samples;
+  const auto summary = replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
+    samples.push_back({row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
+  });
+  if (!summary) return summary.error();
+  return samples;
+}
+
+std::vector<double> smoothed(const std::vector<double>& values) {
+  constexpr double kPi = 3.141592653589793;
+  std::array<double, 2 * kSmoothing_ticks + 1> window{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    window[i] = 1.0 - std::cos(2.0 * kPi * static_cast<double>(i + 1) / static_cast<double>(window.size() + 1));
+    sum += window[i];
+  }
+  std::vector<double> result(values.size(), 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = 0; k < window.size(); ++k) {
+      const std::size_t at = std::clamp(i + k, kSmoothing_ticks, values.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks;
+      result[i] += window[k] / sum * values[at];
+    }
+  }
+  return result;
+}
+
+// Linear between the rows.
+Traces traces_of(const std::vector<Sample>& samples) {
+  Traces traces;
+  traces.from_s = samples.front().time_s;
+  const double seconds = std::min(samples.back().time_s - traces.from_s, kLongestRecording_s);
+  const auto ticks = static_cast<std::size_t>(seconds / kStudyTick_s) + 1;
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < ticks; ++i) {
+    const double time_s = traces.from_s + kStudyTick_s * static_cast<double>(i);
+    while (row + 2 < samples.size() && samples[row + 1].time_s <= time_s) ++row;
+    const Sample& before = samples[row];
+    const Sample& after = samples[row + 1];
+    const double share = std::clamp((time_s - before.time_s) / (after.time_s - before.time_s), 0.0, 1.0);
+    traces.reference_N.push_back(before.reference_N + share * (after.reference_N - before.reference_N));
+    traces.comparison_N.push_back(before.comparison_N + share * (after.comparison_N - before.comparison_N));
+    traces.contact.push_back(before.contact);
+  }
+  traces.reference_N = smoothed(traces.reference_N);
+  traces.comparison_N = smoothed(traces.comparison_N);
+  return traces;
+}
+
+struct Window {
+  std::size_t from = 0;
+  std::size_t ticks = 0;
+};
+
+StudyTiming timing_for(std::size_t ticks) {
+  StudyTiming timing;
+  timing.hold = static_cast<std::uint32_t>(ticks) - 2 * timing.ramp;
+  return timing;
+}
+
+bool can_be_presented(const std::vector<double>& force_N, const Window& window) {
+  const StudyTiming timing = timing_for(window.ticks);
+  double before_N = 0.0, squares_N2 = 0.0;
+  for (std::size_t i = 0; i < window.ticks; ++i) {
+    const double now_N = force_N[window.from + i] * interval_share(timing, static_cast<std::uint32_t>(i));
+    if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kStudyTick_s) return false;
+    before_N = now_N;
+    squares_N2 += now_N * now_N;
+  }
+  return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * static_cast<double>(window.ticks);
+}
+
+// The errors as a hand is given them, ramps included.
+ErrorFigures errors_in(const Traces& traces, const Window& window, const JndLine& jnd) {
+  const StudyTiming timing = timing_for(window.ticks);
+  ErrorFigures errors;
+  for (std::size_t i = 0; i < window.ticks; ++i) {
+    if (!traces.contact[window.from + i]) continue;
+    const double share = interval_share(timing, static_cast<std::uint32_t>(i));
+    errors.add(share * traces.comparison_N[window.from + i], share * traces.reference_N[window.from + i], false, jnd);
+  }
+  return errors;
+}
+
+// From before each touch to after the release: the whole when it is short enough, and
+// all pieces.
+std::vector<Window> windows_in(const Traces& traces) {
+  const std::size_t ramp = StudyTiming{}.ramp, all = traces.contact.size();
+  std::vector<Window> windows;
+  for (std::size_t touch = 0; touch < all;) {
+    if (!traces.contact[touch]) {
+      ++touch;
+      continue;
+    }
+    std::size_t release = touch;
+    while (release < all && traces.contact[release]) ++release;
+    const std::size_t begin = touch - std::min(touch, ramp), end = std::min(all, release + ramp);
+    const std::size_t whole = end - begin;
+    if (whole >= kWindow_ticks.back() && whole <= kWindow_ticks.front()) windows.push_back({begin, whole});
+    for (const std::size_t ticks : kWindow_ticks) {
+      for (std::size_t from = begin; from + ticks <= end; from += kBetweenWindows_ticks) windows.push_back({from, ticks});
+    }
+    touch = release;
+  }
+  return windows;
+}
+
+// The longest of those with about the largest difference; none: nothing to present.
+std::optional<Window> hardest_window(const Traces& traces, const JndLine& jnd) {
+  std::vector<std::pair<double, Window>> candidates;
+  double most = 0.0;
+  for (const Window& window : windows_in(traces)) {
+    if (!can_be_presented(traces.reference_N, window) || !can_be_presented(traces.comparison_N, window)) continue;
+    candidates.emplace_back(errors_in(traces, window, jnd).max_error_over_jnd(), window);
+    most = std::max(most, candidates.back().first);
+  }
+  std::optional<Window> best;
+  double best_ratio = 0.0;
+  for (const auto& [ratio, window] : candidates) {
+    if (ratio < kAboutAsHard * most) continue;
+    const bool longer = !best || window.ticks > best->ticks;
+    if (!longer && (window.ticks < best->ticks || ratio <= best_ratio)) continue;
+    best = window;
+    best_ratio = ratio;
+  }
+  return best;
+}
+
+// What is written is what it was: forces to 0.1 mN, times to 1 ms, ratios to 1e-4.
+double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
+
+std::vector<double> cut(const std::vector<double>& force_N, const Window& window) {
+  std::vector<double> part;
+  for (std::size_t i = 0; i < window.ticks; ++i) part.push_back(rounded(force_N[window.from + i], 1e4));
+  return part;
+}
+
+double held_mean_N(const std::vector<double>& force_N) {
+  const StudyTiming timing = timing_for(force_N.size());
+  double sum = 0.0;
+  for (std::size_t i = timing.ramp; i < timing.ramp + timing.hold; ++i) sum += force_N[i];
+  return rounded(sum / timing.hold, 1e4);
+}
+
+std::uint32_t checksum_of(const StrokePair& strokes) {
+  std::uint32_t hash = 0x811c9dc5u;  // FNV-1a over tenths of mN
+  for (const auto* force_N : {&strokes.reference_N, &strokes.comparison_N}) {
+    for (const double value : *force_N) {
+      const auto tenths = static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(value * 1e4)));
+      for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (tenths >> shift & 0xffu)) * 0x01000193u;
+    }
+  }
+  return hash;
+}
+
+// What stands in one line of a file.
+std::string one_line(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](char letter) { return static_cast<unsigned char>(letter) < 0x20; }, '?');
+  return text.empty() ? "?" : text;
+}
+
+// The models of the plans, made by the worker that makes those of the window.
+Result<std::vector<Model>> make_models(const Scene& scene, const std::vector<SlotPlan>& plans) {
+  ModelSupply supply(scene, kTrainingSeed);
+  for (std::size_t i = 0; i < plans.size(); ++i) supply.order(i, plans[i]);
+  if (const Status started = supply.start(); !started) return started.error();
+  std::vector<Model> models(plans.size());
+  for (std::size_t left = plans.size(); left > 0;) {
+    std::this_thread::sleep_for(kLookAgain);
+    for (SuppliedModel& made : supply.take()) {
+      if (made.model == nullptr) return Error{made.problem};
+      models[made.ticket] = std::move(made.model);
+      --left;
+    }
+  }
+  return models;
+}
+
+Result<Recording> test_recording(const StrokeRequest& request) {
+  if (!request.recording.empty()) return read_recording(request.recording);
+  if (!request.scene.material) {
+    return Error{"the scene \"" + request.scene.name +
+                 "\" has no virtual material to record; name a recording: --discriminate REC.csv"};
+  }
+  RigSettings settings;
+  settings.material = *request.scene.material;
+  settings.seed = kTestSeed;
+  Result<Recording> recording = record_sensors(settings);
+  if (recording) recording->name = *request.scene.material + "_" + std::to_string(kTestSeed);
+  return recording;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& request) {
+  if (request.models.size() > 2) {
+    return Error{"found " + std::to_string(request.models.size()) +
+                 " models, expected one, to tell from the recorded force, or two; leave some out"};
+  }
+  Result<std::vector<SlotPlan>> plans = plan_slots(request.scene, request.models, false);
+  if (!plans) return plans.error();
+  plans->resize(std::max<std::size_t>(request.models.size(), 1));  // no reference, no other models
+  const Result<Recording> recording = test_recording(request);
+  if (!recording) return recording.error();
+  const Result<std::vector<Model>> models = make_models(request.scene, *plans);
+  if (!models) return models.error();
+  return strokes_of(*recording, models->size() == 2 ? models->front() : nullptr, models->back(), request.scene.jnd);
+}
+
+Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording, const Model& reference,
+                                                     const Model& comparison, const JndLine& jnd) {
+  const Result<std::vector<Sample>> samples = samples_of(recording, reference, comparison);
+  if (!samples) return samples.error();
+  const Traces traces = traces_of(*samples);
+  const std::optional<Window> best = hardest_window(traces, jnd);
+  if (!best) {
+    return Error{"found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " + recording.name +
+                 ", expected one that a still hand can be given; name another recording"};
+  }
+  auto strokes = std::make_shared<StrokePair>();
+  strokes->reference = one_line(reference != nullptr ? reference->name() : kRecordedForce);
+  strokes->comparison = one_line(comparison->name());
+  strokes->recording = one_line(recording.name);
+  strokes->from_s = rounded(traces.from_s + kStudyTick_s * static_cast<double>(best->from), 1e3);
+  strokes->to_s = rounded(strokes->from_s + kStudyTick_s * static_cast<double>(best->ticks), 1e3);
+  strokes->jnd = jnd;
+  const ErrorFigures errors = errors_in(traces, *best, jnd);
+  strokes->mean_over_jnd = rounded(errors.mean_error_over_jnd(), 1e4);
+  strokes->max_over_jnd = rounded(errors.max_error_over_jnd(), 1e4);
+  strokes->reference_N = cut(traces.reference_N, *best);
+  strokes->comparison_N = cut(traces.comparison_N, *best);
+  strokes->reference_mean_N = held_mean_N(strokes->reference_N);
+  strokes->comparison_mean_N = held_mean_N(strokes->comparison_N);
+  strokes->checksum = checksum_of(*strokes);
+  return std::shared_ptr<const StrokePair>(std::move(strokes));
+}
+
+StudyTiming stroke_timing(const StrokePair& strokes) { return timing_for(strokes.reference_N.size()); }
+
+}  // namespace palpate

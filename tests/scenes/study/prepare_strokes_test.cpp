@@ -1,0 +1,111 @@
+#include "scenes/study/prepare_strokes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/study/simulated_subject.h"
+#include "tests/support/live_doubles.h"
+
+namespace palpate {
+namespace {
+
+using test::spring;
+
+// Presses of `depths_m`, 1.2 s each and as far apart, into a spring of 100 N/m whose force
+// the sensor gives `offset_N` too high in the last of them.
+Recording presses(const std::vector<double>& depths_m, double offset_N, double rate_Hz = 1000.0) {
+  Recording recording;
+  recording.name = "spring";
+  const double pi = std::acos(-1.0);
+  for (std::size_t i = 0; static_cast<double>(i) / rate_Hz < 2.4 * static_cast<double>(depths_m.size()); ++i) {
+    RecordingRow row;
+    row.time_s = static_cast<double>(i) / rate_Hz;
+    const auto press = std::min(static_cast<std::size_t>(row.time_s / 2.4), depths_m.size() - 1);
+    const double phase = (row.time_s - 2.4 * static_cast<double>(press)) / 1.2;
+    row.position_m = phase < 1.0 ? depths_m[press] * std::pow(std::sin(pi * phase), 2) : -0.001;
+    if (row.position_m > 0.0) row.force_N = 100.0 * row.position_m + (press + 1 == depths_m.size() ? offset_N : 0.0);
+    recording.rows.push_back(row);
+  }
+  return recording;
+}
+
+TEST(PrepareStrokes, TakesTheStrokeThatDiffersMost) {
+  const JndLine jnd{0.1, 0.0};
+  const auto strokes = strokes_of(presses({0.02, 0.01, 0.01}, 0.05), nullptr, spring(100.0), jnd);
+  ASSERT_TRUE(strokes.ok()) << strokes.error().message;
+  const StrokePair& pair = **strokes;
+  EXPECT_EQ(pair.reference, "recorded force");
+  EXPECT_EQ(pair.comparison, "spring");
+  EXPECT_EQ(pair.recording, "spring");
+  EXPECT_NEAR(pair.from_s, 4.7, 0.05) << "from before the touch of the third press";
+  EXPECT_NEAR(pair.to_s, 6.1, 0.05) << "to after its release";
+  EXPECT_NEAR(pair.max_over_jnd, 0.5, 0.01);
+  EXPECT_GT(pair.mean_over_jnd, 0.4);
+  ASSERT_EQ(pair.reference_N.size(), stroke_timing(pair).interval());
+  EXPECT_NEAR(*std::max_element(pair.comparison_N.begin(), pair.comparison_N.end()), 1.0, 0.01);
+  EXPECT_NEAR(pair.reference_mean_N - pair.comparison_mean_N, 0.05, 0.005);
+}
+
+TEST(PrepareStrokes, TwoModelsDifferByTheirStiffness) {
+  const JndLine jnd{0.1, 0.0};
+  const auto strokes = strokes_of(presses({0.01}, 7.0), spring(100.0), spring(80.0), jnd);
+  ASSERT_TRUE(strokes.ok()) << strokes.error().message;
+  EXPECT_EQ((*strokes)->reference, "spring");
+  EXPECT_NEAR((*strokes)->max_over_jnd, 2.0, 0.02) << "0.2 N at 1 N; what was recorded does not count";
+  const auto same = strokes_of(presses({0.01}, 7.0), spring(100.0), spring(100.0), jnd);
+  EXPECT_EQ((*same)->max_over_jnd, 0.0);
+  EXPECT_EQ((*same)->reference_N, (*same)->comparison_N);
+  EXPECT_NE((*same)->checksum, (*strokes)->checksum);
+}
+
+TEST(PrepareStrokes, IsTheSameAtEveryRate) {
+  const JndLine jnd;
+  const auto slow = strokes_of(presses({0.01}, 0.0, 200.0), spring(100.0), spring(80.0), jnd);
+  const auto fast = strokes_of(presses({0.01}, 0.0, 4000.0), spring(100.0), spring(80.0), jnd);
+  ASSERT_TRUE(slow.ok() && fast.ok());
+  EXPECT_NEAR((*slow)->max_over_jnd, (*fast)->max_over_jnd, 0.01);
+  EXPECT_NEAR((*slow)->reference_mean_N, (*fast)->reference_mean_N, 0.02);
+}
+
+TEST(PrepareStrokes, LeavesOutWhatAStudyMayNotPresent) {
+  const JndLine jnd;
+  const auto weak = strokes_of(presses({0.06, 0.01}, 0.0), spring(100.0), spring(80.0), jnd);
+  ASSERT_TRUE(weak.ok());
+  const StudyTiming timing = stroke_timing(**weak);
+  for (std::uint32_t i = 0; i < timing.interval(); ++i) {
+    ASSERT_LE((*weak)->reference_N[i] * interval_share(timing, i), 0.95 * kLargestStudyForce_N);
+  }
+  const auto none = strokes_of(presses({-0.01}, 0.0), spring(100.0), spring(80.0), jnd);
+  ASSERT_FALSE(none.ok());
+  EXPECT_EQ(none.error().message,
+            "found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in spring, expected one "
+            "that a still hand can be given; name another recording");
+}
+
+TEST(PrepareStrokes, CanBePresentedAsTheyAre) {
+  const auto strokes = strokes_of(presses({0.03, 0.035}, 0.0), spring(100.0), spring(95.0), {});
+  ASSERT_TRUE(strokes.ok()) << strokes.error().message;
+  const StudyHeader header{"S01", ProcedureKind::discriminate, stroke_timing(**strokes), *strokes};
+  const auto records = run_simulated_session(header, {}, 1);
+  ASSERT_TRUE(records.ok()) << records.error().message;
+  for (const StudyRecord& record : *records) {
+    EXPECT_FALSE(record.limited);
+    EXPECT_EQ(record.worst_N, 0.0);
+  }
+}
+
+TEST(PrepareStrokes, RefusesWhatCannotBeCompared) {
+  const auto silicone = load_scene("silicone_block");
+  const auto study = load_scene("jnd_study");
+  ASSERT_TRUE(silicone.ok() && study.ok());
+  EXPECT_EQ(prepare_strokes({*silicone, {"greedy", "random", "direct"}, ""}).error().message,
+            "found 3 models, expected one, to tell from the recorded force, or two; leave some out");
+  EXPECT_NE(prepare_strokes({*silicone, {"best"}, ""}).error().message.find("found no model \"best\""), std::string::npos);
+  EXPECT_NE(prepare_strokes({*study, {}, ""}).error().message.find("has no virtual material"), std::string::npos);
+  EXPECT_FALSE(prepare_strokes({*silicone, {}, "/none/rec.csv"}).ok());
+}
+
+}  // namespace
+}  // namespace palpate
