@@ -6,12 +6,14 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "engine/atomic_file.h"
 #include "engine/pacer.h"
 #include "rendering/demo_app.h"
 #include "rendering/stats_file.h"
 #include "rendering/study_app.h"
+#include "scenes/study/prepare_strokes.h"
 
 namespace palpate {
 namespace {
@@ -34,6 +36,8 @@ struct Arguments {
   std::string screenshot;
   std::string stats;
   bool force = false;
+  bool discriminates = false;
+  std::string recording;  // to discriminate; empty: virtual
 };
 
 // The first signal ends the program as closing the window does, so that the force
@@ -57,6 +61,16 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--model", session.models,
                  "Models: files, or direct, voxel, random, kdtree, greedy [the scene's]")
       ->type_name("FILE_OR_METHOD");
+  app.add_option_function<std::string>(
+         "--discriminate",
+         [&arguments](const std::string& recording) {
+           arguments.discriminates = true;
+           arguments.recording = recording;
+         },
+         "Ask a hand which is which: a stroke of this recording [a virtual one], rendered by two models, or by "
+         "one and as recorded")
+      ->type_name("[REC.csv]")
+      ->expected(0, 1);
   app.add_option("--seconds", arguments.seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
   app.add_option("--screenshot", arguments.screenshot,
                  "Save the window as it is at the end [after 12 s], then end")
@@ -90,6 +104,13 @@ void run_frames(App& app, double seconds) {
 
 Status run_study(const Arguments& arguments) {
   StudyRequest request;
+  if (arguments.discriminates) {
+    const auto scene = load_scene(arguments.demo.session.scene);
+    if (!scene) return scene.error();
+    auto strokes = prepare_strokes({*scene, arguments.demo.session.models, arguments.recording});
+    if (!strokes) return strokes.error();
+    request.strokes = std::move(*strokes);
+  }
   request.device = arguments.demo.session.device;
   request.window = arguments.demo.window;
   auto app = StudyApp::create(request);
@@ -102,7 +123,7 @@ Status run_demo(Arguments& arguments) {
   if (Status status = check_outputs(arguments); !status) return status;
   if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
-  if (arguments.demo.session.scene == kStudyScene) return run_study(arguments);
+  if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);

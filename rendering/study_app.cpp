@@ -5,12 +5,12 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <algorithm>
-#include <cctype>
 #include <ctime>
 #include <utility>
 
 #include "rendering/screenshot.h"
+#include "scenes/study/discrimination.h"
+#include "scenes/study/prepare_strokes.h"
 
 namespace palpate {
 namespace {
@@ -30,6 +30,9 @@ std::string local_time() {
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
                         ImGuiWindowFlags_NoNav;
+
+// Between what belongs together and what comes next.
+void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
 
 }  // namespace
 
@@ -53,18 +56,20 @@ StudyApp::~StudyApp() { study_.reset(); }
 
 bool StudyApp::closing() const noexcept { return glfwWindowShouldClose(window_->handle()) != 0; }
 
-void StudyApp::begin(const std::string& code, ProcedureKind procedure) {
+void StudyApp::begin(const std::string& code) {
   LiveStudyRequest request;
   request.device = request_.device;
   request.realtime = request_.realtime;
   request.header.subject = code;
-  request.header.procedure = procedure;
+  request.header.procedure = procedure_;
   request.path = "study-" + code + ".csv";
-  problem_.clear();
-  if (Status status = check_subject_code(code); !status) {
-    problem_ = status.error().message;
-    return;
+  if (request_.strokes != nullptr) {
+    request.header.procedure = ProcedureKind::discriminate;
+    request.header.timing = stroke_timing(*request_.strokes);
+    request.header.strokes = request_.strokes;
+    request.path = "discriminate-" + code + ".csv";
   }
+  problem_.clear();
   auto study = LiveStudy::open(request);
   if (study) {
     study_ = std::move(*study);
@@ -87,7 +92,6 @@ void StudyApp::handle_keys() {
 
 void StudyApp::take_key(int key) {
   if (study_ == nullptr) {
-    if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_.data(), procedure_);
     if (key == GLFW_KEY_TAB) {
       procedure_ = procedure_ == ProcedureKind::constant ? ProcedureKind::adaptive : ProcedureKind::constant;
     }
@@ -137,8 +141,8 @@ void StudyApp::draw() {
   glClearColor(background.r, background.g, background.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   const ImVec2 all = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.10F * all.y});
-  ImGui::SetNextWindowSize({kColumnShare * all.x, 0.86F * all.y});
+  ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y});
+  ImGui::SetNextWindowSize({kColumnShare * all.x, 0.82F * all.y});
   ImGui::Begin("study", nullptr, kFixed);
   if (study_ == nullptr) {
     draw_entry();
@@ -149,38 +153,56 @@ void StudyApp::draw() {
   ui_->end_frame();
 }
 
-// True when clicked; its key does the same.
-bool StudyApp::button(const char* label, int key) {
-  const bool clicked = ImGui::Button(label);
-  if (clicked) keys_.push_back(key);
-  return clicked;
+// Its key does the same.
+void StudyApp::button(const char* label, int key) {
+  if (ImGui::Button(label)) keys_.push_back(key);
+}
+
+void StudyApp::draw_trouble(const std::string& words) const {
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
+  ImGui::TextWrapped("%s", words.c_str());
+  ImGui::PopStyleColor();
 }
 
 void StudyApp::draw_entry() {
   ImGui::PushFont(style_.fonts().heading);
-  ImGui::TextUnformatted("How small a difference can a hand feel?");
+  ImGui::TextWrapped("%s", request_.strokes == nullptr ? "How small a difference can a hand feel?"
+                           : request_.strokes->reference == kRecordedForce
+                               ? "Can a hand tell the model from the block?"
+                               : "Can a hand tell one model from the other?");
   ImGui::PopFont();
   ImGui::Spacing();
-  ImGui::TextWrapped(
-      "Two pushes, one after the other: which was larger? The code stands for the person; no name is kept.");
-  ImGui::Spacing();
-  ImGui::SetNextItemWidth(10.0F * ImGui::GetFontSize());
-  if (code_[0] == '\0' && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
-  ImGui::InputText("subject code, such as S01", code_.data(), code_.size(),
-                   ImGuiInputTextFlags_CharsUppercase);
+  ImGui::TextWrapped("%s The code stands for the person; no name is kept.",
+                     request_.strokes != nullptr
+                         ? "Three pushes, one after the other: which of the last two was like the first? 100 trials."
+                         : "Two pushes, one after the other: which was larger?");
+  gap();
+  ImGui::PushFont(style_.fonts().heading);
+  ImGui::SetNextItemWidth(8.0F * ImGui::GetFontSize());
+  if (!ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+  // It takes Enter itself: a key callback may be ahead of the letters before it.
+  bool complete = ImGui::InputText("subject code, such as S01", code_.data(), code_.size(),
+                                   ImGuiInputTextFlags_CharsUppercase | ImGuiInputTextFlags_AutoSelectAll |
+                                       ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::PopFont();
+  if (request_.strokes == nullptr) draw_procedures();
+  gap();
+  ImGui::PushFont(style_.fonts().heading);
+  complete |= ImGui::Button("Begin (Enter)");
+  ImGui::PopFont();
+  if (complete) begin(code_.data());
+  ImGui::TextDisabled("A code that has begun goes on after its last answer.");
+  if (!problem_.empty()) draw_trouble(problem_);
+}
+
+void StudyApp::draw_procedures() {
+  gap();
   const auto choice = [&](const char* label, ProcedureKind kind) {
     if (ImGui::RadioButton(label, procedure_ == kind)) procedure_ = kind;
   };
   choice("constant stimuli, as in the paper: 320 trials", ProcedureKind::constant);
   choice("adaptive (QUEST+): 80 trials", ProcedureKind::adaptive);
   ImGui::TextDisabled("Tab changes the procedure");
-  ImGui::Spacing();
-  button("Begin (Enter)", GLFW_KEY_ENTER);
-  ImGui::TextDisabled("A code that has begun goes on after its last answer.");
-  if (problem_.empty()) return;
-  ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
-  ImGui::TextWrapped("%s", problem_.c_str());
-  ImGui::PopStyleColor();
 }
 
 void StudyApp::draw_session() {
@@ -191,45 +213,54 @@ void StudyApp::draw_session() {
     ImGui::ProgressBar(share, {-1.0F, 0.4F * ImGui::GetFontSize()}, "");
   }
   ImGui::Spacing();
-  const bool to_read = view.state == StudyState::consent;
-  if (!to_read) ImGui::PushFont(style_.fonts().heading);
+  ImGui::PushFont(style_.fonts().heading);
   ImGui::TextWrapped("%s", view.message.c_str());
-  if (!to_read) ImGui::PopFont();
-  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0) {
+  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0 && !view.reminder) {
     ImGui::TextDisabled(view.was_correct ? "The last answer was right." : "The last answer was wrong.");
   }
-  ImGui::Spacing();
+  gap();
   if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
   draw_choices(view);
-  ImGui::Spacing();
+  if (view.state == StudyState::done) draw_result();
+  ImGui::PopFont();
+  gap();
   if (const std::string words = study_->device_words(); !words.empty())
     ImGui::TextWrapped("%s", words.c_str());
   if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
-  if (!study_->device_pushes()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
-    ImGui::TextWrapped("No haptic device: nobody can feel this, it is a rehearsal.");
-    ImGui::PopStyleColor();
-  }
+  if (!study_->device_pushes()) draw_trouble("No haptic device: nobody can feel this, it is a rehearsal.");
 }
 
-// Which push it is, as two boxes that light up.
+// Of strokes, beside what was predicted.
+void StudyApp::draw_result() {
+  if (request_.strokes == nullptr) return;
+  const StudySession& session = study_->session();
+  const Discrimination result =
+      discrimination_of(session.header().subject, session.store().records(), *request_.strokes);
+  ImGui::Spacing();
+  ImGui::TextWrapped("%s against %s, %s", request_.strokes->comparison.c_str(),
+                     request_.strokes->reference.c_str(), request_.strokes->recording.c_str());
+  ImGui::TextWrapped("%s", discrimination_verdict(result, *request_.strokes).c_str());
+}
+
+// Which push it is, as boxes that light up: the reference when there is one, and two.
 void StudyApp::draw_intervals(const StudyView& view) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = style_.fonts().big;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float side = 1.8F * font->FontSize;
-  for (const int interval : {1, 2}) {
-    const float x = at.x + (interval == 1 ? 0.0F : 1.3F * side);
-    const bool on = view.interval == interval;
+  const float side = 2.4F * font->FontSize;
+  const int first = view.has_reminder ? 0 : 1;
+  for (int interval = first; interval <= 2; ++interval) {
+    const float x = at.x + 1.3F * side * static_cast<float>(interval - first);
+    const bool on = interval == 0 ? view.reminder : view.interval == interval;
     list.AddRectFilled({x, at.y}, {x + side, at.y + side},
                        ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
-    const char text[2] = {static_cast<char>('0' + interval), '\0'};
+    const char text[2] = {interval == 0 ? 'R' : static_cast<char>('0' + interval), '\0'};
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
     list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
                  ink(style_.colours().text), text);
   }
-  ImGui::Dummy({2.3F * side, side});
-  ImGui::Spacing();
+  ImGui::Dummy({(view.has_reminder ? 3.6F : 2.3F) * side, side});
+  gap();
 }
 
 void StudyApp::draw_choices(const StudyView& view) {
@@ -262,8 +293,10 @@ void StudyApp::draw_choices(const StudyView& view) {
       break;
   }
   if (view.state == StudyState::done || view.state == StudyState::aborted) return;
-  ImGui::Dummy({1.0F, 1.5F * ImGui::GetFontSize()});
+  gap();
+  ImGui::PushFont(style_.fonts().body);
   button("End the session (Esc)", GLFW_KEY_ESCAPE);
+  ImGui::PopFont();
 }
 
 Status StudyApp::screenshot(const std::string& path, bool overwrite) {

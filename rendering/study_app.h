@@ -1,8 +1,9 @@
-// The window of the force-discrimination study (--scene jnd_study): who takes part,
-// then one screen after the other, in words that a subject reads at a glance.
+// The window of the studies, the JND (--scene jnd_study) and two strokes to tell apart
+// (--discriminate): who takes part, then one screen after the other, in words that a
+// subject reads at a glance.
 //
 // Every button has a key; Esc ends the session at any time, and what was answered
-// is kept. No curve and no number that could be an answer is shown.
+// is kept. No curve and no number that could be an answer is shown before the end.
 // Thread guarantee: main thread only.
 #pragma once
 
@@ -23,6 +24,7 @@ struct StudyRequest {
   std::string device = "auto";
   WindowRequest window;
   bool realtime = true;
+  std::shared_ptr<const StrokePair> strokes;  // to tell apart; null: the JND study
 };
 
 class StudyApp {
@@ -37,9 +39,9 @@ class StudyApp {
   bool closing() const noexcept;
   Status screenshot(const std::string& path, bool overwrite);
 
-  // What the entry screen does: opens or takes up study-CODE.csv in this folder.
-  // Trouble is shown there.
-  void begin(const std::string& code, ProcedureKind procedure);
+  // What the entry screen does: opens or takes up study-CODE.csv, or with strokes
+  // discriminate-CODE.csv, in this folder. Trouble is shown there.
+  void begin(const std::string& code);
   void press_key(int key) { keys_.push_back(key); }
   // Null before `begin` succeeded.
   LiveStudy* study() noexcept { return study_.get(); }
@@ -49,12 +51,15 @@ class StudyApp {
   explicit StudyApp(const StudyRequest& request) : request_(request) {}
   void draw();
   void draw_entry();
+  void draw_procedures();
   void draw_session();
   void draw_choices(const StudyView& view);
   void draw_intervals(const StudyView& view);
+  void draw_result();
+  void draw_trouble(const std::string& words) const;
   void handle_keys();
   void take_key(int key);
-  bool button(const char* label, int key);
+  void button(const char* label, int key);
 
   StudyRequest request_;
   std::unique_ptr<Window> window_;

@@ -41,8 +41,9 @@ class Server {
     dup2(silence, STDOUT_FILENO);
     dup2(silence, STDERR_FILENO);
     const std::string number = std::to_string(descriptor);
+    // Without -noreset it starts anew after the last window, deaf meanwhile to the next.
     execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1080x24", "-nolisten", "tcp",
-           nullptr);
+           "-noreset", nullptr);
     _exit(127);
   }
 
