@@ -1,53 +1,29 @@
 #include "devices/hid_calibration.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <fstream>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
-#include "engine/json_position.h"
+#include "engine/json_message.h"
 
 namespace palpate {
 namespace {
 
 using Json = nlohmann::json;
 
-struct Range {
-  double from = 0.0;
-  double up_to = 0.0;
-};
-
-std::string as_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
-std::string found(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() > 40) text = text.substr(0, 37) + "...";
-  return "found " + text;
-}
-
 class CalibrationReader {
  public:
   CalibrationReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
 
   Result<HidCalibration> read() {
-    try {
-      document_ = Json::parse(text_);
-    } catch (const Json::parse_error& error) {
-      const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-      return Error{position_prefix(path_, position_of_offset(text_, offset)) +
-                   "not JSON; expected one object"};
-    } catch (const std::exception& error) {
-      return Error{path_ + ": " + error.what()};
-    }
+    Result<Json> document = parse_json_document<Json>(text_, path_);
+    if (!document) return document.error();
+    document_ = std::move(*document);
     if (!document_.is_object())
       return Error{position_prefix(path_, {}) + found(document_) + ", expected an object"};
     read_kind();
@@ -80,20 +56,17 @@ class CalibrationReader {
                          ", expected \"paddle\", \"polhem\", \"openffboard\" or \"spacemouse\"");
   }
 
-  double number(const char* key, Range range) {
+  double number(const char* key, const NumberRange& range) {
     known_.emplace_back(key);
-    const std::string expected =
-        ", expected a number from " + as_text(range.from) + " to " + as_text(range.up_to);
+    const std::string expected = ", expected " + range.words();
     if (!document_.contains(key)) {
       complain(key, "missing" + expected);
-      return range.from;
+      return range.low;
     }
     const Json& value = document_[key];
-    const bool good =
-        value.is_number() && value.get<double>() >= range.from && value.get<double>() <= range.up_to;
-    if (good) return value.get<double>();
+    if (value.is_number() && range.holds(value.get<double>())) return value.get<double>();
     complain(key, found(value) + expected);
-    return range.from;
+    return range.low;
   }
 
   void read_force() {

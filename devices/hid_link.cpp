@@ -19,8 +19,6 @@ constexpr auto kPause = std::chrono::milliseconds(10);
 // Below the haptics thread's 80, above everything that is not real-time.
 constexpr int kPriority = 70;
 
-double now_s() noexcept { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
-
 bool contains(const std::vector<HidKind>& kinds, HidKind kind) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
@@ -85,7 +83,7 @@ void HidLink::use(std::shared_ptr<HidLine> line) noexcept {
 Status HidLink::start() {
   use(line());
   write(*line(), encode_start(kind_));
-  user_.connected(now_s());
+  user_.connected(steady_now_s());
   try {
     reader_ = std::thread([this] { read_all(); });
     if (pushes(kind_)) writer_ = std::thread([this] { write_all(); });
@@ -116,7 +114,7 @@ void HidLink::read_all() noexcept {
       continue;
     }
     const int size = current->read(bytes.data(), bytes.size());
-    if (size > 0) user_.take(bytes.data(), static_cast<std::size_t>(size), now_s());
+    if (size > 0) user_.take(bytes.data(), static_cast<std::size_t>(size), steady_now_s());
     if (size < 0 && !stop_.load(std::memory_order_relaxed)) {
       user_.unplugged();
       use(nullptr);
@@ -133,7 +131,7 @@ void HidLink::look_again() noexcept {
   std::optional<HidOpened> opened = try_open(bus_, {kind_}, problems);
   if (!opened) return;
   write(*opened->line, encode_start(kind_));
-  user_.connected(now_s());
+  user_.connected(steady_now_s());
   use(std::move(opened->line));
 }
 
@@ -142,7 +140,7 @@ void HidLink::write(HidLine& line, const OutReports& reports) noexcept {
   for (std::size_t i = 0; i < reports.count; ++i) {
     good = line.write(reports.bytes[i].data(), reports.sizes[i]) && good;
   }
-  if (good) user_.written(now_s());
+  if (good) user_.written(steady_now_s());
 }
 
 void HidLink::write_all() noexcept {
@@ -152,7 +150,7 @@ void HidLink::write_all() noexcept {
   while (!stop_.load(std::memory_order_relaxed)) {
     pacer.wait_until(deadlines.next_ns());
     deadlines.wake(pacer.now_ns());
-    if (const std::shared_ptr<HidLine> current = line()) write(*current, user_.next(now_s()));
+    if (const std::shared_ptr<HidLine> current = line()) write(*current, user_.next(steady_now_s()));
   }
 }
 

@@ -69,7 +69,6 @@ void HapticsLoop::tick(Pacer& pacer, const Wake& wake, std::int64_t woke_ns) noe
   missed_ += wake.missed;
   LoopSnapshot snapshot = live_.run(seconds(woke_ns), controls_.newest());
   snapshot.missed_deadlines = missed_;
-  if (missed_ > 0) snapshot.faults_latched |= loop_fault::kDeadlineMissed;
   if (wake.missed > 0) snapshot.faults |= loop_fault::kDeadlineMissed;
   snapshot.lateness_us = static_cast<float>(1e-3 * static_cast<double>(wake.lateness_ns));
   snapshot.tick_us = last_tick_us_;
@@ -110,7 +109,7 @@ LoopStatistics HapticsLoop::statistics() const noexcept {
 
 double HapticsLoop::age_s() const noexcept {
   const std::int64_t last_ns = last_tick_ns_.load(std::memory_order_relaxed);
-  return last_ns != 0 ? seconds(SteadyPacer().now_ns() - last_ns) : 0.0;
+  return last_ns != 0 ? seconds(steady_now_ns() - last_ns) : 0.0;
 }
 
 }  // namespace palpate

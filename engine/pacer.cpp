@@ -11,7 +11,7 @@ constexpr std::int64_t kNsPerS = 1'000'000'000;
 
 }  // namespace
 
-std::int64_t SteadyPacer::now_ns() noexcept {
+std::int64_t steady_now_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   return static_cast<std::int64_t>(now.tv_sec) * kNsPerS + now.tv_nsec;

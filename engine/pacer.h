@@ -43,12 +43,17 @@ class Pacer {
   virtual void wait_until(std::int64_t deadline_ns) noexcept = 0;
 };
 
-// The steady clock (CLOCK_MONOTONIC). Sleeps until `spin_ns` before a deadline,
+// Of the clock that all of the program's times are on, CLOCK_MONOTONIC. Any
+// thread, wait-free.
+std::int64_t steady_now_ns() noexcept;
+inline double steady_now_s() noexcept { return 1e-9 * static_cast<double>(steady_now_ns()); }
+
+// The steady clock. Sleeps until `spin_ns` before a deadline,
 // then spins.
 class SteadyPacer final : public Pacer {
  public:
   explicit SteadyPacer(std::int64_t spin_ns = 0) noexcept : spin_ns_(spin_ns) {}
-  std::int64_t now_ns() noexcept override;
+  std::int64_t now_ns() noexcept override { return steady_now_ns(); }
   void wait_until(std::int64_t deadline_ns) noexcept override;
 
  private:

@@ -17,22 +17,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFewestGroups = 4;
 
-Sites even_subset(const Sites& sites) {
-  const Eigen::Index count = std::min(sites.count(), kSmoothingSubset);
-  Sites subset;
-  subset.points.resize(sites.dimension(), count);
-  subset.target_N.resize(count);
-  subset.row_scale.resize(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index i = k * sites.count() / count;
-    subset.points.col(k) = sites.points.col(i);
-    subset.target_N[k] = sites.target_N[i];
-    subset.row_scale[k] = sites.row_scale[i];
-    if (!sites.group.empty()) subset.group.push_back(sites.group[static_cast<std::size_t>(i)]);
-  }
-  return subset;
-}
-
 // I - H = V diag(smoothing / (e + smoothing)) V^T on the complement of q.
 class Smoother {
  public:
@@ -130,7 +114,7 @@ SmoothingChoice search(double unit, double smallest, const Criterion& criterion,
 }  // namespace
 
 Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, bool by_group) {
-  const Sites subset = even_subset(sites);
+  const Sites subset = even_subset(sites, kSmoothingSubset);
   const ProjectedKernel projected(subset, kernel);
   const double unit = projected.mean_eigenvalue();
   const double smallest = projected.smallest_smoothing();

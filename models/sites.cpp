@@ -35,6 +35,22 @@ Status validate_sites(const Sites& sites) {
   return {};
 }
 
+Sites even_subset(const Sites& sites, Eigen::Index most) {
+  const Eigen::Index count = std::min(sites.count(), most);
+  Sites subset;
+  subset.points.resize(sites.dimension(), count);
+  subset.target_N.resize(count);
+  subset.row_scale.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index i = k * sites.count() / count;
+    subset.points.col(k) = sites.points.col(i);
+    subset.target_N[k] = sites.target_N[i];
+    subset.row_scale[k] = sites.row_scale[i];
+    if (!sites.group.empty()) subset.group.push_back(sites.group[static_cast<std::size_t>(i)]);
+  }
+  return subset;
+}
+
 std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(sites.count()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});

@@ -30,6 +30,9 @@ struct Sites {
 // expected, or the first site with a number that is not finite.
 Status validate_sites(const Sites& sites);
 
+// At most `most` of them, spread evenly over their order; groups only where there are any.
+Sites even_subset(const Sites& sites, Eigen::Index most);
+
 // Indices, ascending, of the sites left when of those at exactly the same point
 // only the first is kept.
 std::vector<Eigen::Index> distinct_sites(const Sites& sites);

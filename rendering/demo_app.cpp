@@ -10,36 +10,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 #include "engine/pacer.h"
 #include "rendering/screenshot.h"
+#include "scenes/local_time.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kSPerNs = 1e-9;
+constexpr double kNsPerS = 1e9;
 constexpr float kSceneShare = 0.6F;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
-
-double now() { return kSPerNs * static_cast<double>(SteadyPacer().now_ns()); }
 
 // Where real-time priority was refused, the picture steps back for the force:
 // that needs no privilege.
 void yield_to_haptics(const RtStatus& granted) {
   constexpr int kPictureNice = 5;
   if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
-}
-
-std::string new_recording_path() {
-  const std::time_t time = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&time, &local);
-  char name[64];
-  std::strftime(name, sizeof name, "session-%Y%m%d-%H%M%S.csv", &local);
-  return name;
 }
 
 }  // namespace
@@ -70,8 +59,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   blocks_ = std::move(*blocks);
   listen();
   if (find_font().empty())
-    toasts_.push_back({"no font found; install fonts-dejavu-core", true, now() + kProblemToast_s});
-  frame_began_s_ = last_frame_s_ = second_began_s_ = now();
+    toasts_.push_back({"no font found; install fonts-dejavu-core", true, steady_now_s() + kProblemToast_s});
+  frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
 }
 
@@ -116,7 +105,7 @@ SceneArea DemoApp::scene_area() const {
 
 void DemoApp::frame() {
   glfwPollEvents();
-  const double now_s = now();
+  const double now_s = steady_now_s();
   session_->update();
   take_notices(now_s);
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
@@ -125,16 +114,12 @@ void DemoApp::frame() {
   handle_keys();
   handle_mouse();
   window_->show_frame();
-  count_frame(now());
+  count_frame(steady_now_s());
 }
 
 void DemoApp::draw() {
-  int width = 0;
-  int height = 0;
-  glfwGetFramebufferSize(window_->handle(), &width, &height);
-  float content_scale = 1.0F;
-  glfwGetWindowContentScale(window_->handle(), &content_scale, nullptr);
-  style_.update(height, content_scale, view_.kiosk, view_.theme);
+  const Framebuffer picture = window_->framebuffer();
+  style_.update(picture.height, picture.content_scale, view_.kiosk, view_.theme);
   ui_->begin_frame();
   draw_blocks();
   clear_panel();
@@ -204,7 +189,7 @@ std::vector<BlockPose> DemoApp::block_poses() const {
 }
 
 void DemoApp::count_frame(double now_s) {
-  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) / kSPerNs));
+  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
   frames_.seconds += now_s - last_frame_s_;
   ++frames_.frames;
   ++frames_this_second_;
@@ -230,7 +215,7 @@ void DemoApp::run(Command command) {
       break;
     case Command::pause_curves:
       view_.paused = !view_.paused;
-      view_.paused_at_s = now();
+      view_.paused_at_s = steady_now_s();
       view_.scrolled_back_s = 0.0;
       break;
     case Command::reset_figures:
@@ -271,9 +256,9 @@ void DemoApp::record() {
     session_->stop_recording();
     return;
   }
-  const std::string path = new_recording_path();
+  const std::string path = local_time_text("session-%Y%m%d-%H%M%S.csv");
   const Status status = session_->start_recording(path);
-  const double until_s = now() + (status ? kToast_s : kProblemToast_s);
+  const double until_s = steady_now_s() + (status ? kToast_s : kProblemToast_s);
   toasts_.push_back({status ? "recording to " + path : status.error().message, !status, until_s});
 }
 
@@ -304,12 +289,7 @@ void DemoApp::next_reference() {
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
   draw();
-  int width = 0;
-  int height = 0;
-  glfwGetFramebufferSize(window_->handle(), &width, &height);
-  const Status status = save_screenshot(path, width, height, overwrite);
-  window_->show_frame();
-  return status;
+  return save_screenshot(*window_, path, overwrite);
 }
 
 }  // namespace palpate

@@ -21,7 +21,6 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
-constexpr double kSPerNs = 1e-9;
 // A picture without --seconds: by then all models are fitted and the curves full.
 constexpr double kPictureAfter_s = 12.0;
 // No block to press: two forces to tell apart.
@@ -94,11 +93,10 @@ Status check_outputs(const Arguments& arguments) {
 // Frame after frame until closed, stopped, or so many seconds have passed.
 template <typename App>
 void run_frames(App& app, double seconds) {
-  SteadyPacer clock;
-  const std::int64_t start_ns = clock.now_ns();
+  const double start_s = steady_now_s();
   while (!app.closing() && !stop_asked.load(std::memory_order_relaxed)) {
     app.frame();
-    if (seconds > 0.0 && kSPerNs * static_cast<double>(clock.now_ns() - start_ns) >= seconds) break;
+    if (seconds > 0.0 && steady_now_s() - start_s >= seconds) break;
   }
 }
 

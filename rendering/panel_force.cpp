@@ -8,18 +8,16 @@
 namespace palpate {
 namespace {
 
-constexpr double kSPerNs = 1e-9;
 constexpr float kReferenceLine_px = 2.4F;
 constexpr float kModelLine_px = 1.4F;
 constexpr float kSelectedLine_px = 2.0F;
 // A column to two pixels: finer is hardly seen and costs time.
 constexpr float kColumn_px = 2.0F;
 
-double now_s() { return kSPerNs * static_cast<double>(SteadyPacer().now_ns()); }
 
 // The loop time at the right edge of the curves.
 double end_time_s(const ViewState& view) {
-  return view.paused ? view.paused_at_s - view.scrolled_back_s : now_s();
+  return view.paused ? view.paused_at_s - view.scrolled_back_s : steady_now_s();
 }
 
 // The models' order of drawing: the one in the hand on top.

@@ -10,30 +10,43 @@
 
 namespace palpate {
 
-Status save_screenshot(const std::string& path, int width, int height, bool overwrite) {
-  const auto row_bytes = static_cast<std::size_t>(width) * 3;
-  std::vector<unsigned char> pixels(row_bytes * static_cast<std::size_t>(height));
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadBuffer(GL_BACK);
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+namespace {
 
+constexpr std::size_t kChannels = 3;
+
+Result<std::string> png_of(const std::vector<unsigned char>& pixels, const Framebuffer& picture) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(width);
-  image.height = static_cast<png_uint_32>(height);
+  image.width = static_cast<png_uint_32>(picture.width);
+  image.height = static_cast<png_uint_32>(picture.height);
   image.format = PNG_FORMAT_RGB;
   // OpenGL's first row is the lowest: a negative stride turns the picture over.
-  const auto stride = -static_cast<png_int_32>(row_bytes);
+  const auto stride = -static_cast<png_int_32>(kChannels * image.width);
   png_alloc_size_t size = 0;
   if (png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), stride, nullptr) == 0) {
-    return Error{path + ": cannot be made a PNG: " + image.message};
+    return Error{std::string("the picture cannot be made a PNG: ") + image.message};
   }
   std::string file(size, '\0');
   if (png_image_write_to_memory(&image, file.data(), &size, 0, pixels.data(), stride, nullptr) == 0) {
-    return Error{path + ": cannot be made a PNG: " + image.message};
+    return Error{std::string("the picture cannot be made a PNG: ") + image.message};
   }
   file.resize(size);
-  return write_file_atomically(path, file, overwrite);
+  return file;
+}
+
+}  // namespace
+
+Status save_screenshot(Window& window, const std::string& path, bool overwrite) {
+  const Framebuffer picture = window.framebuffer();
+  std::vector<unsigned char> pixels(kChannels * static_cast<std::size_t>(picture.width) *
+                                    static_cast<std::size_t>(picture.height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadBuffer(GL_BACK);
+  glReadPixels(0, 0, picture.width, picture.height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+  const Result<std::string> png = png_of(pixels, picture);
+  window.show_frame();
+  if (!png) return png.error();
+  return write_file_atomically(path, *png, overwrite);
 }
 
 }  // namespace palpate

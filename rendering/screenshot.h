@@ -5,11 +5,12 @@
 #include <string>
 
 #include "engine/result.h"
+#include "rendering/window.h"
 
 namespace palpate {
 
-// What was drawn into the back buffer, `width` x `height` pixels. Whole or not at
-// all. Errors: the file exists and `overwrite` is false; the disk refuses.
-Status save_screenshot(const std::string& path, int width, int height, bool overwrite);
+// What was drawn and is not shown yet; then shows it. The file is whole or not
+// there. Errors: it exists and `overwrite` is false; the disk refuses.
+Status save_screenshot(Window& window, const std::string& path, bool overwrite);
 
 }  // namespace palpate

@@ -5,10 +5,10 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <ctime>
 #include <utility>
 
 #include "rendering/screenshot.h"
+#include "scenes/local_time.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
 
@@ -17,15 +17,6 @@ namespace {
 
 constexpr float kColumnShare = 0.62F;  // of the window's width
 constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
-
-std::string local_time() {
-  const std::time_t time = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&time, &local);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
-  return text;
-}
 
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
@@ -103,7 +94,7 @@ void StudyApp::take_key(int key) {
       session.abort();
       break;
     case GLFW_KEY_Y:
-      session.accept_consent(local_time());
+      session.accept_consent(local_time_text("%Y-%m-%d %H:%M"));
       break;
     case GLFW_KEY_ENTER:
     case GLFW_KEY_KP_ENTER:
@@ -129,15 +120,11 @@ void StudyApp::take_key(int key) {
 }
 
 void StudyApp::draw() {
-  int width = 0;
-  int height = 0;
-  glfwGetFramebufferSize(window_->handle(), &width, &height);
-  float content_scale = 1.0F;
-  glfwGetWindowContentScale(window_->handle(), &content_scale, nullptr);
-  style_.update(height, content_scale, true, kTheme);
+  const Framebuffer picture = window_->framebuffer();
+  style_.update(picture.height, picture.content_scale, true, kTheme);
   ui_->begin_frame();
   const Rgb& background = style_.colours().background;
-  glViewport(0, 0, width, height);
+  glViewport(0, 0, picture.width, picture.height);
   glClearColor(background.r, background.g, background.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   const ImVec2 all = ImGui::GetIO().DisplaySize;
@@ -301,12 +288,7 @@ void StudyApp::draw_choices(const StudyView& view) {
 
 Status StudyApp::screenshot(const std::string& path, bool overwrite) {
   draw();
-  int width = 0;
-  int height = 0;
-  glfwGetFramebufferSize(window_->handle(), &width, &height);
-  const Status status = save_screenshot(path, width, height, overwrite);
-  window_->show_frame();
-  return status;
+  return save_screenshot(*window_, path, overwrite);
 }
 
 }  // namespace palpate

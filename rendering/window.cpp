@@ -89,11 +89,10 @@ Window::~Window() {
 bool Window::display_sets_pace() {
   glfwSwapInterval(1);
   glClearColor(0.08F, 0.09F, 0.10F, 1.0F);
-  SteadyPacer clock;
   glClear(GL_COLOR_BUFFER_BIT);
   glfwSwapBuffers(window_);
   glFinish();
-  const std::int64_t start_ns = clock.now_ns();
+  const std::int64_t start_ns = steady_now_ns();
   for (int i = 0; i < kTrialFrames; ++i) {
     // A corner only: the time it takes is the driver's waiting, not the drawing.
     glEnable(GL_SCISSOR_TEST);
@@ -103,7 +102,14 @@ bool Window::display_sets_pace() {
     glfwSwapBuffers(window_);
     glFinish();
   }
-  return clock.now_ns() - start_ns > kTrialFrames * kWaited_ns;
+  return steady_now_ns() - start_ns > kTrialFrames * kWaited_ns;
+}
+
+Framebuffer Window::framebuffer() const noexcept {
+  Framebuffer result;
+  glfwGetFramebufferSize(window_, &result.width, &result.height);
+  glfwGetWindowContentScale(window_, &result.content_scale, nullptr);
+  return result;
 }
 
 void Window::show_frame() {

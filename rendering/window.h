@@ -20,6 +20,13 @@ struct WindowRequest {
   bool fullscreen = false;
 };
 
+// What is drawn into.
+struct Framebuffer {
+  int width = 0;  // pixels
+  int height = 0;
+  float content_scale = 1.0F;  // how much larger than usual the display wants its contents
+};
+
 class Window {
  public:
   // Whether there is a display at all; cheap, before anything else starts. Errors:
@@ -32,10 +39,10 @@ class Window {
   ~Window();
 
   GLFWwindow* handle() const noexcept { return window_; }
+  Framebuffer framebuffer() const noexcept;
   // Shows what was drawn and waits until the next frame is due: the display's own
   // pace where the driver waits for it, else 60 Hz.
   void show_frame();
-  bool paced_by_display() const noexcept { return paced_by_display_; }
   void set_fullscreen(bool fullscreen);
   bool fullscreen() const noexcept;
 

@@ -1,14 +1,12 @@
 // From the text of a scene file to a Scene, collecting every error on the way.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
-#include "engine/json_position.h"
+#include "engine/json_message.h"
 #include "scenes/scene.h"
 #include "scenes/study/jnd_file.h"
 
@@ -23,52 +21,19 @@ constexpr double kLargestLength_m = 10.0;
 constexpr double kLargestJndOffset_N = 100.0;
 constexpr double kStrongestPress_N = 20.0;
 
-struct Range {
-  double above = 0.0;
-  double up_to = 1.0;
-  bool zero_allowed = false;
-};
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
-// What stands there, short enough for a message.
-std::string found(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() > 40) text = text.substr(0, 37) + "...";
-  return "found " + text;
-}
-
 class SceneReader {
  public:
   SceneReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
 
   Result<Scene> read() {
-    Json document;
-    try {
-      document = Json::parse(text_);
-    } catch (const Json::parse_error& error) {
-      return syntax_error(error);
-    } catch (const std::exception& error) {
-      return Error{path_ + ": " + error.what()};
-    }
-    read_document(document);
+    const Result<Json> document = parse_json_document<Json>(text_, path_);
+    if (!document) return document.error();
+    read_document(*document);
     if (!errors_.empty()) return Error{errors_};
     return scene_;
   }
 
  private:
-  Error syntax_error(const Json::parse_error& error) const {
-    const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-    std::string what = error.what();
-    const std::size_t detail = what.find("syntax error");
-    if (detail != std::string::npos) what = what.substr(detail);
-    return Error{position_prefix(path_, position_of_offset(text_, offset)) + what};
-  }
-
   void complain(const std::string& pointer, const std::string& words) {
     if (!errors_.empty()) errors_ += '\n';
     errors_ += position_prefix(path_, position_of_value(text_, pointer)) + words;
@@ -111,14 +76,11 @@ class SceneReader {
     return value->get<std::string>();
   }
 
-  double number(const Json& object, const std::string& pointer, const char* key, Range range) {
-    const std::string expected = std::string("a number ") + (range.zero_allowed ? "from " : "above ") +
-                                 number_text(range.above) + " up to " + number_text(range.up_to);
+  double number(const Json& object, const std::string& pointer, const char* key, const NumberRange& range) {
+    const std::string expected = range.words();
     const Json* value = member(object, pointer, key, expected);
     if (value == nullptr) return 0.0;
-    const double result = value->is_number() ? value->get<double>() : std::nan("");
-    const bool large_enough = range.zero_allowed ? result >= range.above : result > range.above;
-    if (large_enough && result <= range.up_to) return result;
+    if (value->is_number() && range.holds(value->get<double>())) return value->get<double>();
     complain(pointer + "/" + key, found(*value) + ", expected " + expected);
     return 0.0;
   }
@@ -155,7 +117,7 @@ class SceneReader {
     read_colours(document);
     read_default_models(document);
     if (document.contains("strongest_press_N")) {
-      scene_.strongest_press_N = number(document, "", "strongest_press_N", {0.0, kStrongestPress_N});
+      scene_.strongest_press_N = number(document, "", "strongest_press_N", {0.0, kStrongestPress_N, true});
     }
   }
 
@@ -197,7 +159,7 @@ class SceneReader {
     FeatureSpec feature;
     if (*kind == "lowpass_velocity") {
       feature.kind = FeatureKind::lowpass_velocity;
-      feature.relaxation_time_s = number(value, pointer, "relaxation_time_s", {0.0, kLongestRelaxation_s});
+      feature.relaxation_time_s = number(value, pointer, "relaxation_time_s", {0.0, kLongestRelaxation_s, true});
     } else if (*kind == "depth" || *kind == "velocity") {
       feature.kind = *kind == "depth" ? FeatureKind::depth : FeatureKind::velocity;
       if (value.contains("relaxation_time_s")) {
@@ -224,8 +186,8 @@ class SceneReader {
     if (document.contains("jnd_file")) return read_jnd_file_of(document);
     const Json* value = member(document, "", "jnd", "an object with offset_N and weber_fraction, or a \"jnd_file\"");
     if (value == nullptr || !is_object(*value, "/jnd", {"offset_N", "weber_fraction"})) return;
-    scene_.jnd.offset_N = number(*value, "/jnd", "offset_N", {0.0, kLargestJndOffset_N});
-    scene_.jnd.weber_fraction = number(*value, "/jnd", "weber_fraction", {0.0, 1.0, true});
+    scene_.jnd.offset_N = number(*value, "/jnd", "offset_N", {0.0, kLargestJndOffset_N, true});
+    scene_.jnd.weber_fraction = number(*value, "/jnd", "weber_fraction", {0.0, 1.0});
   }
 
   // A JND file beside the scene stands in for its own line.
@@ -249,7 +211,7 @@ class SceneReader {
         !is_object(*value, "/block", {"width_m", "length_m", "height_m", "tool_radius_m"}))
       return;
     const auto length = [&](const char* key) {
-      return number(*value, "/block", key, {0.0, kLargestLength_m});
+      return number(*value, "/block", key, {0.0, kLargestLength_m, true});
     };
     scene_.block = {length("width_m"), length("length_m"), length("height_m"), length("tool_radius_m")};
   }

@@ -182,6 +182,26 @@ Figure fit_figure(const ReportData& data) {
   return figure;
 }
 
+// Costs against something, each curve's name behind its end.
+struct CostCurves {
+  AxisRange axis;  // logarithmic
+  std::string plots;
+  std::vector<SideLabel> labels;
+
+  // `what`: a data block, and which of its columns.
+  void add(const std::string& what, const std::string& dashes, std::string_view colour, double last_s,
+           const std::string& label) {
+    plots += (plots.empty() ? "plot $" : ", \\\n  $") + what +
+             " with linespoints pointtype 7 pointsize 0.6 linewidth 1.5" + dashes + " linecolor rgb \"" +
+             std::string(colour) + "\"";
+    labels.push_back({axis.fraction(last_s), label, std::string(colour)});
+  }
+  std::string commands(const std::string& other_axis, const std::string& label) const {
+    return other_axis + "set rmargin 16\nset yrange " + axis.text() + "\n" + axis.tics("y") + "set ylabel \"" +
+           label + "\"\n" + side_labels(labels, "graph 1.02", 0.075, 1) + plots + "\n";
+  }
+};
+
 Figure sites_figure(const ReportData& data) {
   Figure figure;
   figure.name = "fit_time_sites";
@@ -194,10 +214,12 @@ Figure sites_figure(const ReportData& data) {
     if (std::find(order.begin(), order.end(), time.method) == order.end()) order.push_back(time.method);
   }
   std::vector<double> seconds;
-  for (const SitesTime& time : data.sites_time) seconds.push_back(time.seconds);
-  const AxisRange axis = log_range(seconds);
-  std::vector<SideLabel> labels;
-  std::string plots;
+  double most_sites = 500.0;
+  for (const SitesTime& time : data.sites_time) {
+    seconds.push_back(time.seconds);
+    most_sites = std::max(most_sites, static_cast<double>(time.sites));
+  }
+  CostCurves curves{log_range(seconds), {}, {}};
   for (std::size_t i = 0; i < order.size(); ++i) {
     std::vector<std::vector<double>> rows;
     for (const SitesTime& time : data.sites_time) {
@@ -206,14 +228,12 @@ Figure sites_figure(const ReportData& data) {
     const PlannedModel& plan = data.models[i].plan;
     const std::string block = "sites" + std::to_string(i);
     figure.data += data_block(block, rows);
-    plots += (plots.empty() ? "plot $" : ", \\\n  $") + block + " with linespoints pointtype 7 pointsize 0.6 linewidth 1.5" +
-             (plan.request.candidates < 100 ? " dashtype 2" : "") + " linecolor rgb \"" +
-             std::string(method_colour(plan.request.method)) + "\"";
-    labels.push_back({axis.fraction(rows.back()[1]), model_label(plan), std::string(method_colour(plan.request.method))});
+    curves.add(block, plan.request.candidates < 100 ? " dashtype 2" : "", method_colour(plan.request.method),
+               rows.back()[1], model_label(plan));
   }
-  figure.commands = "set logscale xy\nset rmargin 16\nset yrange " + axis.text() +
-                    "\n" + axis.tics("y") + "set xtics (500, 1000, 2000, 4000, 6850)\nset xlabel \"Sites\"\n"
-                    "set ylabel \"Fit [s]\"\n" + side_labels(labels, "graph 1.02", 0.075, 1) + plots + "\n";
+  figure.commands = curves.commands("set logscale xy\nset xrange [400:" + std::to_string(1.25 * most_sites) +
+                                        "]\nset xtics (500, 1000, 2000, 4000, 6850)\nset xlabel \"Sites\"\n",
+                                    "Fit [s]");
   return figure;
 }
 
@@ -230,21 +250,15 @@ Figure dimension_figure(const ReportData& data) {
     rows.push_back({static_cast<double>(time.dimension), time.direct_seconds, time.grid_seconds, time.greedy_seconds});
     seconds.insert(seconds.end(), rows.back().begin() + 1, rows.back().end());
   }
-  const AxisRange axis = log_range(seconds);
   figure.data = data_block("dimension", rows);
-  std::vector<SideLabel> labels;
-  std::string plots;
-  const std::pair<const char*, Method> curves[] = {
+  CostCurves curves{log_range(seconds), {}, {}};
+  const std::pair<const char*, Method> parts[] = {
       {"direct fit", Method::direct}, {"filling the grid", Method::voxel}, {"greedy fit", Method::greedy}};
   for (std::size_t i = 0; i < 3 && !rows.empty(); ++i) {
-    const std::string colour(method_colour(curves[i].second));
-    plots += (plots.empty() ? "plot $dimension" : ", \\\n  $dimension") + (" using 1:" + std::to_string(i + 2)) +
-             " with linespoints pointtype 7 pointsize 0.6 linewidth 1.5 linecolor rgb \"" + colour + "\"";
-    labels.push_back({axis.fraction(rows.back()[i + 1]), curves[i].first, colour});
+    curves.add("dimension using 1:" + std::to_string(i + 2), "", method_colour(parts[i].second), rows.back()[i + 1],
+               parts[i].first);
   }
-  figure.commands = "set logscale y\nset rmargin 16\nset xtics 1\nset yrange " + axis.text() +
-                    "\n" + axis.tics("y") + "set xlabel \"Features\"\nset ylabel \"Seconds\"\n" +
-                    side_labels(labels, "graph 1.02", 0.075, 1) + plots + "\n";
+  figure.commands = curves.commands("set logscale y\nset xtics 1\nset xlabel \"Features\"\n", "Seconds");
   return figure;
 }
 

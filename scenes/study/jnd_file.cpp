@@ -1,12 +1,11 @@
 #include "scenes/study/jnd_file.h"
 
-#include <cmath>
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "engine/json_position.h"
+#include "engine/json_message.h"
 
 namespace palpate {
 namespace {
@@ -19,23 +18,14 @@ Error wrong(std::string_view text, const std::string& path, const std::string& p
   return Error{position_prefix(path, position_of_value(text, pointer)) + words + kAdvice};
 }
 
-std::string found(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() > 40) text = text.substr(0, 37) + "...";
-  return "found " + text;
-}
-
-// The number under `key`, above or from `least` up to `most`.
 Result<double> number(const Json& document, std::string_view text, const std::string& path, const char* key,
-                      double most, bool zero_allowed) {
-  const std::string expected = std::string("expected a number ") + (zero_allowed ? "from 0" : "above 0") +
-                               " up to " + std::to_string(static_cast<int>(most));
+                      const NumberRange& range) {
   const auto entry = document.find(key);
-  if (entry == document.end()) return wrong(text, path, "", std::string("found no \"") + key + "\", " + expected);
-  const double value = entry->is_number() ? entry->get<double>() : std::nan("");
-  const bool large_enough = zero_allowed ? value >= 0.0 : value > 0.0;
-  if (large_enough && value <= most) return value;
-  return wrong(text, path, std::string("/") + key, found(*entry) + ", " + expected);
+  if (entry == document.end()) {
+    return wrong(text, path, "", std::string("found no \"") + key + "\", expected " + range.words());
+  }
+  if (entry->is_number() && range.holds(entry->get<double>())) return entry->get<double>();
+  return wrong(text, path, std::string("/") + key, found(*entry) + ", expected " + range.words());
 }
 
 Result<JndLine> line_of(const Json& document, std::string_view text, const std::string& path) {
@@ -44,9 +34,9 @@ Result<JndLine> line_of(const Json& document, std::string_view text, const std::
   }
   const Json version = document.value("version", Json());
   if (version != 1) return wrong(text, path, "/version", found(version) + ", expected the version 1");
-  const Result<double> offset_N = number(document, text, path, "offset_N", 100.0, false);
+  const Result<double> offset_N = number(document, text, path, "offset_N", {0.0, 100.0, true});
   if (!offset_N) return offset_N.error();
-  const Result<double> weber_fraction = number(document, text, path, "weber_fraction", 1.0, true);
+  const Result<double> weber_fraction = number(document, text, path, "weber_fraction", {0.0, 1.0});
   if (!weber_fraction) return weber_fraction.error();
   return JndLine{*offset_N, *weber_fraction};
 }
@@ -75,14 +65,10 @@ std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& po
 }
 
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
+  const Result<Json> document = parse_json_document<Json>(text, path);
+  if (!document) return Error{document.error().message + kAdvice};
   try {
-    return line_of(Json::parse(text), text, path);
-  } catch (const Json::parse_error& error) {
-    const std::size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-    std::string what = error.what();
-    const std::size_t detail = what.find("syntax error");
-    if (detail != std::string::npos) what = what.substr(detail);
-    return Error{position_prefix(path, position_of_offset(text, offset)) + what + kAdvice};
+    return line_of(*document, text, path);
   } catch (const std::exception& error) {
     return Error{path + ": " + error.what() + kAdvice};
   }

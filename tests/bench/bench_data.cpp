@@ -34,22 +34,7 @@ const PreparedTraining& recorded() {
 }
 
 const Sites& recorded_sites() {
-  static const Sites sites = [] {
-    const Sites& all = recorded().sites;
-    const Eigen::Index count = std::min(all.count(), kPaperSites);
-    Sites some;
-    some.points.resize(all.dimension(), count);
-    some.target_N.resize(count);
-    some.row_scale.resize(count);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::Index i = k * all.count() / count;
-      some.points.col(k) = all.points.col(i);
-      some.target_N[k] = all.target_N[i];
-      some.row_scale[k] = all.row_scale[i];
-      some.group.push_back(all.group[static_cast<std::size_t>(i)]);
-    }
-    return some;
-  }();
+  static const Sites sites = even_subset(recorded().sites, kPaperSites);
   return sites;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -13,10 +14,7 @@ const std::string kAssets = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
 std::string good() { return test::read_text(kAssets + "/paddle.json"); }
 
 std::string changed(const std::string& from, const std::string& to) {
-  std::string text = good();
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos);
-  return text.replace(at, from.size(), to);
+  return test::replaced(good(), from, to);
 }
 
 std::string complaint(const std::string& text) {
@@ -38,18 +36,18 @@ TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
 }
 
 TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
-  EXPECT_EQ(complaint("{"), "paddle.json:1:2: not JSON; expected one object");
+  EXPECT_EQ(complaint("{").rfind("paddle.json:1:2: syntax error", 0), 0u) << complaint("{");
   EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found [], expected an object");
   EXPECT_EQ(complaint(changed("\"direction\": 1", "\"direction\": 0.5")),
             "paddle.json:4:16: direction: found 0.5, expected 1 or -1");
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 500")),
-            "paddle.json:9:13: peak_N: found 500, expected a number from 0.001 to 100");
+            "paddle.json:9:13: peak_N: found 500, expected a number from 0.001 up to 100");
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 1")),
             "paddle.json:10:19: continuous_N: found 2, expected at most peak_N");
   EXPECT_EQ(complaint(changed("  \"ramp_s\": 0.5,\n", "")),
-            "paddle.json:1:1: ramp_s: missing, expected a number from 0.05 to 10");
+            "paddle.json:1:1: ramp_s: missing, expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
-            "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 to 10");
+            "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
             "paddle.json:2:11: kind: found \"joystick\", expected \"paddle\", \"polhem\", \"openffboard\" or "
             "\"spacemouse\"");

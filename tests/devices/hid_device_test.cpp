@@ -4,40 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <functional>
 
 #include "engine/haptics_loop.h"
 #include "tests/support/fake_hid_bus.h"
+#include "tests/support/hid_ticks.h"
 
 namespace palpate {
 namespace {
 
 using test::FakeHidBus;
+using test::tick_until;
 
 std::unique_ptr<HidDevice> open_paddle(FakeHidBus& bus) {
-  // Slow machines must not look like a slow device.
-  HidCalibration calibration = test::example_calibration(HidKind::paddle);
-  calibration.limits.stale_after_s = 1.0;
-  calibration.stuck_after_s = 60.0;
+  const HidCalibration calibration = test::patient(test::example_calibration(HidKind::paddle));
   Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
   EXPECT_TRUE(opened.ok());
   auto device = std::make_unique<HidDevice>(bus, calibration, std::move(*opened));
   EXPECT_TRUE(device->open().ok());
   return device;
-}
-
-double now_s() { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
-
-// Ticks by hand, until `done` or far too long.
-bool tick_until(HidDevice& device, double force_N, const std::function<bool(const DeviceHealth&)>& done) {
-  for (int i = 0; i < 10'000; ++i) {
-    DeviceSample sample;
-    device.read(now_s(), sample);
-    device.write(force_N);
-    if (done(device.health(now_s()))) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
 }
 
 bool zeroed(const DeviceHealth& health) { return health.zeroing == Zeroing::done && health.faults == 0; }
@@ -53,7 +37,7 @@ TEST(HidDevice, PushesAfterZeroingAndLetsGoWhenClosed) {
   device->start_zeroing();
   ASSERT_TRUE(tick_until(*device, 0.0, zeroed));
   EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth&) { return bus.motor_mA() == -250.0; }));
-  EXPECT_GT(device->health(now_s()).round_trip_s, 0.0);
+  EXPECT_GT(device->health(steady_now_s()).round_trip_s, 0.0);
   device->close();
   bus.counts = 0;
   EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth&) { return true; }));

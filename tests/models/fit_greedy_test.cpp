@@ -92,16 +92,10 @@ TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
 TEST(FitGreedy, DegenerateDataHaveADefinedOutcome) {
   for (const int candidates : {0, 5}) {
     const GreedyOptions options{.centres = 30, .candidates = candidates};
-    const Sites one = smooth_sites(4, 1, 0.0, 1);
-    Sites zero = smooth_sites(3, 50, 0.0, 1);
-    zero.target_N.setZero();
-    Sites constant = smooth_sites(3, 50, 0.0, 1);
-    constant.points.row(2).setConstant(1.0);
-    Sites duplicates = smooth_sites(3, 50, 0.0, 1);
-    duplicates.points.rightCols(40) = duplicates.points.leftCols(40).eval();
-    Sites identical = smooth_sites(3, 50, 0.0, 1);
-    identical.points.colwise() = identical.points.col(0).eval();
-    for (const Sites& sites : {one, zero, constant, duplicates, identical}) {
+    const std::vector<Sites> all = test::degenerate_sites();
+    const Sites& zero = all.front();
+    const Sites& one = all.back();
+    for (const Sites& sites : all) {
       const auto fitted = fit_greedy(sites, options);
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(validate_rbf_function(fitted->function).ok());

@@ -60,21 +60,14 @@ TEST(FitKdTree, SameDataSameBits) {
 }
 
 TEST(FitKdTree, DegenerateDataHaveADefinedOutcome) {
-  Sites zero = smooth_sites(3, 50, 0.0, 1);
-  zero.target_N.setZero();
-  Sites constant = smooth_sites(3, 50, 0.0, 1);
-  constant.points.row(2).setConstant(1.0);
-  Sites duplicates = smooth_sites(3, 50, 0.0, 1);
-  duplicates.points.rightCols(40) = duplicates.points.leftCols(40).eval();
-  Sites identical = smooth_sites(3, 50, 0.0, 1);
-  identical.points.colwise() = identical.points.col(0).eval();
-  for (const Sites& sites : {zero, constant, duplicates, identical, smooth_sites(4, 1, 0.0, 1)})
+  for (const Sites& sites : test::degenerate_sites())
     for (const Eigen::Index centres : {0, 1, 2, 40, 1000}) {
       const auto fitted = fit_kdtree(sites, jnd_of(sites), {.centres = centres});
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
       EXPECT_LE(fitted->report.centres_used, std::min(centres, static_cast<Eigen::Index>(distinct_sites(sites).size())));
     }
+  const Sites duplicates = test::degenerate_sites()[2];
   const auto cut = fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000});
   EXPECT_EQ(cut->report.centres_used, 40);
   ASSERT_FALSE(cut->report.notes.empty());

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scenes/scene.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -28,11 +29,7 @@ const char* const kGood = R"({
 
 // The good text with `from` replaced; what the reader says about it.
 std::string complaint_after(const std::string& from, const std::string& to) {
-  std::string text = kGood;
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  text.replace(place, from.size(), to);
-  const auto scene = parse_scene(text, "x.json");
+  const auto scene = parse_scene(test::replaced(kGood, from, to), "x.json");
   return scene.ok() ? "accepted" : scene.error().message;
 }
 
@@ -66,10 +63,8 @@ TEST(SceneReader, TakesAStrongestPress) {
 TEST(SceneReader, TakesItsJndFromAFile) {
   const test::TemporaryFolder folder;
   folder.with_file("own.json", R"({"format": "palpate-jnd", "version": 1, "offset_N": 0.04, "weber_fraction": 0.12})");
-  std::string text = kGood;
   const std::string line = R"("jnd": {"offset_N": 0.1, "weber_fraction": 0})";
-  text.replace(text.find(line), line.size(), R"("jnd_file": "own.json")");
-  const auto scene = parse_scene(text, folder.file("x.json"));
+  const auto scene = parse_scene(test::replaced(kGood, line, R"("jnd_file": "own.json")"), folder.file("x.json"));
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->jnd.offset_N, 0.04);
   EXPECT_EQ(scene->jnd.weber_fraction, 0.12);

@@ -59,4 +59,16 @@ inline Sites smooth_sites(int dimension, int count, double noise_N, std::uint64_
   return sites;
 }
 
+// What no method may stumble over: no force, a constant feature, duplicates, all
+// sites at one point, one site.
+inline std::vector<Sites> degenerate_sites() {
+  std::vector<Sites> all(4, smooth_sites(3, 50, 0.0, 1));
+  all[0].target_N.setZero();
+  all[1].points.row(2).setConstant(1.0);
+  all[2].points.rightCols(40) = all[2].points.leftCols(40).eval();
+  all[3].points.colwise() = all[3].points.col(0).eval();
+  all.push_back(smooth_sites(4, 1, 0.0, 1));
+  return all;
+}
+
 }  // namespace palpate::test

@@ -5,19 +5,18 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 
 #include "devices/hid_device.h"
 #include "devices/hidapi_bus.h"
 #include "engine/pacer.h"
 #include "tests/devices/emulated/emulated_paddle.h"
+#include "tests/support/hid_ticks.h"
 
 namespace palpate {
 namespace {
 
 using test::EmulatedPaddle;
-
-double now_s() { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
+using test::tick_until;
 
 class HidEmulated : public ::testing::Test {
  protected:
@@ -78,22 +77,9 @@ TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
   EXPECT_FALSE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
 }
 
-bool tick_until(HidDevice& device, double force_N, const std::function<bool(const DeviceHealth&)>& done) {
-  for (int i = 0; i < 10'000; ++i) {
-    DeviceSample sample;
-    device.read(now_s(), sample);
-    device.write(force_N);
-    if (done(device.health(now_s()))) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
-
 TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EmulatedPaddle paddle;
-  HidCalibration calibration = test::example_calibration(HidKind::paddle);
-  calibration.limits.stale_after_s = 1.0;  // this machine may be slow, the device is not
-  calibration.stuck_after_s = 60.0;
+  const HidCalibration calibration = test::patient(test::example_calibration(HidKind::paddle));
   Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   HidDevice device(bus, calibration, std::move(*opened));
@@ -101,7 +87,7 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   device.start_zeroing();
   ASSERT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); }));
   EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
-  const DeviceHealth health = device.health(now_s());
+  const DeviceHealth health = device.health(steady_now_s());
   std::printf("emulated: round trip %.2f ms, age of the sample %.2f ms\n", 1e3 * health.round_trip_s,
               1e3 * health.sample_age_s);
   EXPECT_GT(health.round_trip_s, 0.0);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/study/study_file.h"
+#include "tests/support/replaced.h"
 #include "tests/support/study_driving.h"
 
 namespace palpate {
@@ -14,11 +15,7 @@ const std::string kGood =
     "\ntraining,1,0.3,0.18,1,0.18,0.3,0,second,731\nstudy,1,2.5,3.5,0,2.4,3.5,1,first,20\n";
 
 std::string complaint_after(const std::string& from, const std::string& to) {
-  std::string text = kGood;
-  const std::size_t place = text.find(from);
-  EXPECT_NE(place, std::string::npos) << from;
-  text.replace(place, from.size(), to);
-  const auto data = parse_study(text, "S01.csv");
+  const auto data = parse_study(test::replaced(kGood, from, to), "S01.csv");
   return data.ok() ? "accepted" : data.error().message;
 }
 
