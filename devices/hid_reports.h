@@ -32,7 +32,6 @@ constexpr bool has_sequence(HidKind kind) noexcept { return kind == HidKind::pad
 constexpr bool pushes(HidKind kind) noexcept { return kind != HidKind::spacemouse; }
 
 inline constexpr std::size_t kLargestHidReport = 64;
-inline constexpr int kSpaceMouseFull = 350;  // about, at full deflection
 
 enum class ReportVerdict : std::uint8_t {
   position,       // a reading with the position

@@ -22,7 +22,6 @@ class Camera {
 
   glm::vec3 eye() const;
   glm::mat4 view_projection(float aspect) const;
-  float field_of_view_rad() const { return kFieldOfView_rad; }
 
  private:
   static constexpr float kFieldOfView_rad = 0.55F;

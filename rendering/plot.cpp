@@ -57,10 +57,6 @@ float Plot::y_px(double y) const noexcept {
   return high_.y - static_cast<float>((y - y_.from) / (y_.to - y_.from)) * (high_.y - low_.y);
 }
 
-double Plot::x_at(float x_px) const noexcept {
-  return x_.from + static_cast<double>((x_px - low_.x) / (high_.x - low_.x)) * (x_.to - x_.from);
-}
-
 bool Plot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_); }
 
 void Plot::draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) const {

@@ -36,7 +36,6 @@ class Plot {
 
   float x_px(double x) const noexcept;
   float y_px(double y) const noexcept;
-  double x_at(float x_px) const noexcept;
   float left() const noexcept { return low_.x; }
   float right() const noexcept { return high_.x; }
   float top() const noexcept { return low_.y; }

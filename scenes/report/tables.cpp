@@ -1,6 +1,5 @@
 #include "scenes/report/tables.h"
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -256,14 +255,6 @@ Table hard_case_table(const std::vector<HardCaseResult>& results) {
                           result.worst_over_jnd, result.condition, result.smoothing, result.residual, result.outcome});
   }
   return table;
-}
-
-const Table& table_named(const std::vector<Table>& tables, const std::string& name) {
-  for (const Table& table : tables) {
-    if (table.name == name) return table;
-  }
-  assert(false && "no such table");
-  return tables.front();
 }
 
 }  // namespace palpate

@@ -18,9 +18,6 @@ std::vector<Table> make_tables(const ReportData& data);
 // The stability suite's cases as a table for ReportData::hard_cases.
 Table hard_case_table(const std::vector<HardCaseResult>& results);
 
-// The table of that name; a programmer's mistake when there is none.
-const Table& table_named(const std::vector<Table>& tables, const std::string& name);
-
 // What to conclude, a sentence each: the smallest model with 99.9 % within the JND,
 // the most accurate within 1 us, ... `with_times`: those that rest on measured times.
 std::vector<std::string> findings(const ReportData& data, bool with_times);
