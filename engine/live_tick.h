@@ -95,11 +95,11 @@ inline constexpr std::uint32_t kModelNotFinite = 4;
 inline constexpr std::uint32_t kForceNotFinite = 8;   // reached the limiter
 inline constexpr std::uint32_t kForceClamped = 16;
 inline constexpr std::uint32_t kForceSlewed = 32;
-inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop
+inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop; not latched, missed_deadlines tells
 inline constexpr std::uint32_t kStaleSample = 128;    // too old to push by
 inline constexpr std::uint32_t kDeviceFault = 256;    // see LoopSnapshot::device
 inline constexpr std::uint32_t kForceThermal = 512;   // clamped by the motor's thermal budget
-// Those that take the force away.
+// Those that take the force away; kModelNotFinite that of the one model alone, in the hand or not.
 inline constexpr std::uint32_t kStops = kBadSample | kModelNotFinite | kForceNotFinite | kStaleSample | kDeviceFault;
 }  // namespace loop_fault
 

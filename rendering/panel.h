@@ -52,6 +52,7 @@ void draw_health(const LiveSession& session, ViewState& view, const UiStyle& sty
 struct HealthWords {
   std::string text;
   bool problem = false;
+  bool past = false;  // over, said until the user has seen it (LiveSession::reset_figures)
 };
 HealthWords health_words(const LiveSession& session, const FrameFigures& frames);
 

@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::size_t kFaultsShown = 6;
 constexpr double kStall_s = 0.05;
-// How long an alarm stays in words.
-constexpr double kTold_s = 5.0;
 constexpr double kFewFrames_per_s = 50.0;
 // Skipped deadlines beyond this share are worth words.
 constexpr double kManyMissed = 0.01;
@@ -32,6 +30,8 @@ void row(const char* name, const TimePercentiles& times) {
 }
 
 void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
+  ImGui::Text("%llu ticks, the last %.1f ms ago", static_cast<unsigned long long>(statistics.ticks),
+              1e3 * statistics.age_s);
   if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings))
     return;
   for (const char* heading : {"microseconds", "p50", "p99", "p99.9", "max"}) ImGui::TableSetupColumn(heading);
@@ -66,11 +66,9 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
 std::string device_line(const LiveSession& session) {
   const DeviceHealth& device = session.newest().device;
   if (device.zeroing == Zeroing::not_needed && device.faults == 0) return {};
-  std::string line =
-      "device: " + session.device_name() + text_of(", sample %.1f ms old", 1e3 * device.sample_age_s);
+  std::string line = session.device_name() + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
-  line += text_of(", motor %.0f %% of its thermal budget",
-                  100.0 * static_cast<double>(session.newest().heat_share));
+  line += text_of(", motor heat %.0f %%", 100.0 * static_cast<double>(session.newest().heat_share));
   return line;
 }
 
@@ -78,7 +76,7 @@ int health_lines(const LiveSession& session, const ViewState& view) {
   const int quiet = device_line(session).empty() ? 3 : 4;
   if (!view.details) return quiet;
   const int fix = session.scheduling().fix.empty() ? 0 : 8;
-  return quiet + fix + 5 +
+  return quiet + fix + 6 +
          static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
 }
 
@@ -92,15 +90,14 @@ HealthWords health_words(const LiveSession& session, const FrameFigures& frames)
   if (const auto words = device_fault_words(session.newest().device.faults); !words.empty()) {
     return {"Device: " + words.front(), true};
   }
-  for (auto fault = session.faults().rbegin(); fault != session.faults().rend(); ++fault) {
-    if (session.newest().loop_time_s - fault->loop_time_s > kTold_s) break;
-    if (fault->alarm) return {fault->text, true};
+  if (const auto words = session.alarms(); !words.empty()) {
+    const std::string more =
+        words.size() > 1 ? " (and " + std::to_string(words.size() - 1) + " more)" : std::string();
+    return {"Earlier: " + words.front() + more, true, true};
   }
-  const double missed = statistics.ticks > 0 ? static_cast<double>(statistics.missed_deadlines) /
-                                                   static_cast<double>(statistics.ticks)
-                                             : 0.0;
+  const double missed = session.missed_of_late();
   if (missed > kManyMissed) {
-    return {text_of("%.1f %% of the deadlines missed: close other programs, or allow real-time priority",
+    return {text_of("%.1f %% of the deadlines missed of late: close other programs, or allow real-time priority",
                     100.0 * missed),
             true};
   }
@@ -122,7 +119,7 @@ void draw_health(const LiveSession& session, ViewState& view, const UiStyle& sty
   const HealthWords words = health_words(session, frames);
   if (words.problem) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().fault));
-    ImGui::TextWrapped("%s", words.text.c_str());
+    ImGui::TextWrapped("%s%s", words.text.c_str(), words.past ? ". C clears this." : "");
     ImGui::PopStyleColor();
   } else {
     ImGui::TextDisabled("%s", words.text.c_str());
@@ -136,7 +133,11 @@ void draw_health(const LiveSession& session, ViewState& view, const UiStyle& sty
     ImGui::TextDisabled(view.details ? "" : "(L: how to get better)");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scheduling.fix.c_str());
   }
-  if (const std::string line = device_line(session); !line.empty()) ImGui::TextDisabled("%s", line.c_str());
+  if (const std::string line = device_line(session); !line.empty()) {
+    ImGui::TextDisabled("%s", line.c_str());
+    tip("The device: age of its newest sample, time from a force to the report that confirms it, and how much of "
+        "the motor's thermal budget is used.");
+  }
   if (!view.details) return;
   if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
   draw_times(session.statistics(), frames);

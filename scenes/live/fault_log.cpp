@@ -1,11 +1,14 @@
 #include "scenes/live/fault_log.h"
 
+#include <algorithm>
+
 static_assert(palpate::device_fault::kAll == (1U << 11) - 1, "a kind for each bit, see kDeviceBits");
 
 namespace palpate {
 namespace {
 
 constexpr double kSameEvent_s = 1.0;
+constexpr double kRememberedDeadlines = 10'000.0;
 
 enum Kind : std::size_t {
   kBadSample,
@@ -67,6 +70,8 @@ TickTrouble FaultLog::see(const LoopSnapshot& snapshot) {
   }
   see_device(snapshot.device.faults, snapshot.loop_time_s);
   if (snapshot.device.faults != 0) trouble = TickTrouble::alarm;
+  const auto missed = static_cast<double>(snapshot.missed_deadlines - missed_);
+  missed_of_late_ += std::min(1.0, (missed + 1.0) / kRememberedDeadlines) * (missed / (missed + 1.0) - missed_of_late_);
   if (snapshot.missed_deadlines > missed_) {
     note(kDeadlineMissed, snapshot.missed_deadlines - missed_, snapshot.loop_time_s);
     missed_ = snapshot.missed_deadlines;
@@ -92,6 +97,16 @@ void FaultLog::see_age(double age_s, double now_s) {
   const bool stalled = age_s > kStall_s;
   if (stalled && !stalled_) note(kStall, 1, now_s);
   stalled_ = stalled;
+  stall_unseen_ = stall_unseen_ || stalled;
+}
+
+std::vector<std::string> FaultLog::alarms(const LoopSnapshot& newest) const {
+  std::vector<std::string> words = device_fault_words(newest.device_faults_latched);
+  for (const BitKind& alarm : kAlarms) {
+    if ((newest.faults_latched & alarm.bit) != 0) words.emplace_back(kWords[alarm.kind]);
+  }
+  if (stall_unseen_) words.emplace_back(kWords[kStall]);
+  return words;
 }
 
 void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {

@@ -45,6 +45,15 @@ class FaultLog {
 
   const std::vector<FaultEvent>& events() const noexcept { return events_; }
 
+  // The share of missed deadlines over some ten seconds; older ones fade.
+  double missed_of_late() const noexcept { return missed_of_late_; }
+
+  // In words, what has been an alarm since the last `acknowledge`, the device's
+  // first; `newest` has what the loop latched.
+  std::vector<std::string> alarms(const LoopSnapshot& newest) const;
+  // The user has seen the alarms; the loop is told by LoopControls::acknowledged.
+  void acknowledge() noexcept { stall_unseen_ = false; }
+
  private:
   static constexpr std::size_t kKinds = 32;  // the loop's, then the device's by bit
   void see_device(std::uint32_t faults, double at_s);
@@ -58,8 +67,10 @@ class FaultLog {
   std::array<Last, kKinds> last_{};
   std::uint32_t device_faults_ = 0;
   std::uint64_t missed_ = 0;
+  double missed_of_late_ = 0.0;
   std::uint64_t dropped_ = 0;
   bool stalled_ = false;
+  bool stall_unseen_ = false;
 };
 
 }  // namespace palpate

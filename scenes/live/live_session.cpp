@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <utility>
 
 #include "devices/auto_device.h"
@@ -12,6 +11,7 @@
 #include "scenes/live/live_slot.h"
 #include "scenes/live/model_supply.h"
 #include "scenes/live/true_force.h"
+#include "scenes/local_time.h"
 
 namespace palpate {
 namespace {
@@ -24,17 +24,6 @@ constexpr std::size_t kMostNotices = 100;
 constexpr int kMostFaultFiles = 50;
 // A longer gap between snapshots is a stall, in which the picture stood still.
 constexpr double kLongestStep_s = 0.1;
-
-std::string local_time_text(const char* format) {
-  const std::time_t time = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&time, &local);
-  char text[64];
-  std::strftime(text, sizeof text, format, &local);
-  return text;
-}
-
-double now_s() noexcept { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
 
 }  // namespace
 
@@ -55,6 +44,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   DeviceRequest wanted;
   wanted.seed = request.seed + 1;  // other gestures than those of the training recording
   wanted.hand.strongest_press_N = scene->strongest_press_N;
+  wanted.bus = request.bus;
   if (const auto assets = find_assets()) wanted.calibrations = *assets + "/devices";
   Result<std::unique_ptr<Device>> device = open_device(request.device, wanted);
   if (!device) return device.error();
@@ -188,7 +178,7 @@ void LiveSession::show_newest() {
 }
 
 void LiveSession::see_faults() {
-  const double at_s = now_s();
+  const double at_s = steady_now_s();
   faults_.see_dropped(loop_->dropped_snapshots(), at_s);
   faults_.see_age(loop_->age_s(), at_s);
   save_fault_ticks();

@@ -32,6 +32,7 @@
 namespace palpate {
 
 class AutoDevice;
+class HidBus;
 class ModelSupply;
 class MouseDevice;
 class ReplayDevice;
@@ -44,6 +45,7 @@ struct SessionRequest {
   std::uint64_t seed = 1;           // of the hand, the training recording, the fits
   bool position_only = false;  // one more slot: a model that knows the depth alone
   bool realtime = true;
+  HidBus* bus = nullptr;  // outlives the session; null: the machine's own
 };
 
 // What the models are compared with.
@@ -128,7 +130,7 @@ class LiveSession {
   // "true force of the virtual silicone", "force in the recording", ...
   std::string reference_words() const;
   double reference_N() const noexcept { return reference_N_; }  // in the newest tick; NaN: none
-  // Forgets errors so far and faults that are over; curves stay.
+  // Forgets errors so far and alarms that are over; curves stay.
   void reset_figures();
 
   // Ticks.
@@ -137,6 +139,9 @@ class LiveSession {
   LoopStatistics statistics() const noexcept;
   const RtStatus& scheduling() const noexcept;
   const std::vector<FaultEvent>& faults() const noexcept { return faults_.events(); }  // the last 200
+  double missed_of_late() const noexcept { return faults_.missed_of_late(); }
+  // What went wrong since the last reset_figures, in words, the worst first.
+  std::vector<std::string> alarms() const { return faults_.alarms(newest_); }
 
   // The device: `newest().device` says how it is. Whether it renders force at all;
   // what to do for it to, empty when nothing; the tool is at its rest position.
@@ -196,6 +201,7 @@ class LiveSession {
   const PublishedSet* set_of(const LoopSnapshot& snapshot) const noexcept;
   double reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept;
   MouseDevice* mouse() const noexcept;
+  void reset_errors();
   void say(std::string text, bool problem);
   std::string distinct_name(const std::string& name, const Slot* but) const;
   std::vector<std::string> recording_comments() const;

@@ -10,8 +10,6 @@
 namespace palpate {
 namespace {
 
-double now_s() noexcept { return 1e-9 * static_cast<double>(SteadyPacer().now_ns()); }
-
 WrittenForce written(ReferenceKind kind) {
   switch (kind) {
     case ReferenceKind::measured: return WrittenForce::measured;
@@ -39,7 +37,7 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
 void LiveSession::use_reference(ReferenceKind kind) {
   if (!has_reference(kind)) return;
   reference_ = kind;
-  reset_figures();
+  reset_errors();
 }
 
 std::string LiveSession::reference_words() const {
@@ -51,8 +49,13 @@ std::string LiveSession::reference_words() const {
   return {};
 }
 
-void LiveSession::reset_figures() {
+void LiveSession::reset_errors() {
   for (const auto& slot : slots_) slot->view.errors = {};
+}
+
+void LiveSession::reset_figures() {
+  reset_errors();
+  faults_.acknowledge();
   ++acknowledged_;
   send_controls();
 }
@@ -60,7 +63,12 @@ void LiveSession::reset_figures() {
 bool LiveSession::device_pushes() const noexcept { return device_->renders_force(); }
 
 std::string LiveSession::device_words() const {
-  std::string words = zeroing_words(newest_.device);
+  const DeviceHealth& device = newest_.device;
+  // Why it has to be zeroed again comes first: unplugged, it cannot be.
+  if (device.zeroing == Zeroing::needed && (device.faults & device_fault::kLosesPosition) != 0) {
+    return device_fault_words(device.faults & device_fault::kLosesPosition).front();
+  }
+  std::string words = zeroing_words(device);
   if (words.empty() && newest_.released) {
     words = dead_man_ == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
   }
@@ -75,7 +83,7 @@ void LiveSession::use_dead_man(DeadMan what) {
 }
 
 void LiveSession::hold() {
-  held_s_ = now_s();
+  held_s_ = steady_now_s();
   send_controls();
 }
 
@@ -84,11 +92,11 @@ MouseDevice* LiveSession::mouse() const noexcept { return auto_ != nullptr ? &au
 bool LiveSession::takes_mouse() const noexcept { return mouse() != nullptr; }
 
 void LiveSession::set_tool_target(double position_m) {
-  if (MouseDevice* device = mouse()) device->set_target(position_m, now_s());
+  if (MouseDevice* device = mouse()) device->set_target(position_m, steady_now_s());
 }
 
 void LiveSession::nudge_tool(double by_m) {
-  if (MouseDevice* device = mouse()) device->nudge(by_m, now_s());
+  if (MouseDevice* device = mouse()) device->nudge(by_m, steady_now_s());
 }
 
 bool LiveSession::hand_is_exploring() const noexcept {

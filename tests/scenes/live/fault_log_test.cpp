@@ -48,6 +48,16 @@ TEST(FaultLog, CountsMissedDeadlinesEvenThoseOfLostSnapshots) {
   EXPECT_EQ(log.events()[0].count, 7u);
 }
 
+TEST(FaultLog, ForgetsMissedDeadlinesSomeTimeAfter) {
+  FaultLog log;
+  log.see(snapshot(0.0, 0, 1500));
+  EXPECT_NEAR(log.missed_of_late(), 0.15, 1e-3) << "of the last ten seconds";
+  for (int i = 1; i <= 40'000; ++i) log.see(snapshot(1e-3 * i, 0, 1500));
+  EXPECT_LT(log.missed_of_late(), 0.003);
+  for (int i = 1; i <= 100'000; ++i) log.see(snapshot(40.0 + 1e-3 * i, 0, 1500 + static_cast<std::uint64_t>(i) / 19));
+  EXPECT_NEAR(log.missed_of_late(), 0.05, 2e-3) << "one in twenty, all the time";
+}
+
 TEST(FaultLog, AStallIsOneEvent) {
   FaultLog log;
   for (int i = 0; i < 300; ++i) log.see_age(0.051 + 0.016 * i, 10.0 + 0.016 * i);
@@ -56,6 +66,24 @@ TEST(FaultLog, AStallIsOneEvent) {
   log.see_age(0.001, 20.0);
   log.see_age(0.2, 30.0);
   EXPECT_EQ(log.events().size(), 2u);
+}
+
+TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
+  FaultLog log;
+  LoopSnapshot newest = snapshot(1.0, 0);
+  EXPECT_TRUE(log.alarms(newest).empty());
+  newest.faults_latched = loop_fault::kBadSample | loop_fault::kDeviceFault | loop_fault::kForceSlewed;
+  newest.device_faults_latched = device_fault::kUnplugged;
+  const std::vector<std::string> expected = {device_fault_words(device_fault::kUnplugged).front(),
+                                             "the device gave a sample that is not a number; the force let go"};
+  EXPECT_EQ(log.alarms(newest), expected) << "the device first; a slewed force is no alarm";
+  log.see_age(0.2, 10.0);
+  log.see_age(0.0, 10.1);
+  EXPECT_EQ(log.alarms(snapshot(20.0, 0)),
+            std::vector<std::string>{"the haptics loop stood still for more than 50 ms"})
+      << "the loop itself cannot latch that";
+  log.acknowledge();
+  EXPECT_TRUE(log.alarms(snapshot(20.0, 0)).empty());
 }
 
 TEST(FaultLog, CountsLostSnapshots) {

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <thread>
 
@@ -13,11 +12,13 @@
 #include "models/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
+#include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
+using test::frames_until;
 using test::must;
 using test::TemporaryFolder;
 
@@ -50,17 +51,6 @@ struct Files {
   ModelData a, b;
   Recording recording;
 };
-
-// Frames until `done`; false when that takes absurdly long.
-bool frames_until(LiveSession& session, const std::function<bool()>& done) {
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!done()) {
-    if (std::chrono::steady_clock::now() > give_up) return false;
-    session.update();
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));
-  }
-  return true;
-}
 
 void frames(LiveSession& session, double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);

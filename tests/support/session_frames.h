@@ -1,0 +1,25 @@
+// Frames of a live session without a window.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "scenes/live/live_session.h"
+
+namespace palpate::test {
+
+// Until `done`; false when that takes absurdly long. `each` after every one.
+inline bool frames_until(LiveSession& session, const std::function<bool()>& done,
+                         const std::function<void()>& each = {}) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > give_up) return false;
+    session.update();
+    if (each) each();
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+  return true;
+}
+
+}  // namespace palpate::test
