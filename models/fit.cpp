@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "models/fit_direct.h"
@@ -118,10 +119,14 @@ std::string model_name(const MethodRequest& request, const ModelData& data) {
   return name;
 }
 
-double share_within_jnd(const PreparedTraining& prepared, const ModelData& data) {
+// Nothing when cancelled.
+std::optional<double> share_within_jnd(const PreparedTraining& prepared, const ModelData& data,
+                                       const FitControl& control) {
+  constexpr std::size_t kBetweenQuestions = 4096;
   const FittedModel model(data);
   std::size_t within = 0;
   for (std::size_t i = 0; i < prepared.judge_force_N.size(); ++i) {
+    if (i % kBetweenQuestions == 0 && !control.go_on(0.99)) return std::nullopt;
     const double force_N = model.evaluate(prepared.judge_features[i].data()).force_N;
     if (data.jnd.error_over_jnd(force_N, prepared.judge_force_N[i]) <= 1.0) ++within;
   }
@@ -171,8 +176,9 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
     return Error{"the " + fit.data.name + " fit did not give a usable model (" + valid.error().message +
                  "); try more smoothing or fewer centres"};
   }
-  fit.data.provenance.training_within_jnd = share_within_jnd(prepared, fit.data);
-  if (!control.go_on(1.0)) return interrupted();
+  const std::optional<double> within_jnd = share_within_jnd(prepared, fit.data, control);
+  if (!within_jnd || !control.go_on(1.0)) return interrupted();
+  fit.data.provenance.training_within_jnd = *within_jnd;
   return fit;
 }
 

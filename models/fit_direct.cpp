@@ -13,6 +13,10 @@
 namespace palpate {
 namespace {
 
+// Of the fit, for its progress.
+constexpr double kFactorisingFrom = 0.25;
+constexpr double kFactorised = 0.95;
+
 struct Solution {
   Eigen::VectorXd u;
   double smoothing = 0.0;
@@ -22,13 +26,22 @@ struct Solution {
   Eigen::Index rank = 0;
 };
 
-bool solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, Solution& out) {
+enum class Outcome { solved, failed, cancelled };
+
+Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const FitControl& control, Solution& out) {
+  bool cancelled = false;
+  const auto go_on = [&](double share) {
+    cancelled = !control.go_on(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
+    return !cancelled;
+  };
   // A matrix that rounding made indefinite gets ten times the smoothing.
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
     Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
     const BlasThreads threads(thread_count());
     const double norm = symmetric_norm(matrix);
-    if (!cholesky_in_place(matrix)) continue;
+    const bool factorised = cholesky_in_place(matrix, go_on);
+    if (cancelled) return Outcome::cancelled;
+    if (!factorised) continue;
     Eigen::VectorXd u = kernel.data();
     cholesky_solve(matrix, u);
     out.u = kernel.project(u);
@@ -36,9 +49,9 @@ bool solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, Solution
     out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
     out.condition = cholesky_condition(matrix, norm);
     out.rank = matrix.rows();
-    return true;
+    return Outcome::solved;
   }
-  return false;
+  return Outcome::failed;
 }
 
 bool solve_by_truncation(const ProjectedKernel& kernel, Solution& out) {
@@ -93,7 +106,11 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
     criterion = choice->criterion;
   }
   if (!control.go_on(0.2)) return interrupted();
-  if (!solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), solution)) return failed;
+  switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
+    case Outcome::cancelled: return interrupted();
+    case Outcome::failed: return failed;
+    case Outcome::solved: break;
+  }
   solution.criterion = criterion;
   return solution;
 }
@@ -107,9 +124,10 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
                  std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
   if (!control.go_on(0.0)) return interrupted();
   const ProjectedKernel kernel(sites, options.kernel);
+  if (!control.go_on(0.1)) return interrupted();
   const Result<Solution> solution = solve(sites, options, kernel, control);
   if (!solution) return solution.error();
-  if (!control.go_on(0.95)) return interrupted();
+  if (!control.go_on(kFactorised)) return interrupted();
   FittedRbf fitted;
   fitted.function = kernel.function(solution->u);
   FitReport& report = fitted.report;

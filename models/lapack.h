@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <mutex>
 
 namespace palpate {
@@ -50,16 +51,13 @@ bool svd(Eigen::MatrixXd a, Svd& out);
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
 
 // Cholesky factor in the lower triangle of `a`. False when `a` is not positive
-// definite.
-bool cholesky_in_place(MatrixRef a);
+// definite, or when `go_on`, asked now and then with the share done, says no.
+bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& go_on = {});
 // Solves a x = b in place, `factor` from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
 // Estimate of the condition number in the 1-norm. `norm`: norm_1 of the matrix.
 double cholesky_condition(const ConstMatrixRef& factor, double norm);
 // The 1-norm of a symmetric matrix given by its lower triangle.
 double symmetric_norm(const ConstMatrixRef& a);
-
-// The lower triangle of c -= a b^T + b a^T.
-void subtract_symmetric_product(const ConstMatrixRef& a, const ConstMatrixRef& b, MatrixRef c);
 
 }  // namespace palpate

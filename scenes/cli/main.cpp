@@ -1,5 +1,6 @@
 // palpate: the headless program. Exit 0: done; 1: it could not be done; 2: wrong
-// usage. No locale is ever set, so numbers read and print with '.' everywhere.
+// usage; 130: stopped by Ctrl-C, as shells count (143: by SIGTERM). No locale is ever
+// set, so numbers read and print with '.' everywhere.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "engine/atomic_file.h"
+#include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -84,7 +86,9 @@ int run_program(int argc, char** argv) {
     app.require_subcommand(1);
     app.parse(argc, argv);
     const Status status = run_chosen(verbs);
-    return status ? kDone : fail(status.error().message, kFailed);
+    if (status) return kDone;
+    // As a shell has it of a program that the signal ended.
+    return fail(status.error().message, interrupted() != 0 ? 128 + interrupted() : kFailed);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       app.exit(error);  // --help and --version

@@ -9,8 +9,9 @@
 
 namespace palpate::cli {
 
-// While one exists, the first Ctrl-C (SIGINT) asks the job to stop instead of
-// ending the program; the second ends it as before. One at a time. Use as
+// While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks the job to
+// stop instead of ending the program, so that it can tidy up; the second ends it
+// as before. One at a time. Use as
 //   ProgressLine line("fitting greedy-100");
 //   control.progress = [&](double fraction) { return line.update(fraction); };
 class ProgressLine {
@@ -35,8 +36,8 @@ class ProgressLine {
   bool drawn_ = false;
 };
 
-// Whether SIGINT arrived during the newest ProgressLine.
-bool interrupted() noexcept;
+// The signal that asked the job of the newest ProgressLine to stop; 0: none did.
+int interrupted() noexcept;
 
 // The text of a line: "label  37 %  12 s left". `elapsed_s` ≥ 0; the remaining
 // time appears once it can be guessed (2 % and 1 s).

@@ -151,8 +151,9 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   }
   const std::vector<Figure> figures = make_figures(*data);
   const auto svgs = draw(*folder, *gnuplot, figures);
-  if (!svgs) return svgs.error();
+  // Ctrl-C at a terminal ends gnuplot as well: that is no trouble of gnuplot's.
   if (!control.go_on(0.99)) return interrupted();
+  if (!svgs) return svgs.error();
 
   ReportOrigin origin = origin_of(request);
   origin.gnuplot = gnuplot_version(svgs->begin()->second);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "models/choose_smoothing.h"
@@ -211,9 +212,17 @@ TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
   large.target_N = large.row_scale = Eigen::VectorXd::Ones(kMostDirectSites + 1);
   EXPECT_EQ(fit_direct(large, {}).error().message,
             "a direct fit of 20001 sites is too large, at most 20000; reduce the recording further or use greedy");
-  const auto stopped = fit_direct(smooth_sites(2, 50, 0, 1), {}, {[](double f) { return f < 0.1; }});
-  ASSERT_FALSE(stopped.ok());
-  EXPECT_EQ(stopped.error().message, "interrupted");
+  // Whenever it asks, the last time included; a large factorisation asks on its way.
+  const Sites sites = smooth_sites(2, 1100, 0, 1);
+  std::vector<double> asked;
+  ASSERT_TRUE(fit_direct(sites, {}, {[&](double f) { return asked.push_back(f), true; }}).ok());
+  EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
+  EXPECT_GE(asked.size(), 7u);
+  for (const double fraction : asked) {
+    const auto stopped = fit_direct(sites, {}, {[&](double f) { return f < fraction; }});
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
+  }
 }
 
 }  // namespace

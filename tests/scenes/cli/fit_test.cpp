@@ -214,7 +214,7 @@ TEST_F(FitVerb, InterruptedItLeavesNoFile) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_EQ(WEXITSTATUS(status), 130);
   EXPECT_EQ(read_text(elsewhere.file("err")), "error: interrupted\n");
   EXPECT_EQ(folder_.entries(), Arguments{"press.csv"});
 }

@@ -141,6 +141,18 @@ TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
   fs::remove_all(other);
 }
 
+// While it fits, and at once: no folder, no hidden one either.
+TEST_F(ReportVerb, InterruptedItLeavesNothing) {
+  const test::TemporaryFolder empty;
+  for (const char* after_s : {"0.1", "2"}) {
+    const auto ran = test::run_program({"timeout", "--preserve-status", "-s", "INT", after_s, PALPATE_BINARY, "report",
+                                        "--quick", "--out", empty.file("report")});
+    EXPECT_EQ(ran.exit_code, 130) << ran.err;
+    EXPECT_TRUE(ran.err.empty() || ran.err == "error: interrupted\n") << ran.err;
+    EXPECT_TRUE(empty.entries().empty()) << empty.entries().front();
+  }
+}
+
 // The main table again, from the forces that `palpate replay` writes, by a script that
 // shares no code with the program.
 TEST_F(ReportVerb, TableAgreesWithAnIndependentScript) {
