@@ -9,8 +9,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev lib
   libcli11-dev nlohmann-json3-dev gnuplot-nox libgtest-dev libbenchmark-dev
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
   fonts-dejavu-core libhidapi-dev)
-# For the tests: of the window a display in memory, of devices an emulated one.
-test_packages=(xvfb xkb-data x11-xkb-utils libumockdev-dev umockdev)
+# For the tests: of the window a display in memory (xauth: for xvfb-run), of devices an emulated one.
+test_packages=(xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev)
 # libalglib-dev: a library that palpate-bench compares with where it is there.
 ci_packages=(clang-14 libclang-rt-14-dev libalglib-dev)
 
