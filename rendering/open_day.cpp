@@ -96,7 +96,7 @@ void OpenDay::draw_trial(const UiStyle& style, float width) const {
   ImGui::PushFont(style.fonts().heading);
   switch (trial_.state()) {
     case AbTrial::State::idle:
-      ImGui::TextWrapped("Press the block: move the mouse over it.");
+      ImGui::TextWrapped("Move the mouse over the block.");
       break;
     case AbTrial::State::exploring:
       ImGui::TextWrapped("Can you feel the difference?");

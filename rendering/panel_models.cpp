@@ -120,7 +120,7 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
     ImGui::SetTooltip("%s", words.c_str());
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 middle(at.x + 0.45F * line, at.y + 0.5F * line);
+  const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
   if (index == session.selected()) {
     list.AddCircleFilled(middle, 0.40F * line, colour);
     list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
@@ -129,8 +129,11 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
   }
 }
 
+// Over the columns of the figures that are not there yet.
 void draw_waiting(const SlotView& slot) {
   ImGui::TableNextColumn();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
   switch (slot.state) {
     case SlotState::waiting:
       ImGui::TextDisabled("waits");
@@ -142,6 +145,7 @@ void draw_waiting(const SlotView& slot) {
       ImGui::TextDisabled("failed");
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", slot.problem.c_str());
   }
+  ImGui::PopClipRect();
 }
 
 void draw_figures(const SlotView& slot, const UiStyle& style) {

@@ -1,6 +1,7 @@
 #include "rendering/scene_overlay.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -27,11 +28,20 @@ ImVec2 text_size(ImFont* font, const std::string& text) {
   return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str());
 }
 
-// Top left corner of block `index`'s label: at its foot, or, of a single block, in
-// the picture's upper right corner, where nothing else is.
+// Top left corner of block `index`'s label: at its foot; of a block with another one
+// before it, over its tool; of a single block, in the picture's upper right corner,
+// where nothing else is.
 ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area,
                    const ImVec2& size) {
   if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
+  const bool behind = count == 4 && index < 2;
+  if (behind) {
+    // The tool's length and a little more, for it is lifted between presses.
+    const auto above = 16.0F * static_cast<float>(blocks.geometry().tool_radius_m);
+    const glm::vec2 top = blocks.on_screen(index, count, {0.0F, above, 0.0F}, {area.size.x, area.size.y});
+    const float x = std::clamp(top.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
+    return {area.at.x + x, area.at.y + std::max(3.0F * size.y, top.y - 1.9F * size.y)};
+  }
   const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
   const auto height = static_cast<float>(blocks.geometry().height_m);
   // Before the block's front side, on the table's edge of it.
@@ -173,19 +183,24 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift) {
   if (ImGui::Button(replay.paused ? "Play" : "Pause")) session.pause_replay(!replay.paused);
   tip("The recording (P)");
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(0.62F * area.size.x);
+  // Figures beside the sliders: on them the grip hides what it is dragged over.
+  ImGui::SetNextItemWidth(0.50F * area.size.x);
   auto at_s = static_cast<float>(replay.at_s);
-  if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s), "%.1f s")) {
+  if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s), "")) {
     session.seek_replay(static_cast<double>(at_s));
   }
   tip("Where in the recording ([ and ] by 2 s)");
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::Text("%5.1f of %.1f s", replay.at_s, replay.duration_s);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-4.5F * ImGui::GetFontSize());
   auto speed = static_cast<float>(replay.speed);
-  if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "%.2f x", ImGuiSliderFlags_Logarithmic)) {
+  if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) {
     session.set_replay_speed(static_cast<double>(speed));
   }
   tip("Its speed (, and .)");
+  ImGui::SameLine();
+  ImGui::Text("%.2f x", replay.speed);
   ImGui::End();
 }
 
@@ -235,8 +250,9 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
 
 // What the device wants of whoever holds it, large and in the middle.
 void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  const std::string words = session.device_words();
+  std::string words = session.device_words();
   if (words.empty()) return;
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
   ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.32F * area.size.y}, ImGuiCond_Always,
                           {0.5F, 0.5F});
   ImGui::SetNextWindowSize({0.8F * area.size.x, 0.0F});
@@ -259,7 +275,7 @@ void draw_help(ViewState& view, const UiStyle& style, const SceneArea& area) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
   const auto line = [&](const char* key, const char* text) {
     ImGui::TextColored(paint(style.colours().text), "%s", key);
-    ImGui::SameLine(7.0F * ImGui::GetFontSize());
+    ImGui::SameLine(9.5F * ImGui::GetFontSize());
     ImGui::TextUnformatted(text);
   };
   line("mouse", "moves the probe, over the block; down is deeper");
@@ -309,7 +325,7 @@ const std::vector<CommandEntry>& commands() {
       {Command::help, "H", "Help", "all keys"},
       {Command::record, "R", "Record", "record this session to a file that `palpate fit` reads"},
       {Command::pause_curves, "Space", "Stop", "stop the curves to look back, and go on"},
-      {Command::reset_figures, "C", "Clear", "forget the errors so far"},
+      {Command::reset_figures, "C", "Clear", "forget the errors so far, and alarms that were seen"},
       {Command::next_reference, "F", "Reference", "choose what the models are compared with"},
       {Command::file_list, "M", "Load", "load a model file"},
       {Command::zero, "Z", "", "the device's tool is at its rest position: zero it there"},

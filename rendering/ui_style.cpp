@@ -84,7 +84,8 @@ void UiStyle::set_colours() {
   style = ImGuiStyle();
   style.WindowRounding = style.ChildRounding = 0.0F;
   style.FrameRounding = style.PopupRounding = style.GrabRounding = 4.0F;
-  style.WindowBorderSize = style.FrameBorderSize = 0.0F;
+  style.WindowBorderSize = 0.0F;
+  style.FrameBorderSize = 1.0F;  // buttons and sliders lie on a picture of any brightness
   style.WindowPadding = {12.0F, 8.0F};
   style.ItemSpacing = {8.0F, 5.0F};
   style.FramePadding = {8.0F, 3.0F};
@@ -100,6 +101,7 @@ void UiStyle::set_colours() {
   set(ImGuiCol_ChildBg, p.panel, 0.0F);
   set(ImGuiCol_PopupBg, p.panel, 0.98F);
   set(ImGuiCol_Border, p.grid);
+  for (const ImGuiCol what : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed}) set(what, p.raised);
   const Rgb hovered = glm::mix(p.raised, p.text, 0.12F);
   const Rgb pressed = glm::mix(p.raised, p.text, 0.22F);
   for (const ImGuiCol what :

@@ -169,9 +169,10 @@ Figure coverage_figure(const ReportData& data) {
   return figure;
 }
 
+// Quoted; in two lines where one would run into its neighbour.
 std::string method_word(const std::string& model) {
-  if (model.rfind("random", 0) == 0) return "random";
-  return model.find("-of-") != std::string::npos ? "greedy, 20 tried" : "greedy";
+  if (model.rfind("random", 0) == 0) return "\"random\"";
+  return model.find("-of-") != std::string::npos ? "\"greedy,\\n20 tried\"" : "\"greedy\"";
 }
 
 Figure seeds_figure(const ReportData& data) {
@@ -205,17 +206,20 @@ Figure seeds_figure(const ReportData& data) {
       plots[p] += (plots[p].empty() ? "plot $" : ", $") + block + " using 1:" + std::to_string(p + 2) +
                   " with points pointtype 7 pointsize 0.7 linecolor rgb \"" + colour + "\"";
     }
-    tics += (tics.empty() ? "" : ", ") + quoted(method_word(model)) + " " + std::to_string(count);
+    tics += (tics.empty() ? "" : ", ") + method_word(model) + " " + std::to_string(count);
   }
   figure.caption = "One point a seed, " + std::to_string(data.seeds.size() / std::max<std::size_t>(1, count)) +
                    " seeds each, 100 centres: a single fit may be anywhere in the cloud, so a difference smaller than "
                    "the cloud says nothing about the method.";
-  figure.commands = "set multiplot layout 1,2\nset xrange [0.4:" + std::to_string(static_cast<double>(count) + 0.6) +
+  figure.commands = "set multiplot layout 1,2\nset bmargin 3\nset xrange [0.4:" +
+                    std::to_string(static_cast<double>(count) + 0.6) +
                     "]\nset xtics (" + tics + ")\nset mxtics 1\nset ylabel \"RMS error [mN]\"\nset yrange " +
                     zero_range(rms).text() + "\n" + plots[0] + "\nset ylabel \"Worst error [JND]\"\nset yrange " +
                     zero_range(worst).text() +
                     "\nset arrow 1 from graph 0, first 1 to graph 1, first 1 nohead linewidth 1.5 dashtype 2 linecolor "
-                    "rgb \"" + std::string(kMuted) + "\"\n" + plots[1] + "\nunset multiplot\n";
+                    "rgb \"" + std::string(kMuted) +
+                    "\"\nset label 1 \"JND\" at graph 0.03, first 1 left offset 0,0.55 textcolor rgb \"" +
+                    std::string(kMuted) + "\"\n" + plots[1] + "\nunset multiplot\n";
   return figure;
 }
 

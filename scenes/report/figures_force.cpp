@@ -108,16 +108,19 @@ Figure jnd_figure(const ReportData& data) {
   const std::string points = std::string(" with points pointtype 7 pointsize 0.9 linecolor rgb \"") + std::string(kInk) +
                              "\", $earlier";
   const std::string hollow = " with points pointtype 6 pointsize 0.9 linewidth 1.5 linecolor rgb \"" + std::string(kInk) + "\"\n";
-  const auto labels = [](double own, double earlier) {
-    return "set label 1 \"12 people, pen\" at 2.5, " + std::to_string(own) + " left offset 0.9,0 textcolor rgb \"" +
-           std::string(kInk) + "\"\nset label 2 \"earlier, pinch\" at 2.5, " + std::to_string(earlier) +
-           " left offset 0.9,0 textcolor rgb \"" + std::string(kInk) + "\"\n";
+  // Beside their points, away from the line: `earlier` above it or below it.
+  const auto labels = [](const std::string& own, const std::string& earlier) {
+    const std::string colour = " textcolor rgb \"" + std::string(kInk) + "\"\n";
+    return "set label 1 \"12 people, pen\" at " + own + colour + "set label 2 \"earlier, pinch\" at " + earlier +
+           colour;
   };
   figure.commands =
-      "set multiplot layout 1,2\nset xrange [0.1:5]\nset xlabel \"Force [N]\"\nset ylabel \"JND [mN]\"\nset yrange [0:500]\n" +
-      labels(332.5, 215.0) + "plot 1000 * (" + jnd + ")" + line + "$own using 1:2" + points + " using 1:2" + hollow +
-      "set ylabel \"JND [%]\"\nset yrange [0:50]\n" + labels(13.3, 7.0) + "plot 100 * (" + jnd + ") / x" + line +
-      "$own using 1:3" + points + " using 1:3" + hollow + "unset multiplot\n";
+      "set multiplot layout 1,2\nset xrange [0.1:5]\nset xtics 1\nset xlabel \"Force [N]\"\n"
+      "set ylabel \"JND [mN]\"\nset yrange [0:500]\n" +
+      labels("2.35, 375 center", "2.75, 190 left") + "plot 1000 * (" + jnd + ")" + line + "$own using 1:2" + points +
+      " using 1:2" + hollow + "set ylabel \"JND [%]\"\nset yrange [0:50]\n" +
+      labels("2.5, 17 center", "2.5, 4.5 center") + "plot 100 * (" + jnd + ") / x" + line + "$own using 1:3" + points +
+      " using 1:3" + hollow + "unset multiplot\n";
   return figure;
 }
 

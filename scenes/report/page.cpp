@@ -42,7 +42,14 @@ code { font-size: 0.875rem; overflow-wrap: anywhere; }
   th, td { padding: 0.1rem 0.3rem; } }
 )";
 
-std::string paragraph(const std::string& text) { return "<p>" + escape_html(text) + "</p>\n"; }
+// Escaped, and no line begins with a percent sign.
+std::string prose(const std::string& text) {
+  std::string safe = escape_html(text);
+  for (std::size_t at = 0; (at = safe.find(" %", at)) != std::string::npos;) safe.replace(at, 1, "&#160;");
+  return safe;
+}
+
+std::string paragraph(const std::string& text) { return "<p>" + prose(text) + "</p>\n"; }
 
 std::string finding_box(const std::vector<std::string>& sentences, bool warning = false) {
   if (sentences.empty()) return {};
@@ -66,7 +73,7 @@ class Page {
       const auto svg = svgs_.find(name);
       if (figure.name != name || svg == svgs_.end()) continue;
       html_ += "<figure id=\"" + name + "\">\n<h3>" + escape_html(figure.title) + "</h3>\n" +
-               inline_svg(svg->second, name, figure.title) + "\n<figcaption>" + escape_html(figure.caption) +
+               inline_svg(svg->second, name, figure.title) + "\n<figcaption>" + prose(figure.caption) +
                "</figcaption>\n</figure>\n";
     }
   }
@@ -74,7 +81,7 @@ class Page {
   void table(const std::string& name) {
     for (const Table& table : tables_) {
       if (table.name != name || table.caption.empty() || table.rows.empty()) continue;
-      html_ += "<p class=\"caption\">" + escape_html(table.caption) + " (tables/" + name + ".csv)</p>\n" +
+      html_ += "<p class=\"caption\">" + prose(table.caption) + " (tables/" + name + ".csv)</p>\n" +
                table_html(table);
     }
   }
