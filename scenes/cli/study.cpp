@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kPopulationStream = 51;
 
 struct StudyOptions {
-  BootstrapSettings bootstrap;
+  IntervalSettings intervals;
   bool with_published = false;
   std::string out;
   bool force = false;
@@ -78,7 +78,7 @@ Status write_analysis(const StudyAnalysis& analysis, const StudyOptions& options
   if (analysis.lines.ok()) {
     std::vector<std::string> subjects;
     for (const SubjectJnd& subject : analysis.subjects) subjects.push_back(subject.subject);
-    const std::string text = jnd_file_text(*analysis.lines, analysis.points, options.bootstrap.criterion, subjects);
+    const std::string text = jnd_file_text(*analysis.lines, analysis.points, options.intervals.criterion, subjects);
     const Status jnd = write_file_atomically(options.out + "/jnd.json", text, options.force);
     if (!jnd) return jnd;
   }
@@ -91,7 +91,7 @@ Status analyse(const std::vector<StudyData>& files, const StudyOptions& options)
   Result<StudyAnalysis> analysis = Error{""};
   {
     ProgressLine line("analysing");
-    analysis = analyse_study(files, options.bootstrap, options.with_published,
+    analysis = analyse_study(files, options.intervals, options.with_published,
                              [&](double share) { return line.update(share); });
   }
   if (!analysis) return analysis.error();
@@ -203,7 +203,7 @@ Status run_recovery(const StudyOptions& options) {
     settings.procedure = kind;
     settings.subjects = options.subjects;
     settings.seed = options.seed;
-    settings.bootstrap = options.bootstrap;
+    settings.intervals = options.intervals;
     Result<std::vector<RecoveryRow>> rows = Error{""};
     {
       ProgressLine line(std::string("recovery, ") + procedure_name(kind));
@@ -219,19 +219,19 @@ Status run_recovery(const StudyOptions& options) {
   return {};
 }
 
-void add_bootstrap_options(CLI::App* verb, StudyOptions& options) {
-  verb->add_option("--criterion", options.bootstrap.criterion,
+void add_criterion(CLI::App* verb, StudyOptions& options) {
+  verb->add_option("--criterion", options.intervals.criterion,
                    "The JND is half the distance between the comparisons judged larger with this probability "
                    "and with one minus it")
       ->check(CLI::Range(0.55, 0.99))
       ->capture_default_str();
-  verb->add_option("--resamples", options.bootstrap.resamples, "Of the bootstrap")
-      ->check(CLI::Range(50, 100000))
-      ->capture_default_str();
 }
 
 void add_output_options(CLI::App* verb, StudyOptions& options) {
-  add_bootstrap_options(verb, options);
+  add_criterion(verb, options);
+  verb->add_option("--resamples", options.intervals.resamples, "Of the subjects, for the interval of all together")
+      ->check(CLI::Range(50, 100000))
+      ->capture_default_str();
   verb->add_flag("--pang", options.with_published, "The line goes below Pang, Tan & Durlach's point (1991) too: 9 % at 2.5 N");
   verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json and figure 3 (a) and (b)")->required();
   verb->add_flag("--force", options.force, "Replace files that exist");
@@ -290,13 +290,12 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
 void add_recovery(CLI::App& study, Verbs& verbs) {
   auto options = std::make_shared<StudyOptions>();
   options->subjects = 200;
-  options->bootstrap.resamples = 399;
   CLI::App* verb = study.add_subcommand("recovery", "How well both procedures find JNDs that are known");
   verb->add_option("--subjects", options->subjects, "How many for each procedure")
       ->check(CLI::Range(1, 9999))
       ->capture_default_str();
   verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
-  add_bootstrap_options(verb, *options);
+  add_criterion(verb, *options);
   verbs.emplace_back(verb, [options] { return run_recovery(*options); });
 }
 

@@ -20,6 +20,8 @@ constexpr double kConverged = 1e-9;  // of the log likelihood
 // the log likelihood: a likelihood ratio of 1.1, next to nothing.
 constexpr double kNoticeablyWorse = 0.1;
 constexpr double kLeastProbability = 1e-12;
+constexpr int kBisections = 24;  // of the range of ln(slope): to 1e-6
+constexpr Eigen::Index kNone = -1;
 
 // The slopes and, last, the order bias; no memory of their own.
 constexpr int kMostCoefficients = static_cast<int>(kMostReferences) + 1;
@@ -61,8 +63,9 @@ double log_likelihood(const std::vector<AnswerCell>& cells, const Coefficients& 
 }
 
 // The step of Fisher scoring: information^-1 x gradient. What would leave its range
-// stays.
-Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse) {
+// stays, and so does the coefficient `held`.
+Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse,
+                          Eigen::Index held) {
   const Eigen::Index last = coefficients.size() - 1;
   Coefficients gradient = Coefficients::Zero(last + 1);
   // A little more than nothing, so that it can be solved without answers too.
@@ -85,7 +88,7 @@ Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficien
   for (Eigen::Index i = 0; i <= last; ++i) {
     const bool leaves = (coefficients[i] >= most(i, last) && gradient[i] > 0.0) ||
                         (coefficients[i] <= least(i, last) && gradient[i] < 0.0);
-    if (!leaves) continue;
+    if (!leaves && i != held) continue;
     information.row(i).setZero();
     information.col(i).setZero();
     information(i, i) = 1.0;
@@ -94,11 +97,12 @@ Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficien
   return information.ldlt().solve(gradient);
 }
 
-// Climbs from `coefficients` for one lapse rate; halves a step that does not climb.
-double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients) {
+// Climbs from `coefficients` for one lapse rate, all but `held`; halves a step that does
+// not climb.
+double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients, Eigen::Index held = kNone) {
   double best = log_likelihood(cells, coefficients, lapse);
   for (int i = 0; i < kMostIterations; ++i) {
-    Coefficients step = scoring_step(cells, coefficients, lapse);
+    Coefficients step = scoring_step(cells, coefficients, lapse, held);
     double reached = best;
     for (int halved = 0; halved < 20; ++halved, step *= 0.5) {
       const Coefficients tried = clamped(coefficients + step);
@@ -127,11 +131,31 @@ bool bounds_slope(const std::vector<AnswerCell>& cells, std::size_t reference, c
   return at_fit > at_flattest + kNoticeablyWorse && at_fit > at_steepest + kNoticeablyWorse;
 }
 
-// How often the same function answers "larger" in a new run of the cell.
-double drawn_answers(double p, double trials, RandomStream& random) noexcept {
-  double larger = 0.0;
-  for (double trial = 0.5; trial < trials; trial += 1.0) larger += random.uniform(0.0, 1.0) < p ? 1.0 : 0.0;
-  return larger;
+// The largest likelihood with one slope given.
+double likelihood_given(const std::vector<AnswerCell>& cells, const PsychometricFit& fit, std::size_t reference,
+                        double slope) {
+  const auto last = static_cast<Eigen::Index>(fit.functions.size());
+  const auto held = static_cast<Eigen::Index>(reference);
+  Coefficients coefficients(last + 1);
+  for (std::size_t i = 0; i < fit.functions.size(); ++i) coefficients[static_cast<Eigen::Index>(i)] = fit.functions[i].slope;
+  coefficients[last] = fit.functions.front().order_bias;
+  coefficients[held] = slope;
+  double best = climb(cells, 0.0, coefficients, held);
+  for (int i = 1; i <= kLapseSteps; ++i) best = std::max(best, climb(cells, kLapseStep * i, coefficients, held));
+  return best;
+}
+
+// The slope between the fitted one and `end` up to which the likelihood is no less than
+// `least`.
+double slope_limit(const std::vector<AnswerCell>& cells, const PsychometricFit& fit, std::size_t reference, double end,
+                   double least_likelihood) {
+  if (likelihood_given(cells, fit, reference, end) >= least_likelihood) return end;
+  double inside = fit.functions[reference].slope, outside = end;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = std::sqrt(inside * outside);
+    (likelihood_given(cells, fit, reference, middle) >= least_likelihood ? inside : outside) = middle;
+  }
+  return inside;
 }
 
 }  // namespace
@@ -208,26 +232,17 @@ Estimate bias_corrected_interval(double value, std::vector<double> replicates, d
   return {value, low, high, true};
 }
 
-std::vector<Estimate> bootstrap_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
-                                     const BootstrapSettings& settings, RandomStream random) {
-  const std::size_t references = fit.functions.size();
+std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
+                                   const IntervalSettings& settings) {
   // The JND is this many standard deviations, whatever the fit.
   const double deviations = normal_quantile(settings.criterion);
-  std::vector<std::vector<double>> replicates(references);
-  std::vector<AnswerCell> drawn = cells;
-  for (int i = 0; i < settings.resamples; ++i) {
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const double p = fit.functions[cells[c].reference].at(cells[c].difference, cells[c].comparison_first);
-      drawn[c].judged_larger = drawn_answers(p, cells[c].trials, random);
-    }
-    const PsychometricFit again = fit_psychometric(drawn, references);
-    for (std::size_t r = 0; r < references; ++r) replicates[r].push_back(deviations / again.functions[r].slope);
-  }
+  const double quantile = normal_quantile(0.5 * (1.0 + settings.level));
+  const double least_likelihood = fit.log_likelihood - 0.5 * quantile * quantile;
   std::vector<Estimate> estimates;
-  for (std::size_t r = 0; r < references; ++r) {
-    estimates.push_back(
-        bias_corrected_interval(deviations / fit.functions[r].slope, std::move(replicates[r]), settings.level));
-    estimates.back().determined = fit.determined[r];
+  for (std::size_t r = 0; r < fit.functions.size(); ++r) {
+    const double flattest = slope_limit(cells, fit, r, kFlattestSlope, least_likelihood);
+    const double steepest = slope_limit(cells, fit, r, kSteepestSlope, least_likelihood);
+    estimates.push_back({deviations / fit.functions[r].slope, deviations / steepest, deviations / flattest, fit.determined[r]});
   }
   return estimates;
 }

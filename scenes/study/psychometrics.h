@@ -75,18 +75,22 @@ struct Estimate {
   bool determined = true;
 };
 
-struct BootstrapSettings {
+struct IntervalSettings {
   double criterion = kJndCriterion;
   double level = 0.95;
-  int resamples = 999;
+  int resamples = 999;  // of the subjects, for the JND of all together
 };
 
-// The relative JND at each reference force with a confidence interval by the parametric
-// bootstrap (Wichmann & Hill 2001, Perception & Psychophysics 63(8), 1314-1329): answers
-// are drawn from the fitted functions at the same stimuli and fitted again. The
-// percentiles are bias-corrected (Efron 1987). Counts must be whole.
-std::vector<Estimate> bootstrap_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
-                                     const BootstrapSettings& settings, RandomStream random);
+// The relative JND at each reference force with the interval of all slopes that explain
+// the answers nearly as well as the best, by the likelihood ratio (profile likelihood;
+// D. J. Venzon & S. H. Moolgavkar 1988, Applied Statistics 37(1), 87-94):
+//   2 (log L(best) - max log L(slope)) <= Phi^-1((1 + level) / 2)^2,
+// the maximum over all other parameters. An end of the range of slopes is in it when the
+// answers do not exclude it. (The parametric bootstrap held the truth in 91 % and not
+// 95 % of the cases at 2.5 N, 600 simulated subjects: where the best slope is that end,
+// each resample has it again, and the interval is a point.)
+std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
+                                   const IntervalSettings& settings);
 
 // Bias-corrected percentiles of `replicates` (at least one, any order) around
 // `value`.

@@ -39,8 +39,8 @@ Result<SubjectFound> study_one(const RecoverySettings& settings, int subject) {
   const auto records = run_simulated_session(header, traits, random.next());
   if (!records) return records.error();
   SubjectFound found;
-  for (const ReferenceJnd& reference : analyse_subject({header, "", *records, 0}, settings.bootstrap).references) {
-    const double truth = true_relative_jnd(traits.jnd, reference.reference_N, settings.bootstrap.criterion);
+  for (const ReferenceJnd& reference : analyse_subject({header, "", *records, 0}, settings.intervals).references) {
+    const double truth = true_relative_jnd(traits.jnd, reference.reference_N, settings.intervals.criterion);
     found.push_back({truth * reference.reference_N, reference.jnd_N});
   }
   return found;

@@ -22,7 +22,7 @@ struct RecoverySettings {
   int subjects = 200;
   std::uint64_t seed = 1;
   StudyTiming timing;
-  BootstrapSettings bootstrap;
+  IntervalSettings intervals;
 };
 
 // One reference force.

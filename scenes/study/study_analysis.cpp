@@ -10,7 +10,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kSubjectStream = 11;
 constexpr std::uint64_t kPooledSeed = 4711;
 
 // The usable answers of one subject.
@@ -65,10 +64,9 @@ Estimate scaled(Estimate relative, double reference_N) {
 }
 
 std::vector<Estimate> relative_jnds(const SubjectAnswers& answers, const std::vector<double>& references_N,
-                                    const StudyHeader& header, const BootstrapSettings& settings) {
+                                    const StudyHeader& header, const IntervalSettings& settings) {
   if (header.procedure == ProcedureKind::constant) {
-    return bootstrap_jnds(answers.cells, fit_psychometric(answers.cells, references_N.size()), settings,
-                          subject_random(header.subject, kSubjectStream));
+    return profile_jnds(answers.cells, fit_psychometric(answers.cells, references_N.size()), settings);
   }
   const std::vector<double> planned_N(kReferenceForces_N.begin(), kReferenceForces_N.end());
   QuestPlus beliefs;
@@ -95,10 +93,10 @@ PsychometricFit fit_group(const Group& group, std::size_t references) {
 
 // One function for the answers of a group; the intervals by drawing its members.
 std::vector<Estimate> pooled_relative_jnds(const Group& group, std::size_t references,
-                                           const BootstrapSettings& settings, RandomStream random,
+                                           const IntervalSettings& settings, RandomStream random,
                                            const std::function<bool(double)>& progress) {
   const PsychometricFit fit = fit_group(group, references);
-  if (group.size() == 1) return bootstrap_jnds(*group.front(), fit, settings, random);
+  if (group.size() == 1) return profile_jnds(*group.front(), fit, settings);
   std::vector<std::vector<double>> replicates(references);
   for (int i = 0; i < settings.resamples; ++i) {
     if (!progress(static_cast<double>(i) / settings.resamples)) return {};
@@ -175,7 +173,7 @@ std::string row(const std::string& who, const std::string& how, double reference
 
 }  // namespace
 
-SubjectJnd analyse_subject(const StudyData& data, const BootstrapSettings& settings) {
+SubjectJnd analyse_subject(const StudyData& data, const IntervalSettings& settings) {
   const std::vector<double> references_N = references_in({&data});
   const SubjectAnswers answers = usable_answers(data, references_N);
   SubjectJnd result{data.header.subject, data.header.procedure, answers.unusable, {}};
@@ -195,7 +193,7 @@ SubjectJnd analyse_subject(const StudyData& data, const BootstrapSettings& setti
   return result;
 }
 
-Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const BootstrapSettings& settings,
+Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const IntervalSettings& settings,
                                     bool with_published, const std::function<bool(double)>& progress) {
   if (const Status checked = check_files(files); !checked) return checked.error();
   std::vector<const StudyData*> pointers;

@@ -1,7 +1,7 @@
 // From the answers of all subjects to the JND line.
 //
 // Per subject and reference force: constant stimuli by maximum likelihood with a
-// bootstrap interval (psychometrics.h), adaptive trials by the posterior of the
+// likelihood interval (psychometrics.h), adaptive trials by the posterior of the
 // procedure itself (quest_plus.h). For each reference force then the mean over the
 // subjects, as in the paper, and one function for the answers of all, its interval by
 // drawing subjects with replacement. The means are the points of the line
@@ -46,7 +46,7 @@ struct PooledJnd {
 };
 
 struct StudyAnalysis {
-  BootstrapSettings settings;
+  IntervalSettings settings;
   std::vector<SubjectJnd> subjects;
   std::vector<PooledJnd> pooled;
   std::vector<JndPoint> points;
@@ -55,12 +55,12 @@ struct StudyAnalysis {
 };
 
 // `criterion`: above 0.5 and below 1.
-SubjectJnd analyse_subject(const StudyData& data, const BootstrapSettings& settings);
+SubjectJnd analyse_subject(const StudyData& data, const IntervalSettings& settings);
 
 // `with_published`: Pang, Tan & Durlach's point belongs to the line too. `progress`
 // gets the share done, and ends it by false ("interrupted"). Errors: no file; a
 // subject twice; a subject without answers.
-Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const BootstrapSettings& settings,
+Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const IntervalSettings& settings,
                                     bool with_published, const std::function<bool(double)>& progress);
 
 // One row per subject and reference force, then pooled: CSV with a header row.

@@ -74,7 +74,7 @@ TEST(Study, SaysWhatToDoWithoutGnuplot) {
 }
 
 TEST(Study, RecoveryPrintsBothProcedures) {
-  const auto run = run_palpate({"study", "recovery", "--subjects", "2", "--resamples", "50"});
+  const auto run = run_palpate({"study", "recovery", "--subjects", "2"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 9);
   EXPECT_NE(run.out.find("adaptive"), std::string::npos);

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-const BootstrapSettings kQuick{kJndCriterion, 0.95, 50};
+const IntervalSettings kQuick{kJndCriterion, 0.95, 50};
 bool go_on(double) { return true; }
 
 // A session of a subject whose answers come out exactly as often as they should:
