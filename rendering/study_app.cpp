@@ -5,6 +5,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <cctype>
 #include <utility>
 
 #include "rendering/screenshot.h"
@@ -16,6 +17,7 @@ namespace palpate {
 namespace {
 
 constexpr float kColumnShare = 0.62F;  // of the window's width
+constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
 constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
 
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
@@ -38,7 +40,10 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) 
   glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
     if (action == GLFW_PRESS) static_cast<StudyApp*>(glfwGetWindowUserPointer(from))->press_key(key);
   });
-  // After this callback, which it calls behind its own.
+  glfwSetCharCallback(handle, [](GLFWwindow* from, unsigned letter) {
+    if (letter < 0x80) static_cast<StudyApp*>(glfwGetWindowUserPointer(from))->type(static_cast<char>(letter));
+  });
+  // After these callbacks, which it calls behind its own.
   app->ui_ = std::make_unique<UiContext>(handle);
   return app;
 }
@@ -78,16 +83,28 @@ void StudyApp::frame() {
 }
 
 void StudyApp::handle_keys() {
-  for (const int key : std::exchange(keys_, {})) take_key(key);
+  for (const Typed& typed : std::exchange(typed_, {})) {
+    if (study_ == nullptr && typed.key == 0) {
+      if (code_.size() < kLongestCode && std::isalnum(static_cast<unsigned char>(typed.letter)) != 0) {
+        code_ += static_cast<char>(std::toupper(static_cast<unsigned char>(typed.letter)));
+      }
+    } else if (study_ == nullptr) {
+      take_key_of_entry(typed.key);
+    } else {
+      take_key(typed.key);
+    }
+  }
+}
+
+void StudyApp::take_key_of_entry(int key) {
+  if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_);
+  if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
+  if (key == GLFW_KEY_TAB) {
+    procedure_ = procedure_ == ProcedureKind::constant ? ProcedureKind::adaptive : ProcedureKind::constant;
+  }
 }
 
 void StudyApp::take_key(int key) {
-  if (study_ == nullptr) {
-    if (key == GLFW_KEY_TAB) {
-      procedure_ = procedure_ == ProcedureKind::constant ? ProcedureKind::adaptive : ProcedureKind::constant;
-    }
-    return;
-  }
   StudySession& session = study_->session();
   switch (key) {
     case GLFW_KEY_ESCAPE:
@@ -142,7 +159,7 @@ void StudyApp::draw() {
 
 // Its key does the same.
 void StudyApp::button(const char* label, int key) {
-  if (ImGui::Button(label)) keys_.push_back(key);
+  if (ImGui::Button(label)) press_key(key);
 }
 
 void StudyApp::draw_trouble(const std::string& words) const {
@@ -165,21 +182,28 @@ void StudyApp::draw_entry() {
                          : "Two pushes, one after the other: which was larger?");
   gap();
   ImGui::PushFont(style_.fonts().heading);
-  ImGui::SetNextItemWidth(8.0F * ImGui::GetFontSize());
-  if (!ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
-  // It takes Enter itself: a key callback may be ahead of the letters before it.
-  bool complete = ImGui::InputText("subject code, such as S01", code_.data(), code_.size(),
-                                   ImGuiInputTextFlags_CharsUppercase | ImGuiInputTextFlags_AutoSelectAll |
-                                       ImGuiInputTextFlags_EnterReturnsTrue);
+  draw_code();
   ImGui::PopFont();
   if (request_.strokes == nullptr) draw_procedures();
   gap();
   ImGui::PushFont(style_.fonts().heading);
-  complete |= ImGui::Button("Begin (Enter)");
+  button("Begin (Enter)", GLFW_KEY_ENTER);
   ImGui::PopFont();
-  if (complete) begin(code_.data());
   ImGui::TextDisabled("A code that has begun goes on after its last answer.");
   if (!problem_.empty()) draw_trouble(problem_);
+}
+
+void StudyApp::draw_code() {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 padding = ImGui::GetStyle().FramePadding;
+  const float width = 8.0F * ImGui::GetFontSize(), height = ImGui::GetFrameHeight();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + width, at.y + height}, ink(style_.colours().raised), ImGui::GetStyle().FrameRounding);
+  list.AddText({at.x + padding.x, at.y + padding.y}, ink(style_.colours().text), (code_ + "|").c_str());
+  ImGui::Dummy({width, height});
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("subject code, such as S01");
 }
 
 void StudyApp::draw_procedures() {

@@ -7,7 +7,6 @@
 // Thread guarantee: main thread only.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,7 +41,8 @@ class StudyApp {
   // What the entry screen does: opens or takes up study-CODE.csv, or with strokes
   // discriminate-CODE.csv, in this folder. Trouble is shown there.
   void begin(const std::string& code);
-  void press_key(int key) { keys_.push_back(key); }
+  void press_key(int key) { typed_.push_back({key, '\0'}); }
+  void type(char letter) { typed_.push_back({0, letter}); }
   // Null before `begin` succeeded.
   LiveStudy* study() noexcept { return study_.get(); }
   const std::string& problem() const noexcept { return problem_; }
@@ -51,6 +51,7 @@ class StudyApp {
   explicit StudyApp(const StudyRequest& request) : request_(request) {}
   void draw();
   void draw_entry();
+  void draw_code();
   void draw_procedures();
   void draw_session();
   void draw_choices(const StudyView& view);
@@ -59,6 +60,7 @@ class StudyApp {
   void draw_trouble(const std::string& words) const;
   void handle_keys();
   void take_key(int key);
+  void take_key_of_entry(int key);
   void button(const char* label, int key);
 
   StudyRequest request_;
@@ -66,8 +68,14 @@ class StudyApp {
   std::unique_ptr<LiveStudy> study_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  std::vector<int> keys_;  // since the last frame
-  std::array<char, 16> code_{};
+  // Keys and letters since the last frame, in order: Enter comes after the code. (A text
+  // field of Dear ImGui loses it now and then when frames are slow.)
+  struct Typed {
+    int key = 0;
+    char letter = '\0';
+  };
+  std::vector<Typed> typed_;
+  std::string code_;
   ProcedureKind procedure_ = ProcedureKind::constant;
   std::string problem_;
 };

@@ -128,6 +128,15 @@ TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {
   app_->frame();
 }
 
+TEST_F(StudyAppTest, TakesTheCodeInTheOrderItIsTyped) {
+  for (const char letter : {'s', '-', '0', '1', '2'}) app_->type(letter);
+  app_->press_key(GLFW_KEY_BACKSPACE);
+  app_->press_key(GLFW_KEY_ENTER);
+  app_->frame();
+  ASSERT_NE(app_->study(), nullptr) << app_->problem();
+  EXPECT_EQ(app_->study()->session().header().subject, "S01");
+}
+
 TEST_F(StudyAppTest, SaysWhatIsWrongWithACode) {
   app_->begin("Anna");
   EXPECT_EQ(app_->study(), nullptr);
