@@ -24,6 +24,7 @@
 #include "engine/result.h"
 #include "models/fit_control.h"
 #include "models/fit_report.h"
+#include "models/fit_trend.h"
 #include "models/fitted_model.h"
 #include "models/motion_source.h"
 #include "models/sites.h"
@@ -50,6 +51,7 @@ struct TrainingRequest {
   Reduction reduction = Reduction::coverage;
   Relaxation relaxation = Relaxation::scene;
   std::vector<double> relaxation_times_s;  // when given
+  BranchDrive drive = BranchDrive::elastic_rate;
 };
 
 struct MethodRequest {

@@ -151,6 +151,21 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   return trend;
 }
 
+// Columns: the directions in which the coefficients may move. Driven by velocity,
+// those of a branch move together: their sum is g(d) = d.
+Eigen::MatrixXd free_directions(const TrendRows& rows, BranchDrive drive) {
+  const auto n = static_cast<Eigen::Index>(rows.columns());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n, n);
+  if (drive == BranchDrive::elastic_rate) return all;
+  constexpr auto kTerms = static_cast<Eigen::Index>(kBranchTerms);
+  const auto branches = static_cast<Eigen::Index>(rows.relaxation_times_s().size());
+  const Eigen::Index first = n - kTerms * branches;
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(n, first + branches);
+  directions.leftCols(first) = all.leftCols(first);
+  for (Eigen::Index b = 0; b < branches; ++b) directions.col(first + b).segment(first + b * kTerms, kTerms).setOnes();
+  return directions;
+}
+
 }  // namespace
 
 Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side) {
@@ -162,15 +177,18 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
   return solver.solve().cwiseMax(0.0).cwiseProduct(inverse_norm);
 }
 
-FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N) {
+FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
+                      BranchDrive drive) {
   FittedTrend fitted;
+  const Eigen::MatrixXd directions = free_directions(rows, drive);
   std::vector<double> scale(rows.count());
   fitted.active.assign(rows.count(), 1);
   for (std::size_t i = 0; i < rows.count(); ++i) scale[i] = row_scale(weighting, jnd, rows.force_N(i));
   Eigen::VectorXd x;
   for (int pass = 0; pass < kActiveSetPasses; ++pass) {
     const NormalEquations equations = normal_equations(rows, scale, fitted.active);
-    x = solve_non_negative(equations.gram, equations.right_side);
+    x = directions * solve_non_negative(directions.transpose() * equations.gram * directions,
+                                        directions.transpose() * equations.right_side);
     bool changed = false;
     for (std::size_t i = 0; i < rows.count(); ++i) {
       if (rows.force_N(i) > no_force_N) continue;

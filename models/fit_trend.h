@@ -34,7 +34,13 @@ struct FittedTrend {
   std::vector<char> active;           // per row: counted in the last pass
 };
 
+// What drives the branches: the rate g'(d) v of an elastic response that the fit
+// finds, or, as in eq. 1 of the paper, the velocity alone (g' constant). The
+// comparison of choices (palpate-bench) says what the first is worth.
+enum class BranchDrive { elastic_rate, velocity };
+
 // `no_force_N`: at or below it a sample counts as "no measured force".
-FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N);
+FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
+                      BranchDrive drive = BranchDrive::elastic_rate);
 
 }  // namespace palpate

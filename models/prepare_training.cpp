@@ -4,7 +4,6 @@
 
 #include "models/fit.h"
 #include "models/fit_random.h"
-#include "models/fit_trend.h"
 #include "models/relaxation.h"
 
 namespace palpate {
@@ -144,7 +143,8 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
     return true;
   }, control, 0.15);
   if (!status) return status;
-  FittedTrend fitted = fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N);
+  FittedTrend fitted =
+      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N, request.drive);
   prepared.common.trend = fitted.trend;
   std::vector<FeatureSpec> filters = std::move(fitted.branches);
   if (papers) {

@@ -133,6 +133,18 @@ TEST(FitTrend, RecoversAKnownTrend) {
   }
 }
 
+// A drive that is a straight line is found either way; a bent one needs the first.
+TEST(FitTrend, DrivenByVelocityEveryBranchIsALowPass) {
+  const Known known = known_trend(0.4);
+  const TrendRows rows = rows_of(known, 0.4, false);
+  const FittedTrend fitted = fit_trend(rows, Weighting::jnd, {}, -100.0, BranchDrive::velocity);
+  ASSERT_EQ(fitted.branches.size(), 1u);
+  const DriveCurve& drive = fitted.branches[0].drive;
+  EXPECT_GT(drive.at(kDepth_m), 0.0);
+  EXPECT_NEAR(drive.at(0.5 * kDepth_m), 0.5 * drive.at(kDepth_m), 1e-12 * drive.at(kDepth_m));
+  EXPECT_LT(fit_trend(rows, Weighting::jnd, {}, -100.0).weighted_rms, fitted.weighted_rms);
+}
+
 TEST(FitTrend, OneSidedSamplesDoNotBendIt) {
   const Known known = known_trend(0.0);
   const TrendRows rows = rows_of(known, 0.0, true);

@@ -1,0 +1,195 @@
+// What each choice of the fit is worth: greedy-100 with one thing changed at a time,
+// on six materials, judged twice. `cross_validated`: on thirds of the training
+// recordings that were left out, which is all that a choice may look at; `within_JND`,
+// `rms_mN` and `worst_JND`: on a recording that nothing was trained on. And how many
+// centres it takes, from none: the trend alone.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/support/fitting.h"
+
+namespace palpate::bench {
+namespace {
+
+using test::RecordingPtr;
+
+struct Material {
+  std::string scene;
+  std::vector<RecordingPtr> train;
+  std::vector<RecordingPtr> test;
+};
+
+std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::string>& forces_mN) {
+  std::vector<RecordingPtr> recordings;
+  for (const std::string& force : forces_mN)
+    recordings.push_back(test::real_recording("aurora_skin/" + kind + "_" + force + "mN.csv"));
+  return recordings;
+}
+
+Material make_material(const std::string& name) {
+  if (name == "skin") return {"skin", skin("train", {"250", "600", "1000"}), skin("test", {"400", "800", "900"})};
+  if (name == "press")
+    return {"silicone_block", {test::real_recording("ur3e_press_mit/train_cycle1.csv")},
+            {test::real_recording("ur3e_press_mit/test_cycle2.csv")}};
+  const std::map<std::string, std::string> scenes{
+      {"silicone", "silicone_block"}, {"foam", "foam_block"}, {"gel", "silicone_block"}, {"stiff", "stiff_block"}};
+  return {scenes.at(name), {test::rig_recording(test::train_settings(name))},
+          {test::rig_recording(test::test_settings(name))}};
+}
+
+const Material& material(const std::string& name) {
+  static std::map<std::string, Material> made;
+  if (const auto found = made.find(name); found != made.end()) return found->second;
+  return made.emplace(name, make_material(name)).first->second;
+}
+
+// Several recordings: each is a part. One: cut in three where the tool is in the air,
+// as near to thirds as may be, else at the thirds.
+std::vector<RecordingPtr> parts_of(const std::vector<RecordingPtr>& recordings) {
+  if (recordings.size() > 1) return recordings;
+  const Recording& whole = *recordings[0];
+  std::vector<std::size_t> cuts{0};
+  for (const std::size_t third : {whole.rows.size() / 3, 2 * whole.rows.size() / 3}) {
+    std::size_t cut = third;
+    const std::size_t most = third + whole.rows.size() / 6;
+    while (cut < most && whole.rows[cut].position_m > 0.0) ++cut;
+    cuts.push_back(cut < most ? cut : third);
+  }
+  cuts.push_back(whole.rows.size());
+  std::vector<RecordingPtr> parts;
+  for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+    Recording part{whole.name, whole.columns, {}};
+    part.rows.assign(whole.rows.begin() + static_cast<std::ptrdiff_t>(cuts[k]),
+                     whole.rows.begin() + static_cast<std::ptrdiff_t>(cuts[k + 1]));
+    parts.push_back(std::make_shared<const Recording>(std::move(part)));
+  }
+  return parts;
+}
+
+struct Figures {
+  double samples = 0.0;
+  double squares = 0.0;  // of the error, N^2
+  double within = 0.0;   // samples
+  double worst_over_jnd = 0.0;
+
+  void add(const ErrorSummary& summary) {
+    const auto n = static_cast<double>(summary.samples);
+    samples += n;
+    squares += n * summary.rms_error_N * summary.rms_error_N;
+    within += n * summary.within_jnd;
+    worst_over_jnd = std::max(worst_over_jnd, summary.max_error_over_jnd);
+  }
+  double rms_mN() const { return 1e3 * std::sqrt(squares / samples); }
+  double within_percent() const { return 100.0 * within / samples; }
+};
+
+struct Choice {
+  std::string name;
+  std::function<void(TrainingRequest&, MethodRequest&)> change;
+};
+
+Figures judged(const Material& on, const Choice& choice, const std::vector<RecordingPtr>& train,
+               const std::vector<RecordingPtr>& test) {
+  TrainingRequest training = test::scene_request(on.scene);
+  MethodRequest method;
+  choice.change(training, method);
+  const PreparedTraining prepared = test::prepare(train, training);
+  const auto model = std::make_shared<const FittedModel>(test::must(fit_method(prepared, method)).data);
+  Figures figures;
+  for (const RecordingPtr& recording : test) figures.add(test::judge(*recording, model));
+  return figures;
+}
+
+Figures cross_validated(const Material& on, const Choice& choice) {
+  const std::vector<RecordingPtr> parts = parts_of(on.train);
+  Figures figures;
+  for (std::size_t left_out = 0; left_out < parts.size(); ++left_out) {
+    std::vector<RecordingPtr> rest = parts;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const Figures one = judged(on, choice, rest, {parts[left_out]});
+    figures.samples += one.samples;
+    figures.squares += one.squares;
+    figures.within += one.within;
+  }
+  return figures;
+}
+
+void run(benchmark::State& state, const std::string& name, const Choice& choice, bool validate) {
+  try {
+    const Material& on = material(name);
+    for (auto _ : state) {
+      const Figures held_out = judged(on, choice, on.train, on.test);
+      state.counters["rms_mN"] = held_out.rms_mN();
+      state.counters["within_JND_percent"] = held_out.within_percent();
+      state.counters["worst_JND"] = held_out.worst_over_jnd;
+      if (validate) state.counters["cross_validated_mN"] = cross_validated(on, choice).rms_mN();
+    }
+  } catch (const std::runtime_error& error) {
+    state.SkipWithError(error.what());
+  }
+}
+
+void add(const std::string& group, const std::string& name, const Choice& choice) {
+  benchmark::RegisterBenchmark((group + "/" + name + "/" + choice.name).c_str(),
+                               [name, choice, group](benchmark::State& state) {
+                                 run(state, name, choice, group == "choice");
+                               })
+      ->Iterations(1)->UseRealTime()->Unit(benchmark::kSecond);
+}
+
+const std::vector<Choice>& choices() {
+  static const std::vector<Choice> all{
+      {"default", [](TrainingRequest&, MethodRequest&) {}},
+      {"filters_driven_by_velocity", [](TrainingRequest& t, MethodRequest&) { t.drive = BranchDrive::velocity; }},
+      {"relaxation_identified",
+       [](TrainingRequest& t, MethodRequest&) { t.relaxation = Relaxation::automatic; }},
+      {"kernel_linear", [](TrainingRequest&, MethodRequest& m) { m.kernel = KernelKind::linear; }},
+      {"kernel_thin_plate", [](TrainingRequest&, MethodRequest& m) { m.kernel = KernelKind::thin_plate; }},
+      {"kernel_quintic", [](TrainingRequest&, MethodRequest& m) { m.kernel = KernelKind::quintic; }},
+      {"weights_relative", [](TrainingRequest& t, MethodRequest&) { t.weighting = Weighting::relative; }},
+      {"weights_none", [](TrainingRequest& t, MethodRequest&) { t.weighting = Weighting::none; }},
+      {"every_50_mN", [](TrainingRequest& t, MethodRequest&) { t.reduction = Reduction::force; }},
+      {"papers_recipe",
+       [](TrainingRequest& t, MethodRequest&) {
+         t.reduction = Reduction::force;
+         t.weighting = Weighting::relative;
+       }},
+      {"candidates_all", [](TrainingRequest&, MethodRequest& m) { m.candidates = 0; }},
+      {"direct", [](TrainingRequest&, MethodRequest& m) { m.method = Method::direct; }},
+  };
+  return all;
+}
+
+const int registered = [] {
+  std::vector<std::string> materials{"silicone", "foam", "gel", "stiff"};
+  if (std::filesystem::exists(test::real_data())) materials.insert(materials.end(), {"skin", "press"});
+  for (const std::string& name : materials) {
+    for (const Choice& choice : choices()) {
+      // The stiff block has no filters to choose for.
+      if (name == "stiff" && (choice.name.starts_with("filters") || choice.name.starts_with("relaxation"))) continue;
+      add("choice", name, choice);
+    }
+    for (const int centres : {0, 1, 2, 5, 10, 20, 50, 100, 200}) {
+      add("centres", name, {std::to_string(centres), [centres, name](TrainingRequest& t, MethodRequest& m) {
+                              m.centres = centres;
+                              if (name == "gel") t.relaxation = Relaxation::automatic;
+                            }});
+      add("centres_papers_recipe", name, {std::to_string(centres), [centres](TrainingRequest& t, MethodRequest& m) {
+                                            t.reduction = Reduction::force;
+                                            t.weighting = Weighting::relative;
+                                            m.centres = centres;
+                                          }});
+    }
+  }
+  return 0;
+}();
+
+}  // namespace
+}  // namespace palpate::bench
