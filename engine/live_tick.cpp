@@ -63,6 +63,8 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
     : device_(device),
       slot_(slot),
       mixer_(settings.jnd),
+      passivity_(device.sensor().encoder_step_m),
+      passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
       source_(settings.source),
       outgoing_mixer_(settings.jnd),
@@ -187,14 +189,23 @@ bool LiveTick::released(const LoopControls& controls) const noexcept {
   return false;
 }
 
-void LiveTick::render(double wanted_N, double step_s, bool released) noexcept {
+// A study presents forces of its own, which owe nothing to where the tool is.
+double LiveTick::passive(double mixed_N, double step_s) noexcept {
+  if (!passivity_on_) return mixed_N;
+  const TickSnapshot& tick = snapshot_.tick;
+  const bool in_contact = tick.in_contact && !snapshot_.restarted;
+  return passivity_.apply(mixed_N, {tick.position_m, tick.velocity_m_per_s, in_contact}, snapshot_.rendered_N, step_s);
+}
+
+void LiveTick::render(double wanted_N, double passive_N, double step_s, bool released) noexcept {
   const DeviceHealth& device = snapshot_.device;
   // A sample that cannot be true: no force until there is one that can.
   if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.mixed_N = wanted_N;
+  snapshot_.passive_N = passive_N;
   snapshot_.released = released;
-  snapshot_.rendered_N = limiter_.limit(wanted_N, step_s, {device.sample_age_s, !device.may_push(), released});
+  snapshot_.rendered_N = limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), released});
   snapshot_.faults |= limiter_bits(limiter_.flags());
   snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
@@ -232,7 +243,7 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   snapshot_.device = device_.health(now_s);
   const double wanted_N =
       source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
-  render(wanted_N, step_s, released(controls));
+  render(wanted_N, passive(wanted_N, step_s), step_s, released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
   if (models_ != nullptr) {
@@ -249,7 +260,7 @@ bool LiveTick::release(double now_s) noexcept {
   now_s_ = now_s;
   snapshot_.faults = 0;
   snapshot_.device = device_.health(now_s);
-  render(0.0, step_s, false);
+  render(0.0, 0.0, step_s, false);
   return snapshot_.rendered_N == 0.0;
 }
 

@@ -4,7 +4,7 @@
 // the same bits for the same samples.
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
-//   -> mix (what is in the hand) -> limit -> write the device -> snapshot
+//   -> mix (what is in the hand) -> passivity -> limit -> write the device -> snapshot
 //
 // Thread guarantee: built on the slow side; `run` and `release` belong to the
 // haptics thread, are wait-free, allocate nothing, lock nothing and never throw.
@@ -23,6 +23,7 @@
 #include "engine/haptics_tick.h"
 #include "engine/jnd.h"
 #include "engine/model_slot.h"
+#include "engine/passivity_controller.h"
 #include "engine/spsc_ring.h"
 
 namespace palpate {
@@ -110,7 +111,8 @@ inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 struct LoopSnapshot {
   TickSnapshot tick;
   double loop_time_s = 0.0;  // steady clock; goes on where `tick.time_s` starts over
-  double mixed_N = 0.0;      // what the models ask for, before the limiter
+  double mixed_N = 0.0;      // what the models ask for
+  double passive_N = 0.0;    // what the passivity controller left of it, before the limiter
   double rendered_N = 0.0;
   double measured_N = kNoForce;   // of the device's force sensor; NaN: none
   double reference_N = kNoForce;  // of the set's ReferenceForce; NaN: none
@@ -154,6 +156,7 @@ struct LiveTickSettings {
   JndLine jnd;
   TakenRing* taken = nullptr;  // outlives the tick; null: nobody records
   ForceSource* source = nullptr;  // outlives the tick; null: the models
+  bool passivity = true;  // false: for tests of what its controller is needed for
 };
 
 class LiveTick {
@@ -189,12 +192,15 @@ class LiveTick {
   double mix(const LoopControls& controls, double step_s) noexcept;
   void acknowledge(const LoopControls& controls) noexcept;
   bool released(const LoopControls& controls) const noexcept;
-  void render(double wanted_N, double step_s, bool released) noexcept;
+  double passive(double mixed_N, double step_s) noexcept;
+  void render(double wanted_N, double passive_N, double step_s, bool released) noexcept;
   void record_fault() noexcept;
 
   Device& device_;
   ModelSlot<LiveModels>& slot_;
   ForceMixer mixer_;
+  PassivityController passivity_;
+  bool passivity_on_;
   ForceLimiter limiter_;
   ForceSource* source_;
   LiveModels* models_ = nullptr;

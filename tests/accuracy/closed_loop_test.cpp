@@ -7,7 +7,9 @@
 // What to expect. A force that is held for a tick T and comes t_d late acts as a
 // spring K beside the damping -K (T / 2 + t_d): -0.9 N s/m on 600 N/m, -4.5 N s/m
 // on 3 kN/m (Colgate & Schenkel 1997, for t_d = 0). Somebody has to provide as
-// much: the model's own viscosity, the hand, or the device.
+// much: the model's own viscosity, the hand, the device, or, for the rest, the
+// passivity controller (engine/passivity_controller.h). What it is needed for is
+// shown without it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,7 +89,7 @@ TEST(ClosedLoop, ComesToRestOnSiliconeInEveryHand) {
     EXPECT_LE(worst.force_jnd, kStill_jnd) << model->name();
   }
   // A spring of the same stiffness has no damping to give.
-  EXPECT_GT(worst_hold(spring(kSoftSpring_N_per_m), mass_alone(), kFirm).position_steps, 100.0);
+  EXPECT_GT(worst_hold(spring(kSoftSpring_N_per_m), mass_alone(), kFirm, 1.5, false).position_steps, 100.0);
 }
 
 // A transport that takes 2 or 3 ms: every millisecond costs 0.6 N s/m of damping.
@@ -110,20 +112,23 @@ TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
   }
 }
 
-// Falls short: near its surface silicone has next to no viscosity, so that a
-// mass that nothing holds, pushed with 0.3 N, keeps bouncing some millimetres
-// high. The 450 N/m there, held and late, ask for 0.7 N s/m; with the ticks left
-// out 1.5 N s/m in the device bring it to rest. Measured: 3.9 mm.
-constexpr double kBounce_m = 6e-3;
+// Near its surface silicone has next to no viscosity, so that a mass that nothing
+// holds, pushed with 0.3 N, would keep bouncing some millimetres high: the 450 N/m
+// there, held and late, ask for 0.7 N s/m. With the controller the energy that one
+// step of the encoder hides is left, 9 uJ at 0.3 N. Measured: 4.1 mm without, 1.0 mm
+// with it; with 1.5 N s/m in the device it rests.
+constexpr double kBounce_m = 1.5e-3;
 constexpr double kEnoughDamping_Ns_per_m = 1.5;
 
 TEST(ClosedLoop, AMassThatNothingHoldsBouncesOnTheSurfaceAndNoMore) {
   for (const ModelPtr& model : silicone_models()) {
-    const Rest bare = worst_hold(model, mass_alone(), kLight, 2.5);
+    const Rest bare = worst_hold(model, mass_alone(), kLight, 2.5, false);
+    const Rest passive = worst_hold(model, mass_alone(), kLight, 2.5);
     const Rest damped = worst_hold(model, {"damped", 0.1, 0.0, kEnoughDamping_Ns_per_m}, kLight, 2.5);
-    say("light mass, " + model->name(), "bounces %.2f mm, with damping %.2f encoder steps", 1e3 * bare.position_m,
-        damped.position_steps);
-    EXPECT_LE(bare.position_m, kBounce_m) << model->name();
+    say("light mass, " + model->name(), "bounces %.2f mm without the controller, %.2f mm with it",
+        1e3 * bare.position_m, 1e3 * passive.position_m);
+    EXPECT_LE(passive.position_m, kBounce_m) << model->name();
+    EXPECT_LT(passive.position_m, bare.position_m) << model->name();
     EXPECT_LE(damped.position_steps, kStill_steps) << model->name();
     EXPECT_LE(damped.force_jnd, kStill_jnd) << model->name();
   }
@@ -136,10 +141,12 @@ TEST(ClosedLoop, AMassThatNothingHoldsBouncesOnTheSurfaceAndNoMore) {
 //   b = (put in - got out) / (pi w A^2),
 // the least of 2 to 40 Hz. At or above 0: no energy comes out of any cycle.
 double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double encoder_m, double amplitude_m,
-                              Ticking ticking) {
+                              Ticking ticking, bool passivity) {
   double least = std::numeric_limits<double>::infinity();
   for (const double rate_Hz : {2.0, 5.0, 10.0, 20.0, 40.0}) {
-    ClosedLoop loop({lead(), encoder_m, kOneTick_s, ticking});
+    LoopSettings settings{lead(), encoder_m, kOneTick_s, ticking};
+    settings.passivity = passivity;
+    ClosedLoop loop(settings);
     loop.publish(model);
     const double w = 2.0 * std::numbers::pi * rate_Hz;
     const auto sine = [&](double time_s) {
@@ -156,12 +163,12 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, double enc
   return least;
 }
 
-double least_damping_Ns_per_m(const ForcePtr& model, double middle_m) {
+double least_damping_Ns_per_m(const ForcePtr& model, double middle_m, bool passivity = true) {
   double least = std::numeric_limits<double>::infinity();
   for (const double encoder_m : kEncoders_m) {
     for (const double amplitude_m : {1e-4, 5e-4}) {
       for (const Ticking ticking : {Ticking::even, Ticking::gaps}) {
-        least = std::min(least, least_damping_Ns_per_m(model, middle_m, encoder_m, amplitude_m, ticking));
+        least = std::min(least, least_damping_Ns_per_m(model, middle_m, encoder_m, amplitude_m, ticking, passivity));
       }
     }
   }
@@ -170,15 +177,16 @@ double least_damping_Ns_per_m(const ForcePtr& model, double middle_m) {
 
 TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
   for (const ModelPtr& model : silicone_models()) {
-    const double least = least_damping_Ns_per_m(model, kFirm.depth_m);
+    // By itself: nothing is left for the controller to do.
+    const double least = least_damping_Ns_per_m(model, kFirm.depth_m, false);
     say("cycles, " + model->name(), "damping of %.2f N s/m or more, %.2f needed", least, 0.0);
     EXPECT_GE(least, 0.0) << model->name();
   }
   // What a spring does is known in closed form; at 40 Hz a tenth more.
   for (const double stiffness : {kSoftSpring_N_per_m, kStiffSpring_N_per_m}) {
     const double expected = held_and_late_Ns_per_m(stiffness);
-    EXPECT_NEAR(least_damping_Ns_per_m(spring(stiffness), kFirmOnStiff.depth_m, 5e-6, 5e-4, Ticking::even), expected,
-                -0.2 * expected);
+    EXPECT_NEAR(least_damping_Ns_per_m(spring(stiffness), kFirmOnStiff.depth_m, 5e-6, 5e-4, Ticking::even, false),
+                expected, -0.2 * expected);
   }
 }
 
@@ -186,6 +194,8 @@ struct Strokes {
   double worst_return = 0.0;  // got out over put in, of single strokes
   double lowest_J = 0.0;      // of the balance at any time
   double largest_N = 0.0;
+  double largest_cost_jnd = 0.0;  // of what the controller takes, over the JND
+  double mean_cost_jnd = 0.0;     // in contact
 };
 
 // Four strokes from the air and back into it, in 0.1 to 0.8 s.
@@ -194,9 +204,16 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const Press&
   loop.publish(model);
   const Grip& grip = settings.grip;
   Strokes strokes;
+  double cost_sum = 0.0, contacts = 0.0;
   const auto watch = [&](const LoopSnapshot& snapshot) {
     strokes.lowest_J = std::min(strokes.lowest_J, loop.tool().energy().balance_J());
     strokes.largest_N = std::max(strokes.largest_N, snapshot.rendered_N);
+    if (!snapshot.tick.in_contact) return;
+    const double cost_jnd = (snapshot.mixed_N - snapshot.passive_N) / JndLine{}.at(snapshot.mixed_N);
+    EXPECT_GE(cost_jnd, 0.0) << "it never adds force";
+    strokes.largest_cost_jnd = std::max(strokes.largest_cost_jnd, cost_jnd);
+    cost_sum += cost_jnd;
+    ++contacts;
   };
   for (const double half_s : {0.05, 0.1, 0.2, 0.4}) {
     const LoopEnergy before = loop.tool().energy();
@@ -214,6 +231,7 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const Press&
     strokes.worst_return = std::max(strokes.worst_return, (after.got_out_J - before.got_out_J) /
                                                               (after.put_in_J - before.put_in_J));
   }
+  strokes.mean_cost_jnd = contacts > 0.0 ? cost_sum / contacts : 0.0;
   return strokes;
 }
 
@@ -238,14 +256,40 @@ TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
     say("strokes, " + model->name(), "%.1f %% comes out again, of a thrown mass %.1f %%", 100.0 * worst_return,
         100.0 * worst_bounce);
     EXPECT_LE(worst_return, 1.0) << model->name();
-    // Falls short: of a mass that is thrown at the surface and never gets to
-    // where silicone is viscous, see the bouncing mass above. Measured: 1.19.
-    EXPECT_LE(worst_bounce, 1.3) << model->name();
+    // Of a mass that is thrown at the surface and never gets to where silicone is
+    // viscous one encoder step hides a part. Measured: 1.09; 1.19 without the controller.
+    EXPECT_LE(worst_bounce, 1.15) << model->name();
   }
   for (const Grip& grip : test::grips()) {
-    EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), {grip, 5e-6, kOneTick_s, Ticking::even}, kFirm).worst_return, 1.2)
-        << grip.name;
+    LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
+    settings.passivity = false;
+    EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
   }
+}
+
+// What the controller takes of the force in a hand, in JNDs: nothing on silicone, which
+// keeps a fifth of every stroke; on the stiff block what a held and late force gives
+// back too much, on the way out. Measured: 0 and 0 JND; 0.67 JND on the mean of all
+// ticks in contact, 13 JND in the fastest of them, out of the block within 50 ms.
+TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
+  const auto cost = [](const std::string& block, const std::vector<ModelPtr>& models, const Press& press) {
+    Strokes worst;
+    for (const ModelPtr& model : models) {
+      for (const Grip& grip : test::grips()) {
+        if (!held(grip)) continue;
+        for (const double encoder_m : kEncoders_m) {
+          const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, Ticking::gaps}, press);
+          worst.mean_cost_jnd = std::max(worst.mean_cost_jnd, strokes.mean_cost_jnd);
+          worst.largest_cost_jnd = std::max(worst.largest_cost_jnd, strokes.largest_cost_jnd);
+        }
+      }
+    }
+    say("passivity costs on " + block, "%.3f JND mean, %.2f JND at most", worst.mean_cost_jnd,
+        worst.largest_cost_jnd);
+    return worst;
+  };
+  EXPECT_LE(cost("silicone", silicone_models(), kFirm).largest_cost_jnd, 0.1);
+  EXPECT_LE(cost("the stiff block", stiff_models(), kFirmOnStiff).mean_cost_jnd, 1.0);
 }
 
 // ---- Models exchanged while they are felt ----
@@ -355,18 +399,25 @@ TEST(ClosedLoop, TheStiffBlockIsStableInAHand) {
     EXPECT_GE(least, held_and_late_Ns_per_m(kStiffSpring_N_per_m)) << model->name() << ": its own viscosity helps";
   }
   // What the model's viscosity is worth: a spring as stiff goes on for ever.
-  EXPECT_GT(worst_hold(spring(kStiffSpring_N_per_m), test::grips()[0], kFirmOnStiff, 3.0).force_jnd, 10.0);
+  EXPECT_GT(worst_hold(spring(kStiffSpring_N_per_m), test::grips()[0], kFirmOnStiff, 3.0, false).force_jnd, 10.0);
 }
 
-// Falls short, safely: a mass that nothing holds takes energy from the stiff
-// block and is thrown about, by a force that the model still bounds. It comes to
-// rest with 6 N s/m in the device.
-TEST(ClosedLoop, OnTheStiffBlockAMassNeedsADampedDevice) {
+// A mass that nothing holds takes energy from the held and late force of the stiff
+// block and would be thrown about. The controller brings it to a buzz of some encoder
+// steps, 6 N s/m in the device to rest. Measured: 137 mm without the controller, 0.2 mm
+// with it.
+constexpr double kBuzz_m = 0.4e-3;
+
+TEST(ClosedLoop, TheStiffBlockDoesNotThrowAMassAbout) {
   for (const ModelPtr& model : stiff_models()) {
-    const Rest bare = worst_hold(model, mass_alone(), kFirmOnStiff);
+    const Rest bare = worst_hold(model, mass_alone(), kFirmOnStiff, 3.0, false);
+    const Rest passive = worst_hold(model, mass_alone(), kFirmOnStiff, 3.0);
     const Rest damped = worst_hold(model, {"damped", 0.1, 0.0, 6.0}, kFirmOnStiff, 3.0);
-    say("stiff, mass alone, " + model->name(), "%.2f N at most; damped %.2f JND", bare.largest_N, damped.force_jnd);
-    EXPECT_LE(bare.largest_N, 1.2 * model->data().largest_force_N) << model->name();
+    say("stiff, mass alone, " + model->name(), "moves %.2f mm without the controller, %.2f mm with it",
+        1e3 * bare.position_m, 1e3 * passive.position_m);
+    EXPECT_GT(bare.position_m, 10.0 * kBuzz_m) << model->name() << ": is the controller needed?";
+    EXPECT_LE(passive.position_m, kBuzz_m) << model->name();
+    EXPECT_LE(passive.largest_N, 1.2 * model->data().largest_force_N) << model->name();
     EXPECT_LE(damped.position_steps, kStiffStill_steps) << model->name();
     EXPECT_LE(damped.force_jnd, kStiffStill_jnd) << model->name();
   }

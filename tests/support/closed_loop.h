@@ -44,6 +44,7 @@ struct LoopSettings {
   double delay_s = 1e-3;
   Ticking ticking = Ticking::even;
   ForceLimits limits{10.0, 5000.0, 0.0};  // as a force-feedback device bears
+  bool passivity = true;  // false: without the passivity controller
 };
 
 // What the tool has exchanged with the rendered force, joules: `put_in_J` while

@@ -77,11 +77,13 @@ Rest hold(const ForcePtr& model, const LoopSettings& settings, const Press& pres
   return rest;
 }
 
-Rest worst_hold(const ForcePtr& model, const Grip& grip, const Press& press, double seconds) {
+Rest worst_hold(const ForcePtr& model, const Grip& grip, const Press& press, double seconds, bool passivity) {
   Rest worst;
   for (const double encoder_m : kEncoders_m) {
     for (const Ticking ticking : {Ticking::even, Ticking::jittered, Ticking::gaps}) {
-      worst.take_worse(hold(model, {grip, encoder_m, kOneTick_s, ticking}, press, seconds));
+      LoopSettings settings{grip, encoder_m, kOneTick_s, ticking};
+      settings.passivity = passivity;
+      worst.take_worse(hold(model, settings, press, seconds));
     }
   }
   return worst;

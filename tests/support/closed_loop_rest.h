@@ -47,6 +47,7 @@ struct Rest {
 Rest hold(const ForcePtr& model, const LoopSettings& settings, const Press& press, double seconds);
 
 // The worst of both encoders and of all ways of ticking, with one tick of delay.
-Rest worst_hold(const ForcePtr& model, const Grip& grip, const Press& press, double seconds = 1.5);
+Rest worst_hold(const ForcePtr& model, const Grip& grip, const Press& press, double seconds = 1.5,
+                bool passivity = true);
 
 }  // namespace palpate::test

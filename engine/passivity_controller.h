@@ -1,0 +1,72 @@
+// Keeps the rendered force from giving back more energy than it took. A force that
+// is held for a tick and comes late acts as negative damping, -K (T / 2 + t_d) beside
+// a stiffness K (Colgate & Schenkel 1997); where neither the material nor the hand
+// has that much, the tool is driven.
+//
+// Observer: the energy that the tool has put in since it touched,
+//   E += F dx,  F the force written two ticks ago: held, and a tick under way.
+// A material that only stores and relaxes never returns more over a way in and out
+// again than it took: at each depth, on the way out, E is no less than it was when
+// that depth was last passed on the way in. What is missing is the debt. (The usual
+// condition, E >= 0, sees a leak only when all that is stored has leaked.)
+// An encoder that flickers between two of its steps moves nothing: the observer follows
+// the depth with a play of one step, which lets F times as much go unseen at each turn.
+// Controller: on the way out, v < 0, the force is lowered by min(b, debt / (v^2 T)) |v|
+// until the debt is repaid. It takes force away and never adds any, and where there
+// is no debt it does nothing at all.
+// Source: Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); the
+// reference that follows the depth in the manner of Ryu et al. (2004).
+// Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace palpate {
+
+class PassivityController {
+ public:
+  // b: on the way out only it has to be twice the 4.5 N s/m that 3 kN/m lack behind 1 ms
+  // of transport, and some; below what makes a tool of 50 g unstable, about m / (2 T).
+  static constexpr double kDamping_Ns_per_m = 12.0;
+
+  // `encoder_step_m`: 0 without an encoder.
+  explicit PassivityController(double encoder_step_m = 0.0) noexcept;
+
+  struct Tool {
+    double depth_m = 0.0;  // of the sample, as the encoder has it
+    double velocity_m_per_s = 0.0;
+    bool in_contact = false;
+  };
+
+  // Once a tick, before the limiter. `written_N`: what the device was given in the
+  // tick before; `step_s` > 0 since then. Returns `wanted_N` or less, not below 0
+  // unless it is; not finite where `wanted_N` is not.
+  double apply(double wanted_N, const Tool& tool, double written_N, double step_s) noexcept;
+
+  double debt_J() const noexcept { return debt_J_; }
+
+ private:
+  struct Passed {
+    double depth_m = 0.0;
+    double energy_J = 0.0;
+  };
+  static constexpr std::size_t kMostPassed = 256;
+  static constexpr double kSpacing_m = 20e-6;
+
+  void reset() noexcept;
+  void pass_inwards(double depth_m, double energy_J) noexcept;
+  double energy_when_passed(double depth_m) noexcept;
+
+  double play_m_;
+  // The depths passed on the way to here and not yet on the way back, ascending.
+  std::array<Passed, kMostPassed> passed_{};
+  std::size_t count_ = 1;  // the surface, with nothing put in
+  double energy_J_ = 0.0;
+  double debt_J_ = 0.0;
+  double depth_m_ = 0.0;    // at the tick before, with the play
+  double felt_N_ = 0.0;     // between that tick and this one
+  double under_way_N_ = 0.0;
+};
+
+}  // namespace palpate
