@@ -1,6 +1,6 @@
 // What each choice of the fit is worth: greedy-100 with one thing changed at a time,
 // on six materials, judged twice. `cross_validated`: on thirds of the training
-// recordings that were left out, which is all that a choice may look at; `within_JND`,
+// recordings that were left out in turn, which is all that a choice may look at; `within_JND`,
 // `rms_mN` and `worst_JND`: on a recording that nothing was trained on. And how many
 // centres it takes, from none: the trend alone.
 #include <benchmark/benchmark.h>
@@ -50,27 +50,35 @@ const Material& material(const std::string& name) {
   return made.emplace(name, make_material(name)).first->second;
 }
 
-// Several recordings: each is a part. One: cut in three where the tool is in the air,
-// as near to thirds as may be, else at the thirds.
-std::vector<RecordingPtr> parts_of(const std::vector<RecordingPtr>& recordings) {
-  if (recordings.size() > 1) return recordings;
+// Several recordings: each is left out once. One: cut into a dozen pieces where the tool
+// is in the air, dealt to three folds in turn, so that each has a share of every kind of
+// motion. Empty where the tool is never in the air between: there is nothing to leave out.
+using Fold = std::vector<RecordingPtr>;
+std::vector<Fold> folds_of(const std::vector<RecordingPtr>& recordings) {
+  constexpr std::size_t kPieces = 12;
+  constexpr std::size_t kFolds = 3;
+  std::vector<Fold> folds;
+  if (recordings.size() > 1) {
+    for (const RecordingPtr& recording : recordings) folds.push_back({recording});
+    return folds;
+  }
   const Recording& whole = *recordings[0];
   std::vector<std::size_t> cuts{0};
-  for (const std::size_t third : {whole.rows.size() / 3, 2 * whole.rows.size() / 3}) {
-    std::size_t cut = third;
-    const std::size_t most = third + whole.rows.size() / 6;
-    while (cut < most && whole.rows[cut].position_m > 0.0) ++cut;
-    cuts.push_back(cut < most ? cut : third);
+  for (std::size_t k = 1; k < kPieces; ++k) {
+    std::size_t cut = std::max(cuts.back() + 1000, k * whole.rows.size() / kPieces);
+    while (cut < whole.rows.size() && whole.rows[cut].position_m > 0.0) ++cut;
+    if (cut + 1000 < whole.rows.size()) cuts.push_back(cut);
   }
+  if (cuts.size() < 2 * kFolds) return folds;
   cuts.push_back(whole.rows.size());
-  std::vector<RecordingPtr> parts;
+  folds.resize(kFolds);
   for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-    Recording part{whole.name, whole.columns, {}};
-    part.rows.assign(whole.rows.begin() + static_cast<std::ptrdiff_t>(cuts[k]),
-                     whole.rows.begin() + static_cast<std::ptrdiff_t>(cuts[k + 1]));
-    parts.push_back(std::make_shared<const Recording>(std::move(part)));
+    Recording piece{whole.name, whole.columns, {}};
+    piece.rows.assign(whole.rows.begin() + static_cast<std::ptrdiff_t>(cuts[k]),
+                      whole.rows.begin() + static_cast<std::ptrdiff_t>(cuts[k + 1]));
+    folds[k % kFolds].push_back(std::make_shared<const Recording>(std::move(piece)));
   }
-  return parts;
+  return folds;
 }
 
 struct Figures {
@@ -107,18 +115,17 @@ Figures judged(const Material& on, const Choice& choice, const std::vector<Recor
   return figures;
 }
 
-Figures cross_validated(const Material& on, const Choice& choice) {
-  const std::vector<RecordingPtr> parts = parts_of(on.train);
+double cross_validated_mN(const Material& on, const Choice& choice, const std::vector<Fold>& folds) {
   Figures figures;
-  for (std::size_t left_out = 0; left_out < parts.size(); ++left_out) {
-    std::vector<RecordingPtr> rest = parts;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(left_out));
-    const Figures one = judged(on, choice, rest, {parts[left_out]});
+  for (std::size_t left_out = 0; left_out < folds.size(); ++left_out) {
+    std::vector<RecordingPtr> rest;
+    for (std::size_t k = 0; k < folds.size(); ++k)
+      if (k != left_out) rest.insert(rest.end(), folds[k].begin(), folds[k].end());
+    const Figures one = judged(on, choice, rest, folds[left_out]);
     figures.samples += one.samples;
     figures.squares += one.squares;
-    figures.within += one.within;
   }
-  return figures;
+  return figures.rms_mN();
 }
 
 void run(benchmark::State& state, const std::string& name, const Choice& choice, bool validate) {
@@ -129,7 +136,8 @@ void run(benchmark::State& state, const std::string& name, const Choice& choice,
       state.counters["rms_mN"] = held_out.rms_mN();
       state.counters["within_JND_percent"] = held_out.within_percent();
       state.counters["worst_JND"] = held_out.worst_over_jnd;
-      if (validate) state.counters["cross_validated_mN"] = cross_validated(on, choice).rms_mN();
+      const std::vector<Fold> folds = folds_of(on.train);
+      if (validate && !folds.empty()) state.counters["cross_validated_mN"] = cross_validated_mN(on, choice, folds);
     }
   } catch (const std::runtime_error& error) {
     state.SkipWithError(error.what());
