@@ -109,7 +109,11 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
   const float line = ImGui::GetTextLineHeight();
   const ImU32 colour =
       ink(method_colour(slot.method, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
-  const std::string label = "      " + slot.name + "##slot" + std::to_string(index);
+  // Too long for the column: without the numbers, which the last one and the tip have.
+  std::string name = slot.name;
+  if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
+    name.erase(std::min(name.find('-'), name.size()));
+  const std::string label = "      " + name + "##slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
   if (ImGui::Selectable(label.c_str(), index == session.selected(), flags)) session.select(index);
