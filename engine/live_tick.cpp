@@ -194,7 +194,8 @@ double LiveTick::passive(double mixed_N, double step_s) noexcept {
   if (!passivity_on_) return mixed_N;
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
-  return passivity_.apply(mixed_N, {tick.position_m, tick.velocity_m_per_s, in_contact}, snapshot_.rendered_N, step_s);
+  return passivity_.apply(mixed_N, {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading},
+                          snapshot_.rendered_N, step_s);
 }
 
 void LiveTick::render(double wanted_N, double passive_N, double step_s, bool released) noexcept {

@@ -14,6 +14,8 @@
 // Controller: on the way out, v < 0, the force is lowered by min(b, debt / (v^2 T)) |v|
 // until the debt is repaid. It takes force away and never adds any, and where there
 // is no debt it does nothing at all.
+// Another model in the hand is another material: what was passed before says nothing of
+// it, and forces that fade into each other are no leak. The observer then begins anew.
 // Source: Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); the
 // reference that follows the depth in the manner of Ryu et al. (2004).
 // Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
@@ -37,6 +39,7 @@ class PassivityController {
     double depth_m = 0.0;  // of the sample, as the encoder has it
     double velocity_m_per_s = 0.0;
     bool in_contact = false;
+    bool other_material = false;  // the model in the hand is being exchanged
   };
 
   // Once a tick, before the limiter. `written_N`: what the device was given in the
@@ -54,19 +57,22 @@ class PassivityController {
   static constexpr std::size_t kMostPassed = 256;
   static constexpr double kSpacing_m = 20e-6;
 
-  void reset() noexcept;
+  void begin_at(double depth_m) noexcept;
+  double less(double wanted_N, double less_N) noexcept;
   void pass_inwards(double depth_m, double energy_J) noexcept;
   double energy_when_passed(double depth_m) noexcept;
 
   double play_m_;
-  // The depths passed on the way to here and not yet on the way back, ascending.
+  // The depths passed on the way to here and not yet on the way back, ascending. The first
+  // is where the observer began, with nothing put in: the surface, or further in.
   std::array<Passed, kMostPassed> passed_{};
-  std::size_t count_ = 1;  // the surface, with nothing put in
+  std::size_t count_ = 1;
   double energy_J_ = 0.0;
   double debt_J_ = 0.0;
   double depth_m_ = 0.0;    // at the tick before, with the play
   double felt_N_ = 0.0;     // between that tick and this one
   double under_way_N_ = 0.0;
+  double less_N_ = 0.0;  // taken in this tick
 };
 
 }  // namespace palpate

@@ -21,6 +21,7 @@ struct Stroke {
   PassivityController controller;
   double depth_m = 0.0;
   double written_N = 0.0;
+  bool other_material = false;
 
   explicit Stroke(double encoder_step_m = 0.0) : controller(encoder_step_m) {}
   // `steps` above 0: inwards. The last force.
@@ -28,7 +29,7 @@ struct Stroke {
     const double direction = steps < 0 ? -1.0 : 1.0;
     for (int i = 0; i < std::abs(steps); ++i) {
       depth_m += direction * kStep_m;
-      written_N = controller.apply(wanted_N, {depth_m, direction * kSpeed_m_per_s, true}, written_N, kTick_s);
+      written_N = controller.apply(wanted_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N, kTick_s);
     }
     return written_N;
   }
@@ -76,8 +77,20 @@ TEST(PassivityController, ForgetsInTheAir) {
   stroke.move(100, 1.0);
   stroke.move(-50, 3.0);
   ASSERT_GT(stroke.controller.debt_J(), 0.0);
-  EXPECT_EQ(stroke.controller.apply(0.5, {-1e-3, -0.1, false}, 0.5, kTick_s), 0.5);
+  EXPECT_EQ(stroke.controller.apply(0.5, {-1e-3, -0.1, false, false}, 0.5, kTick_s), 0.5);
   EXPECT_EQ(stroke.controller.debt_J(), 0.0);
+}
+
+// A firmer material pushes the tool out with more than the softer one took.
+TEST(PassivityController, BeginsAnewWithAnotherMaterial) {
+  Stroke stroke;
+  stroke.move(100, 1.0);
+  stroke.other_material = true;
+  EXPECT_EQ(stroke.move(-10, 3.0), 3.0);
+  stroke.other_material = false;
+  EXPECT_EQ(stroke.move(-20, 3.0), 3.0) << "out of where it began: nothing is known";
+  stroke.move(40, 3.0);
+  EXPECT_LT(stroke.move(-20, 4.0), 4.0) << "passed since, and it gives more than it took";
 }
 
 TEST(PassivityController, AFlickeringEncoderIsNoMotion) {
@@ -88,7 +101,7 @@ TEST(PassivityController, AFlickeringEncoderIsNoMotion) {
     const double depth_m = 1e-3 + (tick / 3 % 2 == 0 ? 0.0 : kEncoder_m);
     // Late: more on the way out than on the way in.
     const double force_N = 3000.0 * (1e-3 + (tick / 3 % 2 == 0 ? kEncoder_m : 0.0));
-    written_N = controller.apply(force_N, {depth_m, tick / 3 % 2 == 0 ? -1e-3 : 1e-3, true}, written_N, kTick_s);
+    written_N = controller.apply(force_N, {depth_m, tick / 3 % 2 == 0 ? -1e-3 : 1e-3, true, false}, written_N, kTick_s);
     ASSERT_EQ(written_N, force_N) << tick;
   }
 }
@@ -101,14 +114,14 @@ TEST(PassivityController, NeverAddsNeverPullsNeverBreaks) {
     const double depth_m = 5e-3 * random.uniform(-0.2, 1.8) * (tick % 7 == 0 ? 10.0 : 1.0);
     const double wanted_N = std::max(0.0, random.uniform(-1.0, 7.0));
     const double speed_m_per_s = random.uniform(-2.0, 2.0);
-    written_N = controller.apply(wanted_N, {depth_m, speed_m_per_s, depth_m > 0.0}, written_N, kTick_s);
+    written_N = controller.apply(wanted_N, {depth_m, speed_m_per_s, depth_m > 0.0, false}, written_N, kTick_s);
     ASSERT_LE(written_N, wanted_N);
     ASSERT_GE(written_N, 0.0);
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(controller.apply(nan, {1e-3, -0.1, true}, 0.0, kTick_s))) << "the limiter's to refuse";
-  EXPECT_EQ(controller.apply(1.0, {nan, -0.1, true}, 0.0, kTick_s), 1.0);
-  EXPECT_EQ(controller.apply(1.0, {1e-3, nan, true}, 0.0, kTick_s), 1.0);
+  EXPECT_TRUE(std::isnan(controller.apply(nan, {1e-3, -0.1, true, false}, 0.0, kTick_s))) << "the limiter's to refuse";
+  EXPECT_EQ(controller.apply(1.0, {nan, -0.1, true, false}, 0.0, kTick_s), 1.0);
+  EXPECT_EQ(controller.apply(1.0, {1e-3, nan, true, false}, 0.0, kTick_s), 1.0);
 }
 
 }  // namespace
