@@ -145,8 +145,10 @@ TEST_F(ReportVerb, WithoutATestItCrossValidatesAndSaysSo) {
 TEST_F(ReportVerb, InterruptedItLeavesNothing) {
   const test::TemporaryFolder empty;
   for (const char* after_s : {"0.1", "2"}) {
-    const auto ran = test::run_program({"timeout", "--preserve-status", "-s", "INT", after_s, PALPATE_BINARY, "report",
-                                        "--quick", "--out", empty.file("report")});
+    // In the foreground: else `timeout` signals its group too, and a second signal ends
+    // the program at once.
+    const auto ran = test::run_program({"timeout", "--foreground", "--preserve-status", "-s", "INT", after_s,
+                                        PALPATE_BINARY, "report", "--quick", "--out", empty.file("report")});
     EXPECT_EQ(ran.exit_code, 130) << ran.err;
     EXPECT_TRUE(ran.err.empty() || ran.err == "error: interrupted\n") << ran.err;
     EXPECT_TRUE(empty.entries().empty()) << empty.entries().front();
