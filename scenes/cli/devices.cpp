@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "devices/device_registry.h"
-#include "devices/hidapi_bus.h"
-#include "scenes/assets.h"
+#include "devices/registry/device_registry.h"
+#include "devices/hid/hidapi_bus.h"
+#include "scenes/scene/assets.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {

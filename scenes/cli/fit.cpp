@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "engine/atomic_file.h"
-#include "models/fit.h"
-#include "models/model_io.h"
+#include "engine/base/atomic_file.h"
+#include "models/fit/fit.h"
+#include "models/model/file/model_io.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene.h"
-#include "scenes/training.h"
+#include "scenes/scene/scene.h"
+#include "scenes/scene/training.h"
 
 namespace palpate::cli {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/atomic_file.h"
-#include "engine/replay.h"
-#include "engine/result.h"
+#include "engine/base/atomic_file.h"
+#include "engine/tick/replay.h"
+#include "engine/base/result.h"
 
 namespace palpate::cli {
 

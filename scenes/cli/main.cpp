@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/atomic_file.h"
+#include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 

@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "engine/replay.h"
-#include "models/evaluation.h"
-#include "models/model_io.h"
+#include "engine/tick/replay.h"
+#include "engine/tick/evaluation.h"
+#include "models/model/file/model_io.h"
 #include "scenes/cli/forces_file.h"
-#include "scenes/model_timing.h"
+#include "scenes/scene/model_timing.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 struct Options {
   std::string recording;
@@ -68,8 +68,8 @@ Status check_output(const Options& options) {
   return {};
 }
 
-Json bins_json(const std::vector<ForceBin>& bins) {
-  Json list = Json::array();
+OrderedJson bins_json(const std::vector<ForceBin>& bins) {
+  OrderedJson list = OrderedJson::array();
   for (const ForceBin& bin : bins) {
     list.push_back({{"force_from_N", bin.force_from_N},
                     {"force_to_N", bin.force_to_N},
@@ -83,10 +83,10 @@ Json bins_json(const std::vector<ForceBin>& bins) {
 }
 
 // Figures over no sample are null: there is no number that would be true.
-Json contestant_json(const Contestant& one) {
+OrderedJson contestant_json(const Contestant& one) {
   const ErrorSummary& errors = one.errors;
-  const auto figure = [&](double value) { return errors.samples > 0 ? Json(value) : Json(nullptr); };
-  const auto time = [&](double value) { return one.time.measured ? Json(value) : Json(nullptr); };
+  const auto figure = [&](double value) { return errors.samples > 0 ? OrderedJson(value) : OrderedJson(nullptr); };
+  const auto time = [&](double value) { return one.time.measured ? OrderedJson(value) : OrderedJson(nullptr); };
   return {{"name", one.name},
           {"method", one.model->method()},
           {"centres", one.model->centre_count()},
@@ -101,14 +101,14 @@ Json contestant_json(const Contestant& one) {
 }
 
 void print_json(const Options& options, const ReplaySummary& summary, const std::vector<Contestant>& contestants) {
-  Json models = Json::array();
+  OrderedJson models = OrderedJson::array();
   for (const Contestant& one : contestants) models.push_back(contestant_json(one));
-  const Json object = {{"recording", options.recording},
+  const OrderedJson object = {{"recording", options.recording},
                        {"samples", summary.samples},
                        {"contact_samples", summary.contact_samples},
                        {"models", models}};
   // A path need not be UTF-8; what cannot be said is replaced.
-  std::printf("%s\n", object.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  std::printf("%s\n", object.dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
 }
 
 std::string fixed(double value, int decimals) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenes/cli/verbs.h"
-#include "scenes/scene.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate::cli {
 namespace {

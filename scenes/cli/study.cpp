@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/atomic_file.h"
+#include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene.h"
+#include "scenes/scene/scene.h"
 #include "scenes/study/discrimination.h"
-#include "scenes/study/jnd_file.h"
+#include "scenes/scene/jnd_file.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/recovery.h"
 #include "scenes/study/simulated_subject.h"

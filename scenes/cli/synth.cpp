@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/recording.h"
+#include "engine/recording/recording.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/material/rig.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 
 namespace palpate::cli {
 

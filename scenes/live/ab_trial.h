@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/jnd.h"
-#include "engine/random_stream.h"
+#include "engine/tick/jnd.h"
+#include "engine/base/random_stream.h"
 
 namespace palpate {
 

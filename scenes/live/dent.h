@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include "engine/features.h"
+#include "engine/tick/features.h"
 
 namespace palpate {
 

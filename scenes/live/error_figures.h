@@ -1,4 +1,4 @@
 // The error figures by the path that the window may include: it sees no model.
 #pragma once
 
-#include "models/error_figures.h"
+#include "engine/tick/error_figures.h"

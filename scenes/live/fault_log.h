@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/live_tick.h"
+#include "engine/live/live_tick.h"
 
 namespace palpate {
 

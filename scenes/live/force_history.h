@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/haptics_tick.h"
+#include "engine/tick/haptics_tick.h"
 #include "scenes/live/fault_log.h"
 
 namespace palpate {

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "devices/auto_device.h"
-#include "devices/device_registry.h"
-#include "devices/replay_device.h"
-#include "scenes/assets.h"
+#include "devices/registry/auto_device.h"
+#include "devices/registry/device_registry.h"
+#include "devices/virtual/replay_device.h"
+#include "scenes/scene/assets.h"
 #include "scenes/live/live_slot.h"
 #include "scenes/live/model_supply.h"
 #include "scenes/live/true_force.h"
-#include "scenes/local_time.h"
+#include "scenes/scene/local_time.h"
 
 namespace palpate {
 namespace {

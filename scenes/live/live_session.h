@@ -20,14 +20,14 @@
 #include <string>
 #include <vector>
 
-#include "engine/haptics_loop.h"
-#include "engine/jnd.h"
-#include "engine/result.h"
+#include "engine/live/haptics_loop.h"
+#include "engine/tick/jnd.h"
+#include "engine/base/result.h"
 #include "scenes/live/error_figures.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/force_history.h"
 #include "scenes/live/session_recorder.h"
-#include "scenes/scene.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

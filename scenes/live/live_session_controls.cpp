@@ -2,8 +2,8 @@
 // replay, recording.
 #include <cmath>
 
-#include "devices/auto_device.h"
-#include "devices/replay_device.h"
+#include "devices/registry/auto_device.h"
+#include "devices/virtual/replay_device.h"
 #include "scenes/live/live_session.h"
 #include "scenes/live/live_slot.h"
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "models/fitted_model.h"
+#include "models/model/fitted_model.h"
 #include "scenes/live/dent.h"
 #include "scenes/live/evaluation_time.h"
 #include "scenes/live/live_session.h"

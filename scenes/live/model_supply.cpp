@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
-#include "models/model_io.h"
+#include "models/model/file/model_io.h"
 #include "scenes/material/rig.h"
-#include "scenes/training.h"
+#include "scenes/scene/training.h"
 
 namespace palpate {
 namespace {

@@ -21,10 +21,10 @@
 #include <thread>
 #include <vector>
 
-#include "models/fit.h"
-#include "models/fitted_model.h"
+#include "models/fit/fit.h"
+#include "models/model/fitted_model.h"
 #include "scenes/live/slot_plan.h"
-#include "scenes/scene.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

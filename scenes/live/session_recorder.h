@@ -1,6 +1,6 @@
 // Every sample of a session into a recording file, not one lost.
 //
-// The loop puts samples into a ring (engine/live_tick.h); a thread of the
+// The loop puts samples into a ring (engine/live/live_tick.h); a thread of the
 // recorder's own empties it every 20 ms into an AtomicFile, so that the file is
 // whole under its name or not there. Time begins at 0 and goes on where the
 // device's goes on; where a new stream begins (a recording that is replayed
@@ -21,9 +21,9 @@
 #include <thread>
 #include <vector>
 
-#include "engine/haptics_loop.h"
-#include "engine/recording_writer.h"
-#include "engine/result.h"
+#include "engine/live/haptics_loop.h"
+#include "engine/recording/recording_writer.h"
+#include "engine/base/result.h"
 
 namespace palpate {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/haptics_tick.h"
-#include "models/model_io.h"
+#include "engine/tick/haptics_tick.h"
+#include "models/model/file/model_io.h"
 
 namespace palpate {
 namespace {

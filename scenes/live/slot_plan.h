@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/result.h"
-#include "models/fit.h"
-#include "scenes/scene.h"
+#include "engine/base/result.h"
+#include "models/fit/fit.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 // Thread guarantee: as ReferenceForce; `step` is wait-free and allocates nothing.
 #pragma once
 
-#include "engine/live_tick.h"
+#include "engine/live/live_tick.h"
 #include "scenes/material/material.h"
 
 namespace palpate {

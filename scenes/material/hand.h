@@ -1,4 +1,4 @@
-// The simulated hand (devices/hand_motion.h) that presses a virtual material,
+// The simulated hand (devices/virtual/hand_motion.h) that presses a virtual material,
 // which it knows: it aims at the depth that holds a force, the branches half
 // relaxed.
 // Thread guarantee: as HandMotion.
@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "devices/hand_motion.h"
+#include "devices/virtual/hand_motion.h"
 #include "scenes/material/material.h"
 
 namespace palpate {

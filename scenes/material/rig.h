@@ -20,11 +20,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording.h"
-#include "engine/result.h"
+#include "engine/recording/recording.h"
+#include "engine/base/result.h"
 #include "scenes/material/hand.h"
 #include "scenes/material/material.h"
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 
 namespace palpate {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/replay.h"
+#include "engine/tick/replay.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "models/fit_control.h"
-#include "models/fitted_model.h"
+#include "engine/base/fit_control.h"
+#include "models/model/fitted_model.h"
 #include "scenes/report/recordings.h"
 #include "scenes/report/report_data.h"
 

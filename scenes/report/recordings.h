@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording.h"
-#include "engine/result.h"
+#include "engine/recording/recording.h"
+#include "engine/base/result.h"
 #include "scenes/report/report_data.h"
 
 namespace palpate {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "scenes/report/gnuplot.h"
+#include "scenes/scene/gnuplot.h"
 #include "scenes/report/report_folder.h"
 #include "scenes/report/run_methods.h"
 #include "scenes/report/tables.h"
@@ -19,7 +19,7 @@ namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kRecordingShare = 0.02;
 constexpr double kMeasuringShare = 0.93;
@@ -58,12 +58,12 @@ std::string gnuplot_version(const std::string& svg) {
 }
 
 // All numbers. "timings" holds all that differs from run to run.
-Json report_json(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
+OrderedJson report_json(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
                  const std::vector<Figure>& figures, const ReportPlan& plan) {
-  Json numbers = Json::object();
-  Json times = Json::object();
+  OrderedJson numbers = OrderedJson::object();
+  OrderedJson times = OrderedJson::object();
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
-  Json list = Json::array();
+  OrderedJson list = OrderedJson::array();
   for (const Figure& figure : figures) {
     list.push_back({{"name", figure.name}, {"title", figure.title}, {"has_times", figure.has_times}});
   }
@@ -158,9 +158,9 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   ReportOrigin origin = origin_of(request);
   origin.gnuplot = gnuplot_version(svgs->begin()->second);
   origin.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Json numbers = report_json(*data, origin, tables, figures, plan);
+  const OrderedJson numbers = report_json(*data, origin, tables, figures, plan);
   // Names of recordings need not be UTF-8; what cannot be said is replaced.
-  const std::string json = numbers.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string json = numbers.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
   if (const Status status = folder->write("report.json", json); !status) return status.error();
   if (const Status status = folder->write("index.html", make_page(*data, origin, tables, figures, *svgs)); !status) {
     return status.error();

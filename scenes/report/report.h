@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fit_control.h"
+#include "engine/base/fit_control.h"
 #include "scenes/report/page.h"
 
 namespace palpate {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "models/evaluation.h"
-#include "models/fit.h"
-#include "scenes/model_timing.h"
+#include "engine/tick/evaluation.h"
+#include "models/fit/fit.h"
+#include "scenes/scene/model_timing.h"
 #include "scenes/report/table.h"
 
 namespace palpate {

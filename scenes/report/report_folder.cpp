@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/atomic_file.h"
+#include "engine/base/atomic_file.h"
 
 namespace palpate {
 namespace {

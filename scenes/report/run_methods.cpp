@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <utility>
 
-#include "engine/replay.h"
+#include "engine/tick/replay.h"
 #include "scenes/report/judge.h"
 #include "scenes/report/scaling.h"
 #include "scenes/report/steps.h"
-#include "scenes/training.h"
+#include "scenes/scene/training.h"
 
 namespace palpate {
 namespace {

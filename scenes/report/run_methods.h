@@ -3,11 +3,11 @@
 // Thread guarantee: slow side; the fits start threads themselves.
 #pragma once
 
-#include "models/fit_control.h"
+#include "engine/base/fit_control.h"
 #include "scenes/report/plan.h"
 #include "scenes/report/recordings.h"
 #include "scenes/report/report_data.h"
-#include "scenes/scene.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 

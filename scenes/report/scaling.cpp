@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "models/fit_direct.h"
-#include "models/fit_greedy.h"
-#include "models/voxel_lookup.h"
+#include "models/fit/fit_direct.h"
+#include "models/fit/fit_greedy.h"
+#include "models/fit/fill_grid.h"
 #include "scenes/report/plan.h"
 
 namespace palpate {

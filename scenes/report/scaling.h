@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "models/fit.h"
+#include "models/fit/fit.h"
 #include "scenes/report/report_data.h"
 
 namespace palpate {

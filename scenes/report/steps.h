@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "models/fit_control.h"
+#include "engine/base/fit_control.h"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/hard_cases.h"
+#include "scenes/report/hard/hard_cases.h"
 #include "scenes/report/report_data.h"
 
 namespace palpate {

@@ -53,7 +53,7 @@ std::string agreement_words(int predicted, int found) {
   return predicted == found ? "consistent." : "not consistent.";
 }
 
-Status check_files(const std::vector<StudyData>& files) {
+Status check_discrimination_files(const std::vector<StudyData>& files) {
   if (files.empty()) return Error{"found no study file, expected one or more"};
   std::set<std::string> seen;
   for (const StudyData& file : files) {
@@ -130,7 +130,7 @@ std::string discrimination_verdict(const Discrimination& result, const StrokePai
 }
 
 Result<DiscriminationAnalysis> analyse_discrimination(const std::vector<StudyData>& files) {
-  if (const Status checked = check_files(files); !checked) return checked.error();
+  if (const Status checked = check_discrimination_files(files); !checked) return checked.error();
   DiscriminationAnalysis analysis;
   analysis.strokes = files.front().header.strokes;
   analysis.all.subject = "all";

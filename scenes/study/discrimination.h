@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "scenes/study/study_file.h"
 
 namespace palpate {

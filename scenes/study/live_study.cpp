@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
-#include "devices/device_registry.h"
-#include "scenes/assets.h"
+#include "devices/registry/device_registry.h"
+#include "scenes/scene/assets.h"
 #include "scenes/study/study_file.h"
 
 namespace palpate {

@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "engine/replay.h"
-#include "models/error_figures.h"
+#include "engine/tick/replay.h"
+#include "engine/tick/error_figures.h"
 #include "scenes/live/model_supply.h"
 #include "scenes/live/slot_plan.h"
 #include "scenes/material/rig.h"

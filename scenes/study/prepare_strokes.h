@@ -2,7 +2,7 @@
 // apart.
 //
 // Every row of the recording goes through the tick that the live loop runs
-// (engine/replay.h). What the models and the force sensor say is brought to one value
+// (engine/tick/replay.h). What the models and the force sensor say is brought to one value
 // per ms and passed through the same zero-phase low-pass, 21 ms of a Hann window (half
 // the amplitude at 50 Hz): the sensor's noise is no force of the block, and told apart
 // it would be at once. Taken is the stroke, from before the touch to after the release,
@@ -21,10 +21,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording.h"
-#include "engine/result.h"
-#include "engine/force_model.h"
-#include "scenes/scene.h"
+#include "engine/recording/recording.h"
+#include "engine/base/result.h"
+#include "engine/tick/force_model.h"
+#include "scenes/scene/scene.h"
 #include "scenes/study/stroke_pair.h"
 #include "scenes/study/study_presenter.h"
 

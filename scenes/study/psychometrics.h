@@ -21,7 +21,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 
 namespace palpate {
 

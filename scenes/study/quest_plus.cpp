@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "engine/jnd.h"
+#include "engine/tick/jnd.h"
 #include "scenes/study/study_plan.h"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "models/parallel.h"
+#include "engine/base/parallel.h"
 #include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_analysis.h"
 

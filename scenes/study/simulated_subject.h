@@ -18,9 +18,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/jnd.h"
-#include "engine/random_stream.h"
-#include "engine/result.h"
+#include "engine/tick/jnd.h"
+#include "engine/base/random_stream.h"
+#include "engine/base/result.h"
 #include "scenes/study/study_store.h"
 
 namespace palpate {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/jnd.h"
+#include "engine/tick/jnd.h"
 
 namespace palpate {
 

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/result.h"
-#include "scenes/study/jnd_line_fit.h"
+#include "engine/base/result.h"
+#include "scenes/scene/jnd_line_fit.h"
 #include "scenes/study/psychometrics.h"
 #include "scenes/study/study_file.h"
 

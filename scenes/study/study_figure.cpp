@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/atomic_file.h"
-#include "scenes/report/gnuplot.h"
+#include "engine/base/atomic_file.h"
+#include "scenes/scene/gnuplot.h"
 
 namespace palpate {
 namespace {

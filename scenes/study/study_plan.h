@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/random_stream.h"
-#include "engine/result.h"
+#include "engine/base/random_stream.h"
+#include "engine/base/result.h"
 
 namespace palpate {
 

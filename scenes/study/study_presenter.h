@@ -21,9 +21,9 @@
 #include <memory>
 #include <utility>
 
-#include "engine/force_limiter.h"
-#include "engine/result.h"
-#include "engine/triple_buffer.h"
+#include "engine/live/force_limiter.h"
+#include "engine/base/result.h"
+#include "engine/live/triple_buffer.h"
 #include "scenes/study/stroke_pair.h"
 
 namespace palpate {

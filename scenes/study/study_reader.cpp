@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "engine/json_position.h"
+#include "engine/base/json_position.h"
 #include "scenes/study/study_file.h"
 
 namespace palpate {

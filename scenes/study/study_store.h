@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "scenes/study/stroke_pair.h"
 #include "scenes/study/study_plan.h"
 #include "scenes/study/study_presenter.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine/replay.h"
+#include "engine/tick/replay.h"
 #include "tests/support/fitting.h"
 #include "tests/support/scripted_press.h"
 

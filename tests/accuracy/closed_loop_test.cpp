@@ -8,7 +8,7 @@
 // spring K beside the damping -K (T / 2 + t_d): -0.9 N s/m on 600 N/m, -4.5 N s/m
 // on 3 kN/m (Colgate & Schenkel 1997, for t_d = 0). Somebody has to provide as
 // much: the model's own viscosity, the hand, the device, or, for the rest, the
-// passivity controller (engine/passivity_controller.h). What it is needed for is
+// passivity controller (engine/live/passivity_controller.h). What it is needed for is
 // shown without it.
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/haptics_tick.h"
-#include "engine/replay.h"
-#include "models/model_io.h"
+#include "engine/tick/haptics_tick.h"
+#include "engine/tick/replay.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/fitting.h"
 #include "tests/support/rt_guard.h"
 #include "tests/support/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "models/fit.h"
+#include "models/fit/fit.h"
 
 namespace palpate::bench {
 

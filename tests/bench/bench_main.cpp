@@ -22,8 +22,8 @@
 #include <fstream>
 #include <string>
 
-#include "models/parallel.h"
-#include "models/rbf_simd.h"
+#include "engine/base/parallel.h"
+#include "models/model/rbf/rbf_simd.h"
 #include "tests/bench/bench_report.h"
 
 namespace {

@@ -8,14 +8,14 @@
 #include <array>
 #include <cstddef>
 
-#include "models/sites.h"
+#include "models/training/sites.h"
 
 namespace palpate::bench {
 
 // Walks over the columns of `points`; every query needs the last result.
 template <typename Evaluate>
 void run_queries(benchmark::State& state, const Eigen::MatrixXd& points, const Evaluate& evaluate) {
-  std::array<double, kMaxDimension> query{};
+  std::array<double, kMaxFeatures> query{};
   Eigen::Index at = 0;
   double last = 0.0;
   for (auto _ : state) {

@@ -5,10 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "models/fitted_model.h"
-#include "models/rbf_evaluate.h"
-#include "models/rbf_simd.h"
-#include "models/voxel_lookup.h"
+#include "models/model/fitted_model.h"
+#include "models/fit/fill_grid.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/rbf/rbf_simd.h"
+#include "models/model/grid/voxel_lookup.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 #include "tests/bench/scalar_loop.h"

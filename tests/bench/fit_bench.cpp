@@ -5,12 +5,13 @@
 #include <functional>
 #include <string>
 
-#include "models/fit_direct.h"
-#include "models/fit_greedy.h"
-#include "models/fit_kdtree.h"
-#include "models/fit_random.h"
-#include "models/rbf_evaluate.h"
-#include "models/voxel_lookup.h"
+#include "models/fit/fit_direct.h"
+#include "models/fit/fill_grid.h"
+#include "models/fit/fit_greedy.h"
+#include "models/fit/fit_kdtree.h"
+#include "models/fit/fit_random.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/grid/voxel_lookup.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/fit.h"
+#include "models/fit/fit.h"
 
 namespace palpate::bench {
 

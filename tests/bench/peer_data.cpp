@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "engine/replay.h"
+#include "engine/tick/replay.h"
 #include "tests/support/fitting.h"
 
 namespace palpate::bench {

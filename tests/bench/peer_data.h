@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "models/error_figures.h"
-#include "models/fit.h"
+#include "engine/tick/error_figures.h"
+#include "models/fit/fit.h"
 #include "tests/bench/peer.h"
 
 namespace palpate::bench {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "engine/result.h"
+#include "engine/base/result.h"
 #include "tests/bench/peer_data.h"
 
 namespace palpate::bench {

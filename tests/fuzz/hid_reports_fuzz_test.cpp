@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 #include "tests/support/hid_reports_fuzz.h"
 
 namespace palpate::test {

@@ -13,8 +13,8 @@
 #include <memory>
 #include <string>
 
-#include "engine/live_tick.h"
-#include "engine/random_stream.h"
+#include "engine/live/live_tick.h"
+#include "engine/base/random_stream.h"
 
 namespace palpate::test {
 
@@ -27,7 +27,7 @@ struct Grip {
 
 // From a finger that lets the tool rest on it to a clenched fist: stiffness and
 // damping rise together with the grip (Hajian & Howe 1997; Hasser & Cutkosky
-// 2002), the damping 0.5 to 0.7 of critical. `braced` is devices/hand_motion.h.
+// 2002), the damping 0.5 to 0.7 of critical. `braced` is devices/virtual/hand_motion.h.
 // The last is a mass that nothing holds: it has no damping at all.
 const std::array<Grip, 4>& grips();
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording.h"
-#include "models/fitted_model.h"
+#include "engine/recording/recording.h"
+#include "models/model/fitted_model.h"
 
 namespace palpate::test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "devices/hid_bus.h"
+#include "devices/hid/hid_bus.h"
 #include "tests/support/simulated_device.h"
 
 namespace palpate::test {

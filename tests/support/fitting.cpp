@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "engine/replay.h"
-#include "scenes/scene.h"
-#include "scenes/training.h"
+#include "engine/tick/replay.h"
+#include "scenes/scene/scene.h"
+#include "scenes/scene/training.h"
 
 namespace palpate::test {
 namespace {

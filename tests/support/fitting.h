@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/evaluation.h"
-#include "models/fit.h"
+#include "engine/tick/evaluation.h"
+#include "models/fit/fit.h"
 #include "scenes/material/rig.h"
 
 namespace palpate::test {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "devices/firmware/paddle/paddle_protocol.h"
-#include "devices/hid_endpoint.h"
-#include "devices/spacemouse.h"
+#include "devices/hid/hid_endpoint.h"
+#include "devices/hid/spacemouse.h"
 
 namespace palpate::test {
 namespace {

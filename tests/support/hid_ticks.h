@@ -5,8 +5,8 @@
 #include <functional>
 #include <thread>
 
-#include "engine/device.h"
-#include "engine/pacer.h"
+#include "engine/live/device.h"
+#include "engine/live/pacer.h"
 
 namespace palpate::test {
 

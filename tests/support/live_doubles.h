@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/device.h"
-#include "engine/force_model.h"
-#include "engine/live_tick.h"
-#include "engine/pacer.h"
+#include "engine/live/device.h"
+#include "engine/tick/force_model.h"
+#include "engine/live/live_tick.h"
+#include "engine/live/pacer.h"
 
 namespace palpate::test {
 

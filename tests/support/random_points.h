@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "models/rbf_function.h"
-#include "models/polynomial_tail.h"
-#include "models/sites.h"
+#include "models/model/rbf/rbf_function.h"
+#include "models/model/rbf/polynomial_tail.h"
+#include "models/training/sites.h"
 
 namespace palpate::test {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/recording_parser.h"
+#include "engine/recording/recording_parser.h"
 
 namespace palpate::test {
 namespace {

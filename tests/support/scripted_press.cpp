@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "scenes/material/material.h"
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 
 namespace palpate::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording.h"
+#include "engine/recording/recording.h"
 
 namespace palpate::test {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "devices/firmware/paddle/paddle_firmware.h"
-#include "devices/hid_endpoint.h"
-#include "engine/live_tick.h"
+#include "devices/hid/hid_endpoint.h"
+#include "engine/live/live_tick.h"
 #include "tests/support/live_doubles.h"
 
 namespace palpate::test {

@@ -1,5 +1,5 @@
 // The reports between a haptic paddle and its host, version 1. Both ends include
-// this file; devices/paddle_protocol.md is the page with the byte offsets.
+// this file; devices/hid/paddle_protocol.md is the page with the byte offsets.
 //
 // C++11 without a library beyond stdint, so that an Arduino compiles it. All
 // numbers are little-endian whatever the machine.

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "devices/hid_device.h"
-#include "devices/hidapi_bus.h"
-#include "engine/pacer.h"
+#include "devices/hid/hid_device.h"
+#include "devices/hid/hidapi_bus.h"
+#include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_paddle.h"
 #include "tests/support/hid_ticks.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 #include "tests/support/simulated_device.h"
 
 namespace palpate {

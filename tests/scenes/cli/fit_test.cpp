@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "models/model_io.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

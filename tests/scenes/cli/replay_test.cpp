@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "engine/recording.h"
-#include "models/model_io.h"
+#include "engine/recording/recording.h"
+#include "models/model/file/model_io.h"
 #include "scenes/cli/forces_file.h"
-#include "scenes/model_timing.h"
+#include "scenes/scene/model_timing.h"
 #include "tests/support/example_model.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "scenes/scene.h"
-#include "scenes/study/jnd_file.h"
+#include "scenes/scene/scene.h"
+#include "scenes/scene/jnd_file.h"
 #include "scenes/study/study_file.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,7 @@
 // palpate synth as a user runs it.
 #include <gtest/gtest.h>
 
-#include "engine/recording.h"
+#include "engine/recording/recording.h"
 #include "scenes/material/rig.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

@@ -19,7 +19,7 @@ std::vector<FeatureSpec> with_memory() {
   return {FeatureSpec{}, low_pass};
 }
 
-// m = d - tau y with y the low-pass feature of engine/features.h.
+// m = d - tau y with y the low-pass feature of engine/tick/features.h.
 TEST(Dent, IsTheDepthLessTheLowPassedVelocity) {
   Dent dent(with_memory());
   FeatureFilter filter(with_memory());

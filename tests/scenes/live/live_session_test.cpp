@@ -8,8 +8,8 @@
 #include <map>
 #include <thread>
 
-#include "engine/replay.h"
-#include "models/model_io.h"
+#include "engine/tick/replay.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/session_frames.h"

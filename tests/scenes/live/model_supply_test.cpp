@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "models/model_io.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/temporary_folder.h"

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <functional>
 
-#include "engine/recording.h"
-#include "models/model_io.h"
+#include "engine/recording/recording.h"
+#include "models/model/file/model_io.h"
 #include "scenes/live/live_session.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fake_hid_bus.h"

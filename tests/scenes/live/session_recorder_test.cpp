@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "devices/hand_device.h"
-#include "devices/replay_device.h"
+#include "devices/virtual/hand_device.h"
+#include "devices/virtual/replay_device.h"
 #include "tests/support/live_doubles.h"
 #include "tests/support/temporary_folder.h"
 

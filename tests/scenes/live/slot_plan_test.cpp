@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "models/model_io.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/temporary_folder.h"
 

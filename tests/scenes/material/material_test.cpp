@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 #include "tests/support/rt_guard.h"
 
 namespace palpate {

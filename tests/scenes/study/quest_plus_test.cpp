@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "engine/jnd.h"
-#include "engine/random_stream.h"
+#include "engine/tick/jnd.h"
+#include "engine/base/random_stream.h"
 #include "scenes/study/study_plan.h"
 
 namespace palpate {

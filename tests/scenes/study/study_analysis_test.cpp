@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/study/jnd_file.h"
+#include "scenes/scene/jnd_file.h"
 #include "scenes/study/simulated_subject.h"
 #include "tests/support/study_driving.h"
 

@@ -1,0 +1,38 @@
+// What one kind of HID device measures and bears: one JSON file per kind, named
+// after it, in assets/devices/.
+//
+// Thread guarantee: slow side only.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "devices/hid/hid_reports.h"
+#include "engine/live/force_limiter.h"
+#include "engine/base/result.h"
+
+namespace palpate {
+
+struct HidCalibration {
+  HidKind kind = HidKind::paddle;
+  double counts_per_metre = 0.0;  // > 0
+  // 1: counts grow into the block, -1: out of it. The force that pushes out of the
+  // block then is a command of the sign -direction: positive commands drive the
+  // counts up.
+  double direction = 1.0;
+  double rest_position_m = 0.0;  // of the tool while it is zeroed; negative: outside
+  double fastest_m_per_s = 0.0;  // of the tool; anything above is a jump of the encoder
+  // The rest is of devices that push.
+  double force_N_per_unit = 0.0;  // unit: see HidCommand
+  double stuck_after_s = 0.0;     // not a count for so long while pushing: the encoder is stuck
+  ForceLimits limits;             // stop_s keeps its default
+};
+
+// Errors: not JSON, or the first value that is missing, unknown or out of range, with
+// path:line:column, found, expected.
+Result<HidCalibration> parse_hid_calibration(std::string_view text, const std::string& path);
+
+// `folder`/<kind>.json. Errors: as above; the file cannot be read.
+Result<HidCalibration> read_hid_calibration(const std::string& folder, HidKind kind);
+
+}  // namespace palpate

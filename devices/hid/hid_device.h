@@ -1,0 +1,46 @@
+// A haptic device on a USB port: a HidEndpoint with the threads that serve it.
+//
+// The tool does not move and nothing pushes until the device was zeroed: bring
+// the tool to its marked rest position (rest_position_m of the calibration), call
+// `start_zeroing`, hold it still; `health` says how far it is, zeroing_words what
+// to do. The same after the device was unplugged, jumped or started again.
+//
+// Thread guarantee: as Device.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "devices/hid/hid_endpoint.h"
+#include "devices/hid/hid_link.h"
+#include "engine/live/device.h"
+
+namespace palpate {
+
+class HidDevice final : public Device {
+ public:
+  // `bus` outlives this; `opened` is of the calibration's kind, which pushes.
+  HidDevice(HidBus& bus, const HidCalibration& calibration, HidOpened opened);
+  ~HidDevice() override { close(); }
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override;
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return endpoint_.calibration().limits; }
+  // Errors: no thread.
+  Status open() override;
+  void close() noexcept override { link_.stop(); }
+  bool read(double, DeviceSample& sample) noexcept override { return endpoint_.read(sample); }
+  void write(double force_N) noexcept override { endpoint_.write(force_N); }
+  DeviceHealth health(double now_s) noexcept override { return endpoint_.health(now_s); }
+  void start_zeroing() noexcept override { endpoint_.start_zeroing(); }
+  // Which device on which node.
+  std::string note() const override;
+
+ private:
+  std::string name_ = "hid";
+  HidEndpoint endpoint_;
+  HidLink link_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,134 @@
+#include "devices/hid/hid_endpoint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+MonitorSettings monitor_settings(const HidCalibration& calibration) noexcept {
+  MonitorSettings settings;
+  settings.kind = calibration.kind;
+  settings.counts_per_metre = calibration.counts_per_metre;
+  settings.fastest_m_per_s = calibration.fastest_m_per_s;
+  settings.stale_after_s = calibration.limits.stale_after_s;
+  settings.stuck_after_s = calibration.stuck_after_s;
+  return settings;
+}
+
+}  // namespace
+
+HidEndpoint::HidEndpoint(const HidCalibration& calibration) noexcept
+    : calibration_(calibration), monitor_(monitor_settings(calibration)) {}
+
+void HidEndpoint::connected(double now_s) noexcept {
+  last_written_s_.store(now_s, std::memory_order_relaxed);
+  connected_at_s_.store(now_s, std::memory_order_relaxed);
+  link_.connected = true;
+  state_.write(link_);
+}
+
+void HidEndpoint::unplugged() noexcept {
+  monitor_.unplugged();
+  link_.monitor = monitor_.state();
+  link_.connected = false;
+  state_.write(link_);
+}
+
+void HidEndpoint::take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
+  if (zeroing_asked_.exchange(false, std::memory_order_relaxed)) monitor_.start_zeroing();
+  const std::uint32_t confirmed = monitor_.state().confirmed;
+  monitor_.take(bytes, size, now_s, commanded_N_.load(std::memory_order_relaxed));
+  link_.monitor = monitor_.state();
+  if (link_.monitor.confirmed != confirmed) {
+    const double sent_s =
+        sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
+    if (sent_s > 0.0) link_.round_trip_s = now_s - sent_s;
+  }
+  state_.write(link_);
+}
+
+HidCommand HidEndpoint::command_for(double force_N) noexcept {
+  const double peak_N = calibration_.limits.largest_N;
+  const double safe_N = std::isfinite(force_N) ? std::clamp(force_N, -peak_N, peak_N) : 0.0;
+  commanded_N_.store(safe_N, std::memory_order_relaxed);
+  HidCommand command;
+  command.sequence = ++sequence_;
+  command.heartbeat = last_heartbeat_;
+  command.drive = safe_N != 0.0;
+  command.units = -calibration_.direction * safe_N / calibration_.force_N_per_unit;
+  return command;
+}
+
+OutReports HidEndpoint::next(double now_s) noexcept {
+  const Command command = command_.newest();
+  const bool fresh = command.heartbeat != last_heartbeat_;
+  if (fresh) {
+    last_heartbeat_ = command.heartbeat;
+    last_beat_s_ = now_s;
+  }
+  if (!fresh && last_sent_s_ >= 0.0 && now_s - last_sent_s_ < kRepeat_s) return {};
+  last_sent_s_ = now_s;
+  const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
+  const HidCommand next = command_for(haptics_live ? command.force_N : 0.0);
+  sent_at_s_[next.sequence % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
+  return encode_command(calibration_.kind, next);
+}
+
+void HidEndpoint::written(double now_s) noexcept { last_written_s_.store(now_s, std::memory_order_relaxed); }
+
+double HidEndpoint::position_m(const MonitorState& state) const noexcept {
+  const double counts = static_cast<double>(state.counts) - state.zero_counts;
+  return calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
+}
+
+bool HidEndpoint::read(DeviceSample& sample) noexcept {
+  const MonitorState& state = state_.newest().monitor;
+  if (state.samples == samples_read_) return false;
+  samples_read_ = state.samples;
+  if (state.zeroing != Zeroing::done || state.lost != 0) return false;
+  sample = {};
+  sample.tool.time_s = state.sample_time_s;
+  sample.tool.position_m = position_m(state);
+  sample.restart = state.zeroings != zeroings_seen_;
+  zeroings_seen_ = state.zeroings;
+  return true;
+}
+
+void HidEndpoint::write(double force_N) noexcept {
+  // Never zeroed: whatever the limiter thinks. Later, its ramp brings the force down.
+  next_command_.force_N = zeroings_seen_ > 0 ? force_N : 0.0;
+  ++next_command_.heartbeat;
+  command_.write(next_command_);
+}
+
+bool HidEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
+  if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
+  if (!has_sequence(calibration_.kind)) return false;  // confirms nothing
+  const double confirmed_s =
+      std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
+  return now_s - confirmed_s > kWriteStalled_s;
+}
+
+DeviceHealth HidEndpoint::health(double now_s) noexcept {
+  const LinkState& link = state_.newest();
+  const MonitorState& state = link.monitor;
+  DeviceHealth health;
+  health.faults = state.lost;
+  if (now_s < state.transient_until_s) health.faults |= state.transient;
+  health.sample_age_s = state.samples > 0 ? std::max(0.0, now_s - state.sample_time_s)
+                                          : std::numeric_limits<double>::infinity();
+  if (!link.connected) {
+    health.faults |= device_fault::kUnplugged;
+  } else {
+    if (health.sample_age_s > calibration_.limits.stale_after_s) health.faults |= device_fault::kLate;
+    if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
+  }
+  health.zeroing = state.zeroing;
+  health.zeroing_progress = state.zeroing_progress;
+  health.grip_held = state.grip;
+  health.round_trip_s = link.round_trip_s;
+  return health;
+}
+
+}  // namespace palpate

@@ -1,0 +1,92 @@
+// The host's end of one HID device that pushes, without threads and without I/O:
+// a reader gives it reports, a writer asks it what to send, the haptics thread
+// moves the tool and the force. What is handed over goes through TripleBuffers.
+//
+// The writer is the host's watchdog: when the haptics thread has not written for
+// kHapticsSilent_s it sends no force, and the heartbeat in a paddle's report
+// stands still, which stops the paddle as well.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "devices/hid/hid_calibration.h"
+#include "devices/hid/hid_link.h"
+#include "devices/hid/report_monitor.h"
+#include "engine/live/device.h"
+#include "engine/live/triple_buffer.h"
+
+namespace palpate {
+
+// What a reader knows beside the reports themselves.
+struct LinkState {
+  MonitorState monitor;
+  double round_trip_s = std::numeric_limits<double>::quiet_NaN();
+  bool connected = false;
+};
+
+class HidEndpoint final : public HidLinkUser {
+ public:
+  static constexpr double kHapticsSilent_s = 0.02;
+  // Without a written or a confirmed command for so long, the device hears nothing.
+  static constexpr double kWriteStalled_s = 0.05;
+  // Nothing new to say: at least this often all the same.
+  static constexpr double kRepeat_s = 0.005;
+
+  explicit HidEndpoint(const HidCalibration& calibration) noexcept;
+
+  // Reader thread, wait-free. `now_s`: steady clock, never back.
+  void connected(double now_s) noexcept override;
+  void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void unplugged() noexcept override;
+
+  // Writer thread, wait-free. What to write now; nothing when there is no need.
+  OutReports next(double now_s) noexcept override;
+  // After it was written; `now_s`: when that was done.
+  void written(double now_s) noexcept override;
+
+  // Haptics thread, wait-free; as Device.
+  bool read(DeviceSample& sample) noexcept;
+  void write(double force_N) noexcept;
+  DeviceHealth health(double now_s) noexcept;
+
+  // Any thread, wait-free.
+  void start_zeroing() noexcept { zeroing_asked_.store(true, std::memory_order_relaxed); }
+
+  const HidCalibration& calibration() const noexcept { return calibration_; }
+
+ private:
+  struct Command {
+    double force_N = 0.0;
+    std::uint16_t heartbeat = 0;
+  };
+
+  HidCommand command_for(double force_N) noexcept;
+  double position_m(const MonitorState& state) const noexcept;
+  bool stalled(const LinkState& state, double now_s) const noexcept;
+
+  HidCalibration calibration_;
+  std::atomic<bool> zeroing_asked_{false};
+  std::atomic<double> commanded_N_{0.0};  // last sent
+  std::atomic<double> last_written_s_{0.0};
+  std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence
+  static_assert(std::atomic<double>::is_always_lock_free);
+  TripleBuffer<LinkState> state_;
+  TripleBuffer<Command> command_;
+  // Reader thread's own.
+  ReportMonitor monitor_;
+  LinkState link_;
+  // Writer thread's own.
+  std::uint32_t sequence_ = 0;
+  std::uint16_t last_heartbeat_ = 0;
+  double last_beat_s_ = 0.0;
+  double last_sent_s_ = -1.0;
+  std::atomic<double> connected_at_s_{0.0};
+  // Haptics thread's own.
+  Command next_command_;
+  std::uint64_t samples_read_ = 0;
+  std::uint32_t zeroings_seen_ = 0;
+};
+
+}  // namespace palpate

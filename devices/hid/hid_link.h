@@ -1,0 +1,85 @@
+// The threads between an open device and its user: one that reads whatever comes,
+// so that nothing queues up, and one that writes the newest command and forgets
+// those that it had no time for. Blocking I/O is theirs alone. A device that goes
+// away is looked for again until the link ends.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "devices/hid/hid_bus.h"
+#include "engine/base/result.h"
+
+namespace palpate {
+
+// What a link serves. `now_s`: steady clock.
+class HidLinkUser {
+ public:
+  virtual ~HidLinkUser() = default;
+  // Reader thread.
+  virtual void connected(double now_s) noexcept = 0;
+  virtual void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept = 0;
+  virtual void unplugged() noexcept = 0;
+  // Writer thread.
+  virtual OutReports next(double now_s) noexcept = 0;
+  virtual void written(double now_s) noexcept = 0;
+};
+
+// An open device and how to find it again.
+struct HidOpened {
+  HidFound found;
+  HidKind kind = HidKind::paddle;
+  std::unique_ptr<HidLine> line;
+};
+
+// The first device of one of `kinds` that can be opened; tries for half a second
+// when there is one that cannot, for udev may still be setting its permissions.
+// Slow side. Errors: none is plugged in (`none_found` is then set); those that are
+// cannot be opened, each with why.
+Result<HidOpened> open_first(HidBus& bus, const std::vector<HidKind>& kinds, bool* none_found = nullptr);
+
+class HidLink {
+ public:
+  // Writes at most this often; a device gets a report every 1 ms.
+  static constexpr std::int64_t kWritePeriod_ns = 500'000;
+  static constexpr double kLookAgain_s = 0.25;
+
+  // `bus` and `user` outlive this.
+  HidLink(HidBus& bus, HidLinkUser& user, HidOpened opened);
+  HidLink(const HidLink&) = delete;
+  HidLink& operator=(const HidLink&) = delete;
+  ~HidLink();
+
+  // Slow side. Errors: no thread.
+  Status start();
+  // Slow side, blocking: ends the threads, then takes the force away.
+  void stop() noexcept;
+
+  // Slow side: what was found; the same kind after it was plugged in again.
+  const HidFound& found() const noexcept { return found_; }
+  HidKind kind() const noexcept { return kind_; }
+
+ private:
+  void read_all() noexcept;
+  void write_all() noexcept;
+  void write(HidLine& line, const OutReports& reports) noexcept;
+  void use(std::shared_ptr<HidLine> line) noexcept;
+  std::shared_ptr<HidLine> line() noexcept;
+  void look_again() noexcept;
+
+  HidBus& bus_;
+  HidLinkUser& user_;
+  HidFound found_;
+  HidKind kind_;
+  std::mutex mutex_;  // of line_; neither thread is the haptics thread
+  std::shared_ptr<HidLine> line_;
+  std::atomic<bool> stop_{false};
+  std::thread reader_;
+  std::thread writer_;
+};
+
+}  // namespace palpate

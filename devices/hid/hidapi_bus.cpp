@@ -1,0 +1,143 @@
+#include "devices/hid/hidapi_bus.h"
+
+#include <fcntl.h>
+#include <hidapi.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+
+#include "devices/hid/device_stop.h"
+
+namespace palpate {
+namespace {
+
+// hidapi keeps the error of hid_enumerate and hid_open_path in one global.
+std::mutex& hidapi_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+std::string narrow(const wchar_t* text) {
+  std::string result;
+  for (; text != nullptr && *text != L'\0'; ++text) {
+    result += *text >= L' ' && *text < 0x7F ? static_cast<char>(*text) : '?';
+  }
+  return result;
+}
+
+class HidapiLine final : public HidLine {
+ public:
+  HidapiLine(hid_device* reader, hid_device* writer, int descriptor, int wait_ms) noexcept
+      : reader_(reader), writer_(writer), descriptor_(descriptor), wait_ms_(wait_ms) {}
+  HidapiLine(const HidapiLine&) = delete;
+  HidapiLine& operator=(const HidapiLine&) = delete;
+  ~HidapiLine() override {
+    unregister_device_stop(slot_);
+    hid_close(reader_);
+    hid_close(writer_);
+    ::close(descriptor_);
+  }
+
+  int read(std::uint8_t* bytes, std::size_t capacity) noexcept override {
+    return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity)
+                        : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
+  }
+  bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
+    return hid_write(writer_, bytes, size) >= 0;
+  }
+  void stop_with(const OutReports& reports) noexcept override {
+    unregister_device_stop(slot_);
+    slot_ = register_device_stop(descriptor_, reports);
+  }
+
+ private:
+  hid_device* reader_;
+  hid_device* writer_;
+  int descriptor_;
+  int wait_ms_;
+  int slot_ = -1;
+};
+
+// hidapi lists a node once for each usage of its descriptor.
+bool better(const HidFound& a, const HidFound& b) {
+  return possible_kinds(a).size() > possible_kinds(b).size();
+}
+
+}  // namespace
+
+std::string open_error_words(const std::string& path, int error_number) {
+  switch (error_number) {
+    case ENOENT:
+    case ENXIO:
+    case ENODEV:
+      return path +
+             ": no node although the device is plugged in; unplug it and plug it in again (in a container: "
+             "pass the node in)";
+    case EACCES:
+    case EPERM:
+      return path +
+             ": no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
+             "device in again";
+    case EBUSY:
+    case EWOULDBLOCK:
+      return path + ": in use by another program; close it";
+    default:
+      return path + ": " + std::strerror(error_number);
+  }
+}
+
+std::vector<HidFound> HidapiBus::list() {
+  const std::lock_guard<std::mutex> lock(hidapi_mutex());
+  std::vector<HidFound> all;
+  hid_device_info* const first = hid_enumerate(0, 0);
+  for (const hid_device_info* info = first; info != nullptr; info = info->next) {
+    HidFound found;
+    found.path = info->path != nullptr ? info->path : "";
+    found.product = narrow(info->product_string);
+    found.vendor_id = info->vendor_id;
+    found.product_id = info->product_id;
+    found.usage_page = info->usage_page;
+    found.usage = info->usage;
+    const auto same =
+        std::find_if(all.begin(), all.end(), [&](const HidFound& other) { return other.path == found.path; });
+    if (same == all.end()) {
+      all.push_back(found);
+    } else if (better(found, *same)) {
+      *same = found;
+    }
+  }
+  hid_free_enumeration(first);
+  return all;
+}
+
+Result<std::unique_ptr<HidLine>> HidapiBus::open(const HidFound& found) {
+  if (found.path.empty()) return Error{open_error_words(found.product, ENOENT)};
+  const int descriptor = ::open(found.path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return Error{open_error_words(found.path, errno)};
+  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    const int error_number = errno;
+    ::close(descriptor);
+    return Error{open_error_words(found.path, error_number)};
+  }
+  const std::lock_guard<std::mutex> lock(hidapi_mutex());
+  hid_device* const reader = hid_open_path(found.path.c_str());
+  hid_device* const writer = reader != nullptr ? hid_open_path(found.path.c_str()) : nullptr;
+  if (writer == nullptr) {
+    const std::string words = narrow(hid_error(nullptr));
+    if (reader != nullptr) hid_close(reader);
+    ::close(descriptor);
+    return Error{found.path + ": is no HID device that can be opened (" + words + "); plug it in again"};
+  }
+  return Result<std::unique_ptr<HidLine>>(std::make_unique<HidapiLine>(reader, writer, descriptor, wait_ms_));
+}
+
+HidBus& system_hid_bus() {
+  static HidapiBus bus;
+  return bus;
+}
+
+}  // namespace palpate

@@ -1,0 +1,104 @@
+// A 3Dconnexion SpaceMouse: pushing its cap down moves the tool into the block.
+// Input only, no force is felt in the hand; the tool itself is the mass of the
+// MouseDevice, which the force pushes back.
+//
+// It reports at 60 to 125 Hz, and nothing while it rests. Each new value is
+// reached on a straight line over the interval of the last two reports, so that
+// the tool moves at every tick; that costs one interval of delay.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "devices/hid/hid_calibration.h"
+#include "devices/hid/hid_link.h"
+#include "devices/virtual/mouse_device.h"
+#include "engine/live/device.h"
+#include "engine/live/triple_buffer.h"
+
+namespace palpate {
+
+// From reports to a position at any time. No thread of its own.
+class SpaceMouseAxis final : public HidLinkUser {
+ public:
+  // Between reports; longer is a rest.
+  static constexpr double kShortest_s = 0.004;
+  static constexpr double kLongest_s = 0.02;
+  // Nearer to 0 than this the cap is not touched.
+  static constexpr int kDeadCounts = 8;
+
+  explicit SpaceMouseAxis(const HidCalibration& calibration) noexcept : calibration_(calibration) {}
+
+  // Reader thread, wait-free.
+  void connected(double) noexcept override;
+  void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void unplugged() noexcept override;
+  // Writer thread: nothing is ever written.
+  OutReports next(double) noexcept override { return {}; }
+  void written(double) noexcept override {}
+
+  // Haptics thread, wait-free; `now_s` increasing. Where the cap wants the tool.
+  double target_m(double now_s) noexcept;
+  // Haptics thread, wait-free. Moves the tool if the cap did since the last call.
+  void drive(MouseDevice& tool, double now_s) noexcept;
+  DeviceHealth health(double now_s) noexcept;
+
+ private:
+  struct Deflection {
+    std::uint64_t reports = 0;
+    double counts = 0.0;
+    double at_s = 0.0;
+    double interval_s = kLongest_s;
+    double corrupt_until_s = 0.0;
+    bool connected = false;
+  };
+
+  HidCalibration calibration_;
+  TripleBuffer<Deflection> newest_;
+  Deflection deflection_;  // reader thread's own
+  // Haptics thread's own: on the way from one value to the next.
+  std::uint64_t seen_ = 0;
+  double from_counts_ = 0.0, to_counts_ = 0.0, since_s_ = 0.0, over_s_ = kShortest_s;
+  double last_target_m_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+// The cap and its threads.
+class SpaceMouse {
+ public:
+  // As HidDevice.
+  SpaceMouse(HidBus& bus, const HidCalibration& calibration, HidOpened opened);
+  Status start() { return link_.start(); }
+  void stop() noexcept { link_.stop(); }
+  SpaceMouseAxis& axis() noexcept { return axis_; }
+  const HidFound& found() const noexcept { return link_.found(); }
+
+ private:
+  SpaceMouseAxis axis_;
+  HidLink link_;
+};
+
+class SpaceMouseDevice final : public Device {
+ public:
+  explicit SpaceMouseDevice(std::unique_ptr<SpaceMouse> mouse) : mouse_(std::move(mouse)) {}
+  ~SpaceMouseDevice() override { close(); }
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return tool_.sensor(); }
+  bool renders_force() const noexcept override { return false; }
+  ForceLimits limits() const noexcept override { return tool_.limits(); }
+  Status open() override { return mouse_->start(); }
+  void close() noexcept override { mouse_->stop(); }
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override { tool_.write(force_N); }
+  DeviceHealth health(double now_s) noexcept override { return mouse_->axis().health(now_s); }
+  std::string note() const override;
+
+ private:
+  std::string name_ = "hid";
+  std::unique_ptr<SpaceMouse> mouse_;
+  MouseDevice tool_;
+};
+
+}  // namespace palpate

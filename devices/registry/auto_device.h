@@ -1,0 +1,55 @@
+// The hand by itself until somebody takes over with the mouse or a SpaceMouse, and
+// again once both have been idle for a while. The tool goes on from where the other
+// left it.
+//
+// Thread guarantee: as Device; `mouse` is for the window's thread, see there.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "devices/virtual/hand_device.h"
+#include "devices/virtual/mouse_device.h"
+#include "devices/hid/spacemouse.h"
+
+namespace palpate {
+
+class AutoDevice final : public Device {
+ public:
+  explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {}, const MouseSettings& mouse = {})
+      : hand_(seed, hand), mouse_(mouse) {}
+
+  // Before `open`. What to tell people, and a SpaceMouse if there is one.
+  void explain(std::string note) { note_ = std::move(note); }
+  void use(std::unique_ptr<SpaceMouse> space_mouse) { space_mouse_ = std::move(space_mouse); }
+
+  const std::string& name() const noexcept override { return name_; }
+  Status open() override { return space_mouse_ != nullptr ? space_mouse_->start() : Status(); }
+  void close() noexcept override {
+    if (space_mouse_ != nullptr) space_mouse_->stop();
+  }
+  std::string note() const override { return note_; }
+  SensorSpec sensor() const noexcept override { return simulated_sensor(); }
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return simulated_limits(); }
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override;
+
+  // Setting its target is taking over.
+  MouseDevice& mouse() noexcept { return mouse_; }
+  // Any thread, wait-free.
+  bool hand_is_exploring() const noexcept { return exploring_.load(std::memory_order_relaxed); }
+
+ private:
+  std::string name_ = "auto";
+  std::string note_;
+  std::unique_ptr<SpaceMouse> space_mouse_;
+  HandDevice hand_;
+  MouseDevice mouse_;
+  std::atomic<bool> exploring_{true};
+};
+
+}  // namespace palpate

@@ -1,0 +1,138 @@
+#include "devices/registry/device_registry.h"
+
+#include <string_view>
+#include <utility>
+
+#include "devices/registry/auto_device.h"
+#include "devices/virtual/hand_device.h"
+#include "devices/hid/hid_device.h"
+#include "devices/hid/hidapi_bus.h"
+#include "devices/virtual/mouse_device.h"
+#include "devices/virtual/replay_device.h"
+#include "devices/hid/spacemouse.h"
+
+namespace palpate {
+namespace {
+
+using Made = Result<std::unique_ptr<Device>>;
+
+constexpr std::string_view kReplay = "replay:";
+
+const std::vector<HidKind> kPushing = {HidKind::paddle, HidKind::polhem, HidKind::openffboard};
+
+HidBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
+
+Result<HidCalibration> calibration_of(const DeviceRequest& request, HidKind kind) {
+  if (request.calibrations.empty()) {
+    return Error{"the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder"};
+  }
+  return read_hid_calibration(request.calibrations, kind);
+}
+
+// A device that pushes. `none_found`: there is none to open.
+Made make_haptic(const DeviceRequest& request, bool& none_found) {
+  Result<HidOpened> opened = open_first(bus_of(request), kPushing, &none_found);
+  if (!opened) return opened.error();
+  const Result<HidCalibration> calibration = calibration_of(request, opened->kind);
+  if (!calibration) return calibration.error();
+  return Made(std::make_unique<HidDevice>(bus_of(request), *calibration, std::move(*opened)));
+}
+
+Result<std::unique_ptr<SpaceMouse>> make_space_mouse(const DeviceRequest& request, bool& none_found) {
+  Result<HidOpened> opened = open_first(bus_of(request), {HidKind::spacemouse}, &none_found);
+  if (!opened) return opened.error();
+  const Result<HidCalibration> calibration = calibration_of(request, HidKind::spacemouse);
+  if (!calibration) return calibration.error();
+  return Result<std::unique_ptr<SpaceMouse>>(
+      std::make_unique<SpaceMouse>(bus_of(request), *calibration, std::move(*opened)));
+}
+
+Made make_hid(const std::string&, const DeviceRequest& request) {
+  bool no_haptic = false;
+  Made haptic = make_haptic(request, no_haptic);
+  if (haptic || !no_haptic) return haptic;
+  bool no_mouse = false;
+  Result<std::unique_ptr<SpaceMouse>> mouse = make_space_mouse(request, no_mouse);
+  if (mouse) return Made(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
+  if (!no_mouse) return mouse.error();
+  return Error{"no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)"};
+}
+
+Made make_auto(const std::string&, const DeviceRequest& request) {
+  bool no_haptic = false;
+  Made haptic = make_haptic(request, no_haptic);
+  if (haptic) return haptic;
+  auto device = std::make_unique<AutoDevice>(request.seed, request.hand);
+  std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
+  bool no_mouse = false;
+  Result<std::unique_ptr<SpaceMouse>> mouse = make_space_mouse(request, no_mouse);
+  if (!mouse && !no_mouse) note += "; " + mouse.error().message;
+  note += std::string(": a simulated hand until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") + " takes over";
+  if (mouse) device->use(std::move(*mouse));
+  device->explain(std::move(note));
+  return Made(std::move(device));
+}
+
+Made make_hand(const std::string&, const DeviceRequest& request) {
+  return Made(std::make_unique<HandDevice>(request.seed, request.hand));
+}
+
+Made make_mouse(const std::string&, const DeviceRequest&) { return Made(std::make_unique<MouseDevice>()); }
+
+Made make_replay(const std::string& path, const DeviceRequest&) {
+  if (path.empty()) return Error{"--device replay: names no recording; write replay:FILE.csv"};
+  Result<Recording> recording = read_recording(path);
+  if (!recording) return recording.error();
+  return Made(std::make_unique<ReplayDevice>(std::move(*recording)));
+}
+
+struct Entry {
+  DeviceDescription description;
+  Made (*make)(const std::string& path, const DeviceRequest& request);
+};
+
+// A new device is a line here.
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = {
+      {{"auto", "a haptic device, else the simulated hand until the mouse takes over", true, ""}, make_auto},
+      {{"hand", "a simulated hand that explores by itself and feels the force", true, ""}, make_hand},
+      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", true, ""}, make_mouse},
+      {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", true, ""}, make_hid},
+      {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", false, ""},
+       make_replay},
+  };
+  return all;
+}
+
+std::string known_names() {
+  std::string names;
+  for (const Entry& entry : entries()) names += (names.empty() ? "" : ", ") + entry.description.name;
+  return names;
+}
+
+}  // namespace
+
+std::vector<DeviceDescription> list_devices(const DeviceRequest& request) {
+  std::vector<DeviceDescription> list;
+  for (const Entry& entry : entries()) {
+    list.push_back(entry.description);
+    if (entry.make != make_hid) continue;
+    if (const Made hid = make_hid("", request); !hid) list.back().problem = hid.error().message;
+  }
+  return list;
+}
+
+Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceRequest& request) {
+  const bool replay = name.rfind(kReplay, 0) == 0;
+  for (const Entry& entry : entries()) {
+    const bool chosen = replay ? entry.description.name.rfind(kReplay, 0) == 0 : entry.description.name == name;
+    if (!chosen) continue;
+    Made device = entry.make(replay ? name.substr(kReplay.size()) : "", request);
+    if (!device) return device;
+    if (const Status status = (*device)->open(); !status) return status.error();
+    return device;
+  }
+  return Error{"unknown device \"" + name + "\", expected one of: " + known_names() + " (palpate devices explains)"};
+}
+
+}  // namespace palpate

@@ -1,0 +1,164 @@
+#include "devices/virtual/hand_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kStart_m = -0.006;
+// Unhurried, from wherever the tool was.
+constexpr double kReturn_s = 0.8;
+constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace
+
+HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : settings_(settings), random_(seed, 0) {
+  using enum Gesture;
+  deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke, poke,
+           poke,       poke,       poke,       steps, modulation, modulation, modulation, rest};
+  dealt_ = deck_.size();
+  for (Tremor& tremor : tremor_) {
+    tremor.rate_rad_per_s = 2.0 * kPi * any(8.0, 12.0);
+    const double phase_rad = any(-kPi, kPi);
+    const double amplitude_m =
+        settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
+    tremor.along = amplitude_m * std::cos(phase_rad);
+    tremor.across = amplitude_m * std::sin(phase_rad);
+  }
+  position_m_ = segment_from_m_ = planned_m_ = aim_m_ = kStart_m;
+  go({kStart_m, any(0.15, 0.4)});
+}
+
+void HandMotion::resume_at(double position_m) noexcept {
+  position_m_ = segment_from_m_ = planned_m_ = aim_m_ = position_m;
+  velocity_m_per_s_ = acceleration_m_per_s2_ = aim_velocity_m_per_s_ = 0.0;
+  segment_count_ = segment_ = 0;
+  segment_time_s_ = 0.0;
+  go({kStart_m, kReturn_s});
+}
+
+void HandMotion::start_tremor(double dt_s) {
+  tremor_dt_s_ = dt_s;
+  for (Tremor& tremor : tremor_) {
+    tremor.turn_cos = std::cos(tremor.rate_rad_per_s * dt_s);
+    tremor.turn_sin = std::sin(tremor.rate_rad_per_s * dt_s);
+  }
+}
+
+void HandMotion::move(double dt_s) noexcept {
+  position_m_ += dt_s * (velocity_m_per_s_ + 0.5 * dt_s * acceleration_m_per_s2_);
+  velocity_m_per_s_ += dt_s * acceleration_m_per_s2_;
+  advance_aim(dt_s);
+}
+
+// Corrects the velocity that `move` predicted: velocity Verlet.
+void HandMotion::feel(double force_N, double dt_s) noexcept {
+  const double drive_N = settings_.stiffness_N_per_m * (aim_m_ - position_m_) +
+                         settings_.damping_Ns_per_m * (aim_velocity_m_per_s_ - velocity_m_per_s_);
+  const double acceleration = (drive_N - force_N) / settings_.mass_kg;
+  velocity_m_per_s_ += 0.5 * dt_s * (acceleration - acceleration_m_per_s2_);
+  acceleration_m_per_s2_ = acceleration;
+}
+
+void HandMotion::advance_aim(double dt_s) {
+  segment_time_s_ += dt_s;
+  while (segment_time_s_ >= segments_[segment_].duration_s) {
+    segment_time_s_ -= segments_[segment_].duration_s;
+    segment_from_m_ = segments_[segment_].target_m;
+    if (++segment_ == segment_count_) plan();
+  }
+  const Segment& segment = segments_[segment_];
+  const double u = segment_time_s_ / segment.duration_s;
+  const double distance_m = segment.target_m - segment_from_m_;
+  aim_m_ = segment_from_m_ + distance_m * u * u * u * (10.0 + u * (6.0 * u - 15.0));
+  aim_velocity_m_per_s_ =
+      distance_m / segment.duration_s * 30.0 * u * u * (1.0 - u) * (1.0 - u);
+  if (dt_s != tremor_dt_s_) start_tremor(dt_s);
+  for (Tremor& tremor : tremor_) {
+    const double along = tremor.along * tremor.turn_cos - tremor.across * tremor.turn_sin;
+    tremor.across = tremor.along * tremor.turn_sin + tremor.across * tremor.turn_cos;
+    tremor.along = along;
+    aim_m_ += along;
+    aim_velocity_m_per_s_ -= tremor.rate_rad_per_s * tremor.across;
+  }
+}
+
+void HandMotion::go(Segment segment) {
+  if (segment_count_ == kMostSegments) return;
+  segments_[segment_count_++] = segment;
+  planned_m_ = segment.target_m;
+}
+
+// Draws gestures as from a shuffled deck: every half minute has all of them.
+void HandMotion::plan() {
+  segment_count_ = segment_ = 0;
+  if (dealt_ == deck_.size()) {
+    for (std::size_t i = deck_.size() - 1; i > 0; --i) {
+      std::swap(deck_[i], deck_[random_.index(i + 1)]);
+    }
+    dealt_ = 0;
+  }
+  switch (deck_[dealt_++]) {
+    case Gesture::slow_press: plan_slow_press(); break;
+    case Gesture::taps: plan_taps(); break;
+    case Gesture::poke: plan_poke(); break;
+    case Gesture::steps: plan_steps(); break;
+    case Gesture::modulation: plan_modulation(); break;
+    case Gesture::rest: go({any(-0.010, -0.003), any(0.5, 1.0)}); break;
+  }
+}
+
+// Back into the air, then a short pause.
+void HandMotion::leave(double fastest_s, double slowest_s) {
+  const double air_m = any(-0.006, -0.001);
+  go({air_m, any(fastest_s, slowest_s)});
+  go({air_m, any(0.03, 0.15)});
+}
+
+void HandMotion::plan_slow_press() {
+  press({any(0.5, 1.0) * settings_.strongest_press_N, any(0.35, 0.9)});
+  go({planned_m_, any(0.1, 0.6)});
+  if (any(0.0, 1.0) < 0.4) {
+    press({any(0.1, 0.6) * settings_.strongest_press_N, any(0.2, 0.5)});
+    go({planned_m_, any(0.1, 0.4)});
+  }
+  leave(0.2, 0.7);
+}
+
+void HandMotion::plan_taps() {
+  const std::uint64_t count = 5 + random_.index(6);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    press({any(0.2, 0.85) * settings_.strongest_press_N, any(0.1, 0.18)});
+    go({any(-0.003, -0.001), any(0.08, 0.18)});
+  }
+}
+
+void HandMotion::plan_poke() {
+  press({any(0.5, 0.95) * settings_.strongest_press_N, any(0.1, 0.2)});
+  go({planned_m_, any(0.02, 0.4)});
+  leave(0.08, 0.25);
+}
+
+void HandMotion::plan_steps() {
+  const std::uint64_t count = 3 + random_.index(4);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    press({any(0.05, 1.0) * settings_.strongest_press_N, any(0.1, 0.3)});
+    go({planned_m_, any(0.1, 0.4)});
+  }
+  leave(0.15, 0.5);
+}
+
+void HandMotion::plan_modulation() {
+  const double middle = any(0.4, 0.6);
+  const double swing = any(0.2, 0.4);
+  press({middle * settings_.strongest_press_N, any(0.3, 0.6)});
+  const std::uint64_t count = 5 + random_.index(6);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const double side = i % 2 == 0 ? swing : -swing;
+    press({(middle + side * any(0.5, 1.0)) * settings_.strongest_press_N, any(0.12, 0.35)});
+  }
+  leave(0.15, 0.6);
+}
+
+}  // namespace palpate

@@ -1,0 +1,102 @@
+// A virtual human hand that explores a block: slow presses with dwell, taps,
+// pokes, steps, steady contact with slow modulation, rests in the air.
+//
+// The hand aims along minimum-jerk segments (Flash & Hogan 1985)
+//   aim(u) = a + (b - a) (10 u^3 - 15 u^4 + 6 u^5),  u in 0..1,
+// adds a tremor of 8 to 12 Hz to the aim, and is a mass on a spring behind it:
+//   m a = k (aim - x) + c (d aim/dt - v) - F
+// so that it gives way to the force F, as a hand does, and position, velocity
+// and acceleration are consistent and smooth. It aims by force: a target of
+// F newtons is the depth that holds F, plus F / k; what depth that is, whoever
+// owns the hand knows (a material) or learns (a device that feels the force).
+// The same seed moves the same way, whatever the length of the recording.
+// Thread guarantee: one thread at a time; `move` and `feel` are wait-free and
+// allocate nothing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/base/random_stream.h"
+
+namespace palpate {
+
+struct HandSettings {
+  double mass_kg = 0.12;             // finger, handle and tool
+  double stiffness_N_per_m = 800.0;  // of the arm, well braced
+  double damping_Ns_per_m = 14.0;    // 0.7 of critical in the air
+  double tremor_rms_m = 5e-5;        // of the aim
+  double strongest_press_N = 6.0;    // gestures aim at most for this
+};
+
+class HandMotion {
+ public:
+  HandMotion(const HandSettings& settings, std::uint64_t seed);
+  virtual ~HandMotion() = default;
+
+  // Advances by `dt_s` (50 us or less keeps the integration accurate): first
+  // `move` to get the new position, then `feel` with the force there.
+  void move(double dt_s) noexcept;
+  void feel(double force_N, double dt_s) noexcept;
+
+  double position_m() const noexcept { return position_m_; }
+  double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
+  double acceleration_m_per_s2() const noexcept { return acceleration_m_per_s2_; }
+
+  // Takes the tool over at rest at `position_m`: back into the air, and on with
+  // the next gesture.
+  void resume_at(double position_m) noexcept;
+
+ protected:
+  // The depth at which the block holds `force_N` when pressed for a moment.
+  virtual double held_depth_m(double force_N) const noexcept = 0;
+
+ private:
+  enum class Gesture { slow_press, taps, poke, steps, modulation, rest };
+  struct Segment {
+    double target_m = 0.0;
+    double duration_s = 0.0;
+  };
+  struct Press {
+    double force_N = 0.0;
+    double duration_s = 0.0;
+  };
+  // A tremor component as a turning pointer: no cosine per step.
+  struct Tremor {
+    double along = 0.0, across = 0.0, turn_cos = 1.0, turn_sin = 0.0, rate_rad_per_s = 0.0;
+  };
+  static constexpr std::size_t kMostSegments = 32;
+
+  void plan();
+  void plan_slow_press();
+  void plan_taps();
+  void plan_poke();
+  void plan_steps();
+  void plan_modulation();
+  // Both take braces, in which random numbers are drawn from left to right;
+  // the order of plain arguments is the compiler's choice.
+  void go(Segment segment);
+  void press(Press press) { go({aim_for(press.force_N), press.duration_s}); }
+  void leave(double fastest_s, double slowest_s);
+  void start_tremor(double dt_s);
+  double aim_for(double force_N) const noexcept {
+    return held_depth_m(force_N) + force_N / settings_.stiffness_N_per_m;
+  }
+  double any(double from, double to) { return random_.uniform(from, to); }
+  void advance_aim(double dt_s);
+
+  HandSettings settings_;
+  RandomStream random_;
+  std::array<Segment, kMostSegments> segments_{};
+  std::size_t segment_count_ = 0, segment_ = 0;
+  std::array<Gesture, 16> deck_{};
+  std::size_t dealt_ = 0;
+  double segment_from_m_ = 0.0, segment_time_s_ = 0.0, planned_m_ = 0.0;
+  double aim_m_ = 0.0, aim_velocity_m_per_s_ = 0.0;
+  double tremor_dt_s_ = 0.0;
+  std::array<Tremor, 5> tremor_{};
+  double position_m_ = 0.0, velocity_m_per_s_ = 0.0, acceleration_m_per_s2_ = 0.0;
+};
+
+}  // namespace palpate

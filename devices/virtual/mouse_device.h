@@ -1,0 +1,68 @@
+// The mouse or the keyboard as a tool. What they set is a target; the tool is a
+// mass with the impedance of a hand, coupled to the target by a spring and a
+// damper:
+//   m a = k (y - x) + c (dy/dt - v) - F,   dy/dt = (target - y) / tau
+// so that the rendered force pushes it back from where the mouse points, and a
+// jump of the mouse is no jump of the tool.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "engine/live/device.h"
+
+namespace palpate {
+
+struct MouseSettings {
+  double mass_kg = 0.12;             // as HandSettings
+  double stiffness_N_per_m = 800.0;
+  double damping_Ns_per_m = 14.0;
+  double smoothing_time_s = 0.015;   // tau: two reports of a mouse at 125 Hz
+  double highest_m = -0.03;          // targets are kept between these
+  double deepest_m = 0.03;
+  double idle_time_s = 20.0;
+};
+
+class MouseDevice final : public Device {
+ public:
+  explicit MouseDevice(const MouseSettings& settings = {});
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override;
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override;
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override { force_N_ = force_N; }
+
+  // One thread, the window's; wait-free. `now_s`: steady clock. A target that is
+  // not finite is ignored.
+  void set_target(double position_m, double now_s) noexcept;
+  // Likewise: moves the target, as a wheel or a key does.
+  void nudge(double by_m, double now_s) noexcept;
+  // Any thread, wait-free.
+  double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }
+  // Any thread, wait-free. Whether nothing was set for idle_time_s, or ever.
+  bool idle(double now_s) const noexcept;
+
+  // Haptics thread: takes the tool over where it is.
+  void resume_at(double position_m, double velocity_m_per_s, double now_s) noexcept;
+  double position_m() const noexcept { return position_m_; }
+
+ private:
+  void advance(double step_s) noexcept;
+
+  std::string name_ = "mouse";
+  MouseSettings settings_;
+  std::atomic<double> target_m_;
+  std::atomic<double> last_input_s_;
+  static_assert(std::atomic<double>::is_always_lock_free);
+  // Haptics thread's own.
+  double smooth_m_;
+  double position_m_;
+  double velocity_m_per_s_ = 0.0;
+  double force_N_ = 0.0;
+  double now_s_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace palpate

@@ -1,0 +1,80 @@
+#include "devices/virtual/replay_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "devices/virtual/hand_device.h"
+#include "engine/tick/sensor_identification.h"
+
+namespace palpate {
+namespace {
+
+// A longer gap between ticks is a stall, in which the recording stood still.
+constexpr double kLongestReplayStep_s = 0.1;
+
+}  // namespace
+
+ReplayDevice::ReplayDevice(Recording recording)
+    : name_("replay:" + recording.name),
+      recording_(std::move(recording)),
+      sensor_(identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns)) {
+  if (!recording_.rows.empty()) duration_s_ = recording_.rows.back().time_s - recording_.rows.front().time_s;
+}
+
+ForceLimits ReplayDevice::limits() const noexcept { return simulated_limits(); }
+
+void ReplayDevice::set_speed(double speed) noexcept {
+  if (!std::isfinite(speed)) return;
+  speed_.store(std::clamp(speed, kSlowestReplay, kFastestReplay), std::memory_order_relaxed);
+}
+
+void ReplayDevice::seek(double at_s) noexcept {
+  if (!std::isfinite(at_s)) return;
+  seek_s_.store(std::clamp(at_s, 0.0, duration_s_), std::memory_order_relaxed);
+}
+
+void ReplayDevice::go_to(double at_s) noexcept {
+  const double time_s = recording_.rows.front().time_s + at_s;
+  const auto row = std::lower_bound(recording_.rows.begin(), recording_.rows.end(), time_s,
+                                    [](const RecordingRow& a, double time) { return a.time_s < time; });
+  next_ = std::min(static_cast<std::size_t>(row - recording_.rows.begin()), recording_.rows.size() - 1);
+  // To that row exactly, so that it is seen while paused as well.
+  playhead_s_ = recording_.rows[next_].time_s - recording_.rows.front().time_s;
+  restart_ = true;
+}
+
+void ReplayDevice::move_playhead(double now_s) noexcept {
+  const double step_s = started_ ? std::clamp(now_s - now_s_, 0.0, kLongestReplayStep_s) : 0.0;
+  started_ = true;
+  now_s_ = now_s;
+  handed_over_ = 0;
+  const double seek_s = seek_s_.exchange(-1.0, std::memory_order_relaxed);
+  if (seek_s >= 0.0) {
+    go_to(seek_s);
+  } else if (!paused()) {
+    playhead_s_ += step_s * speed();
+    if (next_ == recording_.rows.size()) go_to(0.0);
+  }
+  shown_s_.store(std::min(playhead_s_, duration_s_), std::memory_order_relaxed);
+}
+
+bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
+  if (recording_.rows.empty()) return false;
+  if (!started_ || now_s > now_s_) move_playhead(now_s);
+  if (next_ == recording_.rows.size()) return false;
+  const RecordingRow& row = recording_.rows[next_];
+  const double due_s = row.time_s - recording_.rows.front().time_s;
+  if (due_s > playhead_s_) return false;
+  // The loop asks no more in this tick: the recording waits for it.
+  if (++handed_over_ == kMaxSamplesPerTick) playhead_s_ = due_s;
+  sample = {};
+  sample.tool = tool_sample(row);
+  sample.measured_force_N = row.force_N;
+  sample.restart = restart_;
+  restart_ = false;
+  ++next_;
+  return true;
+}
+
+}  // namespace palpate

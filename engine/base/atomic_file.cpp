@@ -1,0 +1,243 @@
+#include "engine/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFlushBytes = std::size_t{1} << 18;
+
+// --- Registry of temporary files: what a signal handler may read ------------
+
+constexpr std::size_t kPathBytes = 4096;  // PATH_MAX on Linux
+constexpr int kSlots = 32;                // more files open at once are merely not registered
+
+enum SlotState : int { kFree, kFilling, kLive };
+
+struct Slot {
+  std::atomic<int> state{kFree};
+  pid_t owner = 0;  // a forked child must not remove its parent's files
+  char path[kPathBytes] = {};
+};
+static_assert(std::atomic<int>::is_always_lock_free, "read by a signal handler");
+
+std::array<Slot, kSlots> slots;
+
+int register_temporary(const std::string& path) {
+  if (path.size() >= kPathBytes) return -1;
+  for (int i = 0; i < kSlots; ++i) {
+    Slot& slot = slots[static_cast<std::size_t>(i)];
+    int expected = kFree;
+    if (!slot.state.compare_exchange_strong(expected, kFilling)) continue;
+    std::memcpy(slot.path, path.c_str(), path.size() + 1);
+    slot.owner = getpid();
+    slot.state.store(kLive);
+    return i;
+  }
+  return -1;
+}
+
+void unregister_temporary(int index) noexcept {
+  if (index >= 0) slots[static_cast<std::size_t>(index)].state.store(kFree);
+}
+
+// Async-signal-safe calls only.
+extern "C" void remove_and_die(int signal_number) {
+  for (const Slot& slot : slots) {
+    if (slot.state.load() == kLive && slot.owner == getpid()) unlink(slot.path);
+  }
+  signal(signal_number, SIG_DFL);
+  raise(signal_number);  // delivered when this handler returns
+}
+
+// --- Names -------------------------------------------------------------------
+
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+// Same folder as the final file, so that the rename cannot cross disks; the
+// clock beside the pid tells apart processes of two containers that share it.
+std::string temporary_name_in(const std::string& folder) {
+  static std::atomic<unsigned> counter{0};
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
+  char name[96];
+  std::snprintf(name, sizeof name, "/.palpate-%ld-%llx-%u.tmp", static_cast<long>(getpid()),
+                static_cast<unsigned long long>(now), counter.fetch_add(1));
+  return folder + name;
+}
+
+std::string words_for(int error_number) { return std::generic_category().message(error_number); }
+
+Error already_exists(const std::string& path) { return Error{path + " exists; pass --force to replace it"}; }
+
+// What stands under the final name already, if anything, that forbids writing.
+Status check_target(const std::string& path, bool overwrite) {
+  if (path.empty()) return Error{"the name of the output file is empty"};
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0) return {};
+  if (S_ISDIR(status.st_mode)) return Error{"cannot write " + path + ": it is a folder; name a file"};
+  if (!S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode)) {
+    return Error{"cannot write " + path + ": it is not a regular file; name one"};
+  }
+  if (!overwrite) return already_exists(path);
+  return {};
+}
+
+Error cannot_create(const std::string& path, const std::string& folder, int error_number) {
+  const std::string start = "cannot write " + path + ": ";
+  if (error_number == ENOENT) {
+    return Error{start + "the folder " + folder + " does not exist; create it first"};
+  }
+  if (error_number == ENOTDIR) return Error{start + folder + " is not a folder"};
+  if (error_number == EACCES || error_number == EPERM || error_number == EROFS) {
+    return Error{start + "the folder " + folder + " is not writable (" + words_for(error_number) + ")"};
+  }
+  return Error{start + words_for(error_number)};
+}
+
+// Renames without replacing, in one step of the kernel, so that a file which
+// appears in the last moment survives. Not every file system knows the flag;
+// a hard link refuses an existing name as well. Returns an errno, 0 if done.
+int rename_without_replacing(const char* from, const char* to) {
+  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  if (link(from, to) != 0) return errno;
+  unlink(from);
+  return 0;
+}
+
+// Makes the rename itself last. Some file systems cannot flush a folder; the
+// file is whole under its name either way, so a refusal is not an error.
+void flush_folder(const std::string& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
+}
+
+}  // namespace
+
+void remove_temporary_files_on_signals() {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
+    struct sigaction current {};
+    sigaction(number, nullptr, &current);
+    if (current.sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = remove_and_die;
+    sigfillset(&action.sa_mask);
+    sigaction(number, &action, nullptr);
+  }
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
+  if (const Status target = check_target(path, overwrite); !target) return target.error();
+  AtomicFile file;
+  file.path_ = path;
+  file.overwrite_ = overwrite;
+  const std::string folder = folder_of(path);
+  file.temporary_path_ = temporary_name_in(folder);
+  // Registered before it exists: a signal between the two finds nothing to do.
+  file.registry_slot_ = register_temporary(file.temporary_path_);
+  file.descriptor_ = open(file.temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file.descriptor_ < 0) {
+    const int error_number = errno;
+    file.discard();
+    return cannot_create(path, folder, error_number);
+  }
+  return file;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept { *this = std::move(other); }
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+  if (this == &other) return *this;
+  discard();
+  path_ = std::move(other.path_);
+  temporary_path_ = std::move(other.temporary_path_);
+  buffer_ = std::move(other.buffer_);
+  descriptor_ = std::exchange(other.descriptor_, -1);
+  error_number_ = other.error_number_;
+  registry_slot_ = std::exchange(other.registry_slot_, -1);
+  overwrite_ = other.overwrite_;
+  return *this;
+}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+void AtomicFile::close_descriptor() noexcept {
+  if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
+}
+
+void AtomicFile::discard() noexcept {
+  if (descriptor_ >= 0) unlink(temporary_path_.c_str());
+  close_descriptor();
+  unregister_temporary(std::exchange(registry_slot_, -1));
+}
+
+void AtomicFile::flush() {
+  const char* next = buffer_.data();
+  std::size_t left = buffer_.size();
+  while (left > 0 && error_number_ == 0) {
+    const ssize_t written = ::write(descriptor_, next, left);
+    if (written < 0) {
+      if (errno != EINTR) error_number_ = errno;
+      continue;
+    }
+    next += written;
+    left -= static_cast<std::size_t>(written);
+  }
+  buffer_.clear();
+}
+
+void AtomicFile::write(std::string_view text) {
+  if (descriptor_ < 0 || error_number_ != 0) return;
+  buffer_.append(text);
+  if (buffer_.size() >= kFlushBytes) flush();
+}
+
+Status AtomicFile::failure(int error_number) const {
+  if (error_number == EEXIST) return already_exists(path_);
+  return Error{"cannot write " + path_ + ": " + words_for(error_number)};
+}
+
+Status AtomicFile::commit() {
+  if (descriptor_ < 0) return Error{"cannot write " + path_ + ": it is closed already"};
+  flush();
+  if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
+  if (error_number_ == 0) {
+    error_number_ = overwrite_ ? (rename(temporary_path_.c_str(), path_.c_str()) == 0 ? 0 : errno)
+                               : rename_without_replacing(temporary_path_.c_str(), path_.c_str());
+  }
+  if (error_number_ != 0) {
+    discard();
+    return failure(error_number_);
+  }
+  close_descriptor();
+  discard();
+  flush_folder(folder_of(path_));
+  return {};
+}
+
+Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite) {
+  Result<AtomicFile> file = AtomicFile::create(path, overwrite);
+  if (!file) return file.error();
+  file->write(text);
+  return file->commit();
+}
+
+}  // namespace palpate

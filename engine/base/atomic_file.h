@@ -1,0 +1,61 @@
+// Files that are either whole under their final name or not there at all.
+//
+// Thread guarantee: slow side only.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/base/result.h"
+
+namespace palpate {
+
+// Collects output in a temporary file beside `path`; `commit` flushes it to
+// disk and renames it. Destroyed without commit, killed or interrupted, it
+// leaves nothing under the final name.
+class AtomicFile {
+ public:
+  // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
+  // to replace it"), is a folder or a device; the folder is missing or not
+  // writable.
+  static Result<AtomicFile> create(const std::string& path, bool overwrite);
+
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&& other) noexcept;
+  ~AtomicFile();
+
+  // Appends; buffered. Errors are kept and reported by commit.
+  void write(std::string_view text);
+  // Whether the disk has refused something already; commit says what.
+  bool failed() const noexcept { return error_number_ != 0; }
+
+  // Errors: anything the disk refused since `create`, e.g. no space left; a
+  // file of that name made by someone else meanwhile, unless `overwrite`. Then
+  // nothing is left under the final name but what was there before.
+  Status commit();
+
+ private:
+  AtomicFile() = default;
+  void discard() noexcept;
+  std::string path_;
+  std::string temporary_path_;
+  Status failure(int error_number) const;
+  void flush();
+  void close_descriptor() noexcept;
+  std::string buffer_;
+  int descriptor_ = -1;
+  int error_number_ = 0;
+  int registry_slot_ = -1;
+  bool overwrite_ = false;
+};
+
+// For main, once, before the first thread: SIGINT, SIGTERM, SIGHUP, SIGQUIT and
+// SIGPIPE remove the temporary files of this process before they end it as
+// usual (a signal that is ignored at the start stays ignored), and a file that
+// outgrows the process's size limit is an error of commit, not a crash.
+void remove_temporary_files_on_signals();
+
+// Writes `text` to `path` in one go; errors as AtomicFile.
+Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);
+
+}  // namespace palpate

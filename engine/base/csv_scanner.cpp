@@ -1,0 +1,220 @@
+#include "engine/base/csv_scanner.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+std::size_t find_byte(std::string_view text, char byte) {
+  const void* found = text.empty() ? nullptr : std::memchr(text.data(), byte, text.size());
+  if (found == nullptr) return std::string_view::npos;
+  return static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
+}
+
+// The length of the well-formed UTF-8 sequence at the start of `text`, or 0.
+std::size_t utf8_sequence_bytes(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return 1;
+  std::size_t bytes = 0;
+  unsigned char lowest = 0x80;
+  unsigned char highest = 0xBF;
+  if (lead >= 0xC2 && lead <= 0xDF) bytes = 2;
+  if (lead >= 0xE0 && lead <= 0xEF) bytes = 3;
+  if (lead >= 0xF0 && lead <= 0xF4) bytes = 4;
+  if (lead == 0xE0) lowest = 0xA0;   // else overlong
+  if (lead == 0xED) highest = 0x9F;  // else a surrogate
+  if (lead == 0xF0) lowest = 0x90;   // else overlong
+  if (lead == 0xF4) highest = 0x8F;  // else beyond U+10FFFF
+  if (bytes == 0 || text.size() < bytes) return 0;
+  if (byte(1) < lowest || byte(1) > highest) return 0;
+  for (std::size_t i = 2; i < bytes; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xBF) return 0;
+  }
+  return bytes;
+}
+
+std::string escaped(unsigned char byte) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  return {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+}
+
+// C0 controls and DEL, and the C1 controls (U+0080 to U+009F), which a terminal
+// may obey as well.
+bool is_control(std::string_view sequence) {
+  const auto lead = static_cast<unsigned char>(sequence[0]);
+  if (sequence.size() == 1) return lead < 0x20 || lead == 0x7F;
+  return lead == 0xC2 && static_cast<unsigned char>(sequence[1]) < 0xA0;
+}
+
+}  // namespace
+
+MemorySource::MemorySource(std::string_view text, std::size_t piece_bytes)
+    : rest_(text), piece_bytes_(piece_bytes) {}
+
+Result<std::size_t> MemorySource::read(char* bytes, std::size_t capacity) {
+  const std::size_t count = std::min({capacity, piece_bytes_, rest_.size()});
+  if (count > 0) std::memcpy(bytes, rest_.data(), count);
+  rest_.remove_prefix(count);
+  return count;
+}
+
+DescriptorSource::~DescriptorSource() { ::close(descriptor_); }
+
+Result<std::size_t> DescriptorSource::read(char* bytes, std::size_t capacity) {
+  for (;;) {
+    const ssize_t count = ::read(descriptor_, bytes, capacity);
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno != EINTR) {
+      return Error{"the file cannot be read (" + std::string(std::strerror(errno)) +
+                   "); check the disk or copy the file elsewhere"};
+    }
+  }
+}
+
+LineScanner::LineScanner(std::unique_ptr<ByteSource> source, std::string label,
+                         std::size_t buffer_bytes)
+    : source_(std::move(source)),
+      label_(std::move(label)),
+      capacity_(buffer_bytes),
+      buffer_(std::make_unique_for_overwrite<char[]>(buffer_bytes)) {
+  assert(buffer_bytes >= kMaximumLineBytes + 2);
+}
+
+Error LineScanner::error_at(std::uint64_t line, std::size_t column, const std::string& text) const {
+  return Error{label_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + text};
+}
+
+bool LineScanner::fail(std::size_t column, const std::string& text) {
+  error_ = error_at(lines_ + 1, column, text);
+  return false;
+}
+
+// Moves what is left to the front and reads behind it.
+bool LineScanner::refill() {
+  if (begin_ > 0) {
+    std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  const auto count = source_->read(buffer_.get() + end_, capacity_ - end_);
+  if (!count) {
+    error_ = Error{label_ + ": " + count.error().message};
+    return false;
+  }
+  end_ += *count;
+  source_ended_ = *count == 0;
+  return true;
+}
+
+bool LineScanner::skip_byte_order_mark() {
+  started_ = true;
+  while (end_ < 3 && !source_ended_) {
+    if (!refill()) return false;
+  }
+  const std::string_view text(buffer_.get(), end_);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return fail(1, "found UTF-16 text, expected UTF-8; save the file as UTF-8 CSV");
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) begin_ = 3;
+  return true;
+}
+
+// The rules for any line, the header and comments included.
+bool LineScanner::check(std::string_view text) {
+  const std::size_t nul = find_byte(text, '\0');
+  if (nul != std::string_view::npos) {
+    return fail(nul + 1,
+                "found a NUL byte, expected UTF-8 text; this is a binary or UTF-16 file, "
+                "save it as UTF-8 CSV");
+  }
+  const std::size_t carriage_return = find_byte(text, '\r');
+  if (carriage_return != std::string_view::npos && carriage_return + 1 < text.size()) {
+    return fail(carriage_return + 1,
+                "found a carriage return inside a line, expected lines that end in LF or CRLF; "
+                "convert the line ends");
+  }
+  if (text.size() > kMaximumLineBytes) {
+    return fail(kMaximumLineBytes + 1, "found a line longer than " +
+                                           std::to_string(kMaximumLineBytes) +
+                                           " bytes, expected a row of a recording; check that "
+                                           "this is a CSV file with line ends");
+  }
+  return true;
+}
+
+bool LineScanner::next(CsvLine& line) {
+  if (error_ || (!started_ && !skip_byte_order_mark())) return false;
+  std::size_t searched = 0;
+  for (;;) {
+    const std::string_view buffered(buffer_.get() + begin_, end_ - begin_);
+    const std::size_t newline = find_byte(buffered.substr(searched), '\n');
+    line.terminated = newline != std::string_view::npos;
+    if (line.terminated) {
+      line.text = buffered.substr(0, searched + newline);
+      break;
+    }
+    searched = buffered.size();
+    // One byte beyond the limit may be the CR of a line end.
+    if (source_ended_ || searched > kMaximumLineBytes + 1) {
+      if (buffered.empty()) return false;
+      line.text = buffered;
+      break;
+    }
+    if (!refill()) return false;
+  }
+  begin_ += line.text.size() + (line.terminated ? 1 : 0);
+  if (line.text.ends_with('\r')) line.text.remove_suffix(1);
+  if (!check(line.text)) return false;
+  line.number = ++lines_;
+  return true;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return text.substr(text.size());
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool is_utf8(std::string_view text, std::size_t& bad_offset) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
+    if (bytes == 0) {
+      bad_offset = i;
+      return false;
+    }
+    i += bytes;
+  }
+  return true;
+}
+
+std::string printable(std::string_view text, std::size_t limit) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    if (out.size() >= limit) return out + "...";
+    const std::size_t bytes = utf8_sequence_bytes(text.substr(i));
+    const std::string_view sequence = text.substr(i, std::max<std::size_t>(bytes, 1));
+    if (bytes == 0 || is_control(sequence)) {
+      for (const char c : sequence) out += escaped(static_cast<unsigned char>(c));
+    } else {
+      out += sequence;
+    }
+    i += sequence.size();
+  }
+  return out;
+}
+
+std::string shortest(double value) {
+  char text[32];  // the longest double takes 24
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
+
+}  // namespace palpate

@@ -1,0 +1,115 @@
+// Lines of a text file from a source that nobody trusts, in bounded memory,
+// and the pieces of every message about them. Internal to the recording reader.
+//
+// Thread guarantee: slow side only; one thread per object.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/base/result.h"
+
+namespace palpate {
+
+// Longer lines are refused, so that memory stays bounded whatever the file.
+inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
+// One read(2) at a time; larger gains nothing measurable.
+inline constexpr std::size_t kScannerBufferBytes = 1024 * 1024;
+
+// Where the bytes come from. `read` fills up to `capacity` bytes and returns
+// how many, 0 at the end. Errors: a sentence without the file's name.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual Result<std::size_t> read(char* bytes, std::size_t capacity) = 0;
+};
+
+// Reads `text` (kept by the caller) in pieces of at most `piece_bytes`.
+class MemorySource final : public ByteSource {
+ public:
+  explicit MemorySource(std::string_view text, std::size_t piece_bytes = kScannerBufferBytes);
+  Result<std::size_t> read(char* bytes, std::size_t capacity) override;
+
+ private:
+  std::string_view rest_;
+  std::size_t piece_bytes_;
+};
+
+// Reads a file descriptor, which it closes when destroyed.
+class DescriptorSource final : public ByteSource {
+ public:
+  explicit DescriptorSource(int descriptor) : descriptor_(descriptor) {}
+  DescriptorSource(const DescriptorSource&) = delete;
+  DescriptorSource& operator=(const DescriptorSource&) = delete;
+  ~DescriptorSource() override;
+  Result<std::size_t> read(char* bytes, std::size_t capacity) override;
+
+ private:
+  int descriptor_;
+};
+
+// One line without its line end; `text` lives until the next call of `next`.
+struct CsvLine {
+  std::string_view text;
+  std::uint64_t number = 0;  // from 1
+  bool terminated = false;   // false: the file ends here without a newline
+};
+
+// Splits a source into lines at LF or CRLF and skips a UTF-8 byte order mark.
+class LineScanner {
+ public:
+  // `label` is the file's name in messages; `buffer_bytes` must hold the
+  // longest line and two bytes more.
+  LineScanner(std::unique_ptr<ByteSource> source, std::string label,
+              std::size_t buffer_bytes = kScannerBufferBytes);
+
+  // Hands over the next line; false at the end and on an error. Errors, all of
+  // them final: UTF-16, a NUL byte, a carriage return inside a line, a line
+  // beyond kMaximumLineBytes, a source that fails.
+  bool next(CsvLine& line);
+
+  const std::optional<Error>& error() const { return error_; }
+  const std::string& label() const { return label_; }
+  // The number of the last line handed over, 0 before the first.
+  std::uint64_t lines() const { return lines_; }
+
+  // "label:line:column: text"; columns count bytes from 1.
+  Error error_at(std::uint64_t line, std::size_t column, const std::string& text) const;
+
+ private:
+  bool refill();
+  bool skip_byte_order_mark();
+  bool check(std::string_view text);
+  bool fail(std::size_t column, const std::string& text);
+
+  std::unique_ptr<ByteSource> source_;
+  std::string label_;
+  std::size_t capacity_;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::uint64_t lines_ = 0;
+  bool started_ = false;
+  bool source_ended_ = false;
+  std::optional<Error> error_;
+};
+
+// `text` without blanks (space, tab) at both ends.
+std::string_view trimmed(std::string_view text);
+
+// True if every byte of `text` belongs to a well-formed UTF-8 sequence;
+// otherwise `bad_offset` is the first that does not. Source: RFC 3629, section 4.
+bool is_utf8(std::string_view text, std::size_t& bad_offset);
+
+// `text` made fit for a message: bytes that are not printable text as \xHH, and
+// cut with "..." after about `limit` bytes.
+std::string printable(std::string_view text, std::size_t limit = 40);
+
+// The shortest decimal form that reads back as the same double.
+std::string shortest(double value);
+
+}  // namespace palpate

@@ -1,0 +1,115 @@
+#include "engine/live/haptics_loop.h"
+
+#include <future>
+#include <system_error>
+
+namespace palpate {
+namespace {
+
+constexpr double kSPerNs = 1e-9;
+// At the end the limiter takes the force down; at its slowest sensible slew this
+// is enough, and then the device is given 0 whatever it was.
+constexpr int kLetGoTicks = 100;
+
+double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<double>(time_ns); }
+
+}  // namespace
+
+HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
+    : device_(device),
+      taken_(std::make_unique<TakenRing>()),
+      settings_(settings),
+      live_(device, slot_, {settings.tick.jnd, taken_.get(), settings.tick.source}),
+      pacer_(settings.spin_ns),
+      ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
+
+HapticsLoop::~HapticsLoop() { stop(); }
+
+Status HapticsLoop::start() {
+  std::promise<RtStatus> granted;
+  std::future<RtStatus> answer = granted.get_future();
+  stop_.store(false, std::memory_order_relaxed);
+  try {
+    thread_ = std::thread([this, granted = std::move(granted)]() mutable {
+      RtStatus status;
+      if (settings_.realtime) {
+        status = make_this_thread_realtime(settings_.rt);
+      } else {
+        status.scheduling = "normal, as asked";
+        status.fine_timers = system_rt_calls().set_timer_slack_1ns() == 0;
+      }
+      granted.set_value(std::move(status));
+      run(pacer_);
+    });
+  } catch (const std::system_error& error) {
+    return Error{std::string("cannot start the haptics thread: ") + error.what() + "; close other programs"};
+  }
+  scheduling_ = answer.get();
+  return {};
+}
+
+void HapticsLoop::stop() {
+  request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void HapticsLoop::run(Pacer& pacer) noexcept {
+  live_.warm_up();
+  last_tick_ns_.store(pacer.now_ns(), std::memory_order_relaxed);
+  Deadlines deadlines(pacer.now_ns(), settings_.period_ns);
+  while (!stop_.load(std::memory_order_relaxed)) {
+    pacer.wait_until(deadlines.next_ns());
+    const std::int64_t woke_ns = pacer.now_ns();
+    tick(pacer, deadlines.wake(woke_ns), woke_ns);
+  }
+  let_go(pacer, deadlines);
+}
+
+void HapticsLoop::tick(Pacer& pacer, const Wake& wake, std::int64_t woke_ns) noexcept {
+  missed_ += wake.missed;
+  LoopSnapshot snapshot = live_.run(seconds(woke_ns), controls_.newest());
+  snapshot.missed_deadlines = missed_;
+  if (wake.missed > 0) snapshot.faults |= loop_fault::kDeadlineMissed;
+  snapshot.lateness_us = static_cast<float>(1e-3 * static_cast<double>(wake.lateness_ns));
+  snapshot.tick_us = last_tick_us_;
+  newest_.write(snapshot);
+  ring_->push(snapshot);
+
+  const std::int64_t done_ns = pacer.now_ns();
+  lateness_.add(wake.lateness_ns);
+  duration_.add(done_ns - woke_ns);
+  last_tick_us_ = static_cast<float>(1e-3 * static_cast<double>(done_ns - woke_ns));
+  published_missed_.store(missed_, std::memory_order_relaxed);
+  ticks_.store(ticks_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  last_tick_ns_.store(done_ns, std::memory_order_relaxed);
+}
+
+void HapticsLoop::let_go(Pacer& pacer, Deadlines& deadlines) noexcept {
+  for (int i = 0; i < kLetGoTicks; ++i) {
+    pacer.wait_until(deadlines.next_ns());
+    const std::int64_t woke_ns = pacer.now_ns();
+    deadlines.wake(woke_ns);
+    if (live_.release(seconds(woke_ns))) break;
+  }
+  device_.write(0.0);
+  live_.fault_recorder().finish();
+}
+
+LoopStatistics HapticsLoop::statistics() const noexcept {
+  LoopStatistics result;
+  result.ticks = ticks_.load(std::memory_order_relaxed);
+  result.missed_deadlines = published_missed_.load(std::memory_order_relaxed);
+  result.late_by_a_period = lateness_.count_from(settings_.period_ns);
+  result.dropped_snapshots = ring_->dropped();
+  result.lateness = lateness_.percentiles();
+  result.tick = duration_.percentiles();
+  result.age_s = age_s();
+  return result;
+}
+
+double HapticsLoop::age_s() const noexcept {
+  const std::int64_t last_ns = last_tick_ns_.load(std::memory_order_relaxed);
+  return last_ns != 0 ? seconds(steady_now_ns() - last_ns) : 0.0;
+}
+
+}  // namespace palpate

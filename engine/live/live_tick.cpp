@@ -1,0 +1,268 @@
+#include "engine/live/live_tick.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/cycle_clock.h"
+
+namespace palpate {
+namespace {
+
+// Strokes for warming up: in and out of contact, a second of each.
+constexpr int kWarmUpSamples = 500;
+constexpr double kWarmUpStep_s = 1e-3;
+
+ToolSample warm_up_sample(int index) noexcept {
+  const double time_s = kWarmUpStep_s * index;
+  ToolSample sample;
+  sample.time_s = time_s;
+  sample.position_m = 2e-3 * std::sin(25.0 * time_s);
+  return sample;
+}
+
+std::uint32_t fault_bits(TickFault fault) noexcept {
+  switch (fault) {
+    case TickFault::none: return 0;
+    case TickFault::bad_sample: return loop_fault::kBadSample;
+    case TickFault::time_not_later: return loop_fault::kTimeNotLater;
+    case TickFault::force_not_finite: return loop_fault::kModelNotFinite;
+  }
+  return 0;
+}
+
+std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
+  std::uint32_t bits = 0;
+  if ((flags & force_limit::kNotFinite) != 0) bits |= loop_fault::kForceNotFinite;
+  if ((flags & force_limit::kClamped) != 0) bits |= loop_fault::kForceClamped;
+  if ((flags & force_limit::kSlewed) != 0) bits |= loop_fault::kForceSlewed;
+  if ((flags & force_limit::kThermal) != 0) bits |= loop_fault::kForceThermal;
+  if ((flags & force_limit::kStale) != 0) bits |= loop_fault::kStaleSample;
+  return bits;
+}
+
+ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
+  ForceMixer::Forces forces_N{};
+  std::copy(snapshot.force_N.begin(), snapshot.force_N.end(), forces_N.begin());
+  return forces_N;
+}
+
+}  // namespace
+
+LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor,
+                       std::vector<std::shared_ptr<const ForceModel>> models,
+                       std::shared_ptr<ReferenceForce> true_force)
+    : id(set_id), tick(sensor, std::move(models)), reference(std::move(true_force)) {
+  for (int i = 0; i < 2; ++i) tick.step({kWarmUpStep_s * i, 1e-3, 0.0, 0.0});
+  tick.reset();
+  tick.time_evaluations(true);
+}
+
+LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSettings& settings)
+    : device_(device),
+      slot_(slot),
+      mixer_(settings.jnd),
+      passivity_(device.sensor().encoder_step_m),
+      passivity_on_(settings.passivity && settings.source == nullptr),
+      limiter_(device.limits()),
+      source_(settings.source),
+      outgoing_mixer_(settings.jnd),
+      taken_(settings.taken),
+      ns_per_cycle_(ns_per_cycle()) {
+  mixer_.hand_over();
+}
+
+LiveTick::~LiveTick() {
+  delete models_;
+  delete outgoing_;
+}
+
+void LiveTick::warm_up() noexcept {
+  take_models();
+  if (models_ == nullptr) return;
+  HapticsTick& tick = models_->tick;
+  tick.reset();
+  for (int i = 0; i < kWarmUpSamples; ++i) tick.step(warm_up_sample(i));
+  tick.reset();
+}
+
+void LiveTick::take_models() noexcept {
+  if (outgoing_ != nullptr) return;  // one fade at a time
+  LiveModels* next = slot_.take();
+  if (next == nullptr) return;
+  if (models_ != nullptr) {
+    next->tick.continue_from(models_->tick);
+    outgoing_ = models_;
+    outgoing_mixer_ = mixer_;
+  }
+  mixer_.hand_over();
+  models_ = next;
+  snapshot_.models_id = models_->id;
+  snapshot_.selected = models_->selected;
+  snapshot_.tick = models_->tick.snapshot();
+}
+
+void LiveTick::take_samples(double now_s) noexcept {
+  snapshot_.samples = 0;
+  snapshot_.restarted = false;
+  DeviceSample sample;
+  for (int i = 0; i < kMaxSamplesPerTick && device_.read(now_s, sample); ++i) take_sample(sample);
+}
+
+void LiveTick::take_sample(const DeviceSample& sample) noexcept {
+  ++snapshot_.samples;
+  snapshot_.restarted = snapshot_.restarted || sample.restart;
+  snapshot_.measured_N = sample.measured_force_N;
+  step_models(sample);
+  if (recording_ != 0 && taken_ != nullptr) hand_over_sample(sample);
+}
+
+void LiveTick::hand_over_sample(const DeviceSample& sample) noexcept {
+  TakenSample taken;
+  taken.tool = sample.tool;
+  taken.measured_N = sample.measured_force_N;
+  taken.recording = recording_;
+  taken.restart = sample.restart;
+  if (models_ != nullptr) {
+    const TickFault fault = snapshot_.tick.fault;
+    taken.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
+    if (models_->reference != nullptr) taken.reference_N = snapshot_.reference_N;
+    if (models_->written_model < models_->tick.model_count()) {
+      taken.model_N = snapshot_.tick.force_N[models_->written_model];
+    }
+  }
+  taken_->push(taken);
+}
+
+void LiveTick::step_models(const DeviceSample& sample) noexcept {
+  if (models_ == nullptr) {
+    snapshot_.tick.time_s = sample.tool.time_s;
+    snapshot_.tick.position_m = sample.tool.position_m;
+    snapshot_.tick.depth_m = std::max(0.0, sample.tool.position_m);
+    snapshot_.tick.in_contact = sample.tool.position_m > 0.0;
+    return;
+  }
+  if (outgoing_ != nullptr) {
+    if (sample.restart) outgoing_->tick.reset();
+    outgoing_->tick.step(sample.tool);
+  }
+  if (sample.restart) models_->tick.reset();
+  snapshot_.tick = models_->tick.step(sample.tool);
+  snapshot_.faults |= fault_bits(snapshot_.tick.fault);
+  if (models_->reference != nullptr && snapshot_.tick.fault != TickFault::bad_sample) {
+    snapshot_.reference_N = models_->reference->step(snapshot_.tick, sample.restart);
+  }
+}
+
+double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
+  if (models_ == nullptr) return 0.0;
+  const std::size_t count = models_->tick.model_count();
+  if (controls.models_id == models_->id && controls.selected < count) snapshot_.selected = controls.selected;
+  if (snapshot_.selected >= count) snapshot_.selected = 0;
+  ForceMixer::Forces forces_N = forces_of(snapshot_.tick);
+  if (outgoing_ != nullptr) {
+    forces_N[ForceMixer::kOutgoing] = outgoing_mixer_.current(forces_of(outgoing_->tick.snapshot()));
+  }
+  const double force_N = mixer_.mix(forces_N, snapshot_.selected, step_s);
+  if (outgoing_ != nullptr && mixer_.weights()[ForceMixer::kOutgoing] == 0.0) {
+    slot_.retire(outgoing_);
+    outgoing_ = nullptr;
+  }
+  snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
+  return force_N;
+}
+
+void LiveTick::acknowledge(const LoopControls& controls) noexcept {
+  if (controls.acknowledged == acknowledged_) return;
+  acknowledged_ = controls.acknowledged;
+  snapshot_.faults_latched = 0;
+  snapshot_.device_faults_latched = 0;
+}
+
+bool LiveTick::released(const LoopControls& controls) const noexcept {
+  switch (controls.dead_man) {
+    case DeadMan::key: return !(now_s_ - controls.held_s < kDeadManHold_s);
+    case DeadMan::grip: return !snapshot_.device.grip_held;
+    case DeadMan::off: break;
+  }
+  return false;
+}
+
+// A study presents forces of its own, which owe nothing to where the tool is.
+double LiveTick::passive(double mixed_N, double step_s) noexcept {
+  if (!passivity_on_) return mixed_N;
+  const TickSnapshot& tick = snapshot_.tick;
+  const bool in_contact = tick.in_contact && !snapshot_.restarted;
+  return passivity_.apply(mixed_N, {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading},
+                          snapshot_.rendered_N, step_s);
+}
+
+void LiveTick::render(double wanted_N, double passive_N, double step_s, bool released) noexcept {
+  const DeviceHealth& device = snapshot_.device;
+  // A sample that cannot be true: no force until there is one that can.
+  if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
+  if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
+  snapshot_.mixed_N = wanted_N;
+  snapshot_.passive_N = passive_N;
+  snapshot_.released = released;
+  snapshot_.rendered_N = limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), released});
+  snapshot_.faults |= limiter_bits(limiter_.flags());
+  snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
+  snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
+  device_.write(snapshot_.rendered_N);
+  record_fault();
+}
+
+void LiveTick::record_fault() noexcept {
+  FaultTick tick;
+  tick.loop_time_s = now_s_;
+  tick.sample_time_s = snapshot_.tick.time_s;
+  tick.position_m = snapshot_.tick.position_m;
+  tick.velocity_m_per_s = snapshot_.tick.velocity_m_per_s;
+  tick.wanted_N = snapshot_.mixed_N;
+  tick.rendered_N = snapshot_.rendered_N;
+  tick.sample_age_s = snapshot_.device.sample_age_s;
+  tick.round_trip_s = snapshot_.device.round_trip_s;
+  tick.faults = snapshot_.faults;
+  tick.device_faults = snapshot_.device.faults;
+  tick.limiter_flags = limiter_.flags();
+  tick.samples = snapshot_.samples;
+  recorder_.add(tick, (snapshot_.faults & loop_fault::kStops) != 0);
+}
+
+const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) noexcept {
+  const double step_s = started_ ? now_s - now_s_ : 0.0;
+  started_ = true;
+  now_s_ = now_s;
+  snapshot_.loop_time_s = now_s;
+  snapshot_.faults = 0;
+  recording_ = controls.recording;
+  acknowledge(controls);
+  take_models();
+  take_samples(now_s);
+  snapshot_.device = device_.health(now_s);
+  const double wanted_N =
+      source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
+  render(wanted_N, passive(wanted_N, step_s), step_s, released(controls));
+  snapshot_.faults_latched |= snapshot_.faults;
+  snapshot_.device_faults_latched |= snapshot_.device.faults;
+  if (models_ != nullptr) {
+    for (std::size_t i = 0; i < models_->tick.model_count(); ++i) {
+      snapshot_.evaluation_ns[i] =
+          static_cast<float>(ns_per_cycle_ * static_cast<double>(models_->tick.evaluation_cycles(i)));
+    }
+  }
+  return snapshot_;
+}
+
+bool LiveTick::release(double now_s) noexcept {
+  const double step_s = now_s - now_s_;
+  now_s_ = now_s;
+  snapshot_.faults = 0;
+  snapshot_.device = device_.health(now_s);
+  render(0.0, 0.0, step_s, false);
+  return snapshot_.rendered_N == 0.0;
+}
+
+}  // namespace palpate

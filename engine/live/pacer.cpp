@@ -1,0 +1,31 @@
+#include "engine/live/pacer.h"
+
+#include <time.h>
+
+#include <cerrno>
+
+namespace palpate {
+namespace {
+
+constexpr std::int64_t kNsPerS = 1'000'000'000;
+
+}  // namespace
+
+std::int64_t steady_now_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * kNsPerS + now.tv_nsec;
+}
+
+void SteadyPacer::wait_until(std::int64_t deadline_ns) noexcept {
+  const std::int64_t wake_ns = deadline_ns - spin_ns_;
+  timespec until{};
+  until.tv_sec = static_cast<time_t>(wake_ns / kNsPerS);
+  until.tv_nsec = static_cast<long>(wake_ns % kNsPerS);
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+  while (now_ns() < deadline_ns) {
+  }
+}
+
+}  // namespace palpate

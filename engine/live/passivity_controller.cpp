@@ -1,0 +1,83 @@
+#include "engine/live/passivity_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kPlay_steps = 1.01;  // rounding must not make a step more than one
+
+// What was taken is given back over some of this time when the model is exchanged.
+constexpr double kLetGo_s = 0.01;
+
+}  // namespace
+
+PassivityController::PassivityController(double encoder_step_m) noexcept : play_m_(kPlay_steps * encoder_step_m) {}
+
+void PassivityController::begin_at(double depth_m) noexcept {
+  passed_[0] = {depth_m, 0.0};
+  count_ = 1;
+  energy_J_ = debt_J_ = 0.0;
+  depth_m_ = depth_m;
+}
+
+void PassivityController::pass_inwards(double depth_m, double energy_J) noexcept {
+  if (count_ < kMostPassed) ++count_;  // else the last one moves on
+  passed_[count_ - 1] = {depth_m, energy_J};
+}
+
+// By interpolation; what lies deeper is passed on the way out now and forgotten.
+double PassivityController::energy_when_passed(double depth_m) noexcept {
+  while (count_ > 1 && passed_[count_ - 2].depth_m >= depth_m) --count_;
+  Passed& deeper = passed_[count_ - 1];
+  if (count_ > 1 && deeper.depth_m > depth_m) {
+    const Passed& below = passed_[count_ - 2];
+    const double share = (depth_m - below.depth_m) / (deeper.depth_m - below.depth_m);
+    deeper = {depth_m, below.energy_J + share * (deeper.energy_J - below.energy_J)};
+  }
+  return deeper.energy_J;
+}
+
+double PassivityController::apply(double wanted_N, const Tool& tool, double written_N, double step_s) noexcept {
+  const double felt_N = felt_N_;
+  felt_N_ = under_way_N_;
+  under_way_N_ = written_N;
+  if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
+    begin_at(0.0);
+    return less(wanted_N, 0.0);
+  }
+  if (tool.other_material) {
+    begin_at(tool.depth_m);
+    return less(wanted_N, less_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
+  }
+  const double half_play_m = 0.5 * play_m_;
+  const double depth_m = std::clamp(depth_m_, tool.depth_m - half_play_m, tool.depth_m + half_play_m);
+  const double change_m = depth_m - depth_m_;
+  const double before_J = energy_J_;
+  energy_J_ += felt_N * change_m;
+  if (change_m >= 0.0) {
+    if (depth_m > passed_[count_ - 1].depth_m + kSpacing_m) pass_inwards(depth_m, energy_J_ + debt_J_);
+  } else {
+    // The turning point, where it was not noted.
+    if (depth_m_ > passed_[count_ - 1].depth_m) pass_inwards(depth_m_, before_J + debt_J_);
+    if (depth_m < passed_[0].depth_m) {
+      begin_at(depth_m);  // further out than it began: nothing to compare with
+    } else {
+      debt_J_ = std::max(0.0, energy_when_passed(depth_m) - energy_J_);
+    }
+  }
+  depth_m_ = depth_m;
+  const double out_m_per_s = -tool.velocity_m_per_s;
+  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return less(wanted_N, 0.0);
+  const double damping_Ns_per_m = std::min(kDamping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * step_s));
+  return less(wanted_N, damping_Ns_per_m * out_m_per_s);
+}
+
+double PassivityController::less(double wanted_N, double less_N) noexcept {
+  less_N_ = less_N;
+  if (less_N == 0.0) return wanted_N;
+  return wanted_N > less_N ? wanted_N - less_N : std::min(wanted_N, 0.0);
+}
+
+}  // namespace palpate

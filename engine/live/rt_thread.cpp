@@ -1,0 +1,107 @@
+#include "engine/live/rt_thread.h"
+
+#include <pthread.h>
+#include <pwd.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kStackBytes = 256 * 1024;
+constexpr int kCapIpcLock = 14;  // linux/capability.h
+
+int set_fifo(int priority) {
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+}
+
+bool has_capability(int number) {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    if (word != "CapEff:") continue;
+    unsigned long long bits = 0;
+    return (status >> std::hex >> bits) && (bits >> number & 1U) != 0;
+  }
+  return false;
+}
+
+// Under a limit, locking what is still to come would make a later allocation
+// fail, anywhere in the program: worse than not locking.
+int lock_memory() {
+  rlimit limit{};
+  const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
+  if (!unlimited && !has_capability(kCapIpcLock)) return EPERM;
+  return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : errno;
+}
+
+int set_timer_slack_1ns() { return prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0 ? 0 : errno; }
+
+bool is_root() { return geteuid() == 0; }
+
+std::string user_name() {
+  std::array<char, 4096> text;
+  passwd entry{};
+  passwd* found = nullptr;
+  if (getpwuid_r(geteuid(), &entry, text.data(), text.size(), &found) == 0 && found != nullptr) return entry.pw_name;
+  return "USER";
+}
+
+std::string program_path() {
+  std::array<char, 4096> text;
+  const ssize_t length = readlink("/proc/self/exe", text.data(), text.size());
+  return length > 0 ? std::string(text.data(), static_cast<std::size_t>(length)) : std::string("PROGRAM");
+}
+
+std::string fix_for(const std::string& refused, bool root) {
+  if (root) {
+    return refused + " refused although this is root: a container holds it back; start the container with "
+           "--cap-add=SYS_NICE --cap-add=IPC_LOCK --ulimit rtprio=99 --ulimit memlock=-1";
+  }
+  const std::string user = user_name();
+  return refused + " refused; either add these two lines to /etc/security/limits.conf and log in again:\n  " + user +
+         " - rtprio 90\n  " + user + " - memlock unlimited\nor run: sudo setcap cap_sys_nice,cap_ipc_lock=ep " +
+         program_path();
+}
+
+// So that the first deep call of a tick finds its pages there.
+void touch_stack() {
+  std::array<char, kStackBytes> pages;
+  volatile char* first = pages.data();
+  for (std::size_t i = 0; i < kStackBytes; i += 1024) first[i] = 0;
+}
+
+}  // namespace
+
+RtCalls system_rt_calls() noexcept { return {set_fifo, lock_memory, set_timer_slack_1ns, is_root}; }
+
+RtStatus make_this_thread_realtime(const RtRequest& request, const RtCalls& calls) {
+  RtStatus status;
+  status.fine_timers = calls.set_timer_slack_1ns() == 0;
+  const int fifo_error = calls.set_fifo(request.priority);
+  status.realtime = fifo_error == 0;
+  status.priority = status.realtime ? request.priority : 0;
+  status.scheduling = status.realtime ? "SCHED_FIFO " + std::to_string(request.priority) : "normal";
+  const int lock_error = request.lock_memory ? calls.lock_memory() : 0;
+  status.memory_locked = request.lock_memory && lock_error == 0;
+  std::string refused;
+  if (fifo_error != 0) refused = std::string("real-time priority (") + std::strerror(fifo_error) + ")";
+  if (lock_error != 0) {
+    refused += std::string(refused.empty() ? "" : " and ") + "locked memory (" + std::strerror(lock_error) + ")";
+  }
+  if (!refused.empty()) status.fix = fix_for(refused, calls.is_root());
+  touch_stack();
+  return status;
+}
+
+}  // namespace palpate

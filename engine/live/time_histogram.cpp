@@ -1,0 +1,44 @@
+#include "engine/live/time_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kUsPerNs = 1e-3;
+
+}  // namespace
+
+TimePercentiles TimeHistogram::percentiles() const noexcept {
+  std::array<std::uint64_t, kBins> counts;
+  TimePercentiles result;
+  for (std::size_t i = 0; i < kBins; ++i) result.count += counts[i] = counts_[i].load(std::memory_order_relaxed);
+  if (result.count == 0) return result;
+  const std::uint64_t longest_ns = longest_ns_.load(std::memory_order_relaxed);
+  // Nearest rank, from below.
+  const auto at = [&](double share) {
+    const auto rank = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(result.count)));
+    std::uint64_t seen = 0;
+    for (std::size_t i = 0; i < kBins; ++i) {
+      seen += counts[i];
+      if (seen >= rank) return kUsPerNs * static_cast<double>(std::min(top_of(i), longest_ns));
+    }
+    return kUsPerNs * static_cast<double>(longest_ns);
+  };
+  result.p50_us = at(0.5);
+  result.p99_us = at(0.99);
+  result.p99_9_us = at(0.999);
+  result.max_us = kUsPerNs * static_cast<double>(longest_ns);
+  return result;
+}
+
+std::uint64_t TimeHistogram::count_from(std::int64_t time_ns) const noexcept {
+  std::uint64_t count = 0;
+  for (std::size_t i = bin_of(static_cast<std::uint64_t>(time_ns > 0 ? time_ns : 0)); i < kBins; ++i) {
+    count += counts_[i].load(std::memory_order_relaxed);
+  }
+  return count;
+}
+
+}  // namespace palpate

@@ -1,0 +1,91 @@
+// The recording file: motion and force of a tool against time, as CSV.
+//
+// Columns: time_s, position_m, force_N required; velocity_m_per_s and
+// acceleration_m_per_s2 optional; names exact, any order; further columns are
+// ignored. Lines that begin with '#' before the header are comments. Time is
+// strictly increasing; the median time step of the first 1,000 rows (all rows
+// of a shorter recording) lies between those of 20 kHz and 10 Hz, 5 % allowed;
+// single steps may be of any length. Position is at most 1 m and force at most
+// 1e6 N either way, for anything beyond is a slip of the unit. CRLF, a UTF-8
+// byte order mark, a missing last newline, blank lines at the very end, blanks
+// around numbers and a leading '+' are accepted; everything else that is wrong,
+// lines beyond 64 KiB included, is refused with
+//   file:line:column: found X, expected Y; what to do
+// for the first fault in the file, columns counted in bytes from 1 (behind a
+// byte order mark). Numbers use '.' as decimal point whatever the locale.
+// Thread guarantee: slow side only (allocates, does I/O).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace palpate {
+
+// One row. Coordinates as everywhere: position along the inward surface
+// normal, 0 at the undisturbed surface, positive inside; force along the
+// outward normal, positive when the block pushes the tool out.
+struct RecordingRow {
+  double time_s = 0.0;
+  double position_m = 0.0;
+  double force_N = 0.0;
+  double velocity_m_per_s = 0.0;       // 0 where the column is absent
+  double acceleration_m_per_s2 = 0.0;  // 0 where the column is absent
+};
+
+struct RecordingColumns {
+  bool velocity = false;
+  bool acceleration = false;
+};
+
+struct Recording {
+  std::string name;  // file name without folder and ending
+  RecordingColumns columns;
+  std::vector<RecordingRow> rows;
+};
+
+inline constexpr std::size_t kRecordingMinimumRows = 10;
+
+// Reads a recording row by row in bounded memory, whatever its length.
+class RecordingReader {
+ public:
+  // Opens the file and reads its header. Errors: no such file, not readable,
+  // a folder, a pipe or a device, not text, no header, missing or duplicate
+  // column.
+  static Result<RecordingReader> open(const std::string& path);
+
+  RecordingReader(RecordingReader&&) noexcept;
+  RecordingReader& operator=(RecordingReader&&) noexcept;
+  ~RecordingReader();
+
+  const std::string& name() const;
+  RecordingColumns columns() const;
+
+  // Reads up to `capacity` rows (at least 1) into `rows`; returns how many, 0
+  // at the end. Errors: any row that breaks a rule above; fewer than 10 rows in
+  // all; a rate outside the range, known at row 1,000 or at the end, so after
+  // earlier rows were handed over. After an error each call repeats it.
+  Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
+
+ private:
+  struct State;
+  explicit RecordingReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// Reads a whole recording into memory; errors as RecordingReader.
+Result<Recording> read_recording(const std::string& path);
+
+// Writes `recording` to `path` atomically: a temporary file beside it, flushed
+// to disk, then renamed. Numbers are written so that reading them back gives
+// the same doubles. `comments` become '#' lines, one for each line of text.
+// Errors: the file exists and `overwrite` is false, the disk refuses, or the
+// reader would refuse the file (row by row, the rules above); then no file is
+// left.
+Status write_recording(const std::string& path, const Recording& recording,
+                       const std::vector<std::string>& comments, bool overwrite);
+
+}  // namespace palpate

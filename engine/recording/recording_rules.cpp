@@ -1,0 +1,110 @@
+#include "engine/recording/recording_rules.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "engine/base/csv_scanner.h"
+
+namespace palpate {
+namespace {
+
+std::array<double, kKnownColumns> values_of(const RecordingRow& row) {
+  return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
+}
+
+// Three digits are enough to recognise a step or a rate by.
+std::string rounded(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3);
+  return std::string(text, end.ptr);
+}
+
+bool rate_in_range(double step_s) {
+  return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz &&
+         step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
+}
+
+// What to do about a median step that no recording has.
+std::string rate_advice(double step_s) {
+  struct Unit {
+    const char* name;
+    const char* divisor;
+    double seconds;
+  };
+  static constexpr Unit kUnits[] = {{"milliseconds", "1000", 1e-3},
+                                    {"microseconds", "1000000", 1e-6},
+                                    {"nanoseconds", "1000000000", 1e-9}};
+  if (step_s < 1.0 / kMaximumRate_Hz) return "keep fewer samples, or check that time_s is in seconds";
+  for (const Unit& unit : kUnits) {
+    if (rate_in_range(step_s * unit.seconds)) {
+      return "if time_s is in " + std::string(unit.name) + ", divide it by " + unit.divisor +
+             ", otherwise record faster";
+    }
+  }
+  return "record faster, or check that time_s is in seconds";
+}
+
+RowFault time_fault(double time_s, double last_time_s) {
+  const bool still = time_s == last_time_s;
+  return {RowFault::Place::kThisRow, ColumnRole::kTime,
+          "found time_s " + shortest(time_s) + " after " + shortest(last_time_s) +
+              ", expected a later time in every row; " +
+              (still ? "remove the repeated row or write time_s with more digits"
+                     : "sort the rows, or split the file where time starts again")};
+}
+
+}  // namespace
+
+RowRules::RowRules() { steps_s_.reserve(kRateRows); }
+
+RowFault RowRules::explain(const RecordingRow& row) const {
+  const auto values = values_of(row);
+  for (std::size_t i = 0; i < kKnownColumns; ++i) {
+    if (std::isfinite(values[i])) continue;
+    return {RowFault::Place::kThisRow, static_cast<ColumnRole>(i),
+            "found " + shortest(values[i]) + ", expected a finite number in " +
+                std::string(kColumnNames[i]) + "; remove the row or repair the value"};
+  }
+  if (!(row.time_s > last_time_s_)) return time_fault(row.time_s, last_time_s_);
+  if (std::abs(row.position_m) > kMaximumPosition_m) {
+    return {RowFault::Place::kThisRow, ColumnRole::kPosition,
+            "found position_m " + shortest(row.position_m) +
+                ", expected metres from the surface, at most 1 either way; if it is in "
+                "millimetres, divide it by 1000"};
+  }
+  return {RowFault::Place::kThisRow, ColumnRole::kForce,
+          "found force_N " + shortest(row.force_N) +
+              ", expected newtons, at most 1000000 either way; check the unit of the column"};
+}
+
+// The rows from which the rate is judged.
+std::optional<RowFault> RowRules::accept_early(const RecordingRow& row) {
+  if (rows_ > 0) steps_s_.push_back(row.time_s - last_time_s_);
+  last_time_s_ = row.time_s;
+  ++rows_;
+  return rows_ == kRateRows ? check_rate() : std::nullopt;
+}
+
+std::optional<RowFault> RowRules::check_rate() {
+  // Of an even number of steps the upper of the two middle ones: either will do.
+  const auto middle = steps_s_.begin() + static_cast<std::ptrdiff_t>(steps_s_.size() / 2);
+  std::nth_element(steps_s_.begin(), middle, steps_s_.end());
+  const double step_s = *middle;
+  if (rate_in_range(step_s)) return std::nullopt;
+  return RowFault{RowFault::Place::kFirstRow, ColumnRole::kTime,
+                  "found a median time step of " + rounded(step_s) + " s (" +
+                      rounded(1.0 / step_s) + " Hz), expected 10 Hz to 20 kHz; " +
+                      rate_advice(step_s)};
+}
+
+std::optional<RowFault> RowRules::finish() {
+  if (rows_ < kRecordingMinimumRows) {
+    return RowFault{RowFault::Place::kEnd, ColumnRole::kTime,
+                    "found " + std::to_string(rows_) + (rows_ == 1 ? " row" : " rows") +
+                        ", expected at least " + std::to_string(kRecordingMinimumRows) +
+                        "; record for longer"};
+  }
+  return rows_ < kRateRows ? check_rate() : std::nullopt;
+}
+
+}  // namespace palpate

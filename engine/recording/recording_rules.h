@@ -1,0 +1,87 @@
+// What makes a row part of a recording, whoever made it: the rules that the
+// reader and the writer share. Internal to engine/recording.
+//
+// Thread guarantee: slow side only; one thread per object.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/recording/recording.h"
+
+namespace palpate {
+
+// What a column of the file means; the order is that of RecordingRow.
+enum class ColumnRole : std::uint8_t { kTime, kPosition, kForce, kVelocity, kAcceleration, kIgnored };
+
+inline constexpr std::size_t kKnownColumns = 5;
+inline constexpr std::size_t kRequiredColumns = 3;
+inline constexpr std::array<std::string_view, kKnownColumns> kColumnNames = {
+    "time_s", "position_m", "force_N", "velocity_m_per_s", "acceleration_m_per_s2"};
+
+// No haptic device has a workspace of a metre, so a larger figure is a unit
+// slip, most often millimetres.
+inline constexpr double kMaximumPosition_m = 1.0;
+// A hundred tonnes: never a tool, always a unit slip or a broken sensor.
+inline constexpr double kMaximumForce_N = 1e6;
+// The contract's range of sampling rates. The median step decides, with 5 % for
+// clocks that run slow and times rounded to few digits.
+inline constexpr double kMinimumRate_Hz = 10.0;
+inline constexpr double kMaximumRate_Hz = 20000.0;
+inline constexpr double kRateTolerance = 0.05;
+// The rate is judged once, from this many rows, so that rows can stream.
+inline constexpr std::size_t kRateRows = 1000;
+
+// A broken rule: "found ..., expected ...; what to do", and where it belongs.
+struct RowFault {
+  enum class Place { kThisRow, kFirstRow, kEnd };
+  Place place = Place::kThisRow;
+  ColumnRole role = ColumnRole::kTime;
+  std::string text;
+};
+
+// Checks rows in order; give it every row, then `finish`.
+class RowRules {
+ public:
+  RowRules();
+
+  // Nothing, or the rule that `row` breaks: a value that is not finite, a
+  // position or force beyond the limits above, a time that is not later than
+  // the row before; on row kRateRows also a rate outside the range.
+  std::optional<RowFault> check(const RecordingRow& row) {
+    // A comparison with NaN is false, so each of these refuses it.
+    const bool sane = row.time_s > last_time_s_ && row.time_s < HUGE_VAL &&
+                      std::abs(row.position_m) <= kMaximumPosition_m &&
+                      std::abs(row.force_N) <= kMaximumForce_N &&
+                      std::abs(row.velocity_m_per_s) < HUGE_VAL &&
+                      std::abs(row.acceleration_m_per_s2) < HUGE_VAL;
+    if (!sane) return explain(row);
+    if (rows_ < kRateRows) return accept_early(row);
+    last_time_s_ = row.time_s;
+    ++rows_;
+    return std::nullopt;
+  }
+
+  // After the last row: fewer than kRecordingMinimumRows, or a rate outside the
+  // range in a recording shorter than kRateRows.
+  std::optional<RowFault> finish();
+
+  std::uint64_t rows() const { return rows_; }
+
+ private:
+  RowFault explain(const RecordingRow& row) const;
+  std::optional<RowFault> accept_early(const RecordingRow& row);
+  std::optional<RowFault> check_rate();
+
+  double last_time_s_ = -HUGE_VAL;
+  std::uint64_t rows_ = 0;
+  std::vector<double> steps_s_;
+};
+
+}  // namespace palpate

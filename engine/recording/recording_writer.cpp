@@ -1,0 +1,136 @@
+#include "engine/recording/recording_writer.h"
+
+#include <charconv>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/csv_scanner.h"
+#include "engine/recording/recording.h"
+#include "engine/recording/recording_rules.h"
+
+namespace palpate {
+namespace {
+
+// Text handed over at a time, so that a long recording is not held twice.
+constexpr std::size_t kPieceBytes = 256 * 1024;
+
+// What a comment may hold: '#', a blank and the text fit in one line.
+constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
+
+// One '#' line for each line of `comment`; control characters, which the
+// reader would refuse or take for line ends, become blanks.
+void append_comment(std::string& out, std::string_view comment) {
+  for (;;) {
+    const std::size_t newline = comment.find('\n');
+    out += "# ";
+    for (const char c : comment.substr(0, newline)) {
+      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+    out += '\n';
+    if (newline == std::string_view::npos) return;
+    comment.remove_prefix(newline + 1);
+  }
+}
+
+void append_number(std::string& out, double value) {
+  char text[32];  // the longest double takes 24
+  const auto end = std::to_chars(text, text + sizeof text, value);
+  out.append(text, end.ptr);
+}
+
+void append_header(std::string& out, RecordingColumns columns) {
+  out += "time_s,position_m,force_N";
+  if (columns.velocity) out += ",velocity_m_per_s";
+  if (columns.acceleration) out += ",acceleration_m_per_s2";
+  out += '\n';
+}
+
+void append_row(std::string& out, RecordingColumns columns, const RecordingRow& row) {
+  append_number(out, row.time_s);
+  out += ',';
+  append_number(out, row.position_m);
+  out += ',';
+  append_number(out, row.force_N);
+  if (columns.velocity) append_number(out += ',', row.velocity_m_per_s);
+  if (columns.acceleration) append_number(out += ',', row.acceleration_m_per_s2);
+  out += '\n';
+}
+
+Status check_comments(const std::string& path, const std::vector<std::string>& comments) {
+  for (const std::string& comment : comments) {
+    if (comment.size() <= kMaximumCommentBytes) continue;
+    return Error{path + ": found a comment of " + std::to_string(comment.size()) +
+                 " bytes, expected at most " + std::to_string(kMaximumCommentBytes) +
+                 "; shorten it"};
+  }
+  return {};
+}
+
+// A file that the reader would refuse is not written at all.
+Status check_writable(const std::string& path, const Recording& recording,
+                      const std::vector<std::string>& comments) {
+  if (Status checked = check_comments(path, comments); !checked) return checked;
+  RowRules rules;
+  for (const RecordingRow& row : recording.rows) {
+    if (const auto fault = rules.check(row)) {
+      return Error{path + ": cannot write row " + std::to_string(rules.rows() + 1) + ": " +
+                   fault->text};
+    }
+  }
+  if (const auto fault = rules.finish()) return Error{path + ": cannot write: " + fault->text};
+  return {};
+}
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(AtomicFile file, RecordingColumns columns)
+    : file_(std::move(file)), columns_(columns) {
+  piece_.reserve(kPieceBytes + kMaximumLineBytes);
+}
+
+Result<RecordingWriter> RecordingWriter::create(const std::string& path, RecordingColumns columns,
+                                                const std::vector<std::string>& comments, bool overwrite) {
+  if (Status checked = check_comments(path, comments); !checked) return checked.error();
+  auto file = AtomicFile::create(path, overwrite);
+  if (!file) return file.error();
+  RecordingWriter writer(std::move(*file), columns);
+  writer.path_ = path;
+  for (const std::string& comment : comments) append_comment(writer.piece_, comment);
+  append_header(writer.piece_, columns);
+  return writer;
+}
+
+bool RecordingWriter::add(const RecordingRow& row) {
+  if (rules_.check(row)) return false;
+  append_row(piece_, columns_, row);
+  if (piece_.size() >= kPieceBytes) flush();
+  return true;
+}
+
+void RecordingWriter::flush() {
+  file_.write(piece_);
+  piece_.clear();
+}
+
+Status RecordingWriter::commit() {
+  flush();
+  if (file_.failed()) return file_.commit();
+  if (const auto fault = rules_.finish()) {
+    const AtomicFile given_up = std::move(file_);
+    return Error{path_ + ": cannot write: " + fault->text};
+  }
+  return file_.commit();
+}
+
+Status write_recording(const std::string& path, const Recording& recording,
+                       const std::vector<std::string>& comments, bool overwrite) {
+  if (Status checked = check_writable(path, recording, comments); !checked) return checked;
+  auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
+  if (!writer) return writer.error();
+  for (const RecordingRow& row : recording.rows) writer->add(row);
+  return writer->commit();
+}
+
+}  // namespace palpate

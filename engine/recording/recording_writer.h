@@ -1,0 +1,47 @@
+// A recording file written row by row in bounded memory, whatever its length;
+// whole under its name after `commit`, or not there at all.
+// Thread guarantee: slow side only; one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/atomic_file.h"
+#include "engine/recording/recording.h"
+#include "engine/recording/recording_rules.h"
+#include "engine/base/result.h"
+
+namespace palpate {
+
+class RecordingWriter {
+ public:
+  // `comments` become '#' lines, one for each line of text. Errors: as
+  // AtomicFile::create; a comment too long for a line.
+  static Result<RecordingWriter> create(const std::string& path, RecordingColumns columns,
+                                        const std::vector<std::string>& comments, bool overwrite);
+
+  // Buffered. False: the reader would refuse the row (engine/recording/recording.h has the
+  // rules); it is left out.
+  bool add(const RecordingRow& row);
+
+  std::uint64_t rows() const { return rules_.rows(); }
+  // Whether the disk has refused something already; commit says what.
+  bool failed() const noexcept { return file_.failed(); }
+
+  // Errors: as AtomicFile::commit; fewer than 10 rows, or a rate outside the
+  // reader's range. Then no file is left.
+  Status commit();
+
+ private:
+  RecordingWriter(AtomicFile file, RecordingColumns columns);
+  void flush();
+
+  AtomicFile file_;
+  RecordingColumns columns_;
+  RowRules rules_;
+  std::string path_;
+  std::string piece_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,98 @@
+#include "engine/tick/features.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+double drive_of(const FeatureSpec& spec, double depth_m) noexcept {
+  return spec.kind == FeatureKind::maxwell_branch ? spec.drive.at(depth_m) : depth_m;
+}
+
+}  // namespace
+
+double DriveCurve::at(double depth_m) const noexcept {
+  const double u = depth_m / reference_depth_m;
+  const double inside = std::min(u, 1.0);
+  double value = 0.0;
+  double slope = 0.0;
+  for (std::size_t k = kDriveCoefficients; k-- > 0;) {
+    slope = slope * inside + static_cast<double>(k + 1) * coefficient_N[k];
+    value = (value + coefficient_N[k]) * inside;
+  }
+  return u > 1.0 ? value + slope * (u - 1.0) : value;
+}
+
+std::string_view feature_kind_name(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::depth: return "depth";
+    case FeatureKind::velocity: return "velocity";
+    case FeatureKind::lowpass_velocity: return "lowpass_velocity";
+    case FeatureKind::maxwell_branch: return "maxwell_branch";
+  }
+  return "depth";
+}
+
+std::string feature_name(const FeatureSpec& spec) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), spec.relaxation_time_s,
+                                 std::chars_format::general, 4);
+  const std::string time(buffer.data(), end.ptr);
+  switch (spec.kind) {
+    case FeatureKind::depth: return "feature_depth_m";
+    case FeatureKind::velocity: return "feature_velocity_m_per_s";
+    case FeatureKind::lowpass_velocity: return "feature_lowpass_velocity_" + time + "s_m_per_s";
+    case FeatureKind::maxwell_branch: return "feature_maxwell_branch_" + time + "s_N";
+  }
+  return {};
+}
+
+FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
+    : count_(std::min(specs.size(), kMaxFeatures)) {
+  assert(!specs.empty() && specs.size() <= kMaxFeatures);
+  std::copy_n(specs.begin(), count_, specs_.begin());
+}
+
+const FeatureVector& FeatureFilter::update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
+  const double depth_m = std::max(0.0, motion.position_m);
+  vector_.depth_m = std::max(0.0, sample.position_m);
+  vector_.in_contact = sample.position_m > 0.0;
+  const double step_s = sample.time_s - time_s_;
+  const bool advance = started_ && step_s > 0.0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const FeatureSpec& spec = specs_[i];
+    double& value = vector_.values[i];
+    switch (spec.kind) {
+      case FeatureKind::depth:
+        value = depth_m;
+        break;
+      case FeatureKind::velocity:
+        value = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
+        break;
+      case FeatureKind::lowpass_velocity:
+      case FeatureKind::maxwell_branch: {
+        const double drive = drive_of(spec, depth_m);
+        if (advance) {
+          const double keep = std::exp(-step_s / spec.relaxation_time_s);
+          const double gain = spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : 1.0;
+          value = keep * value + gain * (1.0 - keep) * (drive - drive_[i]) / step_s;
+          // A filter at rest decays to zero, not into denormals, which would
+          // slow every later operation on it.
+          if (std::abs(value) < 1e-30) value = 0.0;
+        } else if (!started_) {
+          value = 0.0;
+        }
+        drive_[i] = drive;
+        break;
+      }
+    }
+  }
+  started_ = true;
+  time_s_ = sample.time_s;
+  return vector_;
+}
+
+}  // namespace palpate

@@ -1,0 +1,115 @@
+#include "engine/tick/haptics_tick.h"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/cycle_clock.h"
+
+namespace palpate {
+namespace {
+
+bool finite(const ToolSample& sample) noexcept {
+  return std::isfinite(sample.time_s) && std::isfinite(sample.position_m) &&
+         std::isfinite(sample.velocity_m_per_s) && std::isfinite(sample.acceleration_m_per_s2);
+}
+
+bool same_lists(const FeatureFilter& a, const FeatureFilter& b) noexcept {
+  if (a.count() != b.count()) return false;
+  for (std::size_t i = 0; i < a.count(); ++i) {
+    if (!(a.spec(i) == b.spec(i))) return false;
+  }
+  return true;
+}
+
+bool same_features(const FeatureFilter& filter, const std::vector<FeatureSpec>& specs) {
+  if (filter.count() != specs.size()) return false;
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (!(filter.spec(i) == specs[i])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models)
+    : motion_(sensor), models_(std::move(models)) {
+  assert(models_.size() <= kMaxModels);
+  for (const auto& model : models_) {
+    std::size_t index = 0;
+    while (index < filters_.size() && !same_features(filters_[index], model->features())) ++index;
+    if (index == filters_.size()) filters_.emplace_back(model->features());
+    filter_of_.push_back(index);
+  }
+  vectors_.resize(filters_.size());
+  snapshot_.model_count = static_cast<std::uint32_t>(models_.size());
+}
+
+void HapticsTick::reset() noexcept {
+  motion_.reset();
+  for (FeatureFilter& filter : filters_) filter.reset();
+  started_ = false;
+}
+
+void HapticsTick::continue_from(const HapticsTick& before) noexcept {
+  motion_ = before.motion_;
+  time_s_ = before.time_s_;
+  started_ = before.started_;
+  const std::uint32_t models = snapshot_.model_count;
+  snapshot_ = before.snapshot_;
+  snapshot_.model_count = models;
+  snapshot_.force_N.fill(0.0);
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    for (const FeatureFilter& old : before.filters_) {
+      if (same_lists(filters_[i], old)) filters_[i] = old;
+    }
+    vectors_[i] = filters_[i].vector();
+  }
+  if (started_) evaluate_models();
+}
+
+const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
+  ++snapshot_.tick;
+  if (!finite(sample)) {
+    snapshot_.fault = TickFault::bad_sample;
+    return snapshot_;
+  }
+  if (started_ && !(sample.time_s > time_s_)) {
+    snapshot_.fault = TickFault::time_not_later;
+    return snapshot_;
+  }
+  started_ = true;
+  time_s_ = sample.time_s;
+  const MotionEstimate motion = motion_.update(sample);
+  for (std::size_t i = 0; i < filters_.size(); ++i) vectors_[i] = filters_[i].update(sample, motion);
+
+  snapshot_.fault = TickFault::none;
+  snapshot_.time_s = sample.time_s;
+  snapshot_.position_m = sample.position_m;
+  snapshot_.in_contact = sample.position_m > 0.0;
+  snapshot_.depth_m = snapshot_.in_contact ? sample.position_m : 0.0;
+  snapshot_.velocity_m_per_s = motion.velocity_m_per_s;
+  evaluate_models();
+  return snapshot_;
+}
+
+void HapticsTick::evaluate_models() noexcept {
+  snapshot_.out_of_domain_mask = 0;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    double force_N = 0.0;
+    if (snapshot_.in_contact) {
+      const std::uint64_t before = timed_ ? cycle_count() : 0;
+      const ForceEstimate estimate = models_[i]->evaluate(vectors_[filter_of_[i]].values.data());
+      if (timed_) cycles_[i] = cycle_count() - before;
+      force_N = estimate.force_N;
+      if (estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
+      if (!std::isfinite(force_N)) {
+        force_N = 0.0;
+        snapshot_.fault = TickFault::force_not_finite;
+      }
+    }
+    snapshot_.force_N[i] = force_N;
+  }
+}
+
+}  // namespace palpate

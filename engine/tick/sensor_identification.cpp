@@ -1,0 +1,97 @@
+#include "engine/tick/sensor_identification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kWindowRows = 50;
+constexpr double kQuietShare = 0.2;
+// Below this a change is rounding of the last decimal, in any of the units.
+constexpr double kFinestStep = 1e-9;
+constexpr double kMultipleTolerance = 0.02;
+// Grows with the multiple, as the error of the step does, but never so far that
+// anything would pass for a multiple: noise passes half the time at most.
+constexpr double kLargestMultipleTolerance = 0.25;
+constexpr double kMultipleShare = 0.99;
+
+// The step that a column is quantised by; 0 when it is not.
+double quantisation_step(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < count; ++i) {
+    const double change = std::abs(rows[i].*column - rows[i - 1].*column);
+    if (change > kFinestStep) step = std::min(step, change);
+  }
+  if (!std::isfinite(step)) return 0.0;
+  std::size_t moved = 0;
+  std::size_t multiples = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    const double steps = std::abs(rows[i].*column - rows[i - 1].*column) / step;
+    if (steps < 0.5) continue;
+    ++moved;
+    const double tolerance = std::min(kMultipleTolerance * std::max(1.0, steps * 0.1), kLargestMultipleTolerance);
+    if (std::abs(steps - std::round(steps)) < tolerance) ++multiples;
+  }
+  const bool quantised = static_cast<double>(multiples) >= kMultipleShare * static_cast<double>(moved);
+  return quantised && moved >= 3 ? step : 0.0;
+}
+
+double quiet_noise(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
+  std::vector<double> window_variance;
+  for (std::size_t begin = 0; begin + kWindowRows <= count; begin += kWindowRows) {
+    double sum = 0.0;
+    for (std::size_t i = begin + 2; i < begin + kWindowRows; ++i) {
+      const double second = rows[i].*column - 2.0 * rows[i - 1].*column + rows[i - 2].*column;
+      sum += second * second;
+    }
+    window_variance.push_back(sum / static_cast<double>(kWindowRows - 2));
+  }
+  if (window_variance.empty()) return 0.0;
+  const auto quiet = static_cast<std::ptrdiff_t>(kQuietShare * static_cast<double>(window_variance.size() - 1));
+  std::nth_element(window_variance.begin(), window_variance.begin() + quiet, window_variance.end());
+  return std::sqrt(window_variance[static_cast<std::size_t>(quiet)] / 6.0);
+}
+
+// White noise of a column, its quantisation included: a velocity differenced
+// from an encoder is quiet at rest and wrong by a step in motion.
+double column_noise(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
+  return std::max(quiet_noise(rows, count, column), quantisation_step(rows, count, column) / std::sqrt(12.0));
+}
+
+}  // namespace
+
+SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns) {
+  count = std::min(count, kSensorIdentificationRows);
+  SensorSpec sensor;
+  sensor.encoder_step_m = quantisation_step(rows, count, &RecordingRow::position_m);
+  const double position_noise_m = quiet_noise(rows, count, &RecordingRow::position_m);
+  const double quantisation_m = sensor.encoder_step_m / std::sqrt(12.0);
+  // The quantisation is modelled as such; only what exceeds it is noise.
+  sensor.position_noise_m =
+      std::sqrt(std::max(0.0, position_noise_m * position_noise_m - quantisation_m * quantisation_m));
+  sensor.has_velocity = columns.velocity;
+  sensor.has_acceleration = columns.acceleration;
+  // Floors: 0.1 mm/s and 10 mm/s^2, finer than any sensor of this kind; a column
+  // of exact values still leaves the estimator well conditioned.
+  if (columns.velocity) {
+    sensor.velocity_noise_m_per_s = std::max(1e-4, column_noise(rows, count, &RecordingRow::velocity_m_per_s));
+  }
+  if (columns.acceleration) {
+    sensor.acceleration_noise_m_per_s2 =
+        std::max(1e-2, column_noise(rows, count, &RecordingRow::acceleration_m_per_s2));
+  }
+  return sensor;
+}
+
+double identify_force_noise_N(const RecordingRow* rows, std::size_t count) {
+  return quiet_noise(rows, std::min(count, kSensorIdentificationRows), &RecordingRow::force_N);
+}
+
+ToolSample tool_sample(const RecordingRow& row) noexcept {
+  return {row.time_s, row.position_m, row.velocity_m_per_s, row.acceleration_m_per_s2};
+}
+
+}  // namespace palpate

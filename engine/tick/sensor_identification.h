@@ -1,0 +1,29 @@
+// What sensor made a recording: encoder step, noise of position, velocity and
+// acceleration, read off the samples. The motion estimator needs it.
+//
+// Encoder step: the smallest position change, if all the others are multiples
+// of it. Noise: the standard deviation of second differences over the quietest
+// fifth of 50-sample windows, divided by sqrt(6), the factor for white noise;
+// motion, which is smooth, is nearly absent there.
+// Errors: none; a column without information gives the finest plausible value.
+// Thread guarantee: slow side (allocates).
+#pragma once
+
+#include <cstddef>
+
+#include "engine/recording/recording.h"
+#include "engine/tick/tool_sample.h"
+
+namespace palpate {
+
+// Rows that identification looks at, from the beginning of a recording.
+inline constexpr std::size_t kSensorIdentificationRows = 30000;
+
+SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns);
+
+// The white noise of the force column, N.
+double identify_force_noise_N(const RecordingRow* rows, std::size_t count);
+
+ToolSample tool_sample(const RecordingRow& row) noexcept;
+
+}  // namespace palpate

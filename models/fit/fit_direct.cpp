@@ -1,0 +1,144 @@
+#include "models/fit/fit_direct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "models/fit/choose_smoothing.h"
+#include "models/fit/lapack.h"
+#include "engine/base/parallel.h"
+#include "models/fit/projected_kernel.h"
+
+namespace palpate {
+namespace {
+
+// Of the fit, for its progress.
+constexpr double kFactorisingFrom = 0.25;
+constexpr double kFactorised = 0.95;
+
+struct Solution {
+  Eigen::VectorXd u;
+  double smoothing = 0.0;
+  double residual_squared = 0.0;  // of the scaled rows
+  double condition = 0.0;
+  double criterion = 0.0;
+  Eigen::Index rank = 0;
+};
+
+enum class Outcome { solved, failed, cancelled };
+
+Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const FitControl& control, Solution& out) {
+  bool cancelled = false;
+  const auto go_on = [&](double share) {
+    cancelled = !control.go_on(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
+    return !cancelled;
+  };
+  // A matrix that rounding made indefinite gets ten times the smoothing.
+  for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
+    Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
+    const BlasThreads threads(thread_count());
+    const double norm = symmetric_norm(matrix);
+    const bool factorised = cholesky_in_place(matrix, go_on);
+    if (cancelled) return Outcome::cancelled;
+    if (!factorised) continue;
+    Eigen::VectorXd u = kernel.data();
+    cholesky_solve(matrix, u);
+    out.u = kernel.project(u);
+    out.smoothing = smoothing;
+    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
+    out.condition = cholesky_condition(matrix, norm);
+    out.rank = matrix.rows();
+    return Outcome::solved;
+  }
+  return Outcome::failed;
+}
+
+bool solve_by_truncation(const ProjectedKernel& kernel, Solution& out) {
+  const Eigen::Index count = kernel.data().size();
+  // The tail's directions get an eigenvalue above all others, and are left out.
+  Eigen::MatrixXd vectors = kernel.matrix(10.0 * kernel.mean_eigenvalue() * static_cast<double>(count), 0.0);
+  Eigen::VectorXd values;
+  const BlasThreads threads(thread_count());
+  if (!symmetric_eigen(vectors, values)) return false;
+  const Eigen::Index rank = count - kernel.tail_rank();
+  out.u = Eigen::VectorXd::Zero(count);
+  if (rank == 0) return true;
+  const Eigen::VectorXd z = vectors.leftCols(rank).transpose() * kernel.data();
+  // Ascending eigenvalues: `cut` is how many small ones are dropped.
+  double dropped = 0.0;
+  double best = std::numeric_limits<double>::infinity();
+  Eigen::Index best_cut = rank;
+  for (Eigen::Index cut = 1; cut <= rank; ++cut) {
+    dropped += z[cut - 1] * z[cut - 1];
+    if (cut < rank && values[cut] <= kernel.smallest_smoothing()) continue;
+    const auto freedom = static_cast<double>(cut);
+    const double criterion = static_cast<double>(count) * dropped / (freedom * freedom);
+    if (criterion < best) {
+      best = criterion;
+      best_cut = cut;
+      out.residual_squared = dropped;
+    }
+  }
+  const Eigen::Index kept = rank - best_cut;
+  const Eigen::VectorXd shares = z.tail(kept).cwiseQuotient(values.segment(best_cut, kept));
+  out.u = vectors.middleCols(best_cut, kept) * shares;
+  out.rank = kept + kernel.tail_rank();
+  out.criterion = best;
+  out.condition = kept > 0 ? values[rank - 1] / values[best_cut] : 1.0;
+  return true;
+}
+
+Result<Solution> solve(const Sites& sites, const DirectOptions& options, const ProjectedKernel& kernel,
+                       const FitControl& control) {
+  Solution solution;
+  const Error failed{"the kernel matrix could not be factorised; check the recording for extreme values"};
+  if (options.solver == DirectSolver::truncated_svd) {
+    if (!solve_by_truncation(kernel, solution)) return failed;
+    return solution;
+  }
+  double smoothing = options.smoothing.value_or(0.0);
+  double criterion = 0.0;
+  if (!options.smoothing) {
+    const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel, options.by_group);
+    if (!choice) return choice.error();
+    smoothing = choice->smoothing;
+    criterion = choice->criterion;
+  }
+  if (!control.go_on(0.2)) return interrupted();
+  switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
+    case Outcome::cancelled: return interrupted();
+    case Outcome::failed: return failed;
+    case Outcome::solved: break;
+  }
+  solution.criterion = criterion;
+  return solution;
+}
+
+}  // namespace
+
+Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, const FitControl& control) {
+  if (const Status status = validate_sites(sites); !status) return status.error();
+  if (sites.count() > kMostDirectSites)
+    return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
+                 std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
+  if (!control.go_on(0.0)) return interrupted();
+  const ProjectedKernel kernel(sites, options.kernel);
+  if (!control.go_on(0.1)) return interrupted();
+  const Result<Solution> solution = solve(sites, options, kernel, control);
+  if (!solution) return solution.error();
+  if (!control.go_on(kFactorised)) return interrupted();
+  FittedRbf fitted;
+  fitted.function = kernel.function(solution->u);
+  FitReport& report = fitted.report;
+  report.centres_asked = report.centres_used = sites.count();
+  report.columns = sites.count() + fitted.function.tail.size();
+  report.rank = solution->rank;
+  report.condition = solution->condition;
+  report.residual_rms = std::sqrt(solution->residual_squared / static_cast<double>(sites.count()));
+  report.smoothing = solution->smoothing;
+  report.criterion = solution->criterion;
+  return fitted;
+}
+
+}  // namespace palpate

@@ -1,0 +1,167 @@
+#include "models/fit/fit_greedy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/fit/candidate_gains.h"
+#include "models/fit/lapack.h"
+#include "models/fit/orthogonal_basis.h"
+#include "models/fit/seeded_random.h"
+#include "models/fit/solve_weights.h"
+
+namespace palpate {
+namespace {
+
+// One way to choose the next centre: adds its column to the basis and returns
+// its site, or -1 when no candidate is of use.
+class Selection {
+ public:
+  Selection(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
+      : gains_(sites, options.kernel),
+        basis_(sites, options.kernel, options.centres),
+        left_(std::move(distinct)) {}
+  virtual ~Selection() = default;
+  virtual Eigen::Index next() = 0;
+
+ protected:
+  // The place of the largest gain among the first `count` sites left, the first of
+  // equals; -1 when none has any.
+  std::ptrdiff_t best_of(std::size_t count) const {
+    std::ptrdiff_t best = -1;
+    double best_gain = 0.0;
+    for (std::size_t j = 0; j < count; ++j)
+      if (const double gain = gains_.gain(left_[j]); gain > best_gain) {
+        best_gain = gain;
+        best = static_cast<std::ptrdiff_t>(j);
+      }
+    return best;
+  }
+
+  CandidateGains gains_;
+  OrthogonalBasis basis_;
+  std::vector<Eigen::Index> left_;  // sites not chosen yet
+};
+
+class RandomSubsets final : public Selection {
+ public:
+  RandomSubsets(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
+      : Selection(sites, options, std::move(distinct)), candidates_(options.candidates), random_(options.seed) {}
+
+  Eigen::Index next() override {
+    // A subset without use is followed by another, a few times.
+    for (int attempt = 0; attempt < 5 && !left_.empty(); ++attempt) {
+      const std::size_t count = draw();
+      gains_.update(std::span(left_).first(count), basis_);
+      const std::ptrdiff_t best = best_of(count);
+      if (best < 0) continue;
+      const Eigen::Index site = left_[static_cast<std::size_t>(best)];
+      basis_.add(basis_.outside(gains_.column(site)));
+      left_.erase(left_.begin() + best);
+      return site;
+    }
+    return -1;
+  }
+
+ private:
+  // Brings a random subset to the front of left_; returns its size.
+  std::size_t draw() {
+    const std::size_t count = std::min(static_cast<std::size_t>(candidates_), left_.size());
+    for (std::size_t j = 0; j < count; ++j)
+      std::swap(left_[j], left_[j + static_cast<std::size_t>(random_.below(left_.size() - j))]);
+    return count;
+  }
+
+  Eigen::Index candidates_;
+  SeededRandom random_;
+};
+
+class AllSites final : public Selection {
+ public:
+  AllSites(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
+      : Selection(sites, options, std::move(distinct)),
+        row_scale_(sites.row_scale),
+        product_(options.kernel, gains_.points()) {
+    gains_.update(left_, basis_);
+  }
+
+  Eigen::Index next() override {
+    for (std::ptrdiff_t best = best_of(left_.size()); best >= 0; best = best_of(left_.size())) {
+      const Eigen::Index site = left_[static_cast<std::size_t>(best)];
+      const OrthogonalBasis::Outside part = basis_.outside(gains_.column(site));
+      if (agrees(site, part)) {
+        left_.erase(left_.begin() + best);
+        accept(part);
+        return site;
+      }
+      gains_.correct(site, part);
+    }
+    return -1;
+  }
+
+ private:
+  // Whether the recurrence still knows this column; 1 % is far below any
+  // difference in gain that matters.
+  bool agrees(Eigen::Index site, const OrthogonalBasis::Outside& part) const {
+    return gains_.useful(site, part) &&
+           part.correlation * part.correlation / part.squared >= 0.99 * gains_.gain(site);
+  }
+
+  void accept(const OrthogonalBasis::Outside& part) {
+    const double residual_share = part.correlation / std::sqrt(part.squared);
+    const Eigen::VectorXd q = basis_.add(part);
+    gains_.advance(left_, basis_, product_.multiply(q.cwiseProduct(row_scale_)), residual_share);
+  }
+
+  const Eigen::VectorXd& row_scale_;
+  KernelProduct product_;
+};
+
+bool select(Selection& selection, Eigen::Index count, const FitControl& control,
+            std::vector<Eigen::Index>& chosen) {
+  for (Eigen::Index step = 0; step < count; ++step) {
+    if (!control.go_on(0.95 * static_cast<double>(step) / static_cast<double>(count))) return false;
+    const Eigen::Index site = selection.next();
+    if (site < 0) break;
+    chosen.push_back(site);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
+  if (const Status status = validate_sites(sites); !status) return status.error();
+  const BlasThreads one_thread(1);
+  std::vector<Eigen::Index> distinct = distinct_sites(sites);
+  const auto available = static_cast<Eigen::Index>(distinct.size());
+  GreedyOptions clamped = options;
+  clamped.centres = std::clamp<Eigen::Index>(options.centres, 0, available);
+  std::vector<Eigen::Index> chosen;
+  bool finished = false;
+  if (options.candidates <= 0 || options.candidates >= available) {
+    AllSites selection(sites, clamped, std::move(distinct));
+    finished = select(selection, clamped.centres, control, chosen);
+  } else {
+    RandomSubsets selection(sites, clamped, std::move(distinct));
+    finished = select(selection, clamped.centres, control, chosen);
+  }
+  if (!finished) return interrupted();
+  Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
+  for (Eigen::Index j = 0; j < centres.cols(); ++j) centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, {}, Ridge::by_evidence);
+  if (!fitted) return fitted;
+  fitted->report.centres_asked = options.centres;
+  if (centres.cols() < options.centres)
+    fitted->report.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " +
+                                   (clamped.centres < options.centres ? "there are no more distinct sites"
+                                                                      : "no other site lowers the error"));
+  if (!control.go_on(1.0)) return interrupted();
+  return fitted;
+}
+
+}  // namespace palpate

@@ -1,0 +1,193 @@
+#include "models/fit/fit_kdtree.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/fit/lapack.h"
+#include "models/fit/orthogonal_basis.h"
+#include "engine/base/parallel.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "models/fit/site_tree.h"
+#include "models/fit/solve_weights.h"
+
+namespace palpate {
+namespace {
+
+// The least squares problem of the growing tree: columns with the tail
+// projected out, and their Gram matrix.
+class GrowingFit {
+ public:
+  GrowingFit(const Sites& sites, KernelKind kernel, Eigen::Index most)
+      : sites_(sites), kernel_(kernel), points_(sites.points), tail_(sites, kernel, 0) {
+    columns_.resize(sites.count(), most);
+    gram_.resize(most, most);
+    right_.resize(most);
+  }
+
+  // Puts columns for `centres` (d x k) at the places `at`, which are below
+  // size() or next to it.
+  void set(const Eigen::MatrixXd& centres, const std::vector<Eigen::Index>& at) {
+    const Eigen::Index count = centres.cols();
+    for (const Eigen::Index place : at) size_ = std::max(size_, place + 1);
+    Eigen::MatrixXd fresh(sites_.count(), count);
+    std::array<Eigen::MatrixXd, kParts> shares;
+    for_parts([&](int part) {
+      const auto [first, rows] = rows_of(part);
+      auto mine = fresh.middleRows(first, rows);
+      kernel_matrix(kernel_, points_, centres, mine, first);
+      mine.array().colwise() *= sites_.row_scale.segment(first, rows).array();
+      Eigen::MatrixXd& share = shares[static_cast<std::size_t>(part)];
+      share.resize(tail_.size(), count);
+      multiply(tail_.columns().middleRows(first, rows), true, mine, false, 1.0, 0.0, share);
+    });
+    const Eigen::MatrixXd tail_shares = shares[0] + shares[1];
+    std::array<Eigen::MatrixXd, kParts> products;
+    std::array<Eigen::VectorXd, kParts> right;
+    for_parts([&](int part) {
+      const auto [first, rows] = rows_of(part);
+      auto mine = fresh.middleRows(first, rows);
+      multiply(tail_.columns().middleRows(first, rows), false, tail_shares, false, -1.0, 1.0, mine);
+      for (std::size_t k = 0; k < at.size(); ++k)
+        columns_.col(at[k]).segment(first, rows) = mine.col(static_cast<Eigen::Index>(k));
+      Eigen::MatrixXd& product = products[static_cast<std::size_t>(part)];
+      product.resize(size_, count);
+      product.setZero();
+      // One column at a time, for few of them dgemm spends its time copying; by blocks
+      // of rows that stay in the cache for the next.
+      for (Eigen::Index row = 0; row < rows; row += kRows) {
+        const Eigen::Index some = std::min(kRows, rows - row);
+        for (Eigen::Index k = 0; k < count; ++k)
+          multiply(columns_.block(first + row, 0, some, size_), true, mine.block(row, k, some, 1), false, 1.0, 1.0,
+                   product.col(k));
+      }
+      right[static_cast<std::size_t>(part)] = mine.transpose() * tail_.residual().segment(first, rows);
+    });
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      gram_.col(at[k]).head(size_) = products[0].col(column) + products[1].col(column);
+      gram_.row(at[k]).head(size_) = gram_.col(at[k]).head(size_).transpose();
+      right_[at[k]] = right[0][column] + right[1][column];
+    }
+  }
+
+  // row_scale (f - h) at every site for the best weights.
+  Eigen::VectorXd residual() const {
+    // Columns scaled to length 1; those that are nothing keep the weight 0.
+    Eigen::VectorXd scale = gram_.diagonal().head(size_).cwiseSqrt();
+    const double tiny = 1e-20 * scale.maxCoeff();
+    scale = (scale.array() > tiny).select(scale.cwiseInverse(), 0.0);
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * gram_.topLeftCorner(size_, size_) * scale.asDiagonal();
+    Eigen::VectorXd weights;
+    for (double ridge = 1e-13; ridge < 1.0; ridge *= 100.0) {
+      Eigen::MatrixXd factor = scaled;
+      factor.diagonal().array() += ridge;
+      if (!cholesky_in_place(factor)) continue;
+      weights = scale.cwiseProduct(right_.head(size_));
+      cholesky_solve(factor, weights);
+      break;
+    }
+    Eigen::VectorXd rest = tail_.residual();
+    const Eigen::VectorXd scaled_weights = weights.cwiseProduct(scale);
+    for_parts([&](int part) {
+      const auto [first, rows] = rows_of(part);
+      multiply(columns_.block(first, 0, rows, size_), false, scaled_weights, false, -1.0, 1.0,
+               rest.segment(first, rows));
+    });
+    return rest;
+  }
+
+ private:
+  // Half the rows to each of two threads: fixed, so that the sums are the same on any
+  // number of cores, and the first a multiple of 8, as kernel_matrix wants it.
+  static constexpr int kParts = 2;
+  std::pair<Eigen::Index, Eigen::Index> rows_of(int part) const {
+    const Eigen::Index half = sites_.count() / 16 * 8;
+    return part == 0 ? std::pair{Eigen::Index{0}, half} : std::pair{half, sites_.count() - half};
+  }
+
+  static constexpr Eigen::Index kRows = 512;
+  // Products of a step that take about 0.3 ms: less is done sooner than threads are
+  // started.
+  static constexpr Eigen::Index kWorthThreads = 1000000;
+  void for_parts(const std::function<void(int part)>& work) const {
+    if (sites_.count() * size_ >= kWorthThreads) return parallel_for(kParts, work);
+    for (int part = 0; part < kParts; ++part) work(part);
+  }
+
+  const Sites& sites_;
+  KernelKind kernel_;
+  PointArrays points_;
+  OrthogonalBasis tail_;
+  Eigen::MatrixXd columns_;
+  Eigen::MatrixXd gram_;
+  Eigen::VectorXd right_;
+  Eigen::Index size_ = 0;
+};
+
+// Splits the leaf of the worst sample that can be split; its number, or -1.
+Eigen::Index split_worst(SiteTree& tree, const Eigen::VectorXd& excess, std::vector<bool>& whole) {
+  whole.resize(static_cast<std::size_t>(tree.leaf_count()), true);
+  while (true) {
+    Eigen::Index worst = -1;
+    for (Eigen::Index i = 0; i < excess.size(); ++i)
+      if (whole[static_cast<std::size_t>(tree.leaf_of(i))] && (worst < 0 || excess[i] > excess[worst])) worst = i;
+    if (worst < 0) return -1;
+    const Eigen::Index leaf = tree.leaf_of(worst);
+    if (tree.split(leaf)) return leaf;
+    whole[static_cast<std::size_t>(leaf)] = false;
+  }
+}
+
+// Errors over the JND. A site that counts for nothing never asks for a split
+// before the others.
+Eigen::VectorXd excess_of(const GrowingFit& fit, const Sites& sites, const Eigen::VectorXd& jnd_N) {
+  const Eigen::VectorXd residual = fit.residual();
+  return (sites.row_scale.array() > 0.0)
+      .select(residual.array().abs() / (sites.row_scale.array() * jnd_N.array()), 0.0);
+}
+
+}  // namespace
+
+Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
+                             const FitControl& control) {
+  if (const Status status = validate_sites(sites); !status) return status.error();
+  if (jnd_N.size() != sites.count() || !jnd_N.allFinite() || !(jnd_N.minCoeff() > 0.0))
+    return Error{"jnd_N has " + std::to_string(jnd_N.size()) + " entries or one that is not positive, expected " +
+                 std::to_string(sites.count()) + " thresholds above 0 N"};
+  const BlasThreads one_thread(1);
+  SiteTree tree(sites.points);
+  const Eigen::Index most = std::max<Eigen::Index>(1, std::min(options.centres, sites.count()));
+  GrowingFit fit(sites, options.kernel, most);
+  Eigen::MatrixXd centres(sites.dimension(), most);
+  centres.col(0) = tree.barycentre(0);
+  fit.set(centres.leftCols(1), {0});
+  std::vector<bool> whole;
+  while (tree.leaf_count() < most) {
+    if (!control.go_on(0.95 * static_cast<double>(tree.leaf_count()) / static_cast<double>(most)))
+      return interrupted();
+    // The first split does not depend on errors: there is one leaf.
+    const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
+    if (lower < 0) break;
+    const Eigen::Index upper = tree.leaf_count() - 1;
+    centres.col(lower) = tree.barycentre(lower);
+    centres.col(upper) = tree.barycentre(upper);
+    Eigen::MatrixXd pair(sites.dimension(), 2);
+    pair << centres.col(lower), centres.col(upper);
+    fit.set(pair, {lower, upper});
+  }
+  const Eigen::Index used = options.centres > 0 ? tree.leaf_count() : 0;
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres.leftCols(used), {}, Ridge::by_evidence);
+  if (!fitted) return fitted;
+  fitted->report.centres_asked = options.centres;
+  if (used < options.centres)
+    fitted->report.notes.push_back("only " + std::to_string(used) + " centres: no leaf can be split further");
+  if (!control.go_on(1.0)) return interrupted();
+  return fitted;
+}
+
+}  // namespace palpate

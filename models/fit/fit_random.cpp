@@ -1,0 +1,34 @@
+#include "models/fit/fit_random.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "models/fit/seeded_random.h"
+#include "models/fit/solve_weights.h"
+
+namespace palpate {
+
+Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, const FitControl& control) {
+  if (const Status status = validate_sites(sites); !status) return status.error();
+  std::vector<Eigen::Index> order = distinct_sites(sites);
+  const auto distinct = static_cast<Eigen::Index>(order.size());
+  const Eigen::Index count = std::clamp<Eigen::Index>(options.centres, 0, distinct);
+  SeededRandom random(options.seed);
+  Eigen::MatrixXd centres(sites.dimension(), count);
+  for (Eigen::Index j = 0; j < count; ++j) {  // Fisher-Yates, the first `count` of it
+    const auto left = static_cast<std::uint64_t>(distinct - j);
+    const auto pick = static_cast<std::size_t>(j) + static_cast<std::size_t>(random.below(left));
+    std::swap(order[static_cast<std::size_t>(j)], order[pick]);
+    centres.col(j) = sites.points.col(order[static_cast<std::size_t>(j)]);
+  }
+  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, control, Ridge::by_evidence);
+  if (!fitted) return fitted;
+  fitted->report.centres_asked = options.centres;
+  if (count < options.centres)
+    fitted->report.notes.push_back("only " + std::to_string(count) + " centres: there are no more distinct sites");
+  return fitted;
+}
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+// Random centres: Nc distinct sites drawn without replacement, then least
+// squares through a truncated SVD. The fastest of the methods and the least
+// accurate.
+// Source: Hoever & Harders (2009), section 4.2.1.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/base/result.h"
+#include "engine/base/fit_control.h"
+#include "models/fit/fit_report.h"
+#include "models/training/sites.h"
+
+namespace palpate {
+
+struct RandomOptions {
+  KernelKind kernel = KernelKind::cubic;
+  Eigen::Index centres = 100;
+  std::uint64_t seed = 1;
+};
+
+// Sites at the same point count once; more centres than distinct sites are cut
+// to their number, which the report notes. Errors: those of solve_weights.
+// The same seed gives the same bits. Off the tick.
+Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, const FitControl& control = {});
+
+}  // namespace palpate

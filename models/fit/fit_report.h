@@ -1,0 +1,37 @@
+// What a fit says about itself.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "models/model/rbf/rbf_function.h"
+
+namespace palpate {
+
+struct FitReport {
+  Eigen::Index centres_asked = 0;
+  Eigen::Index centres_used = 0;
+  // Unknowns of the last linear system (centres and tail) and how many of them
+  // the data determine.
+  Eigen::Index columns = 0;
+  Eigen::Index rank = 0;
+  // Condition number of the system solved: columns scaled to length 1 before
+  // truncation (least squares), or the smoothed matrix (direct).
+  double condition = 0.0;
+  // sqrt(mean(row_scale^2 (f - h)^2)) over the sites.
+  double residual_rms = 0.0;
+  // Direct fit: lambda, and the value of the criterion that chose it. The others:
+  // the ridge over the square of the largest singular value.
+  double smoothing = 0.0;
+  double criterion = 0.0;
+  // Sentences for people: what was clamped, truncated or skipped.
+  std::vector<std::string> notes;
+};
+
+struct FittedRbf {
+  RbfFunction function;
+  FitReport report;
+};
+
+}  // namespace palpate

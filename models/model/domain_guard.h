@@ -1,0 +1,51 @@
+// How near a feature vector is to the data that a model was fitted to.
+//
+// "Inside" means near a recorded sample in the normalised feature space, not
+// inside the bounding box: a box around a few strokes is mostly empty, and
+// radial basis functions were seen to be wrong by twice the largest force in
+// it. The guard keeps a thinned set of the sites ("cover": no site is further
+// than `cover_radius` from one of its points) and gives
+//
+//   trust g(x) = 1                 for distance <= inner_radius
+//              = smoothstep        between
+//              = 0                 for distance >= outer_radius
+//
+// The distance to a set of points changes no faster than the query moves, so g
+// is continuous, with slope at most 1.5 / (outer - inner).
+//
+// Thread guarantee: immutable; `trust` is wait-free and allocates nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "models/model/rbf/rbf_evaluate.h"
+
+namespace palpate {
+
+inline constexpr Eigen::Index kMaximumCoverPoints = 768;
+
+struct DomainCover {
+  Eigen::MatrixXd points;  // d x M, normalised
+  double inner_radius = 0.0;
+  double outer_radius = 0.0;
+};
+
+// Thins `sites` (d x N, N >= 1) to a cover of at most kMaximumCoverPoints points.
+DomainCover make_cover(const Eigen::MatrixXd& sites);
+
+class DomainGuard {
+ public:
+  explicit DomainGuard(DomainCover cover);
+
+  // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
+  double trust(const double* x) const noexcept;
+
+  const DomainCover& cover() const noexcept { return cover_; }
+
+ private:
+  DomainCover cover_;
+  NearestDistance nearest_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,199 @@
+#include "models/model/file/json_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/csv_scanner.h"
+#include "engine/base/json_position.h"
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::json;
+
+// Where brackets open beyond the allowed nesting, if they do. Counts before the
+// parser runs, which would need memory for each level.
+std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
+  int depth = 0;
+  bool inside_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inside_text) {
+      if (c == '\\') ++i;
+      if (c == '"') inside_text = false;
+      continue;
+    }
+    if (c == '"') inside_text = true;
+    if ((c == '{' || c == '[') && ++depth > nesting) return i;
+    if (c == '}' || c == ']') --depth;
+  }
+  return std::nullopt;
+}
+
+// Walks the text once for the place of the first fault, which the parser of
+// documents does not always tell (numbers beyond the range of a double).
+class SyntaxCheck final : public nlohmann::json_sax<Json> {
+ public:
+  SyntaxCheck(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+  const std::optional<Error>& error() const { return error_; }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::detail::exception& fault) override {
+    constexpr int kNumberOverflow = 406;  // nlohmann's number for it
+    if (fault.id == kNumberOverflow) {
+      const std::size_t start = position - std::min(position, token.size());
+      error_ = Error{position_prefix(path_, position_of_offset(text_, start)) + "found " + printable(token) +
+                     ", expected a finite number" + "; fit the model again"};
+      return false;
+    }
+    std::string what = fault.what();
+    const std::size_t detail = what.find("syntax error");
+    if (detail != std::string::npos) what = what.substr(detail);
+    const std::size_t offset = position > 0 ? position - 1 : 0;
+    error_ = Error{position_prefix(path_, position_of_offset(text_, offset)) + printable(what, 200) + kDamaged};
+    return false;
+  }
+
+ private:
+  std::string_view text_;
+  const std::string& path_;
+  std::optional<Error> error_;
+};
+
+// "/centres/3" as "centres[3]", "/domain/points" as "domain.points".
+std::string field_name(std::string_view pointer) {
+  std::string name;
+  while (!pointer.empty()) {
+    pointer.remove_prefix(1);
+    const std::size_t end = std::min(pointer.find('/'), pointer.size());
+    const std::string step(pointer.substr(0, end));
+    const bool index = !step.empty() && step.find_first_not_of("0123456789") == std::string::npos;
+    name += index ? "[" + step + "]" : (name.empty() ? "" : ".") + step;
+    pointer.remove_prefix(end);
+  }
+  return name;
+}
+
+}  // namespace
+
+Result<Json> parse_json(std::string_view text, const std::string& path, int nesting) {
+  if (const auto offset = too_deep_at(text, nesting)) {
+    return Error{position_prefix(path, position_of_offset(text, *offset)) + "found more than " +
+                 std::to_string(nesting) + " lists inside each other, expected fewer" + kDamaged};
+  }
+  SyntaxCheck syntax(text, path);
+  if (!Json::sax_parse(text, &syntax)) {
+    return syntax.error().value_or(Error{path + ": found text that is not JSON" + kDamaged});
+  }
+  return Json::parse(text);
+}
+
+std::string found(const Json& value) {
+  switch (value.type()) {
+    case Json::value_t::array: return "found a list of " + std::to_string(value.size());
+    case Json::value_t::object: return "found an object";
+    default: return "found " + printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+}
+
+// Keeps the first complaint; what follows from it is of no interest.
+void JsonFields::complain(const std::string& pointer, const std::string& words, const std::string& advice) {
+  if (error_) return;
+  const std::string name = field_name(pointer);
+  error_ = Error{position_prefix(path_, position_of_value(text_, pointer)) + (name.empty() ? "" : name + ": ") +
+                 words + advice};
+}
+
+// The member `key`; without one, complains and gives a JsonNode without value.
+JsonNode JsonFields::member(const JsonNode& object, const char* key, const std::string& expected) {
+  const std::string pointer = object.pointer + "/" + key;
+  if (object.value == nullptr) return {nullptr, pointer};
+  if (!object.value->is_object()) {
+    complain(object.pointer, found(*object.value) + ", expected an object with \"" + key + "\"");
+    return {nullptr, pointer};
+  }
+  const auto entry = object.value->find(key);
+  if (entry != object.value->end()) return {&*entry, pointer};
+  complain(pointer, "found no such field, expected " + expected);
+  return {nullptr, pointer};
+}
+
+std::string JsonFields::text(const JsonNode& object, const char* key) {
+  const JsonNode node = member(object, key, "a text");
+  if (node.value == nullptr) return {};
+  if (node.value->is_string()) return node.value->get<std::string>();
+  complain(node.pointer, found(*node.value) + ", expected a text");
+  return {};
+}
+
+bool JsonFields::boolean(const JsonNode& object, const char* key) {
+  const JsonNode node = member(object, key, "true or false");
+  if (node.value == nullptr) return false;
+  if (node.value->is_boolean()) return node.value->get<bool>();
+  complain(node.pointer, found(*node.value) + ", expected true or false");
+  return false;
+}
+
+std::uint64_t JsonFields::count(const JsonNode& object, const char* key) {
+  const JsonNode node = member(object, key, "a whole number, 0 or more");
+  if (node.value == nullptr) return 0;
+  if (node.value->is_number_unsigned()) return node.value->get<std::uint64_t>();
+  complain(node.pointer, found(*node.value) + ", expected a whole number, 0 or more");
+  return 0;
+}
+
+double JsonFields::number(const JsonNode& object, const char* key, Sign sign) {
+  const std::string expected = sign == Sign::kAny           ? "a number"
+                               : sign == Sign::kNotNegative ? "a number, 0 or more"
+                                                            : "a number above 0";
+  const JsonNode node = member(object, key, expected);
+  if (node.value == nullptr) return 1.0;
+  const double value = node.value->is_number() ? node.value->get<double>() : std::nan("");
+  const bool good = sign == Sign::kAny           ? std::isfinite(value)
+                    : sign == Sign::kNotNegative ? value >= 0.0
+                                                 : value > 0.0;
+  if (good) return value;
+  complain(node.pointer, found(*node.value) + ", expected " + expected);
+  return 1.0;
+}
+
+// A list; without one, complains and gives a JsonNode without value.
+JsonNode JsonFields::list(const JsonNode& object, const char* key, const std::string& expected) {
+  const JsonNode node = member(object, key, expected);
+  if (node.value == nullptr || node.value->is_array()) return node;
+  complain(node.pointer, found(*node.value) + ", expected " + expected);
+  return {nullptr, node.pointer};
+}
+
+// Exactly `expected_count` numbers (`words` says which) into `values`.
+bool JsonFields::fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values) {
+  if (node.value == nullptr) return false;
+  if (!node.value->is_array() || node.value->size() != expected_count) {
+    complain(node.pointer, found(*node.value) + ", expected " + std::to_string(expected_count) + " " + words);
+    return false;
+  }
+  for (std::size_t i = 0; i < expected_count; ++i) {
+    const Json& entry = (*node.value)[i];
+    if (!entry.is_number()) {
+      complain(node.pointer + "/" + std::to_string(i), found(entry) + ", expected a number");
+      return false;
+    }
+    values[i] = entry.get<double>();
+  }
+  return true;
+}
+
+}  // namespace palpate

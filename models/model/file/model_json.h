@@ -1,0 +1,48 @@
+// The model file's text: ModelData to JSON and back.
+//
+// One object; "format": "palpate-model", "version": 1; then
+//   name, method, features [{kind, relaxation_time_s, drive}], normalisation
+//   {offset, scale}, domain {lower, upper, inner_radius, outer_radius, points},
+//   trend, corrects_trend, correction_limit_N, largest_force_N, jnd,
+//   either kernel, tail, centres and weights, or grid {nodes, values_N},
+//   provenance.
+// Every field is required; fields that this version does not know are ignored.
+// Centres, weights and cover points stand one to a line, so that two models can
+// be compared line by line. Numbers are the shortest decimals that read back as
+// the same double, so a model read back gives bit-identical forces. "filters" in
+// the file are their constants only: no state is stored.
+//
+// The same fit gives the same bytes but for one honest field: the time that it
+// took. It is stored rounded up to the next of 1, 2, 5, 10, 20, 50 ... seconds,
+// which repeats for every fit that stays clear of such a step; nothing else
+// varies.
+//
+// Thread guarantee: pure functions, slow side (allocate).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/base/result.h"
+#include "models/model/fitted_model.h"
+
+namespace palpate {
+
+inline constexpr int kModelVersion = 1;
+// Longest name of a model, in bytes; it becomes part of column and file names.
+inline constexpr std::size_t kModelNameBytes = 100;
+// Lists and objects inside each other; the format itself needs four levels.
+inline constexpr int kModelNesting = 16;
+
+// The text of a model file. Folders in recording names are left out. Errors:
+// what validate_model refuses, a method or a name that the reader would refuse.
+Result<std::string> write_model_text(const ModelData& data);
+
+// Reads what `write_model_text` wrote. `path` names the file in messages:
+//   path:line:column: field[index]: found X, expected Y; what to do
+// Errors: text that is not JSON, a number beyond the range of a double, nesting
+// beyond kModelNesting, another format or version, a field that is missing, of
+// the wrong type, size or sign. The first one counts.
+Result<ModelData> read_model_text(std::string_view text, const std::string& path);
+
+}  // namespace palpate

@@ -1,0 +1,140 @@
+#include "models/model/fitted_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+Error wrong(const std::string& field, const std::string& found, const std::string& expected) {
+  return {field + ": found " + found + ", expected " + expected};
+}
+
+Status validate_vector(const Eigen::VectorXd& values, const std::string& field, Eigen::Index expected) {
+  if (values.size() != expected) {
+    return wrong(field, std::to_string(values.size()) + " values", std::to_string(expected) + ", one per feature");
+  }
+  if (!values.allFinite()) return wrong(field, "a non-finite number", "finite numbers");
+  return {};
+}
+
+Status validate_features(const std::vector<FeatureSpec>& features) {
+  if (features.empty() || features.size() > kMaxFeatures) {
+    return wrong("features", std::to_string(features.size()) + " features", "1 to 8");
+  }
+  for (const FeatureSpec& spec : features) {
+    const bool filter = spec.kind == FeatureKind::lowpass_velocity || spec.kind == FeatureKind::maxwell_branch;
+    if (filter && !(spec.relaxation_time_s > 0.0 && std::isfinite(spec.relaxation_time_s))) {
+      return wrong("features.relaxation_time_s", std::to_string(spec.relaxation_time_s), "a positive number");
+    }
+    if (!(spec.drive.reference_depth_m > 0.0 && std::isfinite(spec.drive.reference_depth_m))) {
+      return wrong("features.drive.reference_depth_m", std::to_string(spec.drive.reference_depth_m),
+                   "a positive number");
+    }
+    for (const double coefficient : spec.drive.coefficient_N) {
+      if (!std::isfinite(coefficient)) return wrong("features.drive", "a non-finite number", "finite numbers");
+    }
+  }
+  return {};
+}
+
+Status validate_trend(const Trend& trend) {
+  if (!(trend.reference_depth_m > 0.0 && std::isfinite(trend.reference_depth_m))) {
+    return wrong("trend.reference_depth_m", std::to_string(trend.reference_depth_m), "a positive number");
+  }
+  const auto finite = [](double value) { return std::isfinite(value); };
+  if (!std::all_of(trend.elastic_N.begin(), trend.elastic_N.end(), finite) ||
+      !std::all_of(trend.viscosity_Ns_per_m.begin(), trend.viscosity_Ns_per_m.end(), finite) ||
+      !std::all_of(trend.thinning_Ns_per_m.begin(), trend.thinning_Ns_per_m.end(), finite)) {
+    return wrong("trend", "a non-finite number", "finite numbers");
+  }
+  if (!(trend.thinning_velocity_m_per_s > 0.0) || !std::isfinite(trend.thinning_velocity_m_per_s)) {
+    return wrong("trend.thinning_velocity_m_per_s", std::to_string(trend.thinning_velocity_m_per_s),
+                 "a positive number");
+  }
+  if (!(trend.velocity_limit_m_per_s >= 0.0) || !std::isfinite(trend.velocity_limit_m_per_s)) {
+    return wrong("trend.velocity_limit_m_per_s", std::to_string(trend.velocity_limit_m_per_s), "0 or more");
+  }
+  return {};
+}
+
+Status validate_cover(const DomainCover& cover, Eigen::Index dimension) {
+  if (cover.points.rows() != dimension || cover.points.cols() < 1) {
+    return wrong("domain.points",
+                 std::to_string(cover.points.cols()) + " points of " + std::to_string(cover.points.rows()) + " values",
+                 "at least one point of " + std::to_string(dimension) + " values");
+  }
+  if (!cover.points.allFinite()) return wrong("domain.points", "a non-finite number", "finite numbers");
+  if (!(cover.inner_radius >= 0.0) || !(cover.outer_radius > cover.inner_radius) ||
+      !std::isfinite(cover.outer_radius)) {
+    return wrong("domain radii", std::to_string(cover.inner_radius) + " and " + std::to_string(cover.outer_radius),
+                 "0 <= inner < outer");
+  }
+  return {};
+}
+
+}  // namespace
+
+Status validate_model(const ModelData& data) {
+  if (Status status = validate_features(data.features); !status) return status;
+  const auto n = static_cast<Eigen::Index>(data.features.size());
+  for (const auto& [values, field] : {std::pair{&data.offset, "normalisation.offset"},
+                                      std::pair{&data.scale, "normalisation.scale"},
+                                      std::pair{&data.lower, "domain.lower"},
+                                      std::pair{&data.upper, "domain.upper"}}) {
+    if (Status status = validate_vector(*values, field, n); !status) return status;
+  }
+  if (!(data.scale.array() > 0.0).all()) return wrong("normalisation.scale", "0 or less", "positive numbers");
+  if (Status status = validate_trend(data.trend); !status) return status;
+  if (Status status = validate_cover(data.cover, n); !status) return status;
+  for (const auto& [value, field] : {std::pair{data.correction_limit_N, "correction_limit_N"},
+                                     std::pair{data.largest_force_N, "largest_force_N"},
+                                     std::pair{data.jnd.offset_N, "jnd.offset_N"},
+                                     std::pair{data.jnd.weber_fraction, "jnd.weber_fraction"}}) {
+    if (!(value >= 0.0) || !std::isfinite(value)) return wrong(field, std::to_string(value), "0 or more");
+  }
+  if (data.rbf.has_value() == data.grid.has_value()) {
+    return wrong("model", data.rbf ? "both centres and a grid" : "neither centres nor a grid", "one of them");
+  }
+  if (data.rbf) {
+    if (data.rbf->dimension() != n) {
+      return wrong("centres", std::to_string(data.rbf->dimension()) + " values each", std::to_string(n));
+    }
+    return validate_rbf_function(*data.rbf);
+  }
+  return validate_voxel_grid(*data.grid, static_cast<int>(n));
+}
+
+FittedModel::FittedModel(ModelData data) : data_(std::move(data)), guard_(data_.cover) {
+  if (data_.rbf) rbf_.emplace(*data_.rbf);
+  if (data_.grid) grid_.emplace(*data_.grid);
+  for (std::size_t i = 0; i < data_.features.size(); ++i) {
+    inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
+  }
+}
+
+int FittedModel::centre_count() const noexcept {
+  return data_.rbf ? static_cast<int>(data_.rbf->centre_count()) : static_cast<int>(data_.grid->node_count());
+}
+
+ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
+  std::array<double, kMaxFeatures> u{};
+  for (std::size_t i = 0; i < data_.features.size(); ++i) {
+    u[i] = (features[i] - data_.offset(static_cast<Eigen::Index>(i))) * inverse_scale_[i];
+  }
+  const double trend_N = data_.trend.at(features, data_.features);
+  const double trust = guard_.trust(u.data());
+  double force_N = trend_N;
+  if (trust > 0.0) {
+    const double correction_N = (rbf_ ? rbf_->evaluate(u.data()) : grid_->evaluate(u.data())) -
+                                (data_.corrects_trend ? 0.0 : trend_N);
+    force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
+  }
+  // A comparison that fails for NaN, so that nothing but a force leaves.
+  const double largest_N = kForceMargin * data_.largest_force_N;
+  if (!(force_N > 0.0)) force_N = 0.0;
+  return {std::min(force_N, largest_N), trust < 0.5};
+}
+
+}  // namespace palpate

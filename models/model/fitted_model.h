@@ -1,0 +1,103 @@
+// A fitted force model: everything that evaluation needs, as data, and the
+// ForceModel that computes it.
+//
+//   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), 0, largest )
+//   u = (x - offset) / scale                                    normalised features
+//
+// T: the trend (models/model/trend.h). h: eq. 2 of Hoever & Harders (2009), or its
+// grid. g: trust, 1 near the data, 0 away from it (models/model/domain_guard.h). b: 0
+// when h was fitted to what the trend leaves over (default), T(x) when h was
+// fitted to the force itself (the paper's own recipe). limit: the largest
+// correction that the training data called for. largest: 1.2 x the largest
+// training force. So away from its data every method is the trend: continuous,
+// bounded, and never pulling the tool in.
+//
+// Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/tick/force_model.h"
+#include "engine/tick/jnd.h"
+#include "models/model/domain_guard.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/rbf/rbf_function.h"
+#include "models/model/trend.h"
+#include "models/model/grid/voxel_grid.h"
+#include "models/model/grid/voxel_lookup.h"
+
+namespace palpate {
+
+struct RelaxationTime {
+  double time_s = 0.0;
+  double standard_error_s = 0.0;  // 0: given, not identified
+};
+
+// Where a model comes from; no effect on its forces.
+struct Provenance {
+  std::vector<std::string> recordings;
+  std::string scene;
+  std::uint64_t samples = 0;  // rows of all recordings
+  std::uint64_t contact_samples = 0;
+  std::uint64_t samples_after_reduction = 0;
+  std::uint64_t seed = 0;
+  double fit_seconds = 0.0;
+  std::string weighting;   // jnd, relative, none
+  std::string reduction;   // coverage, force, none
+  std::string relaxation;  // scene, auto, given
+  std::vector<RelaxationTime> relaxation_times;
+  double training_within_jnd = 0.0;
+};
+
+struct ModelData {
+  std::string name;    // e.g. "greedy-100"
+  std::string method;  // direct, voxel, random, kdtree, greedy
+  std::vector<FeatureSpec> features;
+  Eigen::VectorXd offset;  // per feature, SI
+  Eigen::VectorXd scale;   // per feature, SI, > 0
+  Eigen::VectorXd lower;   // bounds of the training data, SI
+  Eigen::VectorXd upper;
+  Trend trend;
+  bool corrects_trend = true;  // h was fitted to f - T; false: to f
+  double correction_limit_N = 0.0;
+  double largest_force_N = 0.0;  // of the training data; output stays below 1.2 times it
+  DomainCover cover;
+  JndLine jnd;
+  std::optional<RbfFunction> rbf;   // every method but voxel
+  std::optional<VoxelGrid> grid;    // voxel
+  Provenance provenance;
+};
+
+inline constexpr double kForceMargin = 1.2;
+
+// Checks sizes, signs and finiteness of everything above. Errors: names the
+// field, what was found and what was expected.
+Status validate_model(const ModelData& data);
+
+class FittedModel final : public ForceModel {
+ public:
+  // `data` must pass validate_model.
+  explicit FittedModel(ModelData data);
+
+  ForceEstimate evaluate(const double* features) const noexcept override;
+  const std::vector<FeatureSpec>& features() const noexcept override { return data_.features; }
+  const std::string& name() const noexcept override { return data_.name; }
+  const std::string& method() const noexcept override { return data_.method; }
+  int centre_count() const noexcept override;
+
+  const ModelData& data() const noexcept { return data_; }
+
+ private:
+  ModelData data_;
+  DomainGuard guard_;
+  std::optional<RbfEvaluator> rbf_;
+  std::optional<VoxelLookup> grid_;
+  std::array<double, kMaxFeatures> inverse_scale_{};
+};
+
+}  // namespace palpate

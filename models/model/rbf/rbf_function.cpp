@@ -1,0 +1,42 @@
+#include "models/model/rbf/rbf_function.h"
+
+#include <cmath>
+#include <string>
+
+#include "models/model/rbf/polynomial_tail.h"
+#include "engine/tick/features.h"
+
+namespace palpate {
+
+Status validate_rbf_function(const RbfFunction& function) {
+  const int dimension = function.dimension();
+  if (dimension < 1 || dimension > static_cast<int>(kMaxFeatures))
+    return Error{"centres have " + std::to_string(dimension) + " coordinates, expected 1 to " +
+                 std::to_string(kMaxFeatures)};
+  if (function.weights.size() != function.centre_count())
+    return Error{"there are " + std::to_string(function.weights.size()) + " weights, expected " +
+                 std::to_string(function.centre_count()) + ", one per centre"};
+  const int expected = tail_size(tail_degree(function.kernel), dimension);
+  if (function.tail.size() != expected)
+    return Error{"the polynomial tail has " + std::to_string(function.tail.size()) + " coefficients, expected " +
+                 std::to_string(expected)};
+  if (!function.centres.allFinite() || !function.weights.allFinite() || !function.tail.allFinite())
+    return Error{"centres, weights and tail must be finite numbers"};
+  return {};
+}
+
+double rbf_value(const RbfFunction& function, const double* x) noexcept {
+  const int dimension = function.dimension();
+  double sum = tail_value(function.tail.data(), tail_degree(function.kernel), dimension, x);
+  for (Eigen::Index j = 0; j < function.centre_count(); ++j) {
+    double squared = 0.0;
+    for (int k = 0; k < dimension; ++k) {
+      const double difference = x[k] - function.centres(k, j);
+      squared += difference * difference;
+    }
+    sum += function.weights[j] * kernel_value(function.kernel, std::sqrt(squared));
+  }
+  return sum;
+}
+
+}  // namespace palpate

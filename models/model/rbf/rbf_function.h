@@ -1,0 +1,31 @@
+// A fitted radial basis function, as data.
+//   h(x) = sum_j w_j phi(|x - q_j|) + sum_k d_k g_k(x)
+// `RbfEvaluator` (models/model/rbf/rbf_evaluate.h) computes it fast; rbf_value computes
+// it plainly, in one obvious loop, as the reference.
+// Source: Hoever & Harders (2009), eq. 2.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/base/result.h"
+#include "models/model/rbf/kernels.h"
+
+namespace palpate {
+
+struct RbfFunction {
+  KernelKind kernel = KernelKind::cubic;
+  Eigen::MatrixXd centres;  // q, d x n
+  Eigen::VectorXd weights;  // w, n
+  Eigen::VectorXd tail;     // d, tail_size(tail_degree(kernel), d), see polynomial_tail.h
+
+  int dimension() const { return static_cast<int>(centres.rows()); }
+  Eigen::Index centre_count() const { return centres.cols(); }
+};
+
+// Checks sizes and finiteness. Errors: says which array is wrong and how.
+Status validate_rbf_function(const RbfFunction& function);
+
+// h(x) in newtons. `x`: d values. Any thread, wait-free, O(n).
+double rbf_value(const RbfFunction& function, const double* x) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,75 @@
+// The training recordings as streams of motion: every pass of a fit over its
+// data goes through here, with the estimators that replay and the live loop use.
+//
+// Each recording has its own sensor (read off its first rows) and its own filter
+// state. Recordings that fit are estimated once and kept; longer ones (ten
+// hours at 1 kHz are 36 million rows) are read and estimated again in every
+// pass, in bounded memory.
+// Thread guarantee: slow side.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/tick/motion_estimator.h"
+#include "engine/recording/recording.h"
+#include "engine/base/result.h"
+#include "engine/tick/tool_sample.h"
+#include "engine/base/fit_control.h"
+
+namespace palpate {
+
+// Rows kept in memory, over all recordings together: about 150 MB.
+inline constexpr std::size_t kMaximumKeptRows = 3000000;
+
+// Some 20 ms of reading: a long pass can be stopped at once.
+inline constexpr std::size_t kRowsPerQuestion = 65536;
+
+struct MotionRow {
+  ToolSample sample;
+  MotionEstimate motion;
+  double force_N = 0.0;
+  int recording = 0;
+  int stroke = 0;        // counts contacts, over all recordings
+  bool first = false;    // of its recording: filters start anew
+};
+
+class MotionSource {
+ public:
+  // One training recording: a file, or rows in memory.
+  struct Input {
+    std::string path;                        // used when `loaded` is empty
+    std::shared_ptr<const Recording> loaded;
+  };
+
+  // `kept_rows`: how many rows may stay in memory between the passes.
+  explicit MotionSource(std::vector<Input> inputs, std::size_t kept_rows = kMaximumKeptRows)
+      : inputs_(std::move(inputs)), kept_rows_(kept_rows) {}
+
+  // Calls `visit` for every row in order; a visit that returns false ends the
+  // pass with "interrupted", and so does `control`, asked every kRowsPerQuestion
+  // rows with `fraction`. Errors: those of RecordingReader.
+  Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
+                  double fraction = 0.0);
+
+  const std::vector<std::string>& names() const { return names_; }  // after the first pass
+  std::size_t rows() const { return rows_; }                        // after the first pass
+  // The largest force noise among the recordings; after the first pass.
+  double force_noise_N() const { return force_noise_N_; }
+
+ private:
+  Status read_all(const std::function<bool(const MotionRow&)>& visit);
+
+  std::vector<Input> inputs_;
+  std::size_t kept_rows_;
+  std::vector<std::string> names_;
+  std::vector<MotionRow> kept_;
+  std::size_t rows_ = 0;
+  double force_noise_N_ = 0.0;
+  bool complete_ = false;  // kept_ holds everything
+};
+
+}  // namespace palpate

@@ -1,0 +1,72 @@
+#include "models/training/sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+namespace palpate {
+namespace {
+
+Error wrong_size(const std::string& name, Eigen::Index found, Eigen::Index expected) {
+  return Error{"sites: " + name + " has " + std::to_string(found) + " entries, expected " +
+               std::to_string(expected) + ", one per point"};
+}
+
+}  // namespace
+
+Status validate_sites(const Sites& sites) {
+  const Eigen::Index count = sites.count();
+  if (count == 0) return Error{"sites: there are no points to fit; give at least one sample in contact"};
+  if (sites.dimension() < 1 || sites.dimension() > kMaxDimension)
+    return Error{"sites: points have " + std::to_string(sites.dimension()) + " coordinates, expected 1 to " +
+                 std::to_string(kMaxDimension)};
+  if (sites.target_N.size() != count) return wrong_size("target_N", sites.target_N.size(), count);
+  if (sites.row_scale.size() != count) return wrong_size("row_scale", sites.row_scale.size(), count);
+  const auto groups = static_cast<Eigen::Index>(sites.group.size());
+  if (groups != 0 && groups != count) return wrong_size("group", groups, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const bool finite = sites.points.col(i).allFinite() && std::isfinite(sites.target_N[i]) &&
+                        std::isfinite(sites.row_scale[i]) && sites.row_scale[i] >= 0.0;
+    if (!finite)
+      return Error{"sites: site " + std::to_string(i) +
+                   " is not finite or has a negative row_scale; expected finite points, forces and factors"};
+  }
+  return {};
+}
+
+Sites even_subset(const Sites& sites, Eigen::Index most) {
+  const Eigen::Index count = std::min(sites.count(), most);
+  Sites subset;
+  subset.points.resize(sites.dimension(), count);
+  subset.target_N.resize(count);
+  subset.row_scale.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index i = k * sites.count() / count;
+    subset.points.col(k) = sites.points.col(i);
+    subset.target_N[k] = sites.target_N[i];
+    subset.row_scale[k] = sites.row_scale[i];
+    if (!sites.group.empty()) subset.group.push_back(sites.group[static_cast<std::size_t>(i)]);
+  }
+  return subset;
+}
+
+std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(sites.count()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const auto compare = [&](Eigen::Index a, Eigen::Index b) {
+    for (Eigen::Index k = 0; k < sites.points.rows(); ++k)
+      if (sites.points(k, a) != sites.points(k, b)) return sites.points(k, a) < sites.points(k, b) ? -1 : 1;
+    return 0;
+  };
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    const int order_of_points = compare(a, b);
+    return order_of_points != 0 ? order_of_points < 0 : a < b;
+  });
+  const auto same = [&](Eigen::Index a, Eigen::Index b) { return compare(a, b) == 0; };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
+}  // namespace palpate

@@ -1,0 +1,41 @@
+// The data a fit works on: normalised feature vectors with the force measured
+// at each (the pairs {u_i; f_i} of Hoever & Harders 2009, section 3).
+// Thread guarantee: a value type; validate_sites may be called from any thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/tick/features.h"
+
+namespace palpate {
+
+inline constexpr int kMaxDimension = static_cast<int>(kMaxFeatures);
+
+struct Sites {
+  Eigen::MatrixXd points;    // d x N, normalised, one column a site, d from 1 to kMaxDimension
+  Eigen::VectorXd target_N;  // N forces
+  // N factors >= 0 that multiply the residual rows, e.g. 1 / JND(force). A
+  // factor of 0 leaves the site out of the sum.
+  Eigen::VectorXd row_scale;
+  // N stroke numbers in time order, for leave-one-stroke-out; empty means no
+  // grouping is known.
+  std::vector<int> group;
+
+  Eigen::Index count() const { return points.cols(); }
+  int dimension() const { return static_cast<int>(points.rows()); }
+};
+
+// Checks sizes and finiteness. Errors: names the array and the sizes found and
+// expected, or the first site with a number that is not finite.
+Status validate_sites(const Sites& sites);
+
+// At most `most` of them, spread evenly over their order; groups only where there are any.
+Sites even_subset(const Sites& sites, Eigen::Index most);
+
+// Indices, ascending, of the sites left when of those at exactly the same point
+// only the first is kept.
+std::vector<Eigen::Index> distinct_sites(const Sites& sites);
+
+}  // namespace palpate

@@ -1,0 +1,236 @@
+#include "models/training/training_set.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <unordered_map>
+
+namespace palpate {
+namespace {
+
+constexpr double kGrowth = 1.25;
+
+// Running mean, spread and bounds of every feature.
+struct FeatureMoments {
+  explicit FeatureMoments(std::size_t n)
+      : mean(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n))), squares(mean), lower(mean), upper(mean) {}
+
+  void add(const Eigen::VectorXd& x) {
+    if (count == 0.0) lower = upper = x;
+    count += 1.0;
+    const Eigen::VectorXd change = x - mean;
+    mean += change / count;
+    squares += change.cwiseProduct(x - mean);
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+
+  Normalisation normalisation() const {
+    Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), lower, upper};
+    for (Eigen::Index i = 0; i < mean.size(); ++i) {
+      const double range = upper(i) - lower(i);
+      const double deviation = std::sqrt(squares(i) / count);
+      const double scale = std::sqrt(range * 4.0 * deviation);
+      // A spread at the level of rounding is no spread.
+      if (scale > 1e-12 * std::max(std::abs(lower(i)), std::abs(upper(i)))) result.scale(i) = scale;
+    }
+    return result;
+  }
+
+  double count = 0.0;
+  Eigen::VectorXd mean;
+  Eigen::VectorXd squares;
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+};
+
+using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
+struct CellHash {
+  std::size_t operator()(const CellKey& key) const noexcept {
+    std::uint64_t hash = 0x9E3779B97F4A7C15ULL;
+    for (const std::int32_t value : key) {
+      hash ^= static_cast<std::uint32_t>(value);
+      hash *= 0xBF58476D1CE4E5B9ULL;
+      hash ^= hash >> 29;
+    }
+    return hash;
+  }
+};
+
+// One mean per visited cube of the feature space.
+class CoverageReduction {
+ public:
+  explicit CoverageReduction(const Normalisation& normalisation) : normalisation_(normalisation) {}
+
+  void add(const TrainingSite& site) {
+    const auto [where, fresh] = cells_.try_emplace(key(site), sites_.size());
+    if (fresh) {
+      sites_.push_back(site);
+    } else {
+      merge(sites_[where->second], site);
+    }
+    if (sites_.size() > kCoverageSites) coarsen();
+  }
+
+  std::vector<TrainingSite> take() { return std::move(sites_); }
+  double step() const { return step_; }
+
+ private:
+  CellKey key(const TrainingSite& site) const {
+    CellKey result{};
+    const auto n = static_cast<std::size_t>(normalisation_.scale.size());
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const double u = (site.features[i] - normalisation_.offset(k)) / normalisation_.scale(k);
+      result[i] = static_cast<std::int32_t>(std::clamp(std::floor(u / step_), -1e9, 1e9));
+    }
+    result[kMaxFeatures] = site.no_force ? 1 : 0;
+    return result;
+  }
+
+  static void merge(TrainingSite& into, const TrainingSite& site) {
+    into.count += site.count;
+    const double share = site.count / into.count;
+    for (std::size_t i = 0; i < kMaxFeatures; ++i) into.features[i] += share * (site.features[i] - into.features[i]);
+    into.force_N += share * (site.force_N - into.force_N);
+  }
+
+  void coarsen() {
+    while (sites_.size() > kCoverageSites) {
+      step_ *= kGrowth;
+      const std::vector<TrainingSite> old = std::move(sites_);
+      sites_.clear();
+      cells_.clear();
+      for (const TrainingSite& site : old) {
+        const auto [where, fresh] = cells_.try_emplace(key(site), sites_.size());
+        if (fresh) {
+          sites_.push_back(site);
+        } else {
+          merge(sites_[where->second], site);
+        }
+      }
+    }
+  }
+
+  const Normalisation& normalisation_;
+  std::unordered_map<CellKey, std::size_t, CellHash> cells_;
+  std::vector<TrainingSite> sites_;
+  double step_ = kCoverageStep;
+};
+
+// The paper's rule; the threshold grows when too many samples pass it.
+class ForceReduction {
+ public:
+  void add(const TrainingSite& site, bool first_of_recording) {
+    if (first_of_recording) last_N_ = std::nan("");
+    if (std::abs(site.force_N - last_N_) < threshold_N_) return;
+    last_N_ = site.force_N;
+    sites_.push_back(site);
+    while (sites_.size() > kMaximumSites) thin();
+  }
+
+  std::vector<TrainingSite> take() { return std::move(sites_); }
+  double threshold_N() const { return threshold_N_; }
+
+ private:
+  void thin() {
+    threshold_N_ *= kGrowth;
+    std::vector<TrainingSite> kept;
+    for (const TrainingSite& candidate : sites_) {
+      if (kept.empty() || std::abs(candidate.force_N - kept.back().force_N) >= threshold_N_) kept.push_back(candidate);
+    }
+    sites_ = std::move(kept);
+  }
+
+  std::vector<TrainingSite> sites_;
+  double threshold_N_ = kReductionForce_N;
+  double last_N_ = std::nan("");
+};
+
+class NoReduction {
+ public:
+  // As many as the memory of a fit allows; beyond, every other one.
+  static constexpr std::size_t kMaximum = 1000000;
+
+  void add(const TrainingSite& site) {
+    if (seen_++ % stride_ != 0) return;
+    sites_.push_back(site);
+    if (sites_.size() <= kMaximum) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < sites_.size(); i += 2) sites_[kept++] = sites_[i];
+    sites_.resize(kept);
+    stride_ *= 2;
+    seen_ = 1;
+  }
+
+  std::vector<TrainingSite> take() { return std::move(sites_); }
+
+ private:
+  std::vector<TrainingSite> sites_;
+  std::size_t stride_ = 1;
+  std::size_t seen_ = 0;
+};
+
+}  // namespace
+
+Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
+                                      Reduction reduction, double no_force_N, const FitControl& control,
+                                      double fraction) {
+  TrainingSet set;
+  set.features = features;
+  const auto n = static_cast<Eigen::Index>(features.size());
+  // `handle` sees every sample in contact with its features.
+  const auto pass = [&](const std::function<void(const MotionRow&, const FeatureVector&)>& handle) {
+    FeatureFilter filter(features);
+    return source.for_each([&](const MotionRow& row) {
+      if (row.first) filter.reset();
+      const FeatureVector& vector = filter.update(row.sample, row.motion);
+      if (vector.in_contact) handle(row, vector);
+      return true;
+    }, control, fraction);
+  };
+
+  FeatureMoments moments(features.size());
+  Status status = pass([&](const MotionRow&, const FeatureVector& vector) {
+    moments.add(Eigen::Map<const Eigen::VectorXd>(vector.values.data(), n));
+  });
+  if (!status) return status.error();
+  set.contact_samples = static_cast<std::uint64_t>(moments.count);
+  if (set.contact_samples == 0) {
+    return Error{"no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
+                 "record a press, or check the sign and zero of position_m"};
+  }
+  set.normalisation = moments.normalisation();
+
+  CoverageReduction coverage(set.normalisation);
+  ForceReduction force;
+  NoReduction none;
+  int recording = -1;
+  status = pass([&](const MotionRow& row, const FeatureVector& vector) {
+    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, row.force_N <= no_force_N};
+    switch (reduction) {
+      case Reduction::coverage: coverage.add(site); break;
+      case Reduction::force: force.add(site, row.recording != recording); break;
+      case Reduction::none: none.add(site); break;
+    }
+    recording = row.recording;
+  });
+  if (!status) return status.error();
+  switch (reduction) {
+    case Reduction::coverage:
+      set.coverage_step = coverage.step();
+      set.sites = coverage.take();
+      break;
+    case Reduction::force:
+      set.reduction_force_N = force.threshold_N();
+      set.sites = force.take();
+      break;
+    case Reduction::none:
+      set.sites = none.take();
+      break;
+  }
+  return set;
+}
+
+}  // namespace palpate

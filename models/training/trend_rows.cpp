@@ -1,0 +1,97 @@
+#include "models/training/trend_rows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "models/model/bernstein.h"
+#include "models/model/trend.h"
+
+namespace palpate {
+namespace {
+
+template <typename T>
+void keep_every_other(std::vector<T>& values, std::size_t width) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i * width < values.size(); i += 2, ++kept) {
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                values.begin() + static_cast<std::ptrdiff_t>(kept * width));
+  }
+  values.resize(kept * width);
+}
+
+}  // namespace
+
+std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m) {
+  std::vector<FeatureSpec> specs(kBranchTerms);
+  for (std::size_t k = 0; k < kBranchTerms; ++k) {
+    std::array<double, kBranchTerms> one{};
+    one[k] = 1.0;
+    specs[k] = {FeatureKind::maxwell_branch, relaxation_time_s, combined_drive(one.data(), reference_depth_m)};
+  }
+  return specs;
+}
+
+DriveCurve combined_drive(const double* weights, double reference_depth_m) {
+  DriveCurve drive;
+  drive.reference_depth_m = reference_depth_m;
+  for (std::size_t k = 0; k < kBranchTerms; ++k) {
+    const auto power = bernstein_integral<kBranchTerms - 1>(k);
+    for (std::size_t j = 0; j < power.size(); ++j) drive.coefficient_N[j] += weights[k] * power[j];
+  }
+  return drive;
+}
+
+TrendRows::TrendRows(double reference_depth_m, double thinning_velocity_m_per_s,
+                     std::vector<double> relaxation_times_s)
+    : reference_depth_m_(reference_depth_m),
+      thinning_velocity_m_per_s_(thinning_velocity_m_per_s),
+      relaxation_times_s_(std::move(relaxation_times_s)) {
+  for (const double time_s : relaxation_times_s_) branches_.emplace_back(branch_basis(time_s, reference_depth_m));
+  columns_ = kElasticCoefficients + viscous_columns() + kBranchTerms * relaxation_times_s_.size();
+}
+
+std::size_t TrendRows::viscous_columns() const { return thinning_velocity_m_per_s_ > 0.0 ? 2 * kViscosityCoefficients : 0; }
+
+void TrendRows::begin_recording() {
+  for (FeatureFilter& branch : branches_) branch.reset();
+}
+
+void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke) {
+  for (FeatureFilter& branch : branches_) branch.update(sample, motion);
+  if (!(sample.position_m > 0.0)) return;
+  if (phase_++ % stride_ != 0) return;
+  const double depth_m = std::max(0.0, motion.position_m);
+  const double velocity_m_per_s = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
+  const double u = std::min(depth_m / reference_depth_m_, 1.0);
+  for (std::size_t k = 0; k < kElasticCoefficients; ++k) {
+    values_.push_back(u * polynomial(bernstein_integral<kElasticCoefficients - 1>(k), u));
+  }
+  if (viscous_columns() > 0) {
+    for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, thinning_velocity_m_per_s_)}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
+        values_.push_back(v * polynomial(bernstein<kViscosityCoefficients - 1>(k), u));
+      }
+    }
+  }
+  for (const FeatureFilter& branch : branches_) {
+    const auto& branch_values = branch.vector().values;
+    values_.insert(values_.end(), branch_values.begin(), branch_values.begin() + kBranchTerms);
+  }
+  force_N_.push_back(force_N);
+  velocity_m_per_s_.push_back(velocity_m_per_s);
+  depth_m_.push_back(depth_m);
+  stroke_.push_back(stroke);
+  if (count() > kMaximumTrendRows) halve();
+}
+
+void TrendRows::halve() {
+  keep_every_other(values_, columns_);
+  keep_every_other(force_N_, 1);
+  keep_every_other(velocity_m_per_s_, 1);
+  keep_every_other(depth_m_, 1);
+  keep_every_other(stroke_, 1);
+  stride_ *= 2;
+  phase_ = 1;  // the newest row was kept
+}
+
+}  // namespace palpate

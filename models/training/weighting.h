@@ -1,0 +1,30 @@
+// How much each sample's error counts in a fit.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/tick/jnd.h"
+
+namespace palpate {
+
+enum class Weighting {
+  jnd,       // 1 / JND(f): errors count as a hand feels them (default)
+  relative,  // 1 / |f|, the paper's eq. (8), floored where it would explode
+  none,      // 1
+};
+
+// Below this force the paper's 1/|f| is held constant: 50 mN, the step of its
+// own reduction, under which it has no distinct samples.
+inline constexpr double kRelativeWeightFloor_N = 0.05;
+
+inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
+  switch (weighting) {
+    case Weighting::jnd: return 1.0 / jnd.at(force_N);
+    case Weighting::relative: return 1.0 / std::max(std::abs(force_N), kRelativeWeightFloor_N);
+    case Weighting::none: return 1.0;
+  }
+  return 1.0;
+}
+
+}  // namespace palpate

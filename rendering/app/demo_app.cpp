@@ -1,0 +1,295 @@
+#include "rendering/app/demo_app.h"
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/live/pacer.h"
+#include "rendering/app/screenshot.h"
+#include "scenes/scene/local_time.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kNsPerS = 1e9;
+constexpr float kSceneShare = 0.6F;
+constexpr double kToast_s = 6.0;
+constexpr double kProblemToast_s = 12.0;
+constexpr std::size_t kMostToasts = 4;
+
+// Where real-time priority was refused, the picture steps back for the force:
+// that needs no privilege.
+void yield_to_haptics(const RtStatus& granted) {
+  constexpr int kPictureNice = 5;
+  if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
+  std::unique_ptr<DemoApp> app(new DemoApp);
+  if (const Status status = app->set_up(request); !status) return status.error();
+  return app;
+}
+
+Status DemoApp::set_up(const DemoRequest& request) {
+  view_.kiosk = request.kiosk;
+  view_.theme = request.kiosk ? Theme::dark : Theme::light;
+  // Without a display nothing else needs to start.
+  if (Status status = Window::find_display(); !status) return status;
+  SessionRequest wanted = request.session;
+  wanted.position_only = wanted.position_only || request.kiosk;  // something that can be told apart
+  auto session = LiveSession::open(wanted);
+  if (!session) return session.error();
+  session_ = std::move(*session);
+  yield_to_haptics(session_->scheduling());
+  // After the haptics thread: the driver's threads take over this one's priority.
+  auto window = Window::open(request.window);
+  if (!window) return window.error();
+  window_ = std::move(*window);
+  auto blocks = BlockView::create(session_->scene());
+  if (!blocks) return blocks.error();
+  blocks_ = std::move(*blocks);
+  listen();
+  if (find_font().empty())
+    toasts_.push_back({"no font found; install fonts-dejavu-core", true, steady_now_s() + kProblemToast_s});
+  frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
+  return {};
+}
+
+void DemoApp::listen() {
+  glfwSetWindowUserPointer(window_->handle(), this);
+  glfwSetDropCallback(window_->handle(), [](GLFWwindow* handle, int count, const char** paths) {
+    auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
+    app->drop_files({paths, paths + count});
+  });
+  glfwSetKeyCallback(window_->handle(), [](GLFWwindow* handle, int key, int, int action, int modifiers) {
+    auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
+    if (action == GLFW_PRESS) app->press_key(key, modifiers);
+  });
+  // After these callbacks, which it calls behind its own.
+  ui_ = std::make_unique<UiContext>(window_->handle());
+}
+
+DemoApp::~DemoApp() {
+  // A fit that cannot be stopped at once is not waited for in sight.
+  if (window_ != nullptr) glfwHideWindow(window_->handle());
+  session_.reset();
+  blocks_.reset();
+}
+
+bool DemoApp::closing() const noexcept {
+  return view_.kiosk ? leaving_ : glfwWindowShouldClose(window_->handle()) != 0;
+}
+
+void DemoApp::close() {
+  leaving_ = true;
+  glfwSetWindowShouldClose(window_->handle(), GLFW_TRUE);
+}
+
+void DemoApp::drop_files(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) session_->load_file(path);
+}
+
+SceneArea DemoApp::scene_area() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  return {{0.0F, 0.0F}, {std::round(kSceneShare * size.x), size.y}};
+}
+
+void DemoApp::frame() {
+  glfwPollEvents();
+  const double now_s = steady_now_s();
+  session_->update();
+  take_notices(now_s);
+  blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
+  frame_began_s_ = now_s;
+  draw();
+  handle_keys();
+  handle_mouse();
+  window_->show_frame();
+  count_frame(steady_now_s());
+}
+
+void DemoApp::draw() {
+  const Framebuffer picture = window_->framebuffer();
+  style_.update(picture.height, picture.content_scale, view_.kiosk, view_.theme);
+  ui_->begin_frame();
+  draw_blocks();
+  clear_panel();
+  const SceneArea area = scene_area();
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_, [this](Command command) { run(command); });
+  const ImVec2 at(area.size.x, 0.0F);
+  const ImVec2 size(all.x - area.size.x, all.y);
+  if (view_.kiosk) {
+    open_day_.draw(*session_, view_, style_, at, size);
+  } else {
+    panel_.draw(*session_, view_, style_, frames_, at, size);
+  }
+  ui_->end_frame();
+}
+
+void DemoApp::draw_blocks() {
+  const SceneArea area = scene_area();
+  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+  Viewport viewport;
+  viewport.width = static_cast<int>(area.size.x * scale.x);
+  viewport.height = static_cast<int>(area.size.y * scale.y);
+  const std::vector<BlockPose> poses = block_poses();
+  // More models become ready: more blocks.
+  if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
+  blocks_framed_ = poses.size();
+  blocks_->draw(poses, viewport, view_.theme);
+}
+
+// Clearing costs less than filling a rectangle, where the processor draws.
+void DemoApp::clear_panel() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto left = static_cast<int>(scene_area().size.x * io.DisplayFramebufferScale.x);
+  const auto right = static_cast<int>(io.DisplaySize.x * io.DisplayFramebufferScale.x);
+  const auto height = static_cast<int>(io.DisplaySize.y * io.DisplayFramebufferScale.y);
+  const Rgb& panel = style_.colours().panel;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(left, 0, right - left, height);
+  glClearColor(panel.r, panel.g, panel.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+std::vector<BlockPose> DemoApp::block_poses() const {
+  const LoopSnapshot& newest = session_->newest();
+  BlockPose pose;
+  pose.tool_m = static_cast<float>(newest.tick.position_m);
+  std::vector<BlockPose> poses;
+  for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
+    const SlotView& model = session_->slot(slot);
+    pose.dent_m = static_cast<float>(model.dent_m);
+    pose.error_over_jnd = static_cast<float>(model.dent_error_over_jnd);
+    pose.force_N = static_cast<float>(model.force_N);
+    pose.arrow = method_colour(model.method, view_.theme);
+    pose.chosen = slot == session_->selected();
+    if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
+    pose.judged = view_.hidden_choice == 0;
+    poses.push_back(pose);
+  }
+  // Before the first model is ready: a block nobody has a model of yet.
+  if (poses.empty()) {
+    pose.dent_m = std::max(0.0F, pose.tool_m);
+    pose.judged = false;
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void DemoApp::count_frame(double now_s) {
+  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
+  frames_.seconds += now_s - last_frame_s_;
+  ++frames_.frames;
+  ++frames_this_second_;
+  last_frame_s_ = now_s;
+  if (now_s - second_began_s_ < 1.0) return;
+  frames_.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
+  frames_this_second_ = 0;
+  second_began_s_ = now_s;
+}
+
+void DemoApp::take_notices(double now_s) {
+  for (const Notice& notice : session_->take_notices()) {
+    toasts_.push_back({notice.text, notice.problem, now_s + (notice.problem ? kProblemToast_s : kToast_s)});
+  }
+  std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
+  if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
+}
+
+void DemoApp::run(Command command) {
+  switch (command) {
+    case Command::next_block_count:
+      view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
+      break;
+    case Command::pause_curves:
+      view_.paused = !view_.paused;
+      view_.paused_at_s = steady_now_s();
+      view_.scrolled_back_s = 0.0;
+      break;
+    case Command::reset_figures:
+      session_->reset_figures();
+      break;
+    case Command::next_reference:
+      next_reference();
+      break;
+    case Command::record:
+      record();
+      break;
+    case Command::file_list:
+      view_.file_list = !view_.file_list;
+      break;
+    case Command::zero:
+      session_->start_zeroing();
+      break;
+    case Command::dead_man:
+      next_dead_man();
+      break;
+    case Command::details:
+      view_.details = !view_.details;
+      break;
+    case Command::theme:
+      view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light;
+      break;
+    case Command::help:
+      view_.help = !view_.help;
+      break;
+    case Command::fullscreen:
+      window_->set_fullscreen(!window_->fullscreen());
+      break;
+  }
+}
+
+void DemoApp::record() {
+  if (session_->recording().active) {
+    session_->stop_recording();
+    return;
+  }
+  const std::string path = local_time_text("session-%Y%m%d-%H%M%S.csv");
+  const Status status = session_->start_recording(path);
+  const double until_s = steady_now_s() + (status ? kToast_s : kProblemToast_s);
+  toasts_.push_back({status ? "recording to " + path : status.error().message, !status, until_s});
+}
+
+void DemoApp::next_dead_man() {
+  switch (session_->dead_man()) {
+    case DeadMan::off:
+      session_->use_dead_man(DeadMan::key);
+      break;
+    case DeadMan::key:
+      session_->use_dead_man(DeadMan::grip);
+      break;
+    case DeadMan::grip:
+      session_->use_dead_man(DeadMan::off);
+      break;
+  }
+}
+
+void DemoApp::next_reference() {
+  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->reference());
+  const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
+  for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
+    const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];
+    if (!session_->has_reference(kind)) continue;
+    session_->use_reference(kind);
+    return;
+  }
+}
+
+Status DemoApp::screenshot(const std::string& path, bool overwrite) {
+  draw();
+  return save_screenshot(*window_, path, overwrite);
+}
+
+}  // namespace palpate

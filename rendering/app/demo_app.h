@@ -1,0 +1,103 @@
+// The window program without its command line: a session, a window, and one
+// frame after the other.
+//
+// Thread guarantee: main thread only.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "rendering/picture/block_view.h"
+#include "rendering/panels/open_day.h"
+#include "rendering/panels/panel.h"
+#include "rendering/panels/scene_overlay.h"
+#include "rendering/ui/ui_context.h"
+#include "rendering/ui/ui_style.h"
+#include "rendering/panels/view_state.h"
+#include "rendering/app/window.h"
+#include "scenes/live/live_session.h"
+
+namespace palpate {
+
+struct DemoRequest {
+  SessionRequest session;
+  WindowRequest window;
+  bool kiosk = false;
+};
+
+class DemoApp {
+ public:
+  // Errors: those of LiveSession::open and Window::open, a broken shader.
+  static Result<std::unique_ptr<DemoApp>> create(const DemoRequest& request);
+  DemoApp(const DemoApp&) = delete;
+  DemoApp& operator=(const DemoApp&) = delete;
+  ~DemoApp();
+
+  // Events, session, picture, panel; shows it and waits for the next frame's time.
+  void frame();
+  bool closing() const noexcept;
+  void close();
+  // Draws the present state once more and saves it.
+  Status screenshot(const std::string& path, bool overwrite);
+
+  LiveSession& session() noexcept { return *session_; }
+  ViewState& view() noexcept { return view_; }
+  const FrameFigures& frames() const noexcept { return frames_; }
+  const std::vector<Toast>& toasts() const noexcept { return toasts_; }
+  Window& window() noexcept { return *window_; }
+
+  // What events do; GLFW's callbacks call them. A key counts even when it was
+  // pressed and let go within a frame.
+  void drop_files(const std::vector<std::string>& paths);
+  void press_key(int key, int modifiers);
+  void run(Command command);
+
+ private:
+  DemoApp() = default;
+  Status set_up(const DemoRequest& request);
+  void listen();
+  struct KeyPress {
+    int key = 0;  // GLFW's
+    int modifiers = 0;
+  };
+  void handle_keys();
+  void handle_key(const KeyPress& press);
+  void replay_key(int key);
+  void handle_mouse();
+  void move_tool_to_mouse();
+  void take_notices(double now_s);
+  void draw();
+  void draw_blocks();
+  void clear_panel();
+  void count_frame(double now_s);
+  std::vector<BlockPose> block_poses() const;
+  SceneArea scene_area() const;
+  void record();
+  void next_reference();
+  void next_dead_man();
+
+  // What lies on the window goes before it.
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<LiveSession> session_;
+  std::unique_ptr<BlockView> blocks_;
+  std::unique_ptr<UiContext> ui_;
+  UiStyle style_;
+  Panel panel_;
+  SceneOverlay overlay_;
+  OpenDay open_day_{1};
+  ViewState view_;
+  FrameFigures frames_;
+  std::vector<Toast> toasts_;
+  std::vector<KeyPress> keys_;  // since the last frame
+  double frame_began_s_ = 0.0;
+  double last_frame_s_ = 0.0;  // its end
+  double second_began_s_ = 0.0;
+  std::uint64_t frames_this_second_ = 0;
+  std::size_t blocks_framed_ = 1;
+  bool orbiting_ = false;
+  bool leaving_ = false;  // a kiosk's only way out
+};
+
+}  // namespace palpate

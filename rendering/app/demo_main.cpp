@@ -1,0 +1,164 @@
+// palpate-demo: the window program's command line.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "engine/base/atomic_file.h"
+#include "engine/live/pacer.h"
+#include "rendering/app/demo_app.h"
+#include "rendering/app/stats_file.h"
+#include "rendering/app/study_app.h"
+#include "scenes/study/prepare_strokes.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+// A picture without --seconds: by then all models are fitted and the curves full.
+constexpr double kPictureAfter_s = 12.0;
+// No block to press: two forces to tell apart.
+constexpr const char* kStudyScene = "jnd_study";
+
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
+
+struct Arguments {
+  DemoRequest demo;
+  double seconds = 0.0;  // 0: until closed
+  std::string screenshot;
+  std::string stats;
+  bool force = false;
+  bool discriminates = false;
+  std::string recording;  // to discriminate; empty: virtual
+};
+
+// The first signal ends the program as closing the window does, so that the force
+// goes to zero and a recording is saved; the second ends it at once.
+void ask_to_stop(int signal) {
+  stop_asked.store(true, std::memory_order_relaxed);
+  std::signal(signal, SIG_DFL);
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "error: %s\n", message.c_str());
+  return kFailed;
+}
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  SessionRequest& session = arguments.demo.session;
+  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`; jnd_study measures a hand")
+      ->capture_default_str();
+  app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")
+      ->capture_default_str();
+  app.add_option("--model", session.models,
+                 "Models: files, or direct, voxel, random, kdtree, greedy [the scene's]")
+      ->type_name("FILE_OR_METHOD");
+  app.add_option_function<std::string>(
+         "--discriminate",
+         [&arguments](const std::string& recording) {
+           arguments.discriminates = true;
+           arguments.recording = recording;
+         },
+         "Ask a hand which is which: a stroke of this recording [a virtual one], rendered by two models, or by "
+         "one and as recorded")
+      ->type_name("[REC.csv]")
+      ->expected(0, 1);
+  app.add_option("--seconds", arguments.seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
+  app.add_option("--screenshot", arguments.screenshot,
+                 "Save the window as it is at the end [after 12 s], then end")
+      ->type_name("PNG");
+  app.add_option("--stats", arguments.stats, "Write how the loop, the picture and the models did, at the end")
+      ->type_name("JSON");
+  app.add_flag("--fullscreen", arguments.demo.window.fullscreen, "Fill the screen");
+  app.add_flag("--kiosk", arguments.demo.kiosk, "Open day: full screen, big text, Ctrl+Shift+Q ends it");
+  app.add_flag("--force", arguments.force, "Replace existing files");
+}
+
+// A name that cannot be written is told now and not at the end.
+Status check_outputs(const Arguments& arguments) {
+  for (const std::string& path : {arguments.screenshot, arguments.stats}) {
+    if (path.empty()) continue;
+    if (const auto trial = AtomicFile::create(path, arguments.force); !trial) return trial.error();
+  }
+  return {};
+}
+
+// Frame after frame until closed, stopped, or so many seconds have passed.
+template <typename App>
+void run_frames(App& app, double seconds) {
+  const double start_s = steady_now_s();
+  while (!app.closing() && !stop_asked.load(std::memory_order_relaxed)) {
+    app.frame();
+    if (seconds > 0.0 && steady_now_s() - start_s >= seconds) break;
+  }
+}
+
+Status run_study(const Arguments& arguments) {
+  StudyRequest request;
+  if (arguments.discriminates) {
+    const auto scene = load_scene(arguments.demo.session.scene);
+    if (!scene) return scene.error();
+    auto strokes = prepare_strokes({*scene, arguments.demo.session.models, arguments.recording});
+    if (!strokes) return strokes.error();
+    request.strokes = std::move(*strokes);
+  }
+  request.device = arguments.demo.session.device;
+  request.window = arguments.demo.window;
+  auto app = StudyApp::create(request);
+  if (!app) return app.error();
+  run_frames(**app, arguments.seconds);
+  return arguments.screenshot.empty() ? Status() : (*app)->screenshot(arguments.screenshot, arguments.force);
+}
+
+Status run_demo(Arguments& arguments) {
+  if (Status status = check_outputs(arguments); !status) return status;
+  if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
+  if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
+  if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
+  auto app = DemoApp::create(arguments.demo);
+  if (!app) return app.error();
+  run_frames(**app, arguments.seconds);
+  if (!arguments.screenshot.empty()) {
+    if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
+  }
+  if (arguments.stats.empty()) return {};
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()),
+                               arguments.force);
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it",
+               "palpate-demo");
+  app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    std::fprintf(stderr, "error: %s\nrun `palpate-demo --help`\n", error.what());
+    return kWrongUsage;
+  }
+  const Status status = run_demo(arguments);
+  return status ? kDone : fail(status.error().message);
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, palpate::ask_to_stop);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return palpate::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    return palpate::fail(std::string("unexpected: ") + error.what());
+  }
+}

@@ -1,0 +1,72 @@
+#include "rendering/app/stats_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMsPerUs = 1e-3;
+
+Json times_json(const TimePercentiles& times) {
+  return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p99_9", times.p99_9_us}, {"max", times.max_us}};
+}
+
+Json haptics_json(const LiveSession& session) {
+  const LoopStatistics statistics = session.statistics();
+  const RtStatus& granted = session.scheduling();
+  return {{"ticks", statistics.ticks},
+          {"missed_deadlines", statistics.missed_deadlines},
+          {"late_by_a_period", statistics.late_by_a_period},
+          {"lateness_us", times_json(statistics.lateness)},
+          {"tick_us", times_json(statistics.tick)},
+          {"scheduling", granted.scheduling},
+          {"scheduling_fix", granted.fix}};
+}
+
+Json graphics_json(const FrameFigures& frames) {
+  const TimePercentiles times = frames.times.percentiles();
+  return {{"frames", frames.frames},
+          {"fps", frames.seconds > 0.0 ? static_cast<double>(frames.frames) / frames.seconds : 0.0},
+          {"frame_ms",
+           {{"p50", kMsPerUs * times.p50_us},
+            {"p99", kMsPerUs * times.p99_us},
+            {"max", kMsPerUs * times.max_us}}}};
+}
+
+// Figures over no sample are null: there is no number that would be true.
+Json model_json(const SlotView& slot) {
+  const bool judged = slot.errors.samples() > 0;
+  return {{"name", slot.name},
+          {"method", slot.method},
+          {"centres", slot.centres},
+          {"samples", slot.errors.samples()},
+          {"within_jnd", judged ? Json(slot.errors.within_jnd()) : Json(nullptr)},
+          {"rms_error_N", judged ? Json(slot.errors.rms_error_N()) : Json(nullptr)},
+          {"max_error_over_jnd", judged ? Json(slot.errors.max_error_over_jnd()) : Json(nullptr)},
+          {"evaluation_ns", slot.evaluation_ns > 0.0 ? Json(slot.evaluation_ns) : Json(nullptr)}};
+}
+
+}  // namespace
+
+std::string stats_text(const LiveSession& session, const FrameFigures& frames) {
+  Json models = Json::array();
+  for (std::size_t i = 0; i < session.slot_count(); ++i) {
+    if (session.slot(i).state == SlotState::ready) models.push_back(model_json(session.slot(i)));
+  }
+  Json faults = Json::array();
+  for (const FaultEvent& fault : session.faults()) {
+    faults.push_back({{"loop_time_s", fault.loop_time_s}, {"text", fault.text}, {"count", fault.count}});
+  }
+  const Json all = {{"haptics", haptics_json(session)},
+                    {"graphics", graphics_json(frames)},
+                    {"models", models},
+                    {"faults", faults},
+                    {"scene", session.scene().name},
+                    {"device", session.device_name()},
+                    {"reference", session.reference_words()}};
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace palpate

@@ -1,0 +1,318 @@
+#include "rendering/app/study_app.h"
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cctype>
+#include <utility>
+
+#include "rendering/app/screenshot.h"
+#include "scenes/scene/local_time.h"
+#include "scenes/study/discrimination.h"
+#include "scenes/study/prepare_strokes.h"
+
+namespace palpate {
+namespace {
+
+constexpr float kColumnShare = 0.62F;  // of the window's width
+constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
+constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
+
+constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
+                        ImGuiWindowFlags_NoNav;
+
+// Between what belongs together and what comes next.
+void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
+
+}  // namespace
+
+Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) {
+  if (Status status = Window::find_display(); !status) return status.error();
+  auto window = Window::open(request.window);
+  if (!window) return window.error();
+  std::unique_ptr<StudyApp> app(new StudyApp(request));
+  app->window_ = std::move(*window);
+  GLFWwindow* handle = app->window_->handle();
+  glfwSetWindowUserPointer(handle, app.get());
+  glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
+    if (action == GLFW_PRESS) static_cast<StudyApp*>(glfwGetWindowUserPointer(from))->press_key(key);
+  });
+  glfwSetCharCallback(handle, [](GLFWwindow* from, unsigned letter) {
+    if (letter < 0x80) static_cast<StudyApp*>(glfwGetWindowUserPointer(from))->type(static_cast<char>(letter));
+  });
+  // After these callbacks, which it calls behind its own.
+  app->ui_ = std::make_unique<UiContext>(handle);
+  return app;
+}
+
+StudyApp::~StudyApp() { study_.reset(); }
+
+bool StudyApp::closing() const noexcept { return glfwWindowShouldClose(window_->handle()) != 0; }
+
+void StudyApp::begin(const std::string& code) {
+  LiveStudyRequest request;
+  request.device = request_.device;
+  request.realtime = request_.realtime;
+  request.header.subject = code;
+  request.header.procedure = procedure_;
+  request.path = "study-" + code + ".csv";
+  if (request_.strokes != nullptr) {
+    request.header.procedure = ProcedureKind::discriminate;
+    request.header.timing = stroke_timing(*request_.strokes);
+    request.header.strokes = request_.strokes;
+    request.path = "discriminate-" + code + ".csv";
+  }
+  problem_.clear();
+  auto study = LiveStudy::open(request);
+  if (study) {
+    study_ = std::move(*study);
+  } else {
+    problem_ = study.error().message;
+  }
+}
+
+void StudyApp::frame() {
+  glfwPollEvents();
+  if (study_ != nullptr) study_->update();
+  handle_keys();
+  draw();
+  window_->show_frame();
+}
+
+void StudyApp::handle_keys() {
+  for (const Typed& typed : std::exchange(typed_, {})) {
+    if (study_ == nullptr && typed.key == 0) {
+      if (code_.size() < kLongestCode && std::isalnum(static_cast<unsigned char>(typed.letter)) != 0) {
+        code_ += static_cast<char>(std::toupper(static_cast<unsigned char>(typed.letter)));
+      }
+    } else if (study_ == nullptr) {
+      take_key_of_entry(typed.key);
+    } else {
+      take_key(typed.key);
+    }
+  }
+}
+
+void StudyApp::take_key_of_entry(int key) {
+  if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_);
+  if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
+  if (key == GLFW_KEY_TAB) {
+    procedure_ = procedure_ == ProcedureKind::constant ? ProcedureKind::adaptive : ProcedureKind::constant;
+  }
+}
+
+void StudyApp::take_key(int key) {
+  StudySession& session = study_->session();
+  switch (key) {
+    case GLFW_KEY_ESCAPE:
+      session.abort();
+      break;
+    case GLFW_KEY_Y:
+      session.accept_consent(local_time_text("%Y-%m-%d %H:%M"));
+      break;
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+      session.proceed();
+      break;
+    case GLFW_KEY_1:
+    case GLFW_KEY_KP_1:
+      session.answer(false);
+      break;
+    case GLFW_KEY_2:
+    case GLFW_KEY_KP_2:
+      session.answer(true);
+      break;
+    case GLFW_KEY_R:
+      session.retry();
+      break;
+    case GLFW_KEY_Z:
+      study_->start_zeroing();
+      break;
+    default:
+      break;
+  }
+}
+
+void StudyApp::draw() {
+  const Framebuffer picture = window_->framebuffer();
+  style_.update(picture.height, picture.content_scale, true, kTheme);
+  ui_->begin_frame();
+  const Rgb& background = style_.colours().background;
+  glViewport(0, 0, picture.width, picture.height);
+  glClearColor(background.r, background.g, background.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5F * (1.0F - kColumnShare) * all.x, 0.15F * all.y});
+  ImGui::SetNextWindowSize({kColumnShare * all.x, 0.82F * all.y});
+  ImGui::Begin("study", nullptr, kFixed);
+  if (study_ == nullptr) {
+    draw_entry();
+  } else {
+    draw_session();
+  }
+  ImGui::End();
+  ui_->end_frame();
+}
+
+// Its key does the same.
+void StudyApp::button(const char* label, int key) {
+  if (ImGui::Button(label)) press_key(key);
+}
+
+void StudyApp::draw_trouble(const std::string& words) const {
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(style_.colours().fault));
+  ImGui::TextWrapped("%s", words.c_str());
+  ImGui::PopStyleColor();
+}
+
+void StudyApp::draw_entry() {
+  ImGui::PushFont(style_.fonts().heading);
+  ImGui::TextWrapped("%s", request_.strokes == nullptr ? "How small a difference can a hand feel?"
+                           : request_.strokes->reference == kRecordedForce
+                               ? "Can a hand tell the model from the block?"
+                               : "Can a hand tell one model from the other?");
+  ImGui::PopFont();
+  ImGui::Spacing();
+  ImGui::TextWrapped("%s The code stands for the person; no name is kept.",
+                     request_.strokes != nullptr
+                         ? "Three pushes, one after the other: which of the last two was like the first? 100 trials."
+                         : "Two pushes, one after the other: which was larger?");
+  gap();
+  ImGui::PushFont(style_.fonts().heading);
+  draw_code();
+  ImGui::PopFont();
+  if (request_.strokes == nullptr) draw_procedures();
+  gap();
+  ImGui::PushFont(style_.fonts().heading);
+  button("Begin (Enter)", GLFW_KEY_ENTER);
+  ImGui::PopFont();
+  ImGui::TextDisabled("A code that has begun goes on after its last answer.");
+  if (!problem_.empty()) draw_trouble(problem_);
+}
+
+void StudyApp::draw_code() {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 padding = ImGui::GetStyle().FramePadding;
+  const float width = 8.0F * ImGui::GetFontSize(), height = ImGui::GetFrameHeight();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + width, at.y + height}, ink(style_.colours().raised), ImGui::GetStyle().FrameRounding);
+  list.AddText({at.x + padding.x, at.y + padding.y}, ink(style_.colours().text), (code_ + "|").c_str());
+  ImGui::Dummy({width, height});
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("subject code, such as S01");
+}
+
+void StudyApp::draw_procedures() {
+  gap();
+  const auto choice = [&](const char* label, ProcedureKind kind) {
+    if (ImGui::RadioButton(label, procedure_ == kind)) procedure_ = kind;
+  };
+  choice("constant stimuli, as in the paper: 320 trials", ProcedureKind::constant);
+  choice("adaptive (QUEST+): 80 trials", ProcedureKind::adaptive);
+  ImGui::TextDisabled("Tab changes the procedure");
+}
+
+void StudyApp::draw_session() {
+  const StudyView view = study_->session().view();
+  if (view.trials > 0 && view.state != StudyState::consent) {
+    ImGui::TextDisabled("%s   %zu of %zu", view.training ? "training" : "study", view.answered, view.trials);
+    const float share = static_cast<float>(view.answered) / static_cast<float>(view.trials);
+    ImGui::ProgressBar(share, {-1.0F, 0.4F * ImGui::GetFontSize()}, "");
+  }
+  ImGui::Spacing();
+  ImGui::PushFont(style_.fonts().heading);
+  ImGui::TextWrapped("%s", view.message.c_str());
+  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0 && !view.reminder) {
+    ImGui::TextDisabled(view.was_correct ? "The last answer was right." : "The last answer was wrong.");
+  }
+  gap();
+  if (view.state == StudyState::presenting || view.state == StudyState::answering) draw_intervals(view);
+  draw_choices(view);
+  if (view.state == StudyState::done) draw_result();
+  ImGui::PopFont();
+  gap();
+  if (const std::string words = study_->device_words(); !words.empty())
+    ImGui::TextWrapped("%s", words.c_str());
+  if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
+  if (!study_->device_pushes()) draw_trouble("No haptic device: nobody can feel this, it is a rehearsal.");
+}
+
+// Of strokes, beside what was predicted.
+void StudyApp::draw_result() {
+  if (request_.strokes == nullptr) return;
+  const StudySession& session = study_->session();
+  const Discrimination result =
+      discrimination_of(session.header().subject, session.store().records(), *request_.strokes);
+  ImGui::Spacing();
+  ImGui::TextWrapped("%s against %s, %s", request_.strokes->comparison.c_str(),
+                     request_.strokes->reference.c_str(), request_.strokes->recording.c_str());
+  ImGui::TextWrapped("%s", discrimination_verdict(result, *request_.strokes).c_str());
+}
+
+// Which push it is, as boxes that light up: the reference when there is one, and two.
+void StudyApp::draw_intervals(const StudyView& view) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImFont* font = style_.fonts().big;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float side = 2.4F * font->FontSize;
+  const int first = view.has_reminder ? 0 : 1;
+  for (int interval = first; interval <= 2; ++interval) {
+    const float x = at.x + 1.3F * side * static_cast<float>(interval - first);
+    const bool on = interval == 0 ? view.reminder : view.interval == interval;
+    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
+                       ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
+    const char text[2] = {interval == 0 ? 'R' : static_cast<char>('0' + interval), '\0'};
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
+    list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
+                 ink(style_.colours().text), text);
+  }
+  ImGui::Dummy({(view.has_reminder ? 3.6F : 2.3F) * side, side});
+  gap();
+}
+
+void StudyApp::draw_choices(const StudyView& view) {
+  switch (view.state) {
+    case StudyState::consent:
+      button("I have read this and agree (Y)", GLFW_KEY_Y);
+      break;
+    case StudyState::ready:
+      button("Go on (Enter)", GLFW_KEY_ENTER);
+      break;
+    case StudyState::rest:
+      if (view.rest_ticks_left > 0) {
+        ImGui::TextDisabled("%llu s left",
+                            static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
+      } else {
+        button("Go on (Enter)", GLFW_KEY_ENTER);
+      }
+      break;
+    case StudyState::answering:
+      button("The first (1)", GLFW_KEY_1);
+      ImGui::SameLine();
+      button("The second (2)", GLFW_KEY_2);
+      break;
+    case StudyState::unsaved:
+      button("Try again (R)", GLFW_KEY_R);
+      break;
+    case StudyState::presenting:
+    case StudyState::done:
+    case StudyState::aborted:
+      break;
+  }
+  if (view.state == StudyState::done || view.state == StudyState::aborted) return;
+  gap();
+  ImGui::PushFont(style_.fonts().body);
+  button("End the session (Esc)", GLFW_KEY_ESCAPE);
+  ImGui::PopFont();
+}
+
+Status StudyApp::screenshot(const std::string& path, bool overwrite) {
+  draw();
+  return save_screenshot(*window_, path, overwrite);
+}
+
+}  // namespace palpate

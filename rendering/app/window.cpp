@@ -1,0 +1,142 @@
+#include "rendering/app/window.h"
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "engine/live/pacer.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::int64_t kFrame_ns = 1'000'000'000 / 60;
+// Empty frames to see whether the driver waits for the display: one that does,
+// at any rate up to 200 Hz, needs 5 ms or more for each.
+constexpr int kTrialFrames = 6;
+constexpr std::int64_t kWaited_ns = 5'000'000;
+constexpr int kSmallestWidth = 800;
+constexpr int kSmallestHeight = 480;
+
+std::string& last_problem() {
+  static std::string text;
+  return text;
+}
+
+void keep_problem(int, const char* text) { last_problem() = text; }
+
+bool set(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr && *value != '\0';
+}
+
+Error no_display() {
+  const std::string display =
+      set("DISPLAY") ? "DISPLAY=" + std::string(std::getenv("DISPLAY")) : "DISPLAY is not set";
+  return Error{"no display (" + display + ": " + last_problem() +
+               "), expected an X11 or Wayland session; run it on a desktop, under xvfb-run, or use `palpate` "
+               "without a window"};
+}
+
+}  // namespace
+
+Status Window::find_display() {
+  glfwSetErrorCallback(keep_problem);
+  if (!set("DISPLAY") && !set("WAYLAND_DISPLAY")) last_problem() = "and neither is WAYLAND_DISPLAY";
+  if ((!set("DISPLAY") && !set("WAYLAND_DISPLAY")) || glfwInit() != GLFW_TRUE) return no_display();
+  return {};
+}
+
+Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  GLFWmonitor* monitor = request.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
+  const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+  GLFWwindow* handle =
+      glfwCreateWindow(mode != nullptr ? mode->width : request.width,
+                       mode != nullptr ? mode->height : request.height, "Palpate", monitor, nullptr);
+  if (handle == nullptr) {
+    const Error error{"no window with OpenGL 3.3 (" + last_problem() +
+                      "); update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw without one"};
+    glfwTerminate();
+    return error;
+  }
+  glfwSetWindowSizeLimits(handle, kSmallestWidth, kSmallestHeight, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwMakeContextCurrent(handle);
+  if (epoxy_gl_version() < 33) {
+    const Error error{"found OpenGL " + std::to_string(epoxy_gl_version() / 10) + "." +
+                      std::to_string(epoxy_gl_version() % 10) + ", expected 3.3; update the graphics driver"};
+    glfwDestroyWindow(handle);
+    glfwTerminate();
+    return error;
+  }
+  std::unique_ptr<Window> window(new Window(handle));
+  window->paced_by_display_ = window->display_sets_pace();
+  return window;
+}
+
+Window::~Window() {
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+bool Window::display_sets_pace() {
+  glfwSwapInterval(1);
+  glClearColor(0.08F, 0.09F, 0.10F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glfwSwapBuffers(window_);
+  glFinish();
+  const std::int64_t start_ns = steady_now_ns();
+  for (int i = 0; i < kTrialFrames; ++i) {
+    // A corner only: the time it takes is the driver's waiting, not the drawing.
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, 8, 8);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+    glfwSwapBuffers(window_);
+    glFinish();
+  }
+  return steady_now_ns() - start_ns > kTrialFrames * kWaited_ns;
+}
+
+Framebuffer Window::framebuffer() const noexcept {
+  Framebuffer result;
+  glfwGetFramebufferSize(window_, &result.width, &result.height);
+  glfwGetWindowContentScale(window_, &result.content_scale, nullptr);
+  return result;
+}
+
+void Window::show_frame() {
+  glfwSwapBuffers(window_);
+  if (paced_by_display_) return;
+  SteadyPacer clock;
+  const std::int64_t now_ns = clock.now_ns();
+  // After a late frame the grid starts anew: no burst to make up for it.
+  next_frame_ns_ = std::max(next_frame_ns_ + kFrame_ns, now_ns);
+  clock.wait_until(next_frame_ns_);
+}
+
+bool Window::fullscreen() const noexcept { return glfwGetWindowMonitor(window_) != nullptr; }
+
+void Window::set_fullscreen(bool wanted) {
+  if (wanted == fullscreen()) return;
+  if (!wanted) {
+    glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3],
+                         GLFW_DONT_CARE);
+    return;
+  }
+  glfwGetWindowPos(window_, &windowed_[0], &windowed_[1]);
+  glfwGetWindowSize(window_, &windowed_[2], &windowed_[3]);
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+  if (mode == nullptr) return;
+  glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+}  // namespace palpate

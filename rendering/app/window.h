@@ -1,0 +1,59 @@
+// The operating system's window with an OpenGL 3.3 core context, and the pace of
+// its frames.
+//
+// Thread guarantee: main thread only (GLFW).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "engine/base/result.h"
+
+struct GLFWwindow;
+
+namespace palpate {
+
+struct WindowRequest {
+  int width = 1280;
+  int height = 720;
+  bool fullscreen = false;
+};
+
+// What is drawn into.
+struct Framebuffer {
+  int width = 0;  // pixels
+  int height = 0;
+  float content_scale = 1.0F;  // how much larger than usual the display wants its contents
+};
+
+class Window {
+ public:
+  // Whether there is a display at all; cheap, before anything else starts. Errors:
+  // there is none.
+  static Status find_display();
+  // After `find_display`. Errors, in one sentence: no OpenGL 3.3.
+  static Result<std::unique_ptr<Window>> open(const WindowRequest& request);
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+  ~Window();
+
+  GLFWwindow* handle() const noexcept { return window_; }
+  Framebuffer framebuffer() const noexcept;
+  // Shows what was drawn and waits until the next frame is due: the display's own
+  // pace where the driver waits for it, else 60 Hz.
+  void show_frame();
+  void set_fullscreen(bool fullscreen);
+  bool fullscreen() const noexcept;
+
+ private:
+  explicit Window(GLFWwindow* window) : window_(window) {}
+  bool display_sets_pace();
+
+  GLFWwindow* window_;
+  bool paced_by_display_ = false;
+  std::int64_t next_frame_ns_ = 0;
+  int windowed_[4] = {0, 0, 1280, 720};  // place and size to return to
+};
+
+}  // namespace palpate

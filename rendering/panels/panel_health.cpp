@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "rendering/panels/panel.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFaultsShown = 6;
+constexpr double kStall_s = 0.05;
+constexpr double kFewFrames_per_s = 50.0;
+// Skipped deadlines beyond this share are worth words.
+constexpr double kManyMissed = 0.01;
+
+std::string text_of(const char* pattern, double a, double b = 0.0) {
+  char text[160];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+void row(const char* name, const TimePercentiles& times) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(name);
+  for (const double value : {times.p50_us, times.p99_us, times.p99_9_us, times.max_us}) {
+    ImGui::TableNextColumn();
+    ImGui::Text("%.0f", value);
+  }
+}
+
+void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
+  ImGui::Text("%llu ticks, the last %.1f ms ago", static_cast<unsigned long long>(statistics.ticks),
+              1e3 * statistics.age_s);
+  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings))
+    return;
+  for (const char* heading : {"microseconds", "p50", "p99", "p99.9", "max"}) ImGui::TableSetupColumn(heading);
+  ImGui::TableHeadersRow();
+  row("lateness", statistics.lateness);
+  row("tick", statistics.tick);
+  row("frame", frames.times.percentiles());
+  ImGui::EndTable();
+}
+
+void draw_faults(const LiveSession& session, const UiStyle& style) {
+  const std::vector<FaultEvent>& faults = session.faults();
+  if (faults.empty()) {
+    ImGui::TextDisabled("no fault so far");
+    return;
+  }
+  const double now_s = session.newest().loop_time_s;
+  const std::size_t first = faults.size() > kFaultsShown ? faults.size() - kFaultsShown : 0;
+  for (std::size_t i = faults.size(); i-- > first;) {
+    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago",
+                       std::max(0.0, now_s - faults[i].loop_time_s));
+    ImGui::SameLine();
+    ImGui::TextWrapped(
+        "%s%s", faults[i].text.c_str(),
+        faults[i].count > 1 ? (" (" + std::to_string(faults[i].count) + " times)").c_str() : "");
+  }
+}
+
+}  // namespace
+
+// Age of the sample, round trip and heat, of a device that has them.
+std::string device_line(const LiveSession& session) {
+  const DeviceHealth& device = session.newest().device;
+  if (device.zeroing == Zeroing::not_needed && device.faults == 0) return {};
+  std::string line = session.device_name() + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
+  if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
+  line += text_of(", motor heat %.0f %%", 100.0 * static_cast<double>(session.newest().heat_share));
+  return line;
+}
+
+int health_lines(const LiveSession& session, const ViewState& view) {
+  const int quiet = device_line(session).empty() ? 3 : 4;
+  if (!view.details) return quiet;
+  const int fix = session.scheduling().fix.empty() ? 0 : 8;
+  return quiet + fix + 6 +
+         static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
+}
+
+HealthWords health_words(const LiveSession& session, const FrameFigures& frames) {
+  const LoopStatistics statistics = session.statistics();
+  if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
+    return {
+        text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s),
+        true};
+  }
+  if (const auto words = device_fault_words(session.newest().device.faults); !words.empty()) {
+    return {"Device: " + words.front(), true};
+  }
+  if (const auto words = session.alarms(); !words.empty()) {
+    const std::string more =
+        words.size() > 1 ? " (and " + std::to_string(words.size() - 1) + " more)" : std::string();
+    return {"Earlier: " + words.front() + more, true, true};
+  }
+  const double missed = session.missed_of_late();
+  if (missed > kManyMissed) {
+    return {text_of("%.1f %% of the deadlines missed of late: close other programs, or allow real-time priority",
+                    100.0 * missed),
+            true};
+  }
+  if (frames.recent_fps > 0.0 && frames.recent_fps < kFewFrames_per_s) {
+    return {
+        text_of("%.0f frames a second: the picture is slow, the force is not affected", frames.recent_fps),
+        true};
+  }
+  return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
+              ", missed " + std::to_string(statistics.missed_deadlines) +
+              text_of(", %.0f fps", frames.recent_fps),
+          false};
+}
+
+void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style,
+                 const FrameFigures& frames) {
+  section_title(style, "LOOP");
+  ImGui::SameLine();
+  const HealthWords words = health_words(session, frames);
+  if (words.problem) {
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().fault));
+    ImGui::TextWrapped("%s%s", words.text.c_str(), words.past ? ". C clears this." : "");
+    ImGui::PopStyleColor();
+  } else {
+    ImGui::TextDisabled("%s", words.text.c_str());
+  }
+  if (ImGui::IsItemClicked()) view.details = !view.details;
+  tip("How well the 1000 Hz loop keeps its time. L shows all figures and faults.");
+  const RtStatus& scheduling = session.scheduling();
+  ImGui::TextDisabled("scheduling: %s", scheduling.scheduling.c_str());
+  if (!scheduling.fix.empty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled(view.details ? "" : "(L: how to get better)");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scheduling.fix.c_str());
+  }
+  if (const std::string line = device_line(session); !line.empty()) {
+    ImGui::TextDisabled("%s", line.c_str());
+    tip("The device: age of its newest sample, time from a force to the report that confirms it, and how much of "
+        "the motor's thermal budget is used.");
+  }
+  if (!view.details) return;
+  if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
+  draw_times(session.statistics(), frames);
+  draw_faults(session, style);
+}
+
+}  // namespace palpate

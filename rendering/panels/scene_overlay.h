@@ -1,0 +1,62 @@
+// Words and controls over the picture: title, number of blocks, labels, the big
+// number with its colour scale, buttons, a replay's bar, notices, help.
+// Thread guarantee: the window's thread, inside a frame.
+#pragma once
+
+#include <imgui.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "rendering/picture/block_view.h"
+#include "rendering/ui/ui_style.h"
+#include "rendering/panels/view_state.h"
+#include "scenes/live/live_session.h"
+
+namespace palpate {
+
+// Where the picture is, in ImGui's coordinates.
+struct SceneArea {
+  ImVec2 at;
+  ImVec2 size;
+  bool holds(const ImVec2& point) const {
+    return point.x >= at.x && point.y >= at.y && point.x < at.x + size.x && point.y < at.y + size.y;
+  }
+};
+
+// What can be asked for by button or key.
+enum class Command {
+  next_block_count,
+  pause_curves,
+  reset_figures,
+  next_reference,
+  record,
+  file_list,
+  zero,
+  dead_man,
+  details,
+  theme,
+  help,
+  fullscreen
+};
+struct CommandEntry {
+  Command command;
+  const char* key;    // as on the keyboard
+  const char* label;  // on its button; empty: no button
+  const char* help;   // one line
+};
+const std::vector<CommandEntry>& commands();
+
+class SceneOverlay {
+ public:
+  // Controls call `run`.
+  void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
+            const SceneArea& area, const std::vector<Toast>& toasts, const std::function<void(Command)>& run);
+
+  // The slot whose block or label is at `point`.
+  std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks,
+                                     const ViewState& view, const SceneArea& area, const ImVec2& point) const;
+};
+
+}  // namespace palpate

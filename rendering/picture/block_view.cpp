@@ -1,0 +1,237 @@
+#include "rendering/picture/block_view.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "scenes/scene/assets.h"
+
+namespace palpate {
+namespace {
+
+constexpr float kBetween = 1.32F;  // blocks side by side, in widths
+constexpr float kArrow_m_per_N = 0.006F;
+constexpr float kShortestArrow_N = 0.03F;
+const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
+
+Rgb rgb(const Colour& colour) {
+  return Rgb(static_cast<float>(colour.red), static_cast<float>(colour.green),
+             static_cast<float>(colour.blue)) /
+         255.0F;
+}
+
+// A ball, a neck, a handle; in units of the ball's radius, the tip at y = 0.
+std::vector<glm::vec2> tool_profile() {
+  std::vector<glm::vec2> profile;
+  for (int i = 0; i <= 18; ++i) {
+    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / 18.0F * 0.86F - 0.5F);
+    profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
+  }
+  for (const glm::vec2 point :
+       {glm::vec2(0.40F, 2.1F), glm::vec2(0.40F, 4.6F), glm::vec2(0.46F, 5.0F), glm::vec2(1.05F, 5.5F),
+        glm::vec2(1.20F, 5.9F), glm::vec2(1.28F, 9.0F), glm::vec2(1.20F, 12.4F)}) {
+    profile.push_back(point);
+  }
+  for (int i = 1; i <= 8; ++i) {
+    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / 8.0F;
+    profile.emplace_back(std::max(1e-4F, 1.20F * std::cos(angle)), 12.4F + 1.20F * std::sin(angle));
+  }
+  return profile;
+}
+
+// Flat shading of a corner: the same point twice would give no direction, so
+// corners are a hair apart.
+std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0016F, 1e-5F}, {0.0016F, 1.0F}}; }
+std::vector<glm::vec2> tip_profile() {
+  return {{1e-4F, 0.0F}, {0.0042F, 1e-5F}, {0.0041F, 2e-4F}, {1e-4F, 0.0085F}};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene) {
+  const auto assets = find_assets();
+  if (!assets) return assets.error();
+  const std::string folder = *assets + "/shaders";
+  auto block = Shader::load(folder, "block");
+  if (!block) return block.error();
+  auto solid = Shader::load(folder, "solid");
+  if (!solid) return solid.error();
+  auto table = Shader::load(folder, "table");
+  if (!table) return table.error();
+  return std::unique_ptr<BlockView>(
+      new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table)));
+}
+
+BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table)
+    : geometry_(scene.block),
+      block_colour_(rgb(scene.block_colour)),
+      tool_colour_(rgb(scene.tool_colour)),
+      block_shader_(std::move(block)),
+      solid_shader_(std::move(solid)),
+      table_shader_(std::move(table)),
+      block_(block_mesh(static_cast<float>(scene.block.width_m), static_cast<float>(scene.block.length_m),
+                        static_cast<float>(scene.block.height_m))),
+      tool_(lathe_mesh(tool_profile(), 26)),
+      shaft_(lathe_mesh(shaft_profile(), 14)),
+      tip_(lathe_mesh(tip_profile(), 20)),
+      square_(square_mesh()) {
+  show(1, true);
+}
+
+void BlockView::show(std::size_t count, bool at_once) {
+  const auto width = static_cast<float>(geometry_.width_m);
+  // Several blocks are seen more from the front, so that none hides another.
+  if (count == 1) {
+    camera_.frame(0.92F * width, 0.5F, at_once);
+  } else {
+    camera_.frame(count == 2 ? 1.42F * width : 1.78F * width, 0.3F, at_once);
+  }
+}
+
+glm::vec3 BlockView::place(std::size_t index, std::size_t count) const {
+  const auto step = kBetween * static_cast<float>(geometry_.width_m);
+  const float column = count == 1 ? 0.0F : index % 2 == 0 ? -0.5F : 0.5F;
+  const float row = count < 4 ? 0.0F : index < 2 ? -0.5F : 0.5F;
+  return {column * step, 0.0F, row * step};
+}
+
+glm::vec2 BlockView::on_screen(std::size_t index, std::size_t count, const glm::vec3& point,
+                               const glm::vec2& size) const {
+  return project(camera_.view_projection(size.x / size.y), place(index, count) + point, size);
+}
+
+float BlockView::depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const {
+  constexpr float kProbe_m = 0.01F;
+  const float pixels = on_screen(index, count, {0.0F, -kProbe_m, 0.0F}, size).y -
+                       on_screen(index, count, {0.0F, 0.0F, 0.0F}, size).y;
+  return kProbe_m / std::max(pixels, 1.0F);
+}
+
+void BlockView::begin(const Shader& shader) const {
+  shader.use();
+  shader.set("view_projection", view_projection_);
+  shader.set("eye", camera_.eye());
+  shader.set("light", kLight);
+}
+
+void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
+  if (viewport.width < 1 || viewport.height < 1) return;
+  view_projection_ =
+      camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
+  draw_backdrop(table_state(blocks, viewport, theme), viewport);
+  glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
+  glScissor(viewport.x, viewport.y, viewport.width, viewport.height);
+  glEnable(GL_SCISSOR_TEST);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()));
+  for (std::size_t i = 0; i < blocks.size(); ++i) draw_block(blocks[i], place(i, blocks.size()));
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(0);
+}
+
+BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport,
+                                             Theme theme) const {
+  TableState state{view_projection_, viewport.width, viewport.height, theme,
+                   std::min<std::size_t>(blocks.size(), 4)};
+  for (std::size_t i = 0; i < state.count; ++i) {
+    if (!blocks[i].chosen || state.count == 1) continue;
+    const glm::vec3 at = place(i, state.count);
+    state.chosen = glm::vec4(blocks[i].arrow, 1.0F);
+    state.chosen_at = {at.x, at.z};
+  }
+  return state;
+}
+
+void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport) {
+  if (!(state == backdrop_state_)) {
+    backdrop_state_ = state;
+    // The table lies behind and below all else: it needs no depth.
+    const bool kept = backdrop_.begin(state.width, state.height);
+    glViewport(kept ? 0 : viewport.x, kept ? 0 : viewport.y, state.width, state.height);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    const Rgb& background = palette(state.theme).background;
+    glClearColor(background.r, background.g, background.b, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT);
+    draw_table(state);
+    backdrop_.end();
+    if (!kept) {
+      backdrop_state_ = TableState{};
+      return;
+    }
+  }
+  backdrop_.copy(viewport.x, viewport.y);
+}
+
+void BlockView::draw_table(const TableState& state) const {
+  const auto width = static_cast<float>(geometry_.width_m);
+  begin(table_shader_);
+  table_shader_.set("table_y", -static_cast<float>(geometry_.height_m));
+  table_shader_.set("reach", width * (state.count <= 1 ? 2.3F : 3.2F));
+  table_shader_.set("table_colour", palette(state.theme).table);
+  table_shader_.set("background", palette(state.theme).background);
+  table_shader_.set("half_size", 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m));
+  glm::vec2 places[4];
+  for (std::size_t i = 0; i < state.count; ++i) {
+    const glm::vec3 at = place(i, state.count);
+    places[i] = {at.x, at.z};
+  }
+  table_shader_.set("block_count", static_cast<int>(state.count));
+  table_shader_.set("blocks", places, static_cast<int>(state.count));
+  table_shader_.set("chosen", state.chosen);
+  table_shader_.set("chosen_at", state.chosen_at);
+  square_.draw();
+}
+
+void BlockView::draw_block(const BlockPose& pose, const glm::vec3& at) const {
+  begin(block_shader_);
+  block_shader_.set("offset", at);
+  block_shader_.set("dent", pose.dent_m);
+  block_shader_.set("tool_radius", static_cast<float>(geometry_.tool_radius_m));
+  block_shader_.set("rim", 0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m)));
+  block_shader_.set("height", static_cast<float>(geometry_.height_m));
+  block_shader_.set("surface", at.y);
+  block_shader_.set("colour", block_colour_);
+  block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
+  // Shallow dents have no colour yet: there is nothing to judge.
+  block_shader_.set("mark", pose.judged ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
+  block_shader_.set("tool_gap", std::max(0.0F, -pose.tool_m));
+  block_.draw();
+}
+
+void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
+  begin(solid_shader_);
+  const glm::vec3 tip = at - glm::vec3(0.0F, pose.tool_m, 0.0F);
+  solid_shader_.set("offset", tip);
+  solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
+  solid_shader_.set("colour", tool_colour_);
+  solid_shader_.set("shininess", 1.0F);
+  tool_.draw();
+  if (pose.force_N < kShortestArrow_N) return;
+  // Beside the tool, as seen from the eye, so that neither hides the other.
+  const glm::vec3 eye = camera_.eye();
+  const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
+  const glm::vec3 foot =
+      at + 3.2F * static_cast<float>(geometry_.tool_radius_m) * right + glm::vec3(0.0F, 0.001F, 0.0F);
+  const float length_m = std::min(kArrow_m_per_N * pose.force_N, 0.09F);
+  solid_shader_.set("colour", pose.arrow);
+  solid_shader_.set("shininess", 0.15F);
+  solid_shader_.set("offset", foot);
+  solid_shader_.set("stretch", glm::vec3(1.0F, length_m, 1.0F));
+  shaft_.draw();
+  solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
+  solid_shader_.set("stretch", glm::vec3(1.0F));
+  tip_.draw();
+}
+
+}  // namespace palpate

@@ -1,0 +1,91 @@
+// The picture: one, two or four blocks on a table, each under the same probe.
+// Draws what it is told and knows no model and no session.
+//
+// Thread guarantee: the thread of the OpenGL context.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "rendering/picture/backdrop.h"
+#include "rendering/picture/camera.h"
+#include "rendering/ui/colours.h"
+#include "rendering/picture/mesh.h"
+#include "rendering/picture/shader.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate {
+
+// One block as it is now.
+struct BlockPose {
+  float tool_m = 0.0F;  // position of the tip, positive inside
+  float dent_m = 0.0F;
+  float error_over_jnd = 0.0F;
+  float force_N = 0.0F;
+  Rgb arrow{0.0F};
+  bool chosen = false;  // in the hand
+  bool judged = true;   // the dent shows the error's colour
+};
+
+// In pixels of the framebuffer, from its lower left corner.
+struct Viewport {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+class BlockView {
+ public:
+  // Errors: a shader is missing or is not taken by the driver.
+  static Result<std::unique_ptr<BlockView>> create(const Scene& scene);
+
+  // `blocks`: 1, 2 or 4. Fills the viewport.
+  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
+
+  Camera& camera() noexcept { return camera_; }
+  // Frames so many blocks; eases there unless `at_once`.
+  void show(std::size_t count, bool at_once);
+
+  // Middle of block `index` of `count` on the table, top at y = 0.
+  glm::vec3 place(std::size_t index, std::size_t count) const;
+  // A point of block `index`, relative to the middle of its top, in the
+  // viewport's pixels, y down.
+  glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point,
+                      const glm::vec2& size) const;
+  // How far the tool moves inwards for a pixel downwards, metres.
+  float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
+  const BlockGeometry& geometry() const noexcept { return geometry_; }
+
+ private:
+  BlockView(const Scene& scene, Shader block, Shader solid, Shader table);
+  // All that the table's picture depends on.
+  struct TableState {
+    glm::mat4 view_projection{0.0F};
+    int width = 0, height = 0;
+    Theme theme = Theme::light;
+    std::size_t count = 0;
+    glm::vec4 chosen{0.0F};  // colour of the ring; alpha 0: none
+    glm::vec2 chosen_at{0.0F};
+    bool operator==(const TableState&) const = default;
+  };
+  TableState table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) const;
+  void draw_backdrop(const TableState& state, const Viewport& viewport);
+  void draw_table(const TableState& state) const;
+  void draw_block(const BlockPose& pose, const glm::vec3& place) const;
+  void draw_tool(const BlockPose& pose, const glm::vec3& place) const;
+  void begin(const Shader& shader) const;
+
+  BlockGeometry geometry_;
+  Rgb block_colour_;
+  Rgb tool_colour_;
+  Shader block_shader_, solid_shader_, table_shader_;
+  GpuMesh block_, tool_, shaft_, tip_, square_;
+  Camera camera_;
+  Backdrop backdrop_;
+  TableState backdrop_state_;
+  glm::mat4 view_projection_{1.0F};
+};
+
+}  // namespace palpate

@@ -1,0 +1,66 @@
+#include "rendering/picture/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
+#include <glm/vec4.hpp>
+
+namespace palpate {
+namespace {
+
+// Never below the table, never straight down, where left and right would swap.
+constexpr float kLowest_rad = 0.06F;
+constexpr float kHighest_rad = 1.35F;
+constexpr float kEasing_s = 0.12F;
+constexpr float kNear_m = 0.02F;
+constexpr float kFar_m = 6.0F;
+
+}  // namespace
+
+void Camera::frame(float radius_m, float yaw_rad, bool at_once) {
+  radius_m_ = radius_m;
+  wanted_ = Pose{};
+  wanted_.yaw_rad = yaw_rad;
+  wanted_.distance_m = 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad);
+  if (at_once) now_ = wanted_;
+}
+
+void Camera::orbit(float yaw_rad, float pitch_rad) {
+  wanted_.yaw_rad += yaw_rad;
+  wanted_.pitch_rad = std::clamp(wanted_.pitch_rad + pitch_rad, kLowest_rad, kHighest_rad);
+}
+
+void Camera::zoom(float factor) {
+  wanted_.distance_m = std::clamp(wanted_.distance_m * factor, 1.6F * radius_m_, 12.0F * radius_m_);
+}
+
+void Camera::advance(float seconds) {
+  const float share = 1.0F - std::exp(-std::max(0.0F, seconds) / kEasing_s);
+  now_.yaw_rad += share * (wanted_.yaw_rad - now_.yaw_rad);
+  now_.pitch_rad += share * (wanted_.pitch_rad - now_.pitch_rad);
+  now_.distance_m += share * (wanted_.distance_m - now_.distance_m);
+}
+
+glm::vec3 Camera::eye() const {
+  const float flat = now_.distance_m * std::cos(now_.pitch_rad);
+  return {flat * std::sin(now_.yaw_rad), now_.distance_m * std::sin(now_.pitch_rad),
+          flat * std::cos(now_.yaw_rad)};
+}
+
+glm::mat4 Camera::view_projection(float aspect) const {
+  // In a tall viewport the width decides.
+  const float vertical =
+      aspect >= 1.0F ? kFieldOfView_rad : 2.0F * std::atan(std::tan(0.5F * kFieldOfView_rad) / aspect);
+  return glm::perspective(vertical, aspect, kNear_m, kFar_m) *
+         glm::lookAt(eye(), glm::vec3(0.0F, 0.004F, 0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
+}
+
+glm::vec2 project(const glm::mat4& view_projection, const glm::vec3& world, const glm::vec2& size) {
+  const glm::vec4 clip = view_projection * glm::vec4(world, 1.0F);
+  if (clip.w <= 0.0F) return {-1e6F, -1e6F};
+  return {(0.5F + 0.5F * clip.x / clip.w) * size.x, (0.5F - 0.5F * clip.y / clip.w) * size.y};
+}
+
+}  // namespace palpate

@@ -1,0 +1,173 @@
+#include "rendering/picture/mesh.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace palpate {
+namespace {
+
+constexpr int kAround = 80;  // steps around the block
+constexpr int kRings = 32;    // rings on its top
+constexpr int kFillet = 6;    // steps over its edge
+constexpr float kCorner_m = 0.012F;
+constexpr float kEdge_m = 0.004F;
+
+using Outline = std::vector<Vertex>;  // position on the rim, normal outward, both at y = 0
+
+// Distance to a rounded rectangle of `half` size.
+float rim_distance(const glm::vec2& place, const glm::vec2& half) {
+  const glm::vec2 q = glm::abs(place) - (half - kCorner_m);
+  return glm::length(glm::max(q, 0.0F)) + std::min(std::max(q.x, q.y), 0.0F) - kCorner_m;
+}
+
+Outline outline(const glm::vec2& half) {
+  Outline points;
+  for (int i = 0; i < kAround; ++i) {
+    const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kAround);
+    const glm::vec2 direction(std::cos(angle), std::sin(angle));
+    float inside = 0.0F;
+    float outside = glm::length(half);
+    for (int step = 0; step < 40; ++step) {  // bisection, to less than a nanometre
+      const float middle = 0.5F * (inside + outside);
+      (rim_distance(middle * direction, half) < 0.0F ? inside : outside) = middle;
+    }
+    const glm::vec2 place = inside * direction;
+    const glm::vec2 core = half - kCorner_m;
+    const glm::vec2 normal = glm::normalize(place - glm::clamp(place, -core, core));
+    points.push_back({{place.x, 0.0F, place.y}, {normal.x, 0.0F, normal.y}});
+  }
+  return points;
+}
+
+void add_ring(Mesh& mesh, const Outline& ring) {
+  mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end());
+}
+
+// Joins the last ring with the one before it; the last lies outside or below.
+void join_rings(Mesh& mesh) {
+  const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
+  const std::uint32_t outer = count - kAround;
+  const std::uint32_t inner = outer - kAround;
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    const std::uint32_t next = (i + 1) % kAround;
+    for (const std::uint32_t index :
+         {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
+      mesh.triangles.push_back(index);
+    }
+  }
+}
+
+// Rings from the middle, circles at first, the rim's shape in the end.
+void add_top(Mesh& mesh, const Outline& rim) {
+  const glm::vec3 up(0.0F, 1.0F, 0.0F);
+  float nearest = 1e9F;
+  for (const Vertex& point : rim) nearest = std::min(nearest, glm::length(point.position));
+  for (int k = 0; k <= kRings; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(kRings);
+    const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
+    const float square = glm::smoothstep(0.4F, 1.0F, size);
+    Outline ring;
+    for (const Vertex& point : rim) {
+      const glm::vec3 round = nearest * glm::normalize(point.position);
+      ring.push_back({size * glm::mix(round, point.position, square), up});
+    }
+    add_ring(mesh, ring);
+    if (k > 0) join_rings(mesh);
+  }
+}
+
+void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, float tilt_rad) {
+  Outline ring;
+  for (const Vertex& point : rim) {
+    const glm::vec3 place = point.position + outward_m * point.normal - glm::vec3(0.0F, down_m, 0.0F);
+    const glm::vec3 normal = std::cos(tilt_rad) * point.normal + glm::vec3(0.0F, std::sin(tilt_rad), 0.0F);
+    ring.push_back({place, normal});
+  }
+  add_ring(mesh, ring);
+  join_rings(mesh);
+}
+
+}  // namespace
+
+Mesh block_mesh(float width_m, float length_m, float height_m) {
+  Mesh mesh;
+  const Outline rim = outline({0.5F * width_m - kEdge_m, 0.5F * length_m - kEdge_m});
+  add_top(mesh, rim);
+  for (int i = 1; i <= kFillet; ++i) {
+    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kFillet);
+    add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)), 0.5F * std::numbers::pi_v<float> - angle);
+  }
+  add_shifted(mesh, rim, kEdge_m, height_m - 0.25F * kEdge_m, 0.0F);
+  add_shifted(mesh, rim, 0.75F * kEdge_m, height_m, -0.25F * std::numbers::pi_v<float>);
+  return mesh;
+}
+
+Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {
+  Mesh mesh;
+  const auto around = static_cast<std::uint32_t>(sides);
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    const glm::vec2 before = profile[k == 0 ? 0 : k - 1];
+    const glm::vec2 after = profile[std::min(k + 1, profile.size() - 1)];
+    const glm::vec2 along = glm::normalize(after - before);
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(sides);
+      const float c = std::cos(angle);
+      const float s = std::sin(angle);
+      mesh.vertices.push_back(
+          {{profile[k].x * c, profile[k].y, profile[k].x * s}, {along.y * c, -along.x, along.y * s}});
+    }
+    if (k == 0) continue;
+    const auto upper = static_cast<std::uint32_t>(k) * around;
+    const std::uint32_t lower = upper - around;
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const std::uint32_t next = (i + 1) % around;
+      for (const std::uint32_t index :
+           {lower + i, upper + i, lower + next, lower + next, upper + i, upper + next}) {
+        mesh.triangles.push_back(index);
+      }
+    }
+  }
+  return mesh;
+}
+
+Mesh square_mesh() {
+  const glm::vec3 up(0.0F, 1.0F, 0.0F);
+  return {{{{-1, 0, -1}, up}, {{-1, 0, 1}, up}, {{1, 0, 1}, up}, {{1, 0, -1}, up}}, {0, 1, 2, 0, 2, 3}};
+}
+
+GpuMesh::GpuMesh(const Mesh& mesh) : index_count_(static_cast<int>(mesh.triangles.size())) {
+  glGenVertexArrays(1, &array_);
+  glBindVertexArray(array_);
+  glGenBuffers(2, buffers_);
+  glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
+               mesh.vertices.data(), GL_STATIC_DRAW);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)), mesh.triangles.data(),
+               GL_STATIC_DRAW);
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                        reinterpret_cast<const void*>(offsetof(Vertex, normal)));
+  glBindVertexArray(0);
+}
+
+GpuMesh::~GpuMesh() {
+  glDeleteBuffers(2, buffers_);
+  glDeleteVertexArrays(1, &array_);
+}
+
+void GpuMesh::draw() const {
+  glBindVertexArray(array_);
+  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+}  // namespace palpate

@@ -1,0 +1,90 @@
+#include "rendering/picture/shader.h"
+
+#include <epoxy/gl.h>
+
+#include <fstream>
+#include <glm/gtc/type_ptr.hpp>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+using Id = Result<unsigned>;
+
+std::string shader_log(unsigned shader) {
+  int length = 0;
+  glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+  std::string text(static_cast<std::size_t>(length > 0 ? length : 1), '\0');
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(text.size()), nullptr, text.data());
+  return text.c_str();
+}
+
+Id compile(const std::string& path, unsigned kind) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const unsigned shader = glCreateShader(kind);
+  const char* source = text.c_str();
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  int good = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  if (good != 0) return Id(shader);
+  const std::string log = shader_log(shader);
+  glDeleteShader(shader);
+  return Error{path + ": the graphics driver does not compile it: " + log};
+}
+
+}  // namespace
+
+Result<Shader> Shader::load(const std::string& folder, const std::string& name) {
+  const std::string path = folder + "/" + name;
+  const Id vertex = compile(path + ".vert", GL_VERTEX_SHADER);
+  if (!vertex) return vertex.error();
+  const Id fragment = compile(path + ".frag", GL_FRAGMENT_SHADER);
+  if (!fragment) {
+    glDeleteShader(*vertex);
+    return fragment.error();
+  }
+  Shader shader(glCreateProgram());
+  for (const unsigned part : {*vertex, *fragment}) {
+    glAttachShader(shader.program_, part);
+    glDeleteShader(part);  // goes with the program
+  }
+  glLinkProgram(shader.program_);
+  int good = 0;
+  glGetProgramiv(shader.program_, GL_LINK_STATUS, &good);
+  if (good == 0) return Error{path + ": the graphics driver does not link its two shaders"};
+  return shader;
+}
+
+Shader::Shader(Shader&& other) noexcept : program_(std::exchange(other.program_, 0)) {}
+
+Shader::~Shader() {
+  if (program_ != 0) glDeleteProgram(program_);
+}
+
+void Shader::use() const { glUseProgram(program_); }
+int Shader::place(const char* name) const { return glGetUniformLocation(program_, name); }
+void Shader::set(const char* name, float value) const { glUniform1f(place(name), value); }
+void Shader::set(const char* name, int value) const { glUniform1i(place(name), value); }
+void Shader::set(const char* name, const glm::vec2& value) const {
+  glUniform2fv(place(name), 1, glm::value_ptr(value));
+}
+void Shader::set(const char* name, const glm::vec3& value) const {
+  glUniform3fv(place(name), 1, glm::value_ptr(value));
+}
+void Shader::set(const char* name, const glm::vec4& value) const {
+  glUniform4fv(place(name), 1, glm::value_ptr(value));
+}
+void Shader::set(const char* name, const glm::mat4& value) const {
+  glUniformMatrix4fv(place(name), 1, GL_FALSE, glm::value_ptr(value));
+}
+void Shader::set(const char* name, const glm::vec2* values, int count) const {
+  glUniform2fv(place(name), count, glm::value_ptr(*values));
+}
+
+}  // namespace palpate

@@ -1,0 +1,50 @@
+#include "rendering/ui/colours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr Rgb hex(unsigned value) noexcept {
+  return {static_cast<float>((value >> 16) & 255U) / 255.0F, static_cast<float>((value >> 8) & 255U) / 255.0F,
+          static_cast<float>(value & 255U) / 255.0F};
+}
+
+const Palette kLight{hex(0xF4F5F6), hex(0xE4E6E9), hex(0xFFFFFF), hex(0xE6E9ED), hex(0x16191D),
+                     hex(0x5C6670), hex(0xDDE1E5), hex(0xC9CFD6), hex(0xC4161C)};
+const Palette kDark{hex(0x14171A), hex(0x262B30), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5),
+                    hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F)};
+
+// Samples of viridis at 0, 0.25, 0.5, 0.75, 1.
+constexpr std::array<Rgb, 5> kScale{hex(0x440154), hex(0x3B528B), hex(0x21918C), hex(0x5EC962),
+                                    hex(0xFDE725)};
+
+constexpr std::array<std::pair<std::string_view, Rgb>, 5> kMethodColours{{{"voxel", hex(0x56B4E9)},
+                                                                          {"random", hex(0xE69F00)},
+                                                                          {"kdtree", hex(0x0072B2)},
+                                                                          {"greedy", hex(0xD55E00)},
+                                                                          {"position", hex(0xCC79A7)}}};
+}  // namespace
+
+const Palette& palette(Theme theme) noexcept { return theme == Theme::light ? kLight : kDark; }
+
+Rgb method_colour(std::string_view method, Theme theme) noexcept {
+  for (const auto& [name, colour] : kMethodColours) {
+    if (name == method) return colour;
+  }
+  return theme == Theme::light ? Rgb(0.0F) : Rgb(1.0F);
+}
+
+Rgb error_colour(double error_over_jnd) noexcept {
+  if (!(error_over_jnd <= 1.0)) return kAboveJndColour;
+  const double place = std::max(0.0, error_over_jnd) * static_cast<double>(kScale.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), kScale.size() - 2);
+  return glm::mix(kScale[below], kScale[below + 1], static_cast<float>(place - static_cast<double>(below)));
+}
+
+}  // namespace palpate

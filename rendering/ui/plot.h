@@ -1,0 +1,63 @@
+// A frame with axes on an ImDrawList, and what is drawn into it.
+// Thread guarantee: the window's thread, inside a frame.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "rendering/ui/ui_style.h"
+
+namespace palpate {
+
+struct Range {
+  double from = 0.0;
+  double to = 1.0;
+};
+
+// The step of 1, 2 or 5 times a power of ten that gives at most `most` intervals.
+double tick_step(double span, int most) noexcept;
+// The next such number of "1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten" at or above.
+double round_up(double value) noexcept;
+// At most three significant digits, at most three decimals, no exponent: "0.412", "12.3", "1234".
+std::string three_digits(double value);
+
+class Plot {
+ public:
+  // Takes `size` at the cursor and draws frame, grid and numbers.
+  // `x_numbers`: whether to label the x axis; `x_unit`, `y_unit` end the last label.
+  Plot(const UiStyle& style, const ImVec2& size, const Range& x, const Range& y, const char* x_unit,
+       const char* y_unit, bool x_numbers);
+  // Ends the clipping.
+  ~Plot();
+  Plot(const Plot&) = delete;
+  Plot& operator=(const Plot&) = delete;
+
+  float x_px(double x) const noexcept;
+  float y_px(double y) const noexcept;
+  float left() const noexcept { return low_.x; }
+  float right() const noexcept { return high_.x; }
+  float top() const noexcept { return low_.y; }
+  float bottom() const noexcept { return high_.y; }
+  float width() const noexcept { return high_.x - low_.x; }
+  bool hovered() const noexcept;
+  ImDrawList& list() const noexcept { return *list_; }
+
+  void line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const;
+  // Between two curves over the same places, no seams.
+  void band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const;
+  void level(double y, ImU32 colour, float thickness) const;
+  // Text inside the frame; `x`, `y` 0..1 from the upper left.
+  void caption(const std::string& text, float x, float y, ImU32 colour) const;
+
+ private:
+  void draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) const;
+
+  const UiStyle& style_;
+  ImDrawList* list_;
+  ImVec2 low_, high_;
+  Range x_, y_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,127 @@
+#include "rendering/ui/ui_style.h"
+
+#include <backends/imgui_impl_opengl3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <glm/common.hpp>
+
+namespace palpate {
+namespace {
+
+// Sizes at 1080 lines.
+constexpr float kBody_px = 18.0F;
+constexpr float kHeading_px = 28.0F;
+constexpr float kBig_px = 54.0F;
+constexpr float kDesignHeight_px = 1080.0F;
+// Smaller is not legible, whatever the window.
+constexpr float kSmallestScale = 0.78F;
+constexpr float kLargestScale = 4.0F;
+constexpr float kKiosk = 1.5F;
+// The scale goes in steps, so that dragging a corner does not rebuild fonts in
+// every frame.
+constexpr float kScaleStep = 0.04F;
+
+// DejaVu Sans and others with tabular figures, as Debian and its kin place them.
+constexpr const char* kFontFiles[] = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+    "/usr/share/fonts/TTF/DejaVuSans.ttf", "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"};
+
+// Latin, and the few signs that the panel uses.
+constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x2013, 0x2026, 0x2190, 0x2193, 0x2264,
+                               0x2265, 0x25A0, 0x25CF, 0x3BC,  0x3C4,  0};
+
+ImFont* add_font(const std::string& path, float size_px) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (!path.empty()) return io.Fonts->AddFontFromFileTTF(path.c_str(), size_px, nullptr, kGlyphs);
+  ImFontConfig plain;
+  plain.SizePixels = size_px;
+  return io.Fonts->AddFontDefault(&plain);
+}
+
+}  // namespace
+
+std::string find_font() {
+  for (const char* path : kFontFiles) {
+    std::error_code missing;
+    if (std::filesystem::exists(path, missing)) return path;
+  }
+  return {};
+}
+
+void UiStyle::update(int height_px, float content_scale, bool large, Theme theme) {
+  const float by_height = static_cast<float>(height_px) / kDesignHeight_px;
+  float wanted =
+      std::clamp(by_height, kSmallestScale * content_scale, kLargestScale) * (large ? kKiosk : 1.0F);
+  wanted = kScaleStep * std::round(wanted / kScaleStep);
+  if (wanted != scale_) {
+    scale_ = wanted;
+    build_fonts();
+    coloured_ = false;
+  }
+  if (theme != theme_ || !coloured_) {
+    theme_ = theme;
+    set_colours();
+  }
+}
+
+void UiStyle::build_fonts() {
+  ImGuiIO& io = ImGui::GetIO();
+  const std::string path = find_font();
+  io.Fonts->Clear();
+  fonts_.body = add_font(path, std::round(kBody_px * scale_));
+  fonts_.heading = add_font(path, std::round(kHeading_px * scale_));
+  fonts_.big = add_font(path, std::round(kBig_px * scale_));
+  io.FontDefault = fonts_.body;
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void UiStyle::set_colours() {
+  coloured_ = true;
+  ImGuiStyle& style = ImGui::GetStyle();
+  style = ImGuiStyle();
+  style.WindowRounding = style.ChildRounding = 0.0F;
+  style.FrameRounding = style.PopupRounding = style.GrabRounding = 4.0F;
+  style.WindowBorderSize = 0.0F;
+  style.FrameBorderSize = 1.0F;  // buttons and sliders lie on a picture of any brightness
+  style.WindowPadding = {12.0F, 8.0F};
+  style.ItemSpacing = {8.0F, 5.0F};
+  style.FramePadding = {8.0F, 3.0F};
+  style.CellPadding = {5.0F, 1.0F};
+  style.ScaleAllSizes(std::max(scale_, 0.5F));
+  const Palette& p = colours();
+  const auto set = [&](ImGuiCol what, const Rgb& colour, float alpha = 1.0F) {
+    style.Colors[what] = paint(colour, alpha);
+  };
+  set(ImGuiCol_Text, p.text);
+  set(ImGuiCol_TextDisabled, p.quiet);
+  set(ImGuiCol_WindowBg, p.panel);
+  set(ImGuiCol_ChildBg, p.panel, 0.0F);
+  set(ImGuiCol_PopupBg, p.panel, 0.98F);
+  set(ImGuiCol_Border, p.grid);
+  for (const ImGuiCol what : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed}) set(what, p.raised);
+  const Rgb hovered = glm::mix(p.raised, p.text, 0.12F);
+  const Rgb pressed = glm::mix(p.raised, p.text, 0.22F);
+  for (const ImGuiCol what :
+       {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_Header, ImGuiCol_TableHeaderBg, ImGuiCol_Tab}) {
+    set(what, p.raised);
+  }
+  for (const ImGuiCol what : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered})
+    set(what, hovered);
+  for (const ImGuiCol what : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive})
+    set(what, pressed);
+  set(ImGuiCol_SliderGrab, p.quiet);
+  set(ImGuiCol_SliderGrabActive, p.text);
+  set(ImGuiCol_CheckMark, p.text);
+  set(ImGuiCol_TableBorderLight, p.grid);
+  set(ImGuiCol_TableBorderStrong, p.grid);
+  set(ImGuiCol_TableRowBgAlt, p.text, 0.03F);
+  set(ImGuiCol_ScrollbarBg, p.panel, 0.0F);
+  set(ImGuiCol_ScrollbarGrab, p.raised);
+  set(ImGuiCol_Separator, p.grid);
+  set(ImGuiCol_NavHighlight, p.quiet);
+}
+
+}  // namespace palpate

@@ -1,0 +1,89 @@
+#include "scenes/scene/scene.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scenes/scene/assets.h"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<std::string> scenes_folder() {
+  Result<std::string> assets = find_assets();
+  if (!assets) return assets.error();
+  return *assets + "/scenes";
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+std::string describe_features(const Scene& scene) {
+  std::vector<std::string> words;
+  for (const FeatureSpec& feature : scene.features) {
+    char low_pass[48];
+    std::snprintf(low_pass, sizeof low_pass, "velocity low-pass %g s", feature.relaxation_time_s);
+    switch (feature.kind) {
+      case FeatureKind::depth:
+        words.emplace_back("depth");
+        break;
+      case FeatureKind::velocity:
+        words.emplace_back("velocity");
+        break;
+      case FeatureKind::lowpass_velocity:
+        words.emplace_back(low_pass);
+        break;
+      case FeatureKind::maxwell_branch:  // identified in a fit, never written in a scene
+        break;
+    }
+  }
+  return joined(words);
+}
+
+Result<std::vector<std::string>> scene_names_in(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".json") names.push_back(entry->path().stem().string());
+  }
+  if (error) return Error{"cannot list the scenes in " + folder + ": " + error.message()};
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Result<std::vector<std::string>> scene_names() {
+  Result<std::string> folder = scenes_folder();
+  if (!folder) return folder.error();
+  return scene_names_in(*folder);
+}
+
+Result<Scene> load_scene_from(const std::string& folder, const std::string& name) {
+  const Result<std::vector<std::string>> names = scene_names_in(folder);
+  if (!names) return names.error();
+  if (std::find(names->begin(), names->end(), name) == names->end()) {
+    return Error{"unknown scene \"" + name + "\"; known scenes: " + joined(*names)};
+  }
+  const std::string path = folder + "/" + name + ".json";
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file || !text) return Error{"cannot read the scene " + path};
+  return parse_scene(text.str(), path);
+}
+
+Result<Scene> load_scene(const std::string& name) {
+  Result<std::string> folder = scenes_folder();
+  if (!folder) return folder.error();
+  return load_scene_from(*folder, name);
+}
+
+}  // namespace palpate

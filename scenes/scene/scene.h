@@ -1,0 +1,67 @@
+// A scene: a plain description of what is touched. Which features matter,
+// which virtual material stands in for the truth, what to draw. One JSON file
+// per scene under assets/scenes; its name is the file's name.
+// Thread guarantee: values; reading them is slow side only (does I/O).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/tick/features.h"
+#include "engine/tick/jnd.h"
+#include "engine/base/result.h"
+
+namespace palpate {
+
+struct Colour {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+};
+
+// The block lies with its undisturbed surface at height 0; the tool is a ball.
+struct BlockGeometry {
+  double width_m = 0.0;
+  double length_m = 0.0;
+  double height_m = 0.0;
+  double tool_radius_m = 0.0;
+};
+
+struct Scene {
+  std::string name;
+  std::string title;
+  std::string description;
+  std::optional<std::string> material;  // virtual material; none: recordings only
+  std::vector<FeatureSpec> features;    // 1 to 8, the depth among them; low-passes for memory
+  JndLine jnd;
+  BlockGeometry block;
+  Colour block_colour;
+  Colour tool_colour;
+  std::vector<std::string> default_models;  // methods: direct, voxel, ...
+  // A hand that explores by itself aims at most for this force.
+  double strongest_press_N = 5.0;
+};
+
+// The features in words: "depth, velocity, velocity low-pass 0.17 s".
+std::string describe_features(const Scene& scene);
+
+// Reads a scene from the text of its file; `path` stands in the messages and
+// gives the name. Errors: all that is wrong, one per line, each as
+// "path:line:column: found ..., expected ..." (where in the file). A "jnd_file", in
+// place of "jnd", names a JND file (scenes/scene/jnd_file.h) relative to the scene's
+// own folder; it is read too.
+Result<Scene> parse_scene(std::string_view text, const std::string& path);
+
+// The names of all scenes in `folder` (by default the assets' own), sorted.
+// Errors: no such folder.
+Result<std::vector<std::string>> scene_names();
+Result<std::vector<std::string>> scene_names_in(const std::string& folder);
+
+// The scene of that name. Errors: unknown (lists the known ones), file broken.
+Result<Scene> load_scene(const std::string& name);
+Result<Scene> load_scene_from(const std::string& folder, const std::string& name);
+
+}  // namespace palpate

@@ -1,0 +1,19 @@
+#include "scenes/scene/training.h"
+
+namespace palpate {
+
+TrainingRequest training_request(const Scene& scene) {
+  TrainingRequest request;
+  request.scene = scene.name;
+  request.features = scene.features;
+  request.jnd = scene.jnd;
+  return request;
+}
+
+TrainingRequest position_request(const Scene& scene) {
+  TrainingRequest request = training_request(scene);
+  request.features = {FeatureSpec{}};
+  return request;
+}
+
+}  // namespace palpate

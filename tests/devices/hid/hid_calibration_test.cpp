@@ -1,0 +1,71 @@
+// Calibration files, good and broken.
+#include "devices/hid/hid_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/replaced.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+const std::string kAssets = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
+
+std::string good() { return test::read_text(kAssets + "/paddle.json"); }
+
+std::string changed(const std::string& from, const std::string& to) {
+  return test::replaced(good(), from, to);
+}
+
+std::string complaint(const std::string& text) {
+  const Result<HidCalibration> result = parse_hid_calibration(text, "paddle.json");
+  return result ? "accepted" : result.error().message;
+}
+
+TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
+  for (const HidKind kind : kHidKinds) {
+    const Result<HidCalibration> calibration = read_hid_calibration(kAssets, kind);
+    ASSERT_TRUE(calibration.ok()) << calibration.error().message;
+    EXPECT_EQ(calibration->kind, kind);
+    EXPECT_GT(calibration->counts_per_metre, 0.0);
+  }
+  const Result<HidCalibration> paddle = read_hid_calibration(kAssets, HidKind::paddle);
+  EXPECT_EQ(paddle->limits.largest_N, 5.0);
+  EXPECT_EQ(paddle->limits.continuous_N, 2.0);
+  EXPECT_EQ(paddle->limits.stale_after_s, 0.008);
+}
+
+TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
+  EXPECT_EQ(complaint("{").rfind("paddle.json:1:2: syntax error", 0), 0u) << complaint("{");
+  EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found [], expected an object");
+  EXPECT_EQ(complaint(changed("\"direction\": 1", "\"direction\": 0.5")),
+            "paddle.json:4:16: direction: found 0.5, expected 1 or -1");
+  EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 500")),
+            "paddle.json:9:13: peak_N: found 500, expected a number from 0.001 up to 100");
+  EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 1")),
+            "paddle.json:10:19: continuous_N: found 2, expected at most peak_N");
+  EXPECT_EQ(complaint(changed("  \"ramp_s\": 0.5,\n", "")),
+            "paddle.json:1:1: ramp_s: missing, expected a number from 0.05 up to 10");
+  EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
+            "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
+  EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
+            "paddle.json:2:11: kind: found \"joystick\", expected \"paddle\", \"polhem\", \"openffboard\" or "
+            "\"spacemouse\"");
+  EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
+                .rfind("paddle.json:13:28: colour: unknown; expected kind, counts_per_metre", 0),
+            0u);
+}
+
+TEST(HidCalibration, SaysWhenTheFileIsNotThereOrOfAnotherKind) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(
+      read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+      folder.file("polhem.json") + ": cannot read the calibration; put the file there, see assets/devices/");
+  folder.with_file("polhem.json", good());
+  EXPECT_EQ(read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+            folder.file("polhem.json") +
+                ": found the calibration of \"paddle\", expected \"polhem\", as the file's name says");
+}
+
+}  // namespace
+}  // namespace palpate

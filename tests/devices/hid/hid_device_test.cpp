@@ -1,0 +1,97 @@
+// A device with its threads, in real time, on a bus made up.
+#include "devices/hid/hid_device.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "engine/live/haptics_loop.h"
+#include "tests/support/fake_hid_bus.h"
+#include "tests/support/hid_ticks.h"
+
+namespace palpate {
+namespace {
+
+using test::FakeHidBus;
+using test::tick_until;
+
+std::unique_ptr<HidDevice> open_paddle(FakeHidBus& bus) {
+  const HidCalibration calibration = test::patient(test::example_calibration(HidKind::paddle));
+  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  EXPECT_TRUE(opened.ok());
+  auto device = std::make_unique<HidDevice>(bus, calibration, std::move(*opened));
+  EXPECT_TRUE(device->open().ok());
+  return device;
+}
+
+bool zeroed(const DeviceHealth& health) { return health.zeroing == Zeroing::done && health.faults == 0; }
+
+TEST(HidDevice, PushesAfterZeroingAndLetsGoWhenClosed) {
+  FakeHidBus bus;
+  auto device = open_paddle(bus);
+  EXPECT_EQ(device->note(), "haptic paddle: Teensyduino RawHID, /dev/hidraw7");
+  EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth& health) {
+    return health.faults == 0 && health.zeroing == Zeroing::needed;
+  }));
+  EXPECT_EQ(bus.motor_mA(), 0.0) << "not zeroed";
+  device->start_zeroing();
+  ASSERT_TRUE(tick_until(*device, 0.0, zeroed));
+  EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth&) { return bus.motor_mA() == -250.0; }));
+  EXPECT_GT(device->health(steady_now_s()).round_trip_s, 0.0);
+  device->close();
+  bus.counts = 0;
+  EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth&) { return true; }));
+  std::uint8_t bytes[65];
+  HidOpened again = std::move(*open_first(bus, {HidKind::paddle}));
+  again.line->read(bytes, sizeof bytes);  // lets the firmware hear the last report
+  EXPECT_EQ(bus.motor_mA(), 0.0);
+}
+
+TEST(HidDevice, ComesBackAfterItWasPluggedInAgain) {
+  FakeHidBus bus;
+  auto device = open_paddle(bus);
+  device->start_zeroing();
+  ASSERT_TRUE(tick_until(*device, 0.0, zeroed));
+  bus.plugged_in = false;
+  EXPECT_TRUE(tick_until(*device, 1.0, [](const DeviceHealth& health) {
+    return (health.faults & device_fault::kUnplugged) != 0 && !health.may_push();
+  }));
+  bus.plugged_in = true;
+  EXPECT_TRUE(tick_until(*device, 0.0, [&](const DeviceHealth& health) {
+    return bus.opened == 2 && health.faults == device_fault::kUnplugged && health.zeroing == Zeroing::needed;
+  })) << "it says why it has to be zeroed";
+  device->start_zeroing();
+  EXPECT_TRUE(tick_until(*device, 0.0, zeroed));
+}
+
+LoopStatistics run_loop(int write_ms, int& writes) {
+  FakeHidBus bus;
+  bus.write_ms = write_ms;
+  auto device = open_paddle(bus);
+  LoopSettings settings;
+  settings.realtime = false;
+  HapticsLoop loop(*device, settings);
+  EXPECT_TRUE(loop.start().ok());
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  loop.stop();
+  writes = bus.writes;
+  return loop.statistics();
+}
+
+// The figures are for people; what is asserted is that the ticks go on.
+TEST(HidDevice, ADeviceThatBlocksOnEveryWriteDoesNotHoldTheTickUp) {
+  for (const int write_ms : {0, 5}) {
+    int writes = 0;
+    const LoopStatistics statistics = run_loop(write_ms, writes);
+    std::printf("writes of %d ms: %llu ticks, %llu missed, longest tick %.1f us, %d writes\n", write_ms,
+                static_cast<unsigned long long>(statistics.ticks),
+                static_cast<unsigned long long>(statistics.missed_deadlines), statistics.tick.max_us, writes);
+    EXPECT_GT(writes, 0);
+    if (write_ms == 5) {
+      EXPECT_LT(writes, static_cast<int>(statistics.ticks)) << "only the newest command is written";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate

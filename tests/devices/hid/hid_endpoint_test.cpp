@@ -1,0 +1,349 @@
+// Host and device against each other, in simulated time: every fault takes the
+// force away, and what it takes to come back.
+#include "devices/hid/hid_endpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/support/rt_guard.h"
+#include "tests/support/simulated_device.h"
+
+namespace palpate {
+namespace {
+
+using test::Report;
+using test::SimulatedDevice;
+
+// Of an encoder step and a tick of tremor.
+constexpr double kResolution_N = 0.1;
+constexpr HidKind kPushing[] = {HidKind::paddle, HidKind::polhem, HidKind::openffboard};
+
+TEST(HidEndpoint, PushesOnceItIsZeroed) {
+  for (const HidKind kind : kPushing) {
+    SimulatedDevice simulated(kind);
+    simulated.rest = false;
+    simulated.run_s(1.0);
+    EXPECT_EQ(simulated.motor_N(), 0.0) << "not zeroed";
+    EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::needed);
+    EXPECT_EQ(simulated.snapshot.samples, 0u) << "nobody knows where the tool is";
+    simulated.press();
+    EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
+    EXPECT_EQ(simulated.snapshot.device.faults, 0u) << hid_kind_name(kind);
+    EXPECT_NEAR(simulated.snapshot.tick.position_m, simulated.position_m(), 30e-6);
+    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
+                kResolution_N);
+    EXPECT_LT(simulated.model->force_units(), 0.0) << "against the growing counts";
+    EXPECT_LT(simulated.snapshot.device.sample_age_s, 2e-3);
+  }
+}
+
+TEST(HidEndpoint, MeasuresTheRoundTripWhereTheDeviceConfirms) {
+  SimulatedDevice paddle(HidKind::paddle);
+  paddle.press();
+  EXPECT_GT(paddle.snapshot.device.round_trip_s, 0.0);
+  EXPECT_LE(paddle.snapshot.device.round_trip_s, 2.1e-3);
+  SimulatedDevice polhem(HidKind::polhem);
+  polhem.press();
+  EXPECT_TRUE(std::isnan(polhem.snapshot.device.round_trip_s));
+}
+
+TEST(HidEndpoint, ZeroingWaitsForRest) {
+  SimulatedDevice simulated(HidKind::paddle);
+  simulated.device.start_zeroing();
+  for (int i = 0; i < 600; ++i) {
+    simulated.counts_offset = i;  // 1 m/s / 50
+    simulated.tick();
+  }
+  EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::hold_still);
+  EXPECT_EQ(simulated.motor_N(), 0.0);
+  simulated.run_s(0.21);
+  EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
+}
+
+TEST(HidEndpoint, DirectionTurnsPositionAndForce) {
+  HidCalibration calibration = test::example_calibration(HidKind::polhem);
+  calibration.direction = -1.0;
+  HidEndpoint endpoint(calibration);
+  endpoint.connected(0.0);
+  Report report(14, 0);
+  endpoint.start_zeroing();
+  double now_s = 0.0;
+  for (; now_s < 0.3; now_s += 1e-3) endpoint.take(report.data(), report.size(), now_s);
+  report[0] = 100;
+  endpoint.take(report.data(), report.size(), now_s);
+  DeviceSample sample;
+  ASSERT_TRUE(endpoint.read(sample));
+  EXPECT_TRUE(sample.restart);
+  EXPECT_NEAR(sample.tool.position_m, -0.01 - 100.0 / 50000.0, 1e-12);
+  EXPECT_FALSE(endpoint.read(sample)) << "once each";
+  endpoint.write(2.0);
+  const OutReports out = endpoint.next(now_s);
+  EXPECT_EQ(static_cast<std::int16_t>(paddle::read16(out.bytes[0].data() + 1)), 500);
+}
+
+// A way to hurt the stream, and how it is found.
+struct Injection {
+  const char* name;
+  void (*inject)(SimulatedDevice&);
+  std::uint32_t fault[3];  // by kPushing; 0: this kind of device cannot have it, or nobody could tell
+  double found_after_s;    // no fault before that, by its nature
+};
+
+void hold_back(SimulatedDevice& simulated, bool newest_first_again) {
+  auto held = std::make_shared<std::vector<Report>>();
+  simulated.on_the_way_in = [held, newest_first_again](const Report& report) {
+    held->push_back(report);
+    if (held->size() < 30) return std::vector<Report>{};
+    std::vector<Report> all = newest_first_again ? std::vector<Report>{report} : *held;
+    held->clear();
+    return all;
+  };
+}
+
+const std::vector<Injection>& injections() {
+  using namespace device_fault;
+  static const std::vector<Injection> all = {
+      {"unplugged",
+       [](SimulatedDevice& s) {
+         s.unplugged = true;
+         s.device.endpoint.unplugged();
+       },
+       {kUnplugged, kUnplugged, kUnplugged},
+       0.0},
+      {"silent",
+       [](SimulatedDevice& s) { s.on_the_way_in = [](const Report&) { return std::vector<Report>{}; }; },
+       {kLate, kLate, kLate},
+       0.0},
+      {"stuck at one value",
+       [](SimulatedDevice& s) { s.encoder_frozen = true; },
+       {kStuck, kStuck, kStuck},
+       0.5},
+      {"the same report again and again",
+       [](SimulatedDevice& s) {
+         auto first = std::make_shared<Report>();
+         s.on_the_way_in = [first](const Report& report) {
+           if (first->empty()) *first = report;
+           return std::vector<Report>{*first};
+         };
+       },
+       {kLate, kStuck, kStuck},
+       0.0},
+      {"late by 20 ms",
+       [](SimulatedDevice& s) {
+         auto queue = std::make_shared<std::deque<Report>>();
+         s.on_the_way_in = [queue](const Report& report) {
+           queue->push_back(report);
+           if (queue->size() <= 20) return std::vector<Report>{};
+           const Report oldest = queue->front();
+           queue->pop_front();
+           return std::vector<Report>{oldest};
+         };
+       },
+       {kLate, kLate, kLate},
+       0.0},
+      {"out of order",
+       [](SimulatedDevice& s) {
+         auto last = std::make_shared<Report>();
+         s.on_the_way_in = [last](const Report& report) {
+           if (last->empty()) {
+             *last = report;
+             return std::vector<Report>{};
+           }
+           const Report older = *last;
+           last->clear();
+           return std::vector<Report>{report, older};
+         };
+       },
+       {kOutOfOrder, 0, 0},
+       0.0},
+      {"corrupted",
+       [](SimulatedDevice& s) {
+         s.on_the_way_in = [](Report report) {
+           report[report.size() / 2 + 1] ^= 0x5A;
+           return std::vector<Report>{report};
+         };
+       },
+       {kCorrupt, kCorrupt, kCorrupt},
+       0.0},
+      {"cut short",
+       [](SimulatedDevice& s) {
+         s.on_the_way_in = [](const Report& report) {
+           return std::vector<Report>{Report(report.begin(), report.begin() + 12)};
+         };
+       },
+       {kCorrupt, kCorrupt, kCorrupt},
+       0.0},
+      {"a burst of old ones",
+       [](SimulatedDevice& s) { hold_back(s, false); },
+       {kLate | kBurst, kLate | kBurst, kLate | kBurst},
+       0.0},
+      {"encoder jump", [](SimulatedDevice& s) { s.counts_offset = 5000; }, {kJump, kJump, kJump}, 0.0},
+      {"firmware reset",
+       [](SimulatedDevice& s) {
+         s.model->restart();
+         s.counts_offset = -s.counts();
+       },
+       {kReset, kJump, kJump},
+       0.0},
+      {"motor fault",
+       [](SimulatedDevice& s) {
+         if (auto* paddle = dynamic_cast<test::PaddleModel*>(s.model.get())) paddle->motor_fault_now = true;
+       },
+       {kOwn, 0, 0},
+       0.0},
+      {"commands do not get through",
+       [](SimulatedDevice& s) { s.writer_hangs = true; },
+       {kWriteStalled, kWriteStalled, kWriteStalled | kLate},
+       0.05},
+  };
+  return all;
+}
+
+struct Outcome {
+  double to_zero_s = -1.0;  // of the force that the host asks for
+  std::uint32_t faults = 0;
+  std::uint32_t first_faults = 0;
+  double largest_step_N = 0.0;
+};
+
+Outcome run(const Injection& injection, SimulatedDevice& simulated) {
+  Outcome outcome;
+  simulated.press();
+  EXPECT_GT(simulated.snapshot.rendered_N, 3.5);
+  const double from_s = simulated.now_s;
+  double last_N = simulated.snapshot.rendered_N;
+  injection.inject(simulated);
+  for (int i = 0; i < 800; ++i) {
+    simulated.tick();
+    outcome.faults |= simulated.snapshot.device.faults;
+    if (outcome.first_faults == 0) outcome.first_faults = outcome.faults;
+    outcome.largest_step_N =
+        std::max(outcome.largest_step_N, std::abs(last_N - simulated.snapshot.rendered_N));
+    last_N = simulated.snapshot.rendered_N;
+    if (last_N == 0.0 && outcome.to_zero_s < 0.0) outcome.to_zero_s = simulated.now_s - from_s;
+  }
+  return outcome;
+}
+
+TEST(HidEndpoint, EveryFaultTakesTheForceAway) {
+  std::printf("%-32s %-12s %9s  %s\n", "fault", "device", "to 0 [ms]", "message");
+  for (const Injection& injection : injections()) {
+    for (std::size_t k = 0; k < std::size(kPushing); ++k) {
+      SimulatedDevice simulated(kPushing[k]);
+      const char* kind = hid_kind_name(kPushing[k]);
+      if (injection.fault[k] == 0) {
+        std::printf("%-32s %-12s %9s  %s\n", injection.name, kind, "-", "its reports cannot tell");
+        continue;
+      }
+      const Outcome outcome = run(injection, simulated);
+      const auto words = device_fault_words(outcome.first_faults);
+      std::printf("%-32s %-12s %9.1f  %s\n", injection.name, kind, 1e3 * outcome.to_zero_s,
+                  words.empty() ? "" : words.front().c_str());
+      const bool stuck = injection.fault[k] == device_fault::kStuck;
+      EXPECT_NE(outcome.faults & injection.fault[k], 0u) << injection.name << ", " << kind;
+      EXPECT_GT(outcome.to_zero_s, 0.0) << injection.name << ", " << kind;
+      EXPECT_LE(outcome.to_zero_s, 0.0205 + (stuck ? 0.5 : injection.found_after_s))
+          << injection.name << ", " << kind;
+      EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
+      EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault[k], 0u);
+      EXPECT_TRUE(simulated.live.fault_recorder().take().has_value());
+    }
+  }
+}
+
+TEST(HidEndpoint, WhatLosesThePositionAsksForZeroing) {
+  for (const Injection& injection : injections()) {
+    if ((injection.fault[0] & device_fault::kLosesPosition) == 0) continue;
+    SimulatedDevice simulated(HidKind::paddle);
+    run(injection, simulated);
+    simulated.encoder_frozen = simulated.unplugged = false;
+    simulated.device.endpoint.connected(simulated.now_s);
+    simulated.run_s(1.0);
+    EXPECT_EQ(simulated.snapshot.rendered_N, 0.0) << injection.name;
+    EXPECT_NE(simulated.snapshot.device.faults & injection.fault[0], 0u) << "until it is zeroed";
+    EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::needed);
+    EXPECT_EQ(simulated.snapshot.samples, 0u);
+    simulated.press();
+    EXPECT_EQ(simulated.snapshot.device.faults, 0u) << injection.name;
+    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
+                kResolution_N)
+        << injection.name;
+  }
+}
+
+TEST(HidEndpoint, WhatKeepsThePositionComesBackByItself) {
+  for (const Injection& injection : injections()) {
+    if ((injection.fault[0] & (device_fault::kLosesPosition | device_fault::kOwn)) != 0) continue;
+    SimulatedDevice simulated(HidKind::paddle);
+    run(injection, simulated);
+    simulated.on_the_way_in = nullptr;
+    simulated.writer_hangs = false;
+    simulated.tick();
+    EXPECT_LT(simulated.snapshot.rendered_N, 0.2) << "not at once";
+    simulated.run_s(1.0);
+    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
+                kResolution_N)
+        << injection.name;
+    EXPECT_NE(simulated.snapshot.device_faults_latched, 0u);
+    simulated.controls.acknowledged = 1;
+    simulated.run_s(0.01);
+    EXPECT_EQ(simulated.snapshot.device_faults_latched, 0u);
+    EXPECT_EQ(simulated.snapshot.faults_latched & loop_fault::kStops, 0u);
+  }
+}
+
+TEST(HidEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
+  for (const HidKind kind : kPushing) {
+    SimulatedDevice simulated(kind);
+    simulated.press();
+    EXPECT_GT(simulated.motor_N(), 3.5);
+    HidEndpoint& endpoint = simulated.device.endpoint;
+    // The writer goes on alone.
+    for (double now_s = simulated.now_s; now_s < simulated.now_s + 0.03; now_s += 0.5e-3) {
+      const OutReports reports = endpoint.next(now_s);
+      for (std::size_t i = 0; i < reports.count; ++i) {
+        const std::size_t skip = reports.bytes[i][0] == 0 ? 1 : 0;
+        simulated.model->hear(
+            Report(reports.bytes[i].data() + skip, reports.bytes[i].data() + reports.sizes[i]));
+      }
+      simulated.model->step(static_cast<std::uint32_t>(1e6 * (now_s - SimulatedDevice::kStart_s)), 0);
+    }
+    EXPECT_EQ(simulated.motor_N(), 0.0) << hid_kind_name(kind);
+  }
+}
+
+TEST(HidEndpoint, TheGripIsADeadManSwitch) {
+  SimulatedDevice simulated(HidKind::paddle);
+  auto& paddle = dynamic_cast<test::PaddleModel&>(*simulated.model);
+  simulated.controls.dead_man = DeadMan::grip;
+  simulated.press();
+  EXPECT_EQ(simulated.motor_N(), 0.0);
+  EXPECT_TRUE(simulated.snapshot.released);
+  paddle.grip_now = true;
+  simulated.run_s(1.0);
+  EXPECT_GT(simulated.motor_N(), 3.5);
+  paddle.grip_now = false;
+  simulated.run_s(0.02);
+  EXPECT_EQ(simulated.motor_N(), 0.0);
+}
+
+TEST(HidEndpoint, DoesNothingForbiddenInTheTick) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  SimulatedDevice simulated(HidKind::paddle);
+  simulated.press();
+  int offences = 0;
+  for (int i = 0; i < 2000; ++i) {
+    if (i == 1000) simulated.device.endpoint.unplugged();
+    simulated.tick();
+    test::RtGuard guard;
+    simulated.live.run(simulated.now_s + 1e-4, {});
+    offences += guard.stop().total();
+  }
+  EXPECT_EQ(offences, 0);
+}
+
+}  // namespace
+}  // namespace palpate

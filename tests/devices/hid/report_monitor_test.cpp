@@ -1,0 +1,158 @@
+// One stream of reports at a time; hid_endpoint_test has them with force and time.
+#include "devices/hid/report_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "devices/firmware/paddle/paddle_protocol.h"
+
+namespace palpate {
+namespace {
+
+MonitorSettings settings_for(HidKind kind) {
+  MonitorSettings settings;
+  settings.kind = kind;
+  settings.counts_per_metre = 50000.0;
+  settings.fastest_m_per_s = 5.0;
+  return settings;
+}
+
+// A paddle's reports, 1 ms apart.
+struct Stream {
+  ReportMonitor monitor{settings_for(HidKind::paddle)};
+  paddle::FromDevice next{0, 0, 0, 0, 0, 1, 0, 0};
+  double now_s = 10.0;
+
+  void send(const paddle::FromDevice& report, double force_N = 0.0) {
+    std::uint8_t bytes[64];
+    paddle::encode(report, bytes);
+    monitor.take(bytes, sizeof bytes, now_s, force_N);
+  }
+  void step(std::int32_t counts = 0, double force_N = 0.0) {
+    now_s += 1e-3;
+    ++next.sequence;
+    next.time_us += 1000;
+    next.counts = counts;
+    send(next, force_N);
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) step(next.counts);
+  }
+  void zero() {
+    monitor.start_zeroing();
+    steps(210);
+    EXPECT_EQ(monitor.state().zeroing, Zeroing::done);
+  }
+};
+
+TEST(ReportMonitor, CountsAndTimesWhatItAccepts) {
+  Stream stream;
+  for (int i = 0; i < 50; ++i) stream.step(i);
+  const MonitorState& state = stream.monitor.state();
+  EXPECT_EQ(state.samples, 50u);
+  EXPECT_EQ(state.counts, 49);
+  EXPECT_NEAR(state.sample_time_s, stream.now_s, 1e-6);
+  EXPECT_EQ(state.transient, 0u);
+  EXPECT_EQ(state.lost, 0u);
+}
+
+TEST(ReportMonitor, LostReportsAreNoFault) {
+  Stream stream;
+  stream.steps(10);
+  stream.next.sequence += 5;
+  stream.next.time_us += 5000;
+  stream.now_s += 5e-3;
+  stream.step(3);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+  EXPECT_EQ(stream.monitor.state().counts, 3);
+}
+
+TEST(ReportMonitor, AnOlderReportIsNotUsed) {
+  Stream stream;
+  stream.steps(10);
+  paddle::FromDevice older = stream.next;
+  older.sequence -= 3;
+  older.counts = 99;
+  stream.send(older);
+  EXPECT_EQ(stream.monitor.state().counts, 0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kOutOfOrder);
+  EXPECT_NEAR(stream.monitor.state().transient_until_s, stream.now_s + 0.1, 1e-9);
+}
+
+TEST(ReportMonitor, SequenceMayWrap) {
+  Stream stream;
+  stream.next.sequence = 0xFFFFFFF0u;
+  stream.steps(64);
+  EXPECT_EQ(stream.monitor.state().samples, 64u);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+}
+
+TEST(ReportMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
+  Stream stream;
+  stream.zero();
+  for (int i = 1; i <= 100; ++i) stream.step(250 * i);  // 5 m/s
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  stream.step(250 * 100 + 300);
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kJump);
+  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::needed);
+  stream.zero();
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  EXPECT_EQ(stream.monitor.state().zeroings, 2u);
+}
+
+TEST(ReportMonitor, ASixteenBitCounterMayWrap) {
+  ReportMonitor monitor(settings_for(HidKind::polhem));
+  std::uint8_t bytes[14] = {};
+  double now_s = 1.0;
+  for (int i = 0; i < 1000; ++i) {
+    paddle::write16(bytes, static_cast<std::uint16_t>(100 * i));
+    monitor.take(bytes, sizeof bytes, now_s += 1e-3, 0.0);
+  }
+  EXPECT_EQ(monitor.state().counts, 99'900);
+  EXPECT_EQ(monitor.state().lost, 0u);
+}
+
+TEST(ReportMonitor, StandingStillIsStuckOnlyUnderForce) {
+  Stream stream;
+  stream.zero();
+  for (int i = 0; i < 2000; ++i) stream.step(0, 0.1);
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  for (int i = 0; i < 2000; ++i) stream.step(i / 400, 3.0);
+  EXPECT_EQ(stream.monitor.state().lost, 0u) << "a count now and then";
+  for (int i = 0; i < 510; ++i) stream.step(4, 3.0);
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck);
+}
+
+TEST(ReportMonitor, AnotherBootIsAReset) {
+  Stream stream;
+  stream.zero();
+  stream.next = {0, 0, 0, 0, 0, 2, 0, 0};
+  stream.step();
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kReset);
+}
+
+TEST(ReportMonitor, FaultsAddUpWhileTheyLast) {
+  Stream stream;
+  stream.steps(10);
+  std::uint8_t bad[64] = {};
+  stream.monitor.take(bad, sizeof bad, stream.now_s, 0.0);
+  paddle::FromDevice older = stream.next;
+  older.sequence -= 3;
+  stream.send(older);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt | device_fault::kOutOfOrder);
+  stream.now_s += 1.0;
+  stream.monitor.take(bad, sizeof bad, stream.now_s, 0.0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt);
+}
+
+TEST(ReportMonitor, ZeroingTakesTheMiddleOfWhereItRested) {
+  Stream stream;
+  stream.monitor.start_zeroing();
+  for (int i = 0; i < 210; ++i) stream.step(100 + i % 2 * 10);
+  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::done);
+  EXPECT_EQ(stream.monitor.state().zero_counts, 105.0);
+}
+
+}  // namespace
+}  // namespace palpate

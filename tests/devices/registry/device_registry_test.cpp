@@ -1,0 +1,115 @@
+// Devices by name.
+#include "devices/registry/device_registry.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/example_model.h"
+#include "tests/support/fake_hid_bus.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+// No device but what a test plugs in.
+DeviceRequest request_with(HidBus& bus) {
+  DeviceRequest request;
+  request.bus = &bus;
+  request.calibrations = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
+  return request;
+}
+
+test::FakeHidBus& nothing_plugged_in() {
+  static test::FakeHidBus bus;
+  bus.plugged_in = false;
+  return bus;
+}
+
+TEST(DeviceRegistry, OpensEveryDeviceThatItListsAsUsable) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("press.csv");
+  ASSERT_TRUE(write_recording(path, test::example_recording(100, 1000.0), {}, false).ok());
+  const DeviceRequest request = request_with(nothing_plugged_in());
+  for (const DeviceDescription& description : list_devices(request)) {
+    const bool replay = description.name == "replay:FILE";
+    auto device = open_device(replay ? "replay:" + path : description.name, request);
+    ASSERT_EQ(device.ok(), description.problem.empty()) << description.name;
+    if (!device) continue;
+    EXPECT_EQ((*device)->name(), replay ? "replay:press" : description.name);
+    EXPECT_EQ((*device)->renders_force(), description.renders_force) << description.name;
+    DeviceSample sample;
+    EXPECT_TRUE((*device)->read(1.0, sample)) << description.name;
+    (*device)->close();
+  }
+  EXPECT_EQ(list_devices(request).front().name, "auto");
+}
+
+TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
+  test::FakeHidBus bus;
+  auto device = open_device("auto", request_with(bus));
+  ASSERT_TRUE(device.ok());
+  EXPECT_EQ((*device)->name(), "hid");
+  EXPECT_EQ((*device)->note(), "haptic paddle: Teensyduino RawHID, /dev/hidraw7");
+  EXPECT_EQ((*device)->limits().largest_N, 5.0);
+  EXPECT_FALSE((*device)->health(0.0).may_push()) << "not zeroed";
+  for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
+}
+
+TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
+  auto device = open_device("auto", request_with(nothing_plugged_in()));
+  ASSERT_TRUE(device.ok());
+  EXPECT_EQ((*device)->name(), "auto");
+  EXPECT_EQ((*device)->note(), "no haptic device is plugged in: a simulated hand until the mouse takes over");
+  test::FakeHidBus refused;
+  refused.refusals = 1000;
+  device = open_device("auto", request_with(refused));
+  ASSERT_TRUE(device.ok());
+  EXPECT_EQ((*device)->note(), "/dev/hidraw7: no permission: a simulated hand until the mouse takes over");
+  test::FakeHidBus mouse(test::found_space_mouse());
+  mouse.silent = true;
+  device = open_device("auto", request_with(mouse));
+  ASSERT_TRUE(device.ok());
+  EXPECT_EQ((*device)->note(),
+            "no haptic device is plugged in: a simulated hand until the mouse or the SpaceMouse (no force) takes over");
+  test::FakeHidBus paddle;
+  DeviceRequest request;
+  request.bus = &paddle;
+  device = open_device("auto", request);
+  ASSERT_TRUE(device.ok());
+  EXPECT_EQ((*device)->note(), "the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder: "
+                               "a simulated hand until the mouse takes over");
+}
+
+TEST(DeviceRegistry, HidIsNeverAnythingElse) {
+  EXPECT_EQ(open_device("hid", request_with(nothing_plugged_in())).error().message,
+            "no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)");
+  test::FakeHidBus refused;
+  refused.refusals = 1000;
+  EXPECT_EQ(open_device("hid", request_with(refused)).error().message, "/dev/hidraw7: no permission");
+  test::FakeHidBus mouse(test::found_space_mouse());
+  mouse.silent = true;
+  auto device = open_device("hid", request_with(mouse));
+  ASSERT_TRUE(device.ok());
+  EXPECT_FALSE((*device)->renders_force());
+}
+
+TEST(DeviceRegistry, ExplainsWhatItCannotOpen) {
+  EXPECT_EQ(open_device("joystick").error().message,
+            "unknown device \"joystick\", expected one of: auto, hand, mouse, hid, replay:FILE (palpate devices explains)");
+  EXPECT_EQ(open_device("replay:").error().message,
+            "--device replay: names no recording; write replay:FILE.csv");
+  EXPECT_EQ(open_device("replay:/nowhere.csv").error().message.rfind("/nowhere.csv", 0), 0u);
+}
+
+TEST(DeviceRegistry, TheProgramListsThem) {
+  const auto run = test::run_palpate({"devices"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "");
+  for (const DeviceDescription& description : list_devices()) {
+    EXPECT_NE(run.out.find(description.name), std::string::npos) << run.out;
+  }
+  EXPECT_NE(run.out.find("PLUGGED IN"), std::string::npos) << run.out;
+}
+
+}  // namespace
+}  // namespace palpate

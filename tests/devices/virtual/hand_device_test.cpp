@@ -1,0 +1,96 @@
+// The simulated hand as a device: it explores, it feels, it repeats itself.
+#include "devices/virtual/hand_device.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+
+// Seconds of the hand on a spring; positions.
+std::vector<double> explore(HandDevice& device, double stiffness_N_per_m, int ticks) {
+  std::vector<double> positions_m;
+  DeviceSample sample;
+  for (int i = 0; i < ticks; ++i) {
+    EXPECT_TRUE(device.read(kTick_s * i, sample));
+    positions_m.push_back(sample.tool.position_m);
+    device.write(stiffness_N_per_m * std::max(0.0, sample.tool.position_m));
+  }
+  return positions_m;
+}
+
+TEST(HandDevice, PressesAndLeavesAgainAndAgain) {
+  HandDevice device;
+  const std::vector<double> positions_m = explore(device, 800.0, 30000);
+  int presses = 0;
+  for (std::size_t i = 1; i < positions_m.size(); ++i) presses += positions_m[i] > 0.0 && positions_m[i - 1] <= 0.0;
+  EXPECT_GE(presses, 10) << "in half a minute";
+  const double deepest_m = *std::max_element(positions_m.begin(), positions_m.end());
+  EXPECT_GT(800.0 * deepest_m, 3.0) << "N: it presses in earnest";
+  // It aims for 6 N at most; its guess of the stiffness may be out by half.
+  EXPECT_LT(800.0 * deepest_m, 9.0);
+}
+
+// The same seed on air and on springs: what pushes back keeps the hand out.
+TEST(HandDevice, IsPushedBackByTheForce) {
+  double before_m = 1.0;
+  for (const double stiffness_N_per_m : {200.0, 800.0, 3000.0}) {
+    HandDevice device;
+    const std::vector<double> positions_m = explore(device, stiffness_N_per_m, 30000);
+    const double deepest_m = *std::max_element(positions_m.begin(), positions_m.end());
+    EXPECT_LT(deepest_m, before_m);
+    before_m = deepest_m;
+  }
+  HandDevice device;
+  const std::vector<double> in_air_m = explore(device, 0.0, 30000);
+  EXPECT_LT(*std::max_element(in_air_m.begin(), in_air_m.end()), 0.03) << "it does not push through the block";
+}
+
+TEST(HandDevice, StaysStableOnAStiffBlock) {
+  HandDevice device(3);
+  const std::vector<double> positions_m = explore(device, 3000.0, 60000);
+  for (const double position_m : positions_m) {
+    ASSERT_TRUE(std::isfinite(position_m));
+    ASSERT_LT(std::abs(position_m), 0.03);
+  }
+}
+
+TEST(HandDevice, TheSameSeedMovesTheSame) {
+  HandDevice a(5);
+  HandDevice b(5);
+  HandDevice other(6);
+  const std::vector<double> first = explore(a, 500.0, 5000);
+  EXPECT_EQ(first, explore(b, 500.0, 5000));
+  EXPECT_NE(first, explore(other, 500.0, 5000));
+}
+
+TEST(HandDevice, GivesOneSampleATimeAndSitsOutAStall) {
+  HandDevice device;
+  explore(device, 500.0, 2000);
+  DeviceSample sample;
+  EXPECT_FALSE(device.read(1.999, sample)) << "no time has passed";
+  ASSERT_TRUE(device.read(2.0, sample));
+  const double before_m = sample.tool.position_m;
+  ASSERT_TRUE(device.read(60.0, sample));
+  EXPECT_LT(std::abs(sample.tool.position_m - before_m), 0.02) << "20 ms at no more than 1 m/s";
+}
+
+TEST(HandDevice, ResumesFromWhereTheToolIs) {
+  HandDevice device;
+  DeviceSample sample;
+  device.resume_at(4e-3, 10.0);
+  double last_m = 4e-3;
+  for (int i = 1; i < 2000; ++i) {
+    ASSERT_TRUE(device.read(10.0 + kTick_s * i, sample));
+    ASSERT_LT(std::abs(sample.tool.position_m - last_m), 1e-3) << "a jump";
+    last_m = sample.tool.position_m;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,192 @@
+#include "engine/base/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <functional>
+
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::read_text;
+using test::TemporaryFolder;
+
+const std::string kMegabyte(std::size_t{1} << 20, 'x');
+
+// Runs `body` in a child process and returns its wait status.
+int in_child(const std::function<void()>& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    body();
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+// A child in the middle of writing "out", more than one buffer already on disk,
+// that then sends itself `signal_number`.
+int killed_while_writing(const TemporaryFolder& folder, int signal_number) {
+  return in_child([&] {
+    remove_temporary_files_on_signals();
+    auto file = AtomicFile::create(folder.file("out"), true);
+    if (!file) _exit(3);
+    file->write(kMegabyte);
+    raise(signal_number);
+  });
+}
+
+TEST(AtomicFile, HoldsWhatWasWritten) {
+  const TemporaryFolder folder;
+  auto file = AtomicFile::create(folder.file("out"), false);
+  ASSERT_TRUE(file.ok());
+  file->write("one,");
+  file->write("two\n");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(read_text(folder.file("out")), "one,two\n");
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
+}
+
+TEST(AtomicFile, WritesMoreThanItsBuffer) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder.file("out"), kMegabyte + "end", false).ok());
+  EXPECT_EQ(read_text(folder.file("out")), kMegabyte + "end");
+}
+
+TEST(AtomicFile, LeavesNothingWithoutCommit) {
+  const TemporaryFolder folder;
+  {
+    auto file = AtomicFile::create(folder.file("out"), false);
+    ASSERT_TRUE(file.ok());
+    file->write(kMegabyte);
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(AtomicFile, MovesWithItsContent) {
+  const TemporaryFolder folder;
+  auto first = AtomicFile::create(folder.file("out"), false);
+  ASSERT_TRUE(first.ok());
+  first->write("kept");
+  AtomicFile second = std::move(*first);
+  EXPECT_FALSE(first->commit().ok());
+  ASSERT_TRUE(second.commit().ok());
+  EXPECT_EQ(read_text(folder.file("out")), "kept");
+  EXPECT_FALSE(second.commit().ok());
+}
+
+TEST(AtomicFile, RefusesAnExistingFile) {
+  const TemporaryFolder folder;
+  const std::string path = folder.with_file("out", "old");
+  const Status status = write_file_atomically(path, "new", false);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, path + " exists; pass --force to replace it");
+  EXPECT_EQ(read_text(path), "old");
+  EXPECT_EQ(folder.entries().size(), 1u);
+}
+
+TEST(AtomicFile, ReplacesAnExistingFileWhenTold) {
+  const TemporaryFolder folder;
+  const std::string path = folder.with_file("out", "old");
+  ASSERT_TRUE(write_file_atomically(path, "new", true).ok());
+  EXPECT_EQ(read_text(path), "new");
+}
+
+TEST(AtomicFile, RefusesAFileThatAppearedWhileItWasWriting) {
+  const TemporaryFolder folder;
+  auto file = AtomicFile::create(folder.file("out"), false);
+  ASSERT_TRUE(file.ok());
+  file->write("ours");
+  folder.with_file("out", "theirs");
+  const Status status = file->commit();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message, folder.file("out") + " exists; pass --force to replace it");
+  EXPECT_EQ(read_text(folder.file("out")), "theirs");
+  EXPECT_EQ(folder.entries().size(), 1u);
+}
+
+TEST(AtomicFile, RefusesAFolderADeviceAndAnEmptyName) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(write_file_atomically(folder.path(), "x", true).error().message,
+            "cannot write " + folder.path() + ": it is a folder; name a file");
+  EXPECT_EQ(write_file_atomically("/dev/null", "x", true).error().message,
+            "cannot write /dev/null: it is not a regular file; name one");
+  EXPECT_EQ(write_file_atomically("", "x", true).error().message, "the name of the output file is empty");
+}
+
+TEST(AtomicFile, NamesAMissingFolder) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("none/out");
+  EXPECT_EQ(
+      write_file_atomically(path, "x", false).error().message,
+      "cannot write " + path + ": the folder " + folder.file("none") + " does not exist; create it first");
+  const std::string under_a_file = folder.with_file("file", "") + "/out";
+  EXPECT_EQ(write_file_atomically(under_a_file, "x", false).error().message,
+            "cannot write " + under_a_file + ": " + folder.file("file") + " is not a folder");
+}
+
+TEST(AtomicFile, NamesAFolderThatIsNotWritable) {
+  // /proc refuses new files even to root.
+  const Status status = write_file_atomically("/proc/palpate-out", "x", false);
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().message.rfind("cannot write /proc/palpate-out: the folder /proc ", 0), 0u)
+      << status.error().message;
+}
+
+TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
+  const TemporaryFolder folder;
+  const std::string path = folder.with_file("out", "old");
+  const int status = in_child([&] {
+    remove_temporary_files_on_signals();
+    const rlimit limit{1000, 1000};  // stands in for a disk with 1000 bytes left
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const Status written = write_file_atomically(path, kMegabyte, true);
+    const bool explained =
+        !written.ok() && written.error().message == "cannot write " + path + ": File too large";
+    _exit(explained ? 0 : 4);
+  });
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_EQ(read_text(path), "old");
+  EXPECT_EQ(folder.entries().size(), 1u);
+}
+
+TEST(AtomicFile, KilledLeavesNothingUnderTheFinalName) {
+  const TemporaryFolder folder;
+  const int status = killed_while_writing(folder, SIGKILL);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
+}
+
+TEST(AtomicFile, InterruptedLeavesNothingAtAll) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const TemporaryFolder folder;
+    folder.with_file("out", "old");
+    const int status = killed_while_writing(folder, number);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << status;
+    EXPECT_EQ(folder.entries(), std::vector<std::string>{"out"});
+    EXPECT_EQ(read_text(folder.file("out")), "old");
+  }
+}
+
+TEST(AtomicFile, AnInterruptedChildLeavesTheParentsFileAlone) {
+  const TemporaryFolder folder;
+  auto file = AtomicFile::create(folder.file("out"), false);
+  ASSERT_TRUE(file.ok());
+  in_child([] {
+    remove_temporary_files_on_signals();
+    raise(SIGTERM);
+  });
+  file->write("whole");
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(read_text(folder.file("out")), "whole");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,64 @@
+#include "engine/base/csv_scanner.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+TEST(LineScanner, GivesTheSameLinesWhateverThePieces) {
+  const std::string text = "one\ntwo\r\n\nlast";
+  for (const std::size_t piece_bytes : {1u, 2u, 5u, 100u}) {
+    LineScanner scanner(std::make_unique<MemorySource>(text, piece_bytes), "x");
+    CsvLine line;
+    for (const char* expected : {"one", "two", "", "last"}) {
+      ASSERT_TRUE(scanner.next(line));
+      EXPECT_EQ(line.text, expected);
+      EXPECT_EQ(line.terminated, line.text != "last");
+    }
+    EXPECT_EQ(line.number, 4u);
+    EXPECT_FALSE(scanner.next(line));
+    EXPECT_FALSE(scanner.error().has_value());
+  }
+}
+
+TEST(LineScanner, ReportsASourceThatFails) {
+  LineScanner scanner(std::make_unique<DescriptorSource>(-1), "x.csv");
+  CsvLine line;
+  EXPECT_FALSE(scanner.next(line));
+  ASSERT_TRUE(scanner.error().has_value());
+  EXPECT_EQ(scanner.error()->message.substr(0, 36), "x.csv: the file cannot be read (Bad ");
+}
+
+TEST(IsUtf8, FollowsRfc3629) {
+  std::size_t bad_offset = 0;
+  for (const char* good : {"", "a", "\xC2\xB5", "\xE2\x82\xAC", "\xF0\x9F\x98\x80", "\xED\x9F\xBF"}) {
+    EXPECT_TRUE(is_utf8(good, bad_offset)) << good;
+  }
+  // Lone, overlong, surrogate, beyond U+10FFFF, cut short.
+  for (const char* bad : {"a\x80", "a\xC0\x80", "a\xE0\x80\x80", "a\xED\xA0\x80",
+                          "a\xF4\x90\x80\x80", "a\xF5\x80\x80\x80", "a\xE2\x82", "a\xF0\x9F\x98z"}) {
+    EXPECT_FALSE(is_utf8(bad, bad_offset));
+    EXPECT_EQ(bad_offset, 1u);
+  }
+}
+
+TEST(Printable, EscapesWhatATerminalWouldObey) {
+  EXPECT_EQ(printable("plain \xC2\xB5"), "plain \xC2\xB5");
+  EXPECT_EQ(printable("\x1B[2J\x7F\n"), "\\x1b[2J\\x7f\\x0a");
+  EXPECT_EQ(printable("\xC2\x9B\xFF"), "\\xc2\\x9b\\xff");
+  EXPECT_EQ(printable("abcdef", 3), "abc...");
+  EXPECT_EQ(printable("abc", 3), "abc");
+}
+
+TEST(Trimmed, TakesBlanksAndTabsFromBothEnds) {
+  EXPECT_EQ(trimmed(" \ta b\t "), "a b");
+  EXPECT_EQ(trimmed(" \t"), "");
+}
+
+TEST(Shortest, ReadsAsTheSameNumber) {
+  EXPECT_EQ(shortest(0.1), "0.1");
+  EXPECT_EQ(shortest(12.5), "12.5");
+}
+
+}  // namespace
+}  // namespace palpate

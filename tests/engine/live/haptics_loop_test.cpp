@@ -1,0 +1,147 @@
+// The haptics thread: what it counts, and that it shares nothing it should not.
+#include "engine/live/haptics_loop.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/live_doubles.h"
+
+namespace palpate {
+namespace {
+
+using test::FakePacer;
+using test::PathDevice;
+using test::spring;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+std::unique_ptr<LiveModels> springs(std::uint32_t id, const Device& device) {
+  return std::make_unique<LiveModels>(id, device.sensor(), std::vector{spring(300.0), spring(500.0)});
+}
+
+TEST(Deadlines, StayOnTheirGridWhateverATickTakes) {
+  Deadlines deadlines(0, kMs);
+  EXPECT_EQ(deadlines.next_ns(), kMs);
+  Wake wake = deadlines.wake(kMs + 30'000);
+  EXPECT_EQ(wake.lateness_ns, 30'000);
+  EXPECT_EQ(wake.missed, 0u);
+  EXPECT_EQ(deadlines.next_ns(), 2 * kMs) << "not 1 ms from now";
+  wake = deadlines.wake(2 * kMs + kMs - 1);
+  EXPECT_EQ(wake.missed, 0u) << "late, but before the next one";
+  EXPECT_EQ(deadlines.next_ns(), 3 * kMs);
+  wake = deadlines.wake(3 * kMs - 5);
+  EXPECT_EQ(wake.lateness_ns, 0) << "too early is not late";
+}
+
+TEST(Deadlines, CountAndSkipWhatWasMissed) {
+  Deadlines deadlines(0, kMs);
+  Wake wake = deadlines.wake(kMs + 5 * kMs + 200);
+  EXPECT_EQ(wake.lateness_ns, 5 * kMs + 200);
+  EXPECT_EQ(wake.missed, 5u) << "2 to 6 ms";
+  EXPECT_EQ(deadlines.next_ns(), 7 * kMs) << "no burst";
+  wake = deadlines.wake(7 * kMs + kMs);
+  EXPECT_EQ(wake.missed, 1u) << "exactly at the next one counts as its end";
+  EXPECT_EQ(deadlines.next_ns(), 9 * kMs);
+}
+
+TEST(HapticsLoop, CountsTicksLatenessAndMissedDeadlines) {
+  PathDevice device(test::held_5mm);
+  HapticsLoop loop(device);
+  loop.publish_models(springs(1, device));
+  FakePacer pacer([&](int wait) -> std::int64_t {
+    if (wait == 999) loop.request_stop();
+    if (wait == 500) return 3 * kMs + 100'000;
+    return wait % 10 == 0 ? 200'000 : 20'000;
+  });
+  loop.run(pacer);
+  const LoopStatistics statistics = loop.statistics();
+  EXPECT_EQ(statistics.ticks, 1000u) << "one a wait, no burst after the stall";
+  EXPECT_EQ(statistics.missed_deadlines, 3u);
+  EXPECT_EQ(statistics.late_by_a_period, 1u);
+  EXPECT_EQ(statistics.lateness.count, 1000u);
+  EXPECT_NEAR(statistics.lateness.p50_us, 20.0, 0.032 * 20.0) << "a bin's width";
+  EXPECT_NEAR(statistics.lateness.p99_us, 200.0, 0.032 * 200.0);
+  EXPECT_EQ(statistics.lateness.max_us, 3100.0);
+
+  std::vector<LoopSnapshot> snapshots(2000);
+  ASSERT_EQ(loop.read_snapshots(snapshots.data(), snapshots.size()), 1000u);
+  EXPECT_EQ(snapshots[499].missed_deadlines, 0u);
+  EXPECT_EQ(snapshots[500].missed_deadlines, 3u);
+  EXPECT_NE(snapshots[500].faults & loop_fault::kDeadlineMissed, 0u);
+  EXPECT_EQ(snapshots[501].faults & loop_fault::kDeadlineMissed, 0u);
+  EXPECT_EQ(snapshots[999].missed_deadlines, 3u);
+  EXPECT_EQ(snapshots[999].faults_latched & loop_fault::kDeadlineMissed, 0u) << "the count tells";
+  for (std::size_t i = 1; i < 1000; ++i) {
+    ASSERT_EQ(snapshots[i].tick.tick, snapshots[i - 1].tick.tick + 1);
+    ASSERT_GT(snapshots[i].loop_time_s, snapshots[i - 1].loop_time_s);
+  }
+  EXPECT_EQ(loop.newest().tick.tick, snapshots[999].tick.tick);
+  EXPECT_EQ(device.force_N(), 0.0) << "it lets go at the end";
+}
+
+TEST(HapticsLoop, DropsAndCountsSnapshotsThatNobodyReads) {
+  PathDevice device(test::held_5mm);
+  HapticsLoop loop(device);
+  constexpr int kTicks = static_cast<int>(kSnapshotRing) + 10;
+  FakePacer pacer([&](int wait) -> std::int64_t {
+    if (wait == kTicks - 1) loop.request_stop();
+    return 0;
+  });
+  loop.run(pacer);
+  EXPECT_EQ(loop.statistics().dropped_snapshots, 10u);
+}
+
+// The real clock and the real thread beside a slow side that changes models and
+// the model in the hand, and reads all it can. What it checks does not depend on
+// when things happen; the thread sanitizer watches the rest.
+TEST(HapticsLoop, RunsBesideABusySlowSide) {
+  PathDevice device(test::strokes);
+  LoopSettings settings;
+  settings.realtime = false;  // a test does not outrank the machine it runs on
+  HapticsLoop loop(device, settings);
+  loop.publish_models(springs(1, device));
+  ASSERT_TRUE(loop.start().ok());
+  EXPECT_EQ(loop.scheduling().scheduling, "normal, as asked");
+
+  std::vector<LoopSnapshot> snapshots(64);
+  std::uint64_t received = 0;
+  std::uint64_t wrong = 0;
+  std::uint64_t last_tick = 0;
+  std::uint32_t id = 1;
+  while (loop.statistics().ticks < 500) {
+    const std::size_t count = loop.read_snapshots(snapshots.data(), snapshots.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (snapshots[i].tick.tick <= last_tick || snapshots[i].models_id > id) ++wrong;
+      last_tick = snapshots[i].tick.tick;
+    }
+    received += count;
+    if (loop.newest().tick.tick + 1 < last_tick) ++wrong;
+    if (id < 30) loop.publish_models(springs(++id, device));
+    loop.set_controls({id, id % 2});
+    loop.collect_models();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  loop.stop();
+  for (std::size_t count = 1; count > 0; received += count) {
+    count = loop.read_snapshots(snapshots.data(), snapshots.size());
+  }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(received + loop.statistics().dropped_snapshots, loop.statistics().ticks);
+  EXPECT_GT(loop.newest().models_id, 1u);
+  EXPECT_EQ(device.force_N(), 0.0);
+  loop.stop();  // again: nothing happens
+}
+
+TEST(HapticsLoop, IsStoppedByItsEnd) {
+  PathDevice device(test::held_5mm);
+  LoopSettings settings;
+  settings.realtime = false;
+  {
+    HapticsLoop loop(device, settings);
+    ASSERT_TRUE(loop.start().ok());
+  }
+  EXPECT_EQ(device.force_N(), 0.0);
+  EXPECT_GT(device.writes(), 0);
+}
+
+}  // namespace
+}  // namespace palpate

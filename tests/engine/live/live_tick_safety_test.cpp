@@ -1,0 +1,127 @@
+// What the live tick makes of trouble: a device that is not well, nobody at the
+// switch, and the ticks that are kept of it.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "engine/live/live_tick.h"
+#include "tests/support/live_doubles.h"
+
+namespace palpate {
+namespace {
+
+using test::PathDevice;
+using test::spring;
+
+constexpr double kTick_s = 1e-3;
+
+// A device that says how it is.
+class FrailDevice final : public Device {
+ public:
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
+  bool renders_force() const noexcept override { return true; }
+  ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.05}; }
+  bool read(double now_s, DeviceSample& sample) noexcept override {
+    sample = {};
+    sample.tool.time_s = now_s;
+    sample.tool.position_m = 5e-3;
+    return std::exchange(fresh_, !fresh_);
+  }
+  void write(double force_N) noexcept override { written_N = force_N; }
+  DeviceHealth health(double) noexcept override { return state; }
+  DeviceHealth state;
+  double written_N = 0.0;
+
+ private:
+  std::string name_ = "frail";
+  bool fresh_ = true;
+};
+
+TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
+  PathDevice device(test::held_5mm);
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0)}));
+  int tick = 0;
+  const auto run = [&](int ticks, const LoopControls& controls) {
+    LoopSnapshot snapshot;
+    for (int i = 0; i < ticks; ++i) snapshot = live.run(kTick_s * tick++, controls);
+    return snapshot;
+  };
+  LoopControls controls;
+  controls.dead_man = DeadMan::key;
+  EXPECT_EQ(run(500, controls).rendered_N, 0.0);
+  EXPECT_TRUE(run(1, controls).released);
+  // Seen held in each frame of a window at 60 Hz.
+  for (int frame = 0; frame < 60; ++frame) {
+    controls.held_s = kTick_s * tick;
+    run(16, controls);
+  }
+  EXPECT_NEAR(device.force_N(), 1.5, 1e-9);
+  EXPECT_FALSE(run(1, controls).released);
+  // The window hangs with the key down.
+  EXPECT_EQ(run(250, controls).rendered_N, 0.0);
+  EXPECT_TRUE(run(1, controls).released);
+}
+
+TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
+  FrailDevice device;
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(1000.0)}));
+  int tick = 0;
+  LoopControls controls;
+  LoopSnapshot snapshot;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) snapshot = live.run(kTick_s * tick++, controls);
+  };
+  const DeviceHealth well;
+  DeviceHealth faulty, not_zeroed, old;
+  faulty.faults = device_fault::kJump;
+  not_zeroed.zeroing = Zeroing::needed;
+  old.sample_age_s = 0.02;
+  for (const auto& [trouble, bit] : {std::pair{faulty, loop_fault::kDeviceFault}, {old, loop_fault::kStaleSample}, {not_zeroed, 0u}}) {
+    device.state = well;
+    run(500);
+    EXPECT_NEAR(device.written_N, 5.0, 0.01);
+    controls.acknowledged += 1;
+    run(1);
+    EXPECT_EQ(snapshot.faults_latched & loop_fault::kStops, 0u);
+    device.state = trouble;
+    run(12);
+    EXPECT_EQ(device.written_N, 0.0);
+    EXPECT_EQ(snapshot.faults & loop_fault::kStops, bit);
+    device.state = well;
+    run(5);
+    EXPECT_LT(device.written_N, 0.6) << "ramps up again";
+    EXPECT_EQ(snapshot.faults_latched & loop_fault::kStops, bit) << "until it is acknowledged";
+    EXPECT_EQ(snapshot.device_faults_latched, trouble.faults);
+  }
+}
+
+TEST(LiveTickSafety, KeepsTheTicksAroundAFault) {
+  FrailDevice device;
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(1000.0)}));
+  for (int i = 0; i < 2000; ++i) {
+    device.state.faults = i >= 1500 ? device_fault::kReset : 0;
+    live.run(kTick_s * i, {});
+  }
+  const auto ticks = live.fault_recorder().take();
+  ASSERT_TRUE(ticks.has_value());
+  ASSERT_EQ(ticks->size(), FaultRecorder::kTicks);
+  const FaultTick& before = (*ticks)[FaultRecorder::kTicks - FaultRecorder::kTicksAfter - 2];
+  const FaultTick& first = (*ticks)[FaultRecorder::kTicks - FaultRecorder::kTicksAfter - 1];
+  EXPECT_EQ(before.faults, 0u);
+  EXPECT_NEAR(before.rendered_N, 5.0, 0.01);
+  EXPECT_EQ(first.faults & loop_fault::kStops, loop_fault::kDeviceFault);
+  EXPECT_EQ(first.device_faults, device_fault::kReset);
+  EXPECT_EQ(first.loop_time_s, kTick_s * 1500);
+  EXPECT_EQ(ticks->back().rendered_N, 0.0);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,355 @@
+// The body of the live loop: the same forces as replay, nothing forbidden, and
+// no kick when models change.
+#include "engine/live/live_tick.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "devices/registry/auto_device.h"
+#include "devices/virtual/hand_device.h"
+#include "devices/virtual/mouse_device.h"
+#include "devices/virtual/replay_device.h"
+#include "engine/tick/replay.h"
+#include "tests/support/example_model.h"
+#include "tests/support/live_doubles.h"
+#include "tests/support/rt_guard.h"
+
+namespace palpate {
+namespace {
+
+using test::PathDevice;
+using test::spring;
+
+constexpr double kTick_s = 1e-3;
+
+ForceModels all_models() {
+  ForceModels models;
+  for (const ModelData& data : test::example_models()) models.push_back(std::make_shared<FittedModel>(data));
+  return models;
+}
+
+// What replay gives for `recording`, tick by tick.
+std::vector<TickSnapshot> replayed(const Recording& recording) {
+  std::vector<TickSnapshot> snapshots;
+  const auto visit = [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+    snapshots.push_back(snapshot);
+  };
+  EXPECT_TRUE(replay(recording, all_models(), visit).ok());
+  return snapshots;
+}
+
+// Twice through the recording, so that its second round is compared as well.
+// Faster than the loop, snapshots are of the last sample of a tick: those are
+// found by their time.
+void expect_live_equals_replay(double rate_Hz) {
+  const Recording recording = test::example_recording(1500, rate_Hz, 30e-6);
+  const std::vector<TickSnapshot> expected = replayed(recording);
+  ReplayDevice device(recording);
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), all_models()));
+  live.warm_up();
+  std::size_t next = 0;
+  std::size_t compared = 0;
+  int rounds = 0;
+  const int ticks = static_cast<int>(2.0 * device.duration_s() / kTick_s);
+  for (int i = 0; i < ticks; ++i) {
+    const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+    if (snapshot.samples == 0) continue;
+    if (snapshot.restarted) {
+      next = 0;
+      ++rounds;
+    }
+    next += snapshot.samples;
+    ASSERT_LE(next, expected.size());
+    const TickSnapshot& same = expected[next - 1];
+    ASSERT_EQ(snapshot.tick.time_s, same.time_s);
+    ASSERT_EQ(snapshot.tick.force_N, same.force_N) << rate_Hz << " Hz, sample " << next;
+    ASSERT_EQ(snapshot.tick.velocity_m_per_s, same.velocity_m_per_s);
+    ASSERT_EQ(snapshot.tick.out_of_domain_mask, same.out_of_domain_mask);
+    ASSERT_EQ(snapshot.measured_N, recording.rows[next - 1].force_N);
+    ++compared;
+  }
+  EXPECT_EQ(rounds, 2);
+  EXPECT_GE(compared, std::min<std::size_t>(expected.size(), 100));
+}
+
+TEST(LiveTick, GivesTheBitsOfReplay) {
+  for (const double rate_Hz : {500.0, 1000.0, 2000.0, 20000.0}) expect_live_equals_replay(rate_Hz);
+}
+
+// Ten thousand ticks with changes of models and of the model in the hand.
+int offences(Device& device) {
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), all_models()));
+  live.warm_up();
+  int total = 0;
+  double now_s = 0.0;
+  std::uint32_t last_id = 0;
+  for (std::uint32_t id = 2; id < 22; ++id) {
+    slot.publish(std::make_unique<LiveModels>(id, device.sensor(), all_models()));
+    test::RtGuard guard;
+    for (std::uint32_t i = 0; i < 500; ++i) {
+      now_s += kTick_s;
+      last_id = live.run(now_s, {id, i / 50 % 8}).models_id;
+    }
+    live.release(now_s += kTick_s);
+    total += guard.stop().total();
+  }
+  EXPECT_GT(last_id, 1u) << "no set was ever taken";
+  return total;
+}
+
+double strokes_with_faults(double time_s) {
+  const double tick = std::round(time_s / kTick_s);
+  return std::fmod(tick, 97.0) == 0.0 ? std::numeric_limits<double>::quiet_NaN() : test::strokes(time_s);
+}
+
+TEST(LiveTick, DoesNothingForbiddenWithAnyDevice) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  HandDevice hand;
+  EXPECT_EQ(offences(hand), 0) << "hand";
+  MouseDevice mouse;
+  mouse.set_target(4e-3, 0.0);
+  EXPECT_EQ(offences(mouse), 0) << "mouse";
+  AutoDevice automatic;
+  automatic.mouse().set_target(4e-3, -15.0);
+  EXPECT_EQ(offences(automatic), 0) << "auto, taken over by the hand after 5 s";
+  ReplayDevice recording(test::example_recording(4000, 2000.0, 30e-6));
+  EXPECT_EQ(offences(recording), 0) << "replay";
+  PathDevice faulty(strokes_with_faults);
+  EXPECT_EQ(offences(faulty), 0) << "bad samples";
+}
+
+// One tick at a time on a tool held 5 mm deep.
+struct Held {
+  PathDevice device{test::held_5mm};
+  ModelSlot<LiveModels> slot;
+  LiveTick live{device, slot};
+  int tick = 0;
+
+  void publish(std::uint32_t id, std::vector<std::shared_ptr<const ForceModel>> models) {
+    slot.publish(std::make_unique<LiveModels>(id, device.sensor(), std::move(models)));
+  }
+  LoopSnapshot run(int ticks, const LoopControls& controls = {}) {
+    LoopSnapshot snapshot;
+    for (int end = tick + ticks; tick < end; ++tick) snapshot = live.run(kTick_s * tick, controls);
+    return snapshot;
+  }
+  // The forces that the device got.
+  std::vector<double> felt_N(int ticks, const LoopControls& controls = {}) {
+    std::vector<double> forces_N;
+    for (int i = 0; i < ticks; ++i) {
+      run(1, controls);
+      forces_N.push_back(device.force_N());
+    }
+    return forces_N;
+  }
+};
+
+void expect_no_step_above_a_jnd(const std::vector<double>& forces_N) {
+  const JndLine jnd;
+  for (std::size_t i = 10; i < forces_N.size(); ++i) {
+    const double smaller_N = std::min(forces_N[i], forces_N[i - 10]);
+    ASSERT_LE(std::abs(forces_N[i] - forces_N[i - 10]), jnd.at(smaller_N)) << i;
+  }
+}
+
+TEST(LiveTick, SwitchingTheModelInTheHandFades) {
+  Held held;
+  held.publish(1, {spring(300.0), spring(900.0)});
+  EXPECT_NEAR(held.run(1000).rendered_N, 1.5, 1e-9);
+  std::vector<double> felt_N = held.felt_N(1000, {1, 1});
+  EXPECT_NEAR(felt_N.back(), 4.5, 1e-9) << "the depth is an estimate";
+  for (const double force_N : held.felt_N(1000, {1, 0})) felt_N.push_back(force_N);
+  EXPECT_NEAR(felt_N.back(), 1.5, 1e-9);
+  expect_no_step_above_a_jnd(felt_N);
+}
+
+TEST(LiveTick, ANewSetFadesInAndTheOldOneIsRetired) {
+  Held held;
+  const std::weak_ptr<const ForceModel> old = [&] {
+    auto model = spring(300.0);
+    held.publish(1, {model});
+    return std::weak_ptr<const ForceModel>(model);
+  }();
+  held.run(1000);
+  held.publish(2, {spring(900.0), spring(100.0)});
+  std::vector<double> felt_N = held.felt_N(20);
+  EXPECT_FALSE(old.expired()) << "still felt";
+  EXPECT_EQ(held.slot.collect(), 0u);
+  for (const double force_N : held.felt_N(1000)) felt_N.push_back(force_N);
+  EXPECT_NEAR(felt_N.back(), 4.5, 1e-9) << "the depth is an estimate";
+  expect_no_step_above_a_jnd(felt_N);
+  EXPECT_FALSE(old.expired()) << "not deleted by the tick";
+  EXPECT_EQ(held.slot.collect(), 1u);
+  EXPECT_TRUE(old.expired());
+}
+
+TEST(LiveTick, ControlsOfAnotherSetDoNotCount) {
+  Held held;
+  held.publish(1, {spring(300.0), spring(900.0)});
+  EXPECT_EQ(held.run(1000, {7, 1}).selected, 0u);
+  EXPECT_EQ(held.run(10, {1, 5}).selected, 0u) << "there is no sixth model";
+  EXPECT_EQ(held.run(10, {1, 1}).selected, 1u);
+  EXPECT_EQ(held.run(10, {7, 0}).selected, 1u) << "the choice stays";
+}
+
+// Memory of the material survives a change of models in mid-press.
+TEST(LiveTick, ANewSetGoesOnWithTheFiltersOfTheOld) {
+  const auto run = [](bool change) {
+    PathDevice device(test::strokes);
+    ModelSlot<LiveModels> slot;
+    LiveTick live(device, slot);
+    slot.publish(std::make_unique<LiveModels>(1, device.sensor(), all_models()));
+    std::vector<double> forces_N;
+    for (int i = 0; i < 1500; ++i) {
+      if (change && i == 700) slot.publish(std::make_unique<LiveModels>(2, device.sensor(), all_models()));
+      const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+      forces_N.insert(forces_N.end(), snapshot.tick.force_N.begin(), snapshot.tick.force_N.end());
+    }
+    return forces_N;
+  };
+  EXPECT_EQ(run(true), run(false));
+}
+
+TEST(LiveTick, ABadSampleLetsGoAndRampsBack) {
+  static bool broken = false;
+  broken = false;
+  PathDevice device([](double) { return broken ? std::numeric_limits<double>::quiet_NaN() : 5e-3; }, {10.0, 1e9, 0.1});
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0)}));
+  int tick = 0;
+  LoopSnapshot snapshot;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) snapshot = live.run(kTick_s * tick++, {});
+  };
+  run(1000);
+  EXPECT_NEAR(snapshot.rendered_N, 1.5, 1e-9);
+  EXPECT_EQ(snapshot.faults_latched, 0u);
+  broken = true;
+  run(1);
+  EXPECT_EQ(snapshot.rendered_N, 0.0);
+  EXPECT_EQ(snapshot.faults, loop_fault::kBadSample);
+  broken = false;
+  run(10);
+  EXPECT_EQ(snapshot.faults, 0u);
+  EXPECT_EQ(snapshot.faults_latched, loop_fault::kBadSample);
+  EXPECT_TRUE(snapshot.ramping);
+  EXPECT_LT(snapshot.rendered_N, 0.2);
+  run(200);
+  EXPECT_NEAR(snapshot.rendered_N, 1.5, 1e-9);
+}
+
+TEST(LiveTick, WithoutModelsShowsTheToolAndNoForce) {
+  Held held;
+  const LoopSnapshot snapshot = held.run(5);
+  EXPECT_EQ(snapshot.tick.position_m, 5e-3);
+  EXPECT_TRUE(snapshot.tick.in_contact);
+  EXPECT_EQ(snapshot.tick.model_count, 0u);
+  EXPECT_EQ(snapshot.models_id, 0u);
+  EXPECT_EQ(held.device.force_N(), 0.0);
+  held.publish(1, {});
+  EXPECT_EQ(held.run(5).models_id, 1u);
+  EXPECT_EQ(held.device.force_N(), 0.0);
+}
+
+TEST(LiveTick, TimesEachModel) {
+  Held held;
+  held.publish(1, {spring(300.0), spring(400.0)});
+  const LoopSnapshot snapshot = held.run(10);
+  EXPECT_GT(snapshot.evaluation_ns[0], 0.0F);
+  EXPECT_GT(snapshot.evaluation_ns[1], 0.0F);
+  EXPECT_EQ(snapshot.evaluation_ns[2], 0.0F);
+}
+
+class CountingReference final : public ReferenceForce {
+ public:
+  double step(const TickSnapshot& snapshot, bool restart) noexcept override {
+    restarts += restart ? 1 : 0;
+    return 2.0 * snapshot.depth_m;
+  }
+  int restarts = 0;
+};
+
+TEST(LiveTick, StepsTheReferenceOfTheNewestSet) {
+  ReplayDevice device(test::example_recording(500, 1000.0));
+  const auto reference = std::make_shared<CountingReference>();
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0)}, reference));
+  for (int i = 0; i < 1200; ++i) {
+    const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+    if (snapshot.samples > 0) {
+      ASSERT_EQ(snapshot.reference_N, 2.0 * snapshot.tick.depth_m);
+    }
+  }
+  EXPECT_EQ(reference->restarts, 3);
+}
+
+// Several samples a tick, of which a snapshot has the last.
+TEST(LiveTick, HandsOverEverySampleWhileRecording) {
+  const Recording recording = test::example_recording(4000, 4000.0);
+  ReplayDevice device(recording);
+  ModelSlot<LiveModels> slot;
+  const auto taken = std::make_unique<TakenRing>();
+  LiveTick live(device, slot, {{}, taken.get()});
+  auto models = std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0), spring(500.0)},
+                                             std::make_shared<CountingReference>());
+  models->written_model = 1;
+  slot.publish(std::move(models));
+  int tick = 0;
+  for (; tick < 100; ++tick) live.run(kTick_s * tick, {});
+  TakenSample sample;
+  EXPECT_FALSE(taken->pop(sample)) << "nobody asked";
+  std::vector<TakenSample> samples;
+  for (; tick < 400; ++tick) {
+    const LoopSnapshot& snapshot = live.run(kTick_s * tick, {1, 0, 7});
+    while (taken->pop(sample)) samples.push_back(sample);
+    ASSERT_EQ(samples.back().tool.time_s, snapshot.tick.time_s);
+    ASSERT_EQ(samples.back().model_N, snapshot.tick.force_N[1]);
+    ASSERT_EQ(samples.back().reference_N, snapshot.reference_N);
+  }
+  ASSERT_NEAR(static_cast<double>(samples.size()), 1200.0, 4.0);
+  const auto first = static_cast<std::size_t>(std::lround(
+      (samples.front().tool.time_s - recording.rows.front().time_s) * 4000.0));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    ASSERT_EQ(samples[i].tool.position_m, recording.rows[first + i].position_m);
+    ASSERT_EQ(samples[i].measured_N, recording.rows[first + i].force_N);
+    ASSERT_EQ(samples[i].recording, 7u);
+    ASSERT_TRUE(samples[i].usable);
+  }
+}
+
+// A study's force takes the models' place, behind the same limiter.
+TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
+  class Source final : public ForceSource {
+   public:
+    double next_force_N(double rendered_N) noexcept override {
+      seen_N = rendered_N;
+      return 1.5;
+    }
+    double seen_N = -1.0;
+  };
+  Source source;
+  PathDevice device(test::held_5mm, {1.0, 1e9, 0.0});
+  ModelSlot<LiveModels> slot;
+  LiveTickSettings settings;
+  settings.source = &source;
+  LiveTick tick(device, slot, settings);
+  tick.run(1.000, {});
+  tick.run(1.001, {});
+  const LoopSnapshot& snapshot = tick.run(1.002, {});
+  EXPECT_EQ(snapshot.mixed_N, 1.5);
+  EXPECT_EQ(snapshot.rendered_N, 1.0) << "clamped to what the device may be given";
+  EXPECT_EQ(device.force_N(), 1.0);
+  EXPECT_EQ(source.seen_N, 1.0) << "what was rendered in the tick before";
+}
+
+}  // namespace
+}  // namespace palpate

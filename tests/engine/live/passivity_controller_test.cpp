@@ -1,0 +1,128 @@
+#include "engine/live/passivity_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/random_stream.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+constexpr double kStep_m = 1e-5;  // a tick
+constexpr double kSpeed_m_per_s = kStep_m / kTick_s;
+
+// A tool moved one step a tick; what it is given is felt two ticks later, as the
+// observer assumes.
+struct Stroke {
+  PassivityController controller;
+  double depth_m = 0.0;
+  double written_N = 0.0;
+  bool other_material = false;
+
+  explicit Stroke(double encoder_step_m = 0.0) : controller(encoder_step_m) {}
+  // `steps` above 0: inwards. The last force.
+  double move(int steps, double wanted_N) {
+    const double direction = steps < 0 ? -1.0 : 1.0;
+    for (int i = 0; i < std::abs(steps); ++i) {
+      depth_m += direction * kStep_m;
+      written_N = controller.apply(wanted_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N, kTick_s);
+    }
+    return written_N;
+  }
+};
+
+TEST(PassivityController, LeavesWhatDissipatesAlone) {
+  Stroke stroke;
+  stroke.move(200, 2.0);
+  EXPECT_EQ(stroke.move(-150, 1.0), 1.0);
+  EXPECT_EQ(stroke.controller.debt_J(), 0.0);
+  EXPECT_EQ(stroke.move(100, 3.0), 3.0);
+  EXPECT_EQ(stroke.move(-100, 3.0), 3.0);
+}
+
+TEST(PassivityController, TakesWhatIsGivenBackTooMuchAndNoMore) {
+  Stroke stroke;
+  stroke.move(200, 1.0);
+  // 2 N are asked for on the way out, b v = 0.12 N less are given; two ticks of the
+  // way in's force are felt at the turn.
+  EXPECT_NEAR(stroke.move(-50, 2.0), 2.0 - PassivityController::kDamping_Ns_per_m * kSpeed_m_per_s, 1e-12);
+  const double debt_J = stroke.controller.debt_J();
+  EXPECT_NEAR(debt_J, 50 * kStep_m * (1.88 - 1.0), 3 * kStep_m);
+  // Too little is asked for: the debt is repaid, by what is taken as well, to 0.
+  stroke.move(-40, 0.3);
+  EXPECT_LT(stroke.controller.debt_J(), debt_J);
+  EXPECT_EQ(stroke.move(-60, 0.3), 0.3) << "repaid: the force is what was asked for";
+  EXPECT_EQ(stroke.controller.debt_J(), 0.0);
+}
+
+// The reference follows the depth: a leak deep inside is seen at once, whatever was
+// stored or lost on the way there.
+TEST(PassivityController, SeesALeakThoughMuchIsStored) {
+  Stroke stroke;
+  stroke.move(400, 5.0);
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    stroke.move(-20, 5.5);
+    EXPECT_GT(stroke.controller.debt_J(), 0.0);
+    stroke.move(20, 5.0);
+  }
+  EXPECT_GT(stroke.controller.debt_J(), 2 * 15 * kStep_m * 0.5) << "what a cycle left is carried on";
+}
+
+TEST(PassivityController, ForgetsInTheAir) {
+  Stroke stroke;
+  stroke.move(100, 1.0);
+  stroke.move(-50, 3.0);
+  ASSERT_GT(stroke.controller.debt_J(), 0.0);
+  EXPECT_EQ(stroke.controller.apply(0.5, {-1e-3, -0.1, false, false}, 0.5, kTick_s), 0.5);
+  EXPECT_EQ(stroke.controller.debt_J(), 0.0);
+}
+
+// A firmer material pushes the tool out with more than the softer one took.
+TEST(PassivityController, BeginsAnewWithAnotherMaterial) {
+  Stroke stroke;
+  stroke.move(100, 1.0);
+  stroke.other_material = true;
+  EXPECT_EQ(stroke.move(-10, 3.0), 3.0);
+  stroke.other_material = false;
+  EXPECT_EQ(stroke.move(-20, 3.0), 3.0) << "out of where it began: nothing is known";
+  stroke.move(40, 3.0);
+  EXPECT_LT(stroke.move(-20, 4.0), 4.0) << "passed since, and it gives more than it took";
+}
+
+TEST(PassivityController, AFlickeringEncoderIsNoMotion) {
+  constexpr double kEncoder_m = 30e-6;
+  PassivityController controller(kEncoder_m);
+  double written_N = 0.0;
+  for (int tick = 0; tick < 5000; ++tick) {
+    const double depth_m = 1e-3 + (tick / 3 % 2 == 0 ? 0.0 : kEncoder_m);
+    // Late: more on the way out than on the way in.
+    const double force_N = 3000.0 * (1e-3 + (tick / 3 % 2 == 0 ? kEncoder_m : 0.0));
+    written_N = controller.apply(force_N, {depth_m, tick / 3 % 2 == 0 ? -1e-3 : 1e-3, true, false}, written_N, kTick_s);
+    ASSERT_EQ(written_N, force_N) << tick;
+  }
+}
+
+TEST(PassivityController, NeverAddsNeverPullsNeverBreaks) {
+  PassivityController controller(30e-6);
+  RandomStream random{1, 5};
+  double written_N = 0.0;
+  for (int tick = 0; tick < 200000; ++tick) {
+    const double depth_m = 5e-3 * random.uniform(-0.2, 1.8) * (tick % 7 == 0 ? 10.0 : 1.0);
+    const double wanted_N = std::max(0.0, random.uniform(-1.0, 7.0));
+    const double speed_m_per_s = random.uniform(-2.0, 2.0);
+    written_N = controller.apply(wanted_N, {depth_m, speed_m_per_s, depth_m > 0.0, false}, written_N, kTick_s);
+    ASSERT_LE(written_N, wanted_N);
+    ASSERT_GE(written_N, 0.0);
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(controller.apply(nan, {1e-3, -0.1, true, false}, 0.0, kTick_s))) << "the limiter's to refuse";
+  EXPECT_EQ(controller.apply(1.0, {nan, -0.1, true, false}, 0.0, kTick_s), 1.0);
+  EXPECT_EQ(controller.apply(1.0, {1e-3, nan, true, false}, 0.0, kTick_s), 1.0);
+}
+
+}  // namespace
+}  // namespace palpate

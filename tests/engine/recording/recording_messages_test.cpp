@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "engine/recording/recording_parser.h"
+#include "tests/support/broken_recordings.h"
+
+namespace palpate {
+namespace {
+
+// What the parser says about `text`, or "accepted".
+std::string verdict(const std::string& text, std::size_t piece_bytes) {
+  auto parser =
+      RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
+  if (!parser) return parser.error().message;
+  RecordingRow rows[7];
+  for (;;) {
+    const auto count = parser->read(rows, 7);
+    if (!count) return count.error().message;
+    if (*count == 0) return "accepted";
+  }
+}
+
+TEST(RecordingMessages, TableHoldsAtLeastFortyFiles) {
+  EXPECT_GE(test::broken_recordings().size(), 40u);
+}
+
+TEST(RecordingMessages, NameThePlaceAndSayWhatToDo) {
+  for (const auto& broken : test::broken_recordings()) {
+    EXPECT_EQ(verdict(broken.text, kScannerBufferBytes), broken.message) << broken.name;
+  }
+}
+
+TEST(RecordingMessages, DoNotDependOnHowTheBytesArrive) {
+  for (const auto& broken : test::broken_recordings()) {
+    // Byte by byte would be slow on the gigantic lines.
+    const std::size_t piece_bytes = std::max<std::size_t>(1, broken.text.size() / 1000);
+    EXPECT_EQ(verdict(broken.text, piece_bytes), broken.message) << broken.name;
+  }
+}
+
+TEST(RecordingMessages, AreOneLineOfPrintableText) {
+  for (const auto& broken : test::broken_recordings()) {
+    std::size_t bad_offset = 0;
+    EXPECT_TRUE(is_utf8(broken.message, bad_offset)) << broken.name;
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+    EXPECT_TRUE(std::none_of(broken.message.begin(), broken.message.end(), is_control))
+        << broken.name;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,226 @@
+#include "engine/recording/recording.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <clocale>
+#include <filesystem>
+
+#include "tests/support/broken_recordings.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+
+std::string message_for(const std::string& path) {
+  const auto recording = read_recording(path);
+  return recording ? "accepted" : recording.error().message;
+}
+
+// Rows of `text` when it is read as a file; fails the test if it is refused.
+Recording accepted(const std::string& text) {
+  const TemporaryFolder folder;
+  auto recording = read_recording(folder.with_file("rec.csv", text));
+  EXPECT_TRUE(recording.ok()) << recording.error().message;
+  return recording ? *recording : Recording{};
+}
+
+void expect_good_rows(const Recording& recording) {
+  ASSERT_EQ(recording.rows.size(), 12u);
+  EXPECT_EQ(recording.rows[11].time_s, 0.011);
+  EXPECT_EQ(recording.rows[11].position_m, 0.001);
+  EXPECT_EQ(recording.rows[11].force_N, 0.5);
+}
+
+TEST(Recording, ReadsRowsAndItsNameFromTheFile) {
+  const TemporaryFolder folder;
+  const auto recording = read_recording(folder.with_file("skin.a.csv", test::good_recording()));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(recording->name, "skin.a");
+  EXPECT_FALSE(recording->columns.velocity);
+  EXPECT_FALSE(recording->columns.acceleration);
+  expect_good_rows(*recording);
+}
+
+TEST(Recording, RefusesEveryBrokenFileWithItsWholeMessage) {
+  const TemporaryFolder folder;
+  for (const auto& broken : test::broken_recordings()) {
+    EXPECT_EQ(message_for(folder.with_file("rec.csv", broken.text)),
+              folder.path() + "/" + broken.message)
+        << broken.name;
+  }
+}
+
+TEST(Recording, RefusesWhatIsNotAFile) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(message_for(folder.file("none.csv")),
+            folder.file("none.csv") +
+                ": found no such file, expected a recording (CSV); check the path");
+  EXPECT_EQ(message_for(folder.path()),
+            folder.path() + ": found a folder, expected a recording (CSV); name a file in it");
+  const std::string pipe = folder.file("pipe.csv");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(message_for(pipe), pipe + ": found a pipe or a device, expected a recording (CSV); "
+                                      "save it to a file first");
+  EXPECT_EQ(message_for("/dev/zero"),
+            "/dev/zero: found a pipe or a device, expected a recording (CSV); save it to a file "
+            "first");
+}
+
+TEST(Recording, RefusesAFileItMayNotRead) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const TemporaryFolder folder;
+  const std::string path = folder.with_file("rec.csv", test::good_recording());
+  ASSERT_EQ(chmod(path.c_str(), 0), 0);
+  EXPECT_EQ(message_for(path), path + ": found no permission to read it, expected a readable "
+                                      "recording; change its permissions (chmod u+r)");
+}
+
+TEST(Recording, AcceptsByteOrderMarkCrlfAndAMissingLastNewline) {
+  expect_good_rows(accepted("\xEF\xBB\xBF" + test::good_recording()));
+  expect_good_rows(accepted("time_s,position_m,force_N\r\n" + test::good_rows(12, 0, "\r\n")));
+  std::string cut = test::good_recording();
+  cut.pop_back();
+  expect_good_rows(accepted(cut));
+  expect_good_rows(accepted(cut + "\r"));
+}
+
+TEST(Recording, AcceptsCommentsBeforeTheHeaderAndBlankLinesAtTheEnd) {
+  expect_good_rows(accepted("# a rig\n#\n# time_s,position_m\n" + test::good_recording()));
+  expect_good_rows(accepted(test::good_recording() + "\n \t\r\n\n"));
+}
+
+TEST(Recording, AcceptsTheLongestLineAllowed) {
+  const std::string comment = "#" + std::string(64 * 1024 - 1, ' ');
+  expect_good_rows(accepted(comment + "\r\n" + test::good_recording()));
+}
+
+TEST(Recording, AcceptsColumnsInAnyOrderAndIgnoresFurtherOnes) {
+  std::string text = "note,acceleration_m_per_s2,force_N,\xC2\xB5,velocity_m_per_s,time_s,position_m,\n";
+  for (int i = 0; i < 10; ++i) {
+    text += "#\"x;nan,-3,2,,4,1." + std::to_string(i) + ",-0.25,\xFF\n";
+  }
+  const Recording recording = accepted(text);
+  ASSERT_EQ(recording.rows.size(), 10u);
+  EXPECT_TRUE(recording.columns.velocity);
+  EXPECT_TRUE(recording.columns.acceleration);
+  const RecordingRow& row = recording.rows[3];
+  EXPECT_EQ(row.time_s, 1.3);
+  EXPECT_EQ(row.position_m, -0.25);
+  EXPECT_EQ(row.force_N, 2.0);
+  EXPECT_EQ(row.velocity_m_per_s, 4.0);
+  EXPECT_EQ(row.acceleration_m_per_s2, -3.0);
+}
+
+TEST(Recording, AcceptsBlanksPlusSignsAndExponents) {
+  std::string text = test::good_header();
+  for (int i = 0; i < 10; ++i) text += " +" + std::to_string(i) + "e-3\t, -.5 ,\t1.E1 \n";
+  const Recording recording = accepted(text);
+  ASSERT_EQ(recording.rows.size(), 10u);
+  EXPECT_EQ(recording.rows[9].time_s, 0.009);
+  EXPECT_EQ(recording.rows[9].position_m, -0.5);
+  EXPECT_EQ(recording.rows[9].force_N, 10.0);
+}
+
+// Rows every `step_s`, with one gap of a minute after the third.
+std::string at_step(double step_s, int rows) {
+  std::string text = test::good_header();
+  for (int i = 0; i < rows; ++i) {
+    text += std::to_string(i * step_s + (i > 3 ? 60.0 : 0.0)) + ",0,0\n";
+  }
+  return text;
+}
+
+TEST(Recording, AcceptsRatesFrom10HzTo20KHzWithGaps) {
+  EXPECT_EQ(accepted(at_step(0.1, 20)).rows.size(), 20u);
+  EXPECT_EQ(accepted(at_step(0.1, 2000)).rows.size(), 2000u);
+  EXPECT_EQ(accepted(at_step(0.00005, 2000)).rows.size(), 2000u);
+}
+
+TEST(Recording, AcceptsJitter) {
+  std::string text = test::good_header();
+  double time_s = 0.0;
+  for (int i = 0; i < 1200; ++i) {
+    time_s += 0.0001 * (1 + i * 7919 % 20);  // 0.1 to 2 ms
+    text += std::to_string(time_s) + ",0,0\n";
+  }
+  EXPECT_EQ(accepted(text).rows.size(), 1200u);
+}
+
+TEST(RecordingReader, StreamsTheSameRowsInPiecesOfAnySize) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.with_file("rec.csv", test::good_header() + test::good_rows(900));
+  const auto whole = read_recording(path);
+  ASSERT_TRUE(whole.ok()) << whole.error().message;
+  for (const std::size_t capacity : {1u, 7u, 900u, 5000u}) {
+    auto reader = RecordingReader::open(path);
+    ASSERT_TRUE(reader.ok());
+    std::vector<RecordingRow> rows(capacity);
+    std::size_t total = 0;
+    for (;;) {
+      const auto count = reader->read(rows.data(), capacity);
+      ASSERT_TRUE(count.ok());
+      if (*count == 0) break;
+      for (std::size_t i = 0; i < *count; ++i) {
+        ASSERT_EQ(rows[i].time_s, whole->rows[total + i].time_s);
+      }
+      total += *count;
+    }
+    EXPECT_EQ(total, 900u);
+    EXPECT_EQ(*reader->read(rows.data(), capacity), 0u);
+  }
+}
+
+TEST(RecordingReader, RepeatsItsError) {
+  const TemporaryFolder folder;
+  auto reader =
+      RecordingReader::open(folder.with_file("rec.csv", test::good_header() + test::good_rows(3)));
+  ASSERT_TRUE(reader.ok());
+  RecordingRow rows[20];
+  const auto first = reader->read(rows, 20);
+  ASSERT_FALSE(first.ok());
+  const auto second = reader->read(rows, 20);
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(first.error().message, second.error().message);
+}
+
+// A German locale, if the machine has one, while the object lives.
+class GermanNumbers {
+ public:
+  GermanNumbers() : before_(std::setlocale(LC_ALL, nullptr)) {
+    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
+      if (std::setlocale(LC_ALL, name) != nullptr) active_ = true;
+    }
+  }
+  ~GermanNumbers() { std::setlocale(LC_ALL, before_.c_str()); }
+  bool active() const { return active_; }
+
+ private:
+  std::string before_;
+  bool active_ = false;
+};
+
+TEST(Recording, ReadsDecimalPointsWhateverTheLocale) {
+  const GermanNumbers german;
+  if (!german.active()) GTEST_SKIP() << "no German locale on this machine";
+  expect_good_rows(accepted(test::good_recording()));
+}
+
+TEST(Recording, ReadsTheRealRecordings) {
+  const std::filesystem::path data = std::filesystem::path(PALPATE_SOURCE_DIR) / "../shared/data";
+  if (!std::filesystem::is_directory(data)) GTEST_SKIP() << "no real recordings beside the source";
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+    if (entry.path().extension() != ".csv") continue;
+    EXPECT_EQ(message_for(entry.path().string()), "accepted");
+    ++files;
+  }
+  EXPECT_GT(files, 0u);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,202 @@
+#include "engine/recording/recording_writer.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <random>
+
+#include "engine/recording/recording.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+
+// Rows at 1 kHz whose values use all 53 bits.
+Recording random_recording(std::size_t rows, RecordingColumns columns) {
+  std::mt19937_64 random(20090319);
+  std::uniform_real_distribution<double> jitter(0.0005, 0.0015);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  Recording recording{"rec", columns, {}};
+  double time_s = 0.0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    time_s += jitter(random);
+    recording.rows.push_back({time_s, 0.02 * unit(random), 6.0 * unit(random),
+                              columns.velocity ? unit(random) : 0.0,
+                              columns.acceleration ? 40.0 * unit(random) : 0.0});
+  }
+  return recording;
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+void expect_same_bits(const Recording& a, const Recording& b) {
+  ASSERT_EQ(a.rows.size(), b.rows.size());
+  EXPECT_EQ(a.columns.velocity, b.columns.velocity);
+  EXPECT_EQ(a.columns.acceleration, b.columns.acceleration);
+  for (std::size_t i = 0; i < a.rows.size(); ++i) {
+    const RecordingRow& x = a.rows[i];
+    const RecordingRow& y = b.rows[i];
+    ASSERT_TRUE(same_bits(x.time_s, y.time_s) && same_bits(x.position_m, y.position_m) &&
+                same_bits(x.force_N, y.force_N) &&
+                same_bits(x.velocity_m_per_s, y.velocity_m_per_s) &&
+                same_bits(x.acceleration_m_per_s2, y.acceleration_m_per_s2))
+        << "row " << i;
+  }
+}
+
+void expect_round_trip(const Recording& recording) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.csv");
+  const Status written = write_recording(path, recording, {"a rig", "two\nlines"}, false);
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  const auto read = read_recording(path);
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->name, "rec");
+  expect_same_bits(*read, recording);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"rec.csv"});
+}
+
+std::string message_for(const Recording& recording, const std::vector<std::string>& comments = {}) {
+  const TemporaryFolder folder;
+  const Status written = write_recording(folder.file("rec.csv"), recording, comments, false);
+  EXPECT_TRUE(folder.entries().empty());
+  return written ? "written" : written.error().message.substr(folder.path().size() + 1);
+}
+
+TEST(WriteRecording, ReadsBackTheSameBitsWithEverySetOfColumns) {
+  for (const bool velocity : {false, true}) {
+    for (const bool acceleration : {false, true}) {
+      expect_round_trip(random_recording(20000, {velocity, acceleration}));
+    }
+  }
+}
+
+TEST(WriteRecording, ReadsBackTheSameBitsAtTheEndsOfTheRange) {
+  using Limits = std::numeric_limits<double>;
+  Recording recording = random_recording(12, {true, true});
+  recording.rows[1].position_m = -0.0;
+  recording.rows[2].position_m = Limits::denorm_min();
+  recording.rows[3].force_N = 1e6;
+  recording.rows[4].force_N = -Limits::min();
+  recording.rows[5].velocity_m_per_s = Limits::max();
+  recording.rows[6].acceleration_m_per_s2 = Limits::lowest();
+  expect_round_trip(recording);
+}
+
+TEST(WriteRecording, WritesPlainTextWithCommentsFirst) {
+  Recording recording{"rec", {true, false}, {}};
+  for (int i = 0; i < 10; ++i) recording.rows.push_back({i * 0.5e-3, 0.25, -1.5, 2.0, 9.0});
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.csv");
+  ASSERT_TRUE(write_recording(path, recording, {"seed 1", "a\r\tb"}, false).ok());
+  const std::string text = test::read_text(path);
+  EXPECT_TRUE(text.starts_with("# seed 1\n# a  b\ntime_s,position_m,force_N,velocity_m_per_s\n"
+                               "0,0.25,-1.5,2\n5e-04,0.25,-1.5,2\n"))
+      << text;
+  EXPECT_TRUE(text.ends_with("\n"));
+}
+
+TEST(WriteRecording, KeepsAnExistingFileUnlessToldToReplaceIt) {
+  const TemporaryFolder folder;
+  const std::string path = folder.with_file("rec.csv", "precious");
+  const Recording recording = random_recording(12, {});
+  const Status refused = write_recording(path, recording, {}, false);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, path + " exists; pass --force to replace it");
+  EXPECT_EQ(test::read_text(path), "precious");
+  ASSERT_TRUE(write_recording(path, recording, {}, true).ok());
+  EXPECT_TRUE(read_recording(path).ok());
+}
+
+TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
+  const Recording good = random_recording(12, {});
+  Recording bad = good;
+  bad.rows[4].force_N = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(message_for(bad),
+            "rec.csv: cannot write row 5: found nan, expected a finite number in force_N; remove "
+            "the row or repair the value");
+  bad = good;
+  bad.rows[4].time_s = bad.rows[3].time_s = 0.25;
+  EXPECT_EQ(message_for(bad),
+            "rec.csv: cannot write row 5: found time_s 0.25 after 0.25, expected a later time in "
+            "every row; remove the repeated row or write time_s with more digits");
+  bad = good;
+  bad.rows.resize(9);
+  EXPECT_EQ(message_for(bad),
+            "rec.csv: cannot write: found 9 rows, expected at least 10; record for longer");
+  EXPECT_EQ(message_for(good, {std::string(70000, 'x')}),
+            "rec.csv: found a comment of 70000 bytes, expected at most 65534; shorten it");
+}
+
+// Caps the size of files this process writes, as a full disk would.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    handler_ = signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST(WriteRecording, LeavesNoFileWhenTheDiskIsFull) {
+  const TemporaryFolder folder;
+  const Recording recording = random_recording(20000, {});
+  Status written;
+  {
+    const FullDisk full(100000);
+    written = write_recording(folder.file("rec.csv"), recording, {}, false);
+  }
+  ASSERT_FALSE(written.ok());
+  EXPECT_NE(written.error().message.find(folder.file("rec.csv")), std::string::npos)
+      << written.error().message;
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(RecordingWriter, GivesTheSameFileRowByRowAndLeavesOutWhatIsRefused) {
+  const TemporaryFolder folder;
+  const Recording recording = random_recording(5000, {true, false});
+  ASSERT_TRUE(write_recording(folder.file("whole.csv"), recording, {"a comment"}, false).ok());
+  auto writer = RecordingWriter::create(folder.file("rows.csv"), recording.columns, {"a comment"}, false);
+  ASSERT_TRUE(writer.ok());
+  for (const RecordingRow& row : recording.rows) {
+    ASSERT_TRUE(writer->add(row));
+    ASSERT_FALSE(writer->add(row)) << "the same time again";
+  }
+  RecordingRow far = recording.rows.back();
+  far.time_s += 1.0;
+  far.position_m = 2.0;
+  EXPECT_FALSE(writer->add(far));
+  EXPECT_EQ(writer->rows(), 5000u);
+  ASSERT_TRUE(writer->commit().ok());
+  EXPECT_EQ(test::read_text(folder.file("rows.csv")), test::read_text(folder.file("whole.csv")));
+}
+
+TEST(RecordingWriter, RefusesTooFewRows) {
+  const TemporaryFolder folder;
+  auto writer = RecordingWriter::create(folder.file("rec.csv"), {}, {}, false);
+  ASSERT_TRUE(writer.ok());
+  for (int i = 0; i < 9; ++i) writer->add({1e-3 * i, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_FALSE(writer->commit().ok());
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,262 @@
+// Features against closed forms and fine numerical integration. Motion estimates
+// are given exactly, so that only the filters are tested.
+#include "engine/tick/features.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace palpate {
+namespace {
+
+// Sums of some thousand steps, each rounded: relative error well below this.
+constexpr double kRounding = 1e-11;
+
+FeatureSpec lowpass(double relaxation_time_s) { return {FeatureKind::lowpass_velocity, relaxation_time_s, {}}; }
+
+DriveCurve stiffening() { return {5e-3, {0.8, 0.5, 0.3, 0.2}}; }
+
+FeatureSpec maxwell(double relaxation_time_s, const DriveCurve& drive) {
+  return {FeatureKind::maxwell_branch, relaxation_time_s, drive};
+}
+
+const FeatureVector& feed(FeatureFilter& filter, double time_s, double position_m, double velocity_m_per_s = 0.0) {
+  return filter.update({time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s});
+}
+
+TEST(Features, LowpassOfARampIsExactAtAnyRate) {
+  const double tau_s = 0.17;
+  const double speed_m_per_s = 0.02;
+  for (const double step_s : {5e-5, 1e-3, 2e-3, 0.1}) {
+    FeatureFilter filter({lowpass(tau_s)});
+    feed(filter, 0.0, 0.0);
+    for (int i = 1; static_cast<double>(i) * step_s <= 0.5; ++i) {
+      const double t = static_cast<double>(i) * step_s;
+      const double value = feed(filter, t, speed_m_per_s * t).values[0];
+      const double expected = speed_m_per_s * (1.0 - std::exp(-t / tau_s));
+      ASSERT_NEAR(value, expected, kRounding * speed_m_per_s) << step_s << " s, at " << t;
+    }
+  }
+}
+
+TEST(Features, LowpassDecaysExponentiallyWhileTheToolIsHeld) {
+  const double tau_s = 1.27;
+  FeatureFilter filter({lowpass(tau_s)});
+  feed(filter, 0.0, 0.0);
+  const double peak = feed(filter, 1e-3, 4e-3).values[0];
+  const double e = std::exp(-1e-3 / tau_s);
+  EXPECT_NEAR(peak, (1.0 - e) * 4.0, 4.0 * kRounding) << "a step of 4 mm in 1 ms";
+  for (int i = 2; i <= 3000; ++i) {
+    const double t = 1e-3 * i;
+    ASSERT_NEAR(feed(filter, t, 4e-3).values[0], peak * std::exp(-(t - 1e-3) / tau_s), peak * kRounding);
+  }
+}
+
+TEST(Features, UnevenStepsOfARampGiveTheSameAsEvenOnes) {
+  const double tau_s = 0.3;
+  FeatureFilter filter({lowpass(tau_s), maxwell(tau_s, {2e-3, {0.5, 0.0, 0.0, 0.0}})});
+  feed(filter, 0.0, 0.0);
+  double t = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    t += 1e-3 * (1.0 + 0.9 * std::sin(1.7 * i));
+    feed(filter, t, 0.01 * t);
+  }
+  const double rise = 0.01 * (1.0 - std::exp(-t / tau_s));
+  EXPECT_NEAR(filter.vector().values[0], rise, 0.01 * kRounding);
+  // Beyond 2 mm a straight drive curve goes on straight: 0.5 N / 2 mm x tau x rise.
+  EXPECT_NEAR(filter.vector().values[1], 250.0 * tau_s * rise, kRounding);
+}
+
+TEST(Features, AMaxwellBranchWithAStraightDriveIsTheLowpass) {
+  const double tau_s = 0.4;
+  const double depth_m = 3e-3;
+  // g = d / tau, that is coefficient / depth = 1 / tau.
+  FeatureFilter filter({lowpass(tau_s), maxwell(tau_s, {depth_m, {depth_m / tau_s, 0.0, 0.0, 0.0}})});
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 1e-3 * i;
+    const FeatureVector& vector = feed(filter, t, 2.5e-3 * std::sin(5.0 * t));
+    ASSERT_NEAR(vector.values[1], vector.values[0], 1e-13);
+  }
+}
+
+// dz/dt = g'(d) dd/dt - z / tau by the classical Runge-Kutta method at 10 us, whose
+// own error is below 1e-12 here. The filter at 1 ms takes g(d(t)) as straight
+// between samples; for a smooth drive the error of that is h^2/12 max|g''|/..., measured
+// 2e-6 of the peak, and falls with h^2.
+double integrated_maxwell(const std::function<double(double)>& rate_N_per_s, double tau_s, double end_s) {
+  const double h = 1e-5;
+  const auto slope = [&](double t, double z) { return rate_N_per_s(t) - z / tau_s; };
+  double z = 0.0;
+  const int steps = static_cast<int>(std::lround(end_s / h));
+  for (int i = 0; i < steps; ++i) {
+    const double t = h * i;
+    const double k1 = slope(t, z);
+    const double k2 = slope(t + 0.5 * h, z + 0.5 * h * k1);
+    const double k3 = slope(t + 0.5 * h, z + 0.5 * h * k2);
+    const double k4 = slope(t + h, z + h * k3);
+    z += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  return z;
+}
+
+TEST(Features, AMaxwellBranchAgreesWithFineIntegration) {
+  const double tau_s = 0.2;
+  const double omega = 2.0 * std::numbers::pi * 1.3;
+  const auto depth_m = [&](double t) { return 2e-3 * (1.0 - std::cos(omega * t)); };  // up to 4 mm of 5 mm
+  const auto rate_N_per_s = [&](double t) {
+    const double u = depth_m(t) / 5e-3;
+    const double du_per_s = 2e-3 * omega * std::sin(omega * t) / 5e-3;
+    return (0.8 + 2.0 * 0.5 * u + 3.0 * 0.3 * u * u + 4.0 * 0.2 * u * u * u) * du_per_s;
+  };
+  for (const double end_s : {0.1, 0.35, 0.7, 1.5}) {
+    const double expected = integrated_maxwell(rate_N_per_s, tau_s, end_s);
+    FeatureFilter filter({maxwell(tau_s, stiffening())});
+    const int steps = static_cast<int>(std::lround(end_s * 1e3));
+    for (int i = 0; i <= steps; ++i) feed(filter, 1e-3 * i, depth_m(1e-3 * i));
+    EXPECT_NEAR(filter.vector().values[0], expected, 1e-5) << end_s;
+  }
+}
+
+// The discretisation is exact for straight motion between samples; for this one the
+// depth between two samples at 500 Hz is curved by at most a h^2 / 8 = 0.1 um, and the
+// filters forget it: 0.1 % of each feature's range is a bound with a margin of ten.
+TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
+  const std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17),
+                                          lowpass(1.27), maxwell(0.1, stiffening())};
+  const auto run = [&](double rate_Hz, std::vector<std::array<double, 5>>& at_500_Hz) {
+    FeatureFilter filter(specs);
+    const int every = static_cast<int>(rate_Hz / 500.0);
+    for (int i = 0; i <= static_cast<int>(4.0 * rate_Hz); ++i) {
+      const double t = static_cast<double>(i) / rate_Hz;
+      const double omega = 2.0 * std::numbers::pi * 1.1;
+      // In and out of the block, with a tremor.
+      const double tremor = 2.0 * std::numbers::pi * 9.0;
+      const double position_m = 3e-3 * std::sin(omega * t) + 5e-5 * std::sin(tremor * t);
+      const double velocity_m_per_s = 3e-3 * omega * std::cos(omega * t) + 5e-5 * tremor * std::cos(tremor * t);
+      const FeatureVector& vector = feed(filter, t, position_m, velocity_m_per_s);
+      if (i % every == 0) at_500_Hz.push_back({vector.values[0], vector.values[1], vector.values[2], vector.values[3], vector.values[4]});
+    }
+  };
+  std::vector<std::array<double, 5>> slow, normal, fast;
+  run(500.0, slow);
+  run(1000.0, normal);
+  run(2000.0, fast);
+  ASSERT_EQ(slow.size(), fast.size());
+  ASSERT_EQ(slow.size(), normal.size());
+  for (std::size_t k = 0; k < specs.size(); ++k) {
+    double range = 0.0;
+    double slow_error = 0.0;
+    double normal_error = 0.0;
+    for (std::size_t i = 0; i < fast.size(); ++i) {
+      range = std::max(range, std::abs(fast[i][k]));
+      slow_error = std::max(slow_error, std::abs(slow[i][k] - fast[i][k]));
+      normal_error = std::max(normal_error, std::abs(normal[i][k] - fast[i][k]));
+    }
+    EXPECT_LE(slow_error, 2e-3 * range) << feature_name(specs[k]);
+    EXPECT_LE(normal_error, 1e-3 * range) << feature_name(specs[k]);
+  }
+}
+
+TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
+  FeatureFilter filter({FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17), maxwell(0.1, stiffening())});
+  int i = 0;
+  // Fast strokes in the air leave everything at rest.
+  for (; i < 500; ++i) {
+    const FeatureVector& vector = feed(filter, 1e-3 * i, -0.02 + 0.019 * std::sin(0.1 * i), 1.9 * std::cos(0.1 * i));
+    ASSERT_EQ(vector.values, FeatureVector{}.values);
+    ASSERT_FALSE(vector.in_contact);
+  }
+  feed(filter, 1e-3 * i++, -1e-6);
+  // In by 3 mm, then out within 1 ms: from then on only the decay of what is left.
+  for (int k = 0; k < 100; ++k) feed(filter, 1e-3 * i++, 3e-5 * k, 0.03);
+  feed(filter, 1e-3 * i++, -1e-3, -4.0);
+  const double start = filter.vector().values[2];
+  const double branch = filter.vector().values[3];
+  EXPECT_LT(start, 0.0) << "pulled out faster than it relaxes";
+  for (int k = 1; k < 1000; ++k) {
+    const FeatureVector& vector = feed(filter, 1e-3 * i++, -1e-3 - 1e-4 * std::abs(std::sin(k)), 0.1);
+    ASSERT_EQ(vector.values[0], 0.0);
+    ASSERT_EQ(vector.values[1], 0.0);
+    ASSERT_NEAR(vector.values[2], start * std::exp(-1e-3 * k / 0.17), std::abs(start) * kRounding);
+    ASSERT_NEAR(vector.values[3], branch * std::exp(-1e-3 * k / 0.1), std::abs(branch) * kRounding);
+  }
+}
+
+TEST(Features, ContactIsThatOfTheRawPosition) {
+  FeatureFilter filter({FeatureSpec{}});
+  const FeatureVector touching = filter.update({0.0, 1e-6, 0.0, 0.0}, {-1e-6, 0.0});
+  EXPECT_TRUE(touching.in_contact);
+  EXPECT_EQ(touching.depth_m, 1e-6);
+  EXPECT_EQ(touching.values[0], 0.0);
+  const FeatureVector free = filter.update({1e-3, 0.0, 0.0, 0.0}, {2e-6, 0.0});
+  EXPECT_FALSE(free.in_contact);
+  EXPECT_EQ(free.depth_m, 0.0);
+  EXPECT_EQ(free.values[0], 2e-6);
+}
+
+TEST(Features, ResetForgetsTheFilters) {
+  FeatureFilter filter({lowpass(0.17)});
+  feed(filter, 0.0, 0.0);
+  feed(filter, 1e-3, 1e-3);
+  EXPECT_GT(filter.vector().values[0], 0.0);
+  filter.reset();
+  EXPECT_EQ(feed(filter, 0.0, 4e-3).values[0], 0.0) << "the first sample does not load";
+}
+
+TEST(Features, HaveNamesWithUnits) {
+  EXPECT_EQ(feature_name({}), "feature_depth_m");
+  EXPECT_EQ(feature_name({FeatureKind::velocity, 0.0, {}}), "feature_velocity_m_per_s");
+  EXPECT_EQ(feature_name(lowpass(0.17)), "feature_lowpass_velocity_0.17s_m_per_s");
+  EXPECT_EQ(feature_name(lowpass(1.0 / 3.0)), "feature_lowpass_velocity_0.3333s_m_per_s");
+  EXPECT_EQ(feature_name(maxwell(1.27, stiffening())), "feature_maxwell_branch_1.27s_N");
+}
+
+// A million ticks of a sine: the low-pass's steady state is the closed form
+//   y = A w / sqrt(1 + (w tau)^2) cos(w t - atan(w tau)),
+// to the error of taking the depth as straight between ticks, (w h)^2 / 8.
+TEST(Features, AMillionTicksDoNotDrift) {
+  const double tau_s = 1.27;
+  const double w = 2.0 * std::numbers::pi * 0.5;
+  const double amplitude_m = 2e-3;
+  FeatureFilter filter({lowpass(tau_s)});
+  double worst = 0.0;
+  for (int i = 0; i <= 1000000; ++i) {
+    const double t = 1e-3 * i;
+    const double value = feed(filter, t, 3e-3 + amplitude_m * std::sin(w * t)).values[0];
+    if (t < 40.0 * tau_s) continue;
+    const double expected = amplitude_m * w / std::hypot(1.0, w * tau_s) * std::cos(w * t - std::atan(w * tau_s));
+    worst = std::max(worst, std::abs(value - expected));
+  }
+  EXPECT_LT(worst, 3e-6 * amplitude_m * w);
+}
+
+// An hour at rest, pressed in: filters are exactly zero, by way of no denormal.
+TEST(Features, AnHourAtRestLeavesZero) {
+  FeatureFilter filter({lowpass(0.17), maxwell(1.27, stiffening())});
+  feed(filter, 0.0, 0.0);
+  FeatureVector vector;
+  for (int i = 1; i <= 3600000; ++i) {
+    vector = feed(filter, 1e-3 * i, 4e-3);
+    for (std::size_t k = 0; k < 2; ++k)
+      if (std::fpclassify(vector.values[k]) == FP_SUBNORMAL) FAIL() << i;
+  }
+  EXPECT_EQ(vector.values[0], 0.0);
+  EXPECT_EQ(vector.values[1], 0.0);
+}
+
+TEST(Features, ADriveCurveContinuesAlongItsTangent) {
+  const DriveCurve drive = stiffening();
+  EXPECT_EQ(drive.at(0.0), 0.0);
+  EXPECT_NEAR(drive.at(2.5e-3), 0.8 * 0.5 + 0.5 * 0.25 + 0.3 * 0.125 + 0.2 * 0.0625, 1e-15);
+  EXPECT_NEAR(drive.at(5e-3), 1.8, 1e-15);
+  const double slope = 0.8 + 2.0 * 0.5 + 3.0 * 0.3 + 4.0 * 0.2;
+  for (const double u : {1.0 + 1e-9, 1.5, 3.0, 100.0}) {
+    EXPECT_NEAR(drive.at(u * 5e-3), 1.8 + slope * (u - 1.0), 1e-13 * u) << u;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,23 @@
+#include "engine/tick/jnd.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+// The paper's conservative line, section 4.1.
+TEST(JndLine, IsThePapersConservativeLine) {
+  const JndLine line;
+  EXPECT_DOUBLE_EQ(line.at(0.0), 0.065);
+  EXPECT_NEAR(line.at(2.5), 0.065 + 0.0633 * 2.5, 1e-15);
+  EXPECT_DOUBLE_EQ(line.at(-2.5), line.at(2.5));
+}
+
+TEST(JndLine, ErrorIsRelativeToTheMeasuredForce) {
+  const JndLine line;
+  EXPECT_NEAR(line.error_over_jnd(1.0 + line.at(1.0), 1.0), 1.0, 1e-14);
+  EXPECT_DOUBLE_EQ(line.error_over_jnd(1.0, 1.0), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,299 @@
+// The motion estimator on quantised motion whose velocity is known, beside what
+// others use: raw differences, a 40 Hz low-pass and first-order adaptive windowing.
+#include "engine/tick/motion_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr double kStep_m = 30e-6;
+constexpr double kRate_Hz = 1000.0;
+
+struct Motion {
+  double position_m = 0.0;
+  double velocity_m_per_s = 0.0;
+  double acceleration_m_per_s2 = 0.0;
+};
+
+double quantised(double position_m, double step_m = kStep_m) { return std::round(position_m / step_m) * step_m; }
+
+// One move of a hand from a to b: minimum jerk (Flash & Hogan 1985).
+struct Stroke {
+  double start_s, length_s, distance_m;
+
+  void add_to(Motion& motion, double t) const {
+    const double u = std::clamp((t - start_s) / length_s, 0.0, 1.0);
+    motion.position_m += distance_m * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+    motion.velocity_m_per_s += distance_m / length_s * 30.0 * u * u * (1.0 - 2.0 * u + u * u);
+    motion.acceleration_m_per_s2 += distance_m / (length_s * length_s) * 60.0 * u * (1.0 - 3.0 * u + 2.0 * u * u);
+  }
+};
+
+// Strokes in and out with rests between, and a tremor of 8 to 12 Hz, 0.1 mm or so.
+class Hand {
+ public:
+  Hand(double seconds, std::uint64_t seed) {
+    std::mt19937_64 engine(seed);
+    const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(engine() >> 11) * 0x1p-53; };
+    double t = 0.2;
+    double depth_m = 0.0;
+    while (t < seconds) {
+      const double length_s = uniform(0.15, 1.2);
+      const double target_m = uniform(-2e-3, 8e-3);
+      strokes_.push_back({t, length_s, target_m - depth_m});
+      depth_m = target_m;
+      t += length_s + uniform(0.0, 0.6);
+    }
+    for (int i = 0; i < 5; ++i) {
+      tremor_.push_back({2.0 * std::numbers::pi * uniform(8.0, 12.0), uniform(0.0, 6.0), uniform(1e-5, 4e-5)});
+    }
+  }
+
+  Motion at(double t) const {
+    Motion motion;
+    for (const Stroke& stroke : strokes_) stroke.add_to(motion, t);
+    for (const Wave& wave : tremor_) {
+      const double angle = wave.omega * t + wave.phase;
+      motion.position_m += wave.amplitude_m * std::sin(angle);
+      motion.velocity_m_per_s += wave.amplitude_m * wave.omega * std::cos(angle);
+      motion.acceleration_m_per_s2 -= wave.amplitude_m * wave.omega * wave.omega * std::sin(angle);
+    }
+    return motion;
+  }
+
+ private:
+  struct Wave {
+    double omega, phase, amplitude_m;
+  };
+  std::vector<Stroke> strokes_;
+  std::vector<Wave> tremor_;
+};
+
+// A velocity from one sample after the other.
+using Estimator = std::function<double(const ToolSample&)>;
+
+// Mean square velocity error on 10 s of one hand; the first half second, where every
+// filter starts, does not count.
+double mean_square_error(Estimator estimate, bool accelerometer, std::uint64_t seed) {
+  const double seconds = 10.0;
+  const Hand hand(seconds, seed);
+  std::mt19937_64 engine(seed + 5);
+  std::normal_distribution<double> noise(0.0, 0.08);
+  double squares = 0.0;
+  int counted = 0;
+  for (int i = 0; i < static_cast<int>(seconds * kRate_Hz); ++i) {
+    const double t = static_cast<double>(i) / kRate_Hz;
+    const Motion truth = hand.at(t);
+    ToolSample sample{t, quantised(truth.position_m), 0.0, 0.0};
+    const double bias = 0.3 + 0.05 * std::sin(0.2 * t);
+    if (accelerometer) sample.acceleration_m_per_s2 = truth.acceleration_m_per_s2 + bias + noise(engine);
+    const double error = estimate(sample) - truth.velocity_m_per_s;
+    if (t < 0.5) continue;
+    squares += error * error;
+    ++counted;
+  }
+  return squares / counted;
+}
+
+// RMS over five hands; each starts with a copy of `estimate`.
+double rms_error(const Estimator& estimate, bool accelerometer = false) {
+  double sum = 0.0;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 20261120u}) sum += mean_square_error(estimate, accelerometer, seed);
+  return std::sqrt(sum / 5.0);
+}
+
+Estimator ours(const SensorSpec& sensor) {
+  return [estimator = MotionEstimator(sensor)](const ToolSample& sample) mutable {
+    return estimator.update(sample).velocity_m_per_s;
+  };
+}
+
+Estimator difference() {
+  return [last = ToolSample{}, started = false](const ToolSample& sample) mutable {
+    const double velocity = started ? (sample.position_m - last.position_m) / (sample.time_s - last.time_s) : 0.0;
+    last = sample;
+    started = true;
+    return velocity;
+  };
+}
+
+Estimator lowpass_40_Hz() {
+  const double keep = std::exp(-2.0 * std::numbers::pi * 40.0 / kRate_Hz);
+  return [raw = difference(), value = 0.0, keep](const ToolSample& sample) mutable {
+    value = keep * value + (1.0 - keep) * raw(sample);
+    return value;
+  };
+}
+
+// First-order adaptive windowing, end-fit: the longest window whose every sample lies
+// within `bound_m` of the line through its ends. Janabi-Sharifi, Hayward & Chen (2000).
+Estimator adaptive_window(double bound_m, std::size_t longest) {
+  return [past = std::vector<ToolSample>(), bound_m, longest](const ToolSample& sample) mutable {
+    past.insert(past.begin(), sample);
+    if (past.size() > longest + 1) past.pop_back();
+    double velocity = 0.0;
+    for (std::size_t n = 1; n < past.size(); ++n) {
+      const double slope = (past[0].position_m - past[n].position_m) / (past[0].time_s - past[n].time_s);
+      bool fits = true;
+      for (std::size_t j = 1; j < n && fits; ++j) {
+        const double line_m = past[0].position_m + slope * (past[j].time_s - past[0].time_s);
+        fits = std::abs(past[j].position_m - line_m) <= bound_m;
+      }
+      if (!fits) break;
+      velocity = slope;
+    }
+    return velocity;
+  };
+}
+
+TEST(MotionEstimator, BeatsTheUsualEstimatorsOnAnEncoder) {
+  const double error = rms_error(ours({kStep_m, 0.0}));
+  // The bound and the window that suit adaptive windowing best here.
+  double window = 1.0;
+  for (const double bound : {0.5, 0.75, 1.0}) {
+    for (const std::size_t longest : {16u, 32u, 64u}) {
+      window = std::min(window, rms_error(adaptive_window(bound * kStep_m, longest)));
+    }
+  }
+  const double lowpass = rms_error(lowpass_40_Hz());
+  const double raw = rms_error(difference());
+  RecordProperty("ours_um_per_s", static_cast<int>(1e6 * error));
+  RecordProperty("adaptive_window_um_per_s", static_cast<int>(1e6 * window));
+  RecordProperty("lowpass_um_per_s", static_cast<int>(1e6 * lowpass));
+  RecordProperty("difference_um_per_s", static_cast<int>(1e6 * raw));
+  // Measured 0.76; adaptive windowing is at the best of nine settings, chosen with
+  // the truth in hand.
+  EXPECT_LT(error, 0.8 * window);
+  EXPECT_LT(error, lowpass);
+  EXPECT_LT(error, raw);
+}
+
+TEST(MotionEstimator, AnAccelerometerWithADriftingBiasHelps) {
+  const double without = rms_error(ours({kStep_m, 0.0}));
+  const double with = rms_error(ours({kStep_m, 0.0, false, 0.0, true, 0.08}), true);
+  RecordProperty("with_um_per_s", static_cast<int>(1e6 * with));
+  EXPECT_LT(with, 0.35 * without);
+}
+
+TEST(MotionEstimator, FollowsASteadyRampWithoutBias) {
+  for (const double speed_m_per_s : {0.4e-3, 3e-3, 0.05, -0.02}) {
+    MotionEstimator estimator({kStep_m, 0.0});
+    double sum = 0.0;
+    double position_error_m = 0.0;
+    int counted = 0;
+    for (int i = 0; i < 6000; ++i) {
+      const double t = 1e-3 * i;
+      const MotionEstimate motion = estimator.update({t, quantised(speed_m_per_s * t), 0.0, 0.0});
+      if (i < 2000) continue;
+      sum += motion.velocity_m_per_s;
+      position_error_m = std::max(position_error_m, std::abs(motion.position_m - speed_m_per_s * t));
+      ++counted;
+    }
+    // Slow ramps, a step in 75 ms here, come out up to a fifth too slow: 0.1 mm/s,
+    // which a viscosity of 20 Ns/m makes 2 mN, a thirtieth of the smallest JND.
+    EXPECT_NEAR(sum / counted, speed_m_per_s, 1e-4) << speed_m_per_s;
+    EXPECT_LT(position_error_m, kStep_m) << speed_m_per_s;
+  }
+}
+
+// On an edge of the encoder the reading may flip with every sample; the tool rests.
+TEST(MotionEstimator, DoesNotChatterAtRestOnAnEdge) {
+  MotionEstimator estimator({kStep_m, 0.0});
+  const double raw_m_per_s = kStep_m / 1e-3;
+  double largest = 0.0;
+  std::mt19937_64 engine(3);
+  for (int i = 0; i < 5000; ++i) {
+    const double reading_m = (engine() >> 63) != 0 ? kStep_m : 0.0;
+    const MotionEstimate motion = estimator.update({1e-3 * i, reading_m, 0.0, 0.0});
+    if (i > 1000) largest = std::max(largest, std::abs(motion.velocity_m_per_s));
+  }
+  EXPECT_LT(largest, 0.1 * raw_m_per_s) << "raw differences give " << raw_m_per_s;
+}
+
+TEST(MotionEstimator, ComesToRestWithTheTool) {
+  MotionEstimator estimator({kStep_m, 0.0});
+  MotionEstimate motion;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = std::min(1e-3 * i, 1.0);
+    motion = estimator.update({1e-3 * i, quantised(0.01 * t), 0.0, 0.0});
+  }
+  EXPECT_NEAR(motion.velocity_m_per_s, 0.0, 1e-5);
+  EXPECT_NEAR(motion.position_m, 0.01, kStep_m);
+}
+
+// The time step is taken from the samples: jitter costs little.
+TEST(MotionEstimator, TakesUnevenTimeSteps) {
+  const Hand hand(10.0, 20261120);
+  const auto run = [&](double jitter) {
+    MotionEstimator estimator({kStep_m, 0.0});
+    std::mt19937_64 engine(11);
+    double squares = 0.0;
+    int counted = 0;
+    for (double t = 0.0; t < 10.0;) {
+      const Motion truth = hand.at(t);
+      const double error =
+          estimator.update({t, quantised(truth.position_m), 0.0, 0.0}).velocity_m_per_s - truth.velocity_m_per_s;
+      if (t > 0.5) {
+        squares += error * error;
+        ++counted;
+      }
+      t += 1e-3 * (1.0 + jitter * (static_cast<double>(engine() >> 11) * 0x1p-52 - 1.0));
+    }
+    return std::sqrt(squares / counted);
+  };
+  EXPECT_LT(run(0.9), 1.25 * run(0.0));
+}
+
+// From 10 Hz to 20 kHz: finite, and a slow sine is followed as far as the rate allows.
+TEST(MotionEstimator, WorksAtEveryRateOfTheContract) {
+  for (const double rate_Hz : {10.0, 100.0, 20000.0}) {
+    MotionEstimator estimator({kStep_m, 0.0});
+    const double omega = 2.0 * std::numbers::pi * 0.2;
+    double squares = 0.0;
+    int counted = 0;
+    for (int i = 0; i < static_cast<int>(10.0 * rate_Hz); ++i) {
+      const double t = static_cast<double>(i) / rate_Hz;
+      const MotionEstimate motion = estimator.update({t, quantised(5e-3 * std::sin(omega * t)), 0.0, 0.0});
+      ASSERT_TRUE(std::isfinite(motion.velocity_m_per_s) && std::isfinite(motion.position_m)) << rate_Hz << " " << i;
+      if (t < 2.0) continue;
+      const double error = motion.velocity_m_per_s - 5e-3 * omega * std::cos(omega * t);
+      squares += error * error;
+      ++counted;
+    }
+    // The peak velocity is 6.3 mm/s.
+    EXPECT_LT(std::sqrt(squares / counted), 1e-3) << rate_Hz;
+  }
+}
+
+TEST(MotionEstimator, AJumpDoesNotBreakIt) {
+  MotionEstimator estimator({kStep_m, 0.0, false, 0.0, true, 0.08});
+  for (int i = 0; i < 3000; ++i) {
+    const double position_m = i == 1000 ? 0.5 : (i > 1500 ? -0.3 : 0.0);
+    const MotionEstimate motion = estimator.update({1e-3 * i, position_m, 0.0, i == 1200 ? 1e4 : 0.0});
+    ASSERT_TRUE(std::isfinite(motion.velocity_m_per_s) && std::isfinite(motion.position_m)) << i;
+  }
+  const MotionEstimate motion = estimator.update({3.0, -0.3, 0.0, 0.0});
+  EXPECT_NEAR(motion.position_m, -0.3, kStep_m);
+  EXPECT_NEAR(motion.velocity_m_per_s, 0.0, 1e-2);
+}
+
+TEST(MotionEstimator, IgnoresASampleThatIsNotLater) {
+  MotionEstimator estimator({kStep_m, 0.0});
+  for (int i = 0; i < 100; ++i) estimator.update({1e-3 * i, quantised(1e-5 * i), 0.0, 0.0});
+  const MotionEstimate before = estimator.update({0.1, quantised(1e-3), 0.0, 0.0});
+  const MotionEstimate again = estimator.update({0.1, 0.5, 0.0, 0.0});
+  EXPECT_EQ(before.position_m, again.position_m);
+  EXPECT_EQ(before.velocity_m_per_s, again.velocity_m_per_s);
+}
+
+}  // namespace
+}  // namespace palpate

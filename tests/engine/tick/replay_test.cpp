@@ -1,0 +1,114 @@
+// Replay is the tick and nothing else.
+#include "engine/tick/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "engine/tick/sensor_identification.h"
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::example_recording;
+
+// Every number a replay gives, in order.
+struct Trace {
+  std::vector<double> values;
+  ReplayVisitor visitor() {
+    return [this](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+      values.insert(values.end(), {row.time_s, snapshot.time_s, snapshot.depth_m, snapshot.velocity_m_per_s});
+      for (std::size_t m = 0; m < tick.model_count(); ++m) {
+        values.push_back(snapshot.force_N[m]);
+        for (const double feature : tick.features_of(m).values) values.push_back(feature);
+      }
+    };
+  }
+};
+
+ForceModels all_models() {
+  ForceModels models;
+  for (const ModelData& data : test::example_models()) models.push_back(std::make_shared<FittedModel>(data));
+  return models;
+}
+
+TEST(Replay, EqualsSteppingByHand) {
+  const Recording recording = example_recording(3000, 1000.0, 30e-6);
+  const ForceModels models = all_models();
+  Trace trace;
+  const auto summary = replay(recording, models, trace.visitor());
+  ASSERT_TRUE(summary.ok());
+
+  Trace by_hand;
+  const ReplayVisitor visit = by_hand.visitor();
+  HapticsTick tick(identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns), models);
+  std::uint64_t contact = 0;
+  for (const RecordingRow& row : recording.rows) {
+    const TickSnapshot& snapshot = tick.step({row.time_s, row.position_m, 0.0, 0.0});
+    contact += row.position_m > 0.0 ? 1 : 0;
+    visit(row, snapshot, tick);
+  }
+  EXPECT_EQ(trace.values, by_hand.values);
+  EXPECT_EQ(summary->samples, recording.rows.size());
+  EXPECT_EQ(summary->contact_samples, contact);
+  EXPECT_EQ(summary->faults, 0u);
+  EXPECT_NEAR(summary->sensor.encoder_step_m, 30e-6, 1e-12);
+}
+
+TEST(Replay, GivesTheSameEveryTime) {
+  const Recording recording = example_recording(2000, 1000.0, 30e-6);
+  Trace first;
+  Trace second;
+  ASSERT_TRUE(replay(recording, all_models(), first.visitor()).ok());
+  ASSERT_TRUE(replay(recording, all_models(), second.visitor()).ok());
+  EXPECT_EQ(first.values, second.values);
+}
+
+// Longer than the rows that identification looks at, so that chunks follow.
+TEST(Replay, InChunksEqualsTheWhole) {
+  const test::TemporaryFolder folder;
+  const Recording recording = example_recording(kSensorIdentificationRows * 2 + 17, 1000.0, 30e-6);
+  ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
+  const ForceModels models = {std::make_shared<FittedModel>(test::example_models().front())};
+  Trace whole;
+  const auto in_memory = replay(recording, models, whole.visitor());
+  ASSERT_TRUE(in_memory.ok());
+  auto reader = RecordingReader::open(folder.file("r.csv"));
+  ASSERT_TRUE(reader.ok());
+  Trace chunked;
+  const auto streamed = replay(*reader, models, chunked.visitor());
+  ASSERT_TRUE(streamed.ok());
+  EXPECT_TRUE(whole.values == chunked.values);
+  EXPECT_EQ(in_memory->samples, streamed->samples);
+  EXPECT_EQ(in_memory->contact_samples, streamed->contact_samples);
+}
+
+TEST(Replay, HandsOnTheReadersError) {
+  const test::TemporaryFolder folder;
+  std::string text = "time_s,position_m,force_N\n";
+  for (int i = 0; i < 20; ++i) text.append(std::to_string(i)).append("e-3,0,0\n");
+  const std::string path = folder.with_file("r.csv", text + "5e-3,0,0\n");
+  auto reader = RecordingReader::open(path);
+  ASSERT_TRUE(reader.ok());
+  const auto summary = replay(*reader, {}, {});
+  ASSERT_FALSE(summary.ok());
+  EXPECT_EQ(summary.error().message.rfind(path + ":22:1: ", 0), 0u) << summary.error().message;
+}
+
+TEST(Replay, RefusesMoreModelsThanATickTakes) {
+  const ForceModels models(kMaxModels + 1, std::make_shared<FittedModel>(test::example_models().front()));
+  const auto summary = replay(example_recording(100, 1000.0), models, {});
+  ASSERT_FALSE(summary.ok());
+  EXPECT_EQ(summary.error().message, "found 17 models, expected at most 16; replay them in several runs");
+}
+
+TEST(Replay, NeedsNoModel) {
+  const auto summary = replay(example_recording(100, 1000.0), {}, {});
+  ASSERT_TRUE(summary.ok());
+  EXPECT_EQ(summary->samples, 100u);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,114 @@
+// Sensors read off recordings whose sensor is known.
+#include "engine/tick/sensor_identification.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+SensorSpec identify(const Recording& recording) {
+  return identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
+}
+
+// Gaussian noise of standard deviation `sigma` on one column, fixed seed.
+void add_noise(Recording& recording, double RecordingRow::*column, double sigma) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> noise(0.0, sigma);
+  for (RecordingRow& row : recording.rows) row.*column += noise(engine);
+}
+
+TEST(SensorIdentification, FindsTheStepOfAnEncoderInAFile) {
+  const test::TemporaryFolder folder;
+  for (const double step_m : {30e-6, 1e-5, 1.0 / 4096.0 * 0.1}) {
+    const std::string path = folder.file("r.csv");
+    ASSERT_TRUE(write_recording(path, test::example_recording(5000, 1000.0, step_m), {}, true).ok());
+    const auto recording = read_recording(path);
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    const SensorSpec sensor = identify(*recording);
+    EXPECT_NEAR(sensor.encoder_step_m, step_m, 1e-6 * step_m);
+    EXPECT_LT(sensor.position_noise_m, 0.5 * step_m);
+    EXPECT_FALSE(sensor.has_velocity);
+    EXPECT_FALSE(sensor.has_acceleration);
+  }
+}
+
+// Of 10,000 rows the quietest fifth of the windows decides; their spread and the
+// motion that is left in them are well within 30 %.
+TEST(SensorIdentification, FindsTheNoiseOfAPositionThatIsNotQuantised) {
+  for (const double noise_m : {1e-6, 5e-6, 20e-6}) {
+    Recording recording = test::example_recording(10000, 1000.0);
+    add_noise(recording, &RecordingRow::position_m, noise_m);
+    const SensorSpec sensor = identify(recording);
+    EXPECT_EQ(sensor.encoder_step_m, 0.0);
+    EXPECT_NEAR(sensor.position_noise_m, noise_m, 0.3 * noise_m);
+  }
+}
+
+// A velocity that is the difference of encoder readings is wrong by up to a step
+// per sample, evenly: step / dt / sqrt(12).
+TEST(SensorIdentification, KnowsADifferencedVelocityForWhatItIs) {
+  Recording recording = test::example_recording(10000, 1000.0, 30e-6);
+  recording.columns.velocity = true;
+  for (std::size_t i = 1; i < recording.rows.size(); ++i) {
+    recording.rows[i].velocity_m_per_s = (recording.rows[i].position_m - recording.rows[i - 1].position_m) / 1e-3;
+  }
+  const SensorSpec sensor = identify(recording);
+  ASSERT_TRUE(sensor.has_velocity);
+  const double expected = 30e-6 / 1e-3 / std::sqrt(12.0);
+  EXPECT_GT(sensor.velocity_noise_m_per_s, 0.8 * expected);
+  EXPECT_LT(sensor.velocity_noise_m_per_s, 2.0 * expected);
+}
+
+TEST(SensorIdentification, FindsTheNoiseOfAnAccelerometer) {
+  Recording recording = test::example_recording(10000, 1000.0, 30e-6);
+  recording.columns.acceleration = true;
+  for (RecordingRow& row : recording.rows) row.acceleration_m_per_s2 = 0.3 * std::sin(5.0 * row.time_s);
+  add_noise(recording, &RecordingRow::acceleration_m_per_s2, 0.08);
+  const SensorSpec sensor = identify(recording);
+  ASSERT_TRUE(sensor.has_acceleration);
+  EXPECT_NEAR(sensor.acceleration_noise_m_per_s2, 0.08, 0.3 * 0.08);
+}
+
+TEST(SensorIdentification, ExactColumnsGetTheFloors) {
+  Recording recording = test::example_recording(5000, 1000.0);
+  recording.columns = {true, true};
+  for (RecordingRow& row : recording.rows) {
+    row.velocity_m_per_s = 0.02 * std::sin(5.0 * row.time_s);
+    row.acceleration_m_per_s2 = 0.1 * std::cos(5.0 * row.time_s);
+  }
+  const SensorSpec sensor = identify(recording);
+  EXPECT_EQ(sensor.encoder_step_m, 0.0);
+  EXPECT_LT(sensor.position_noise_m, 1e-6);
+  EXPECT_EQ(sensor.velocity_noise_m_per_s, 1e-4);
+  EXPECT_EQ(sensor.acceleration_noise_m_per_s2, 1e-2);
+}
+
+TEST(SensorIdentification, AColumnWithoutInformationIsNoError) {
+  Recording still = test::example_recording(100, 1000.0);
+  still.columns = {true, true};
+  for (RecordingRow& row : still.rows) row = {row.time_s, 1e-3, 0.0, 0.0, 0.0};
+  const SensorSpec sensor = identify(still);
+  EXPECT_EQ(sensor.encoder_step_m, 0.0);
+  EXPECT_EQ(sensor.position_noise_m, 0.0);
+  EXPECT_EQ(sensor.velocity_noise_m_per_s, 1e-4);
+  EXPECT_EQ(sensor.acceleration_noise_m_per_s2, 1e-2);
+  EXPECT_EQ(identify_sensor(nullptr, 0, {}).encoder_step_m, 0.0);
+}
+
+TEST(SensorIdentification, LooksAtTheFirstRowsOnly) {
+  Recording recording = test::example_recording(kSensorIdentificationRows + 5000, 1000.0, 30e-6);
+  const SensorSpec before = identify(recording);
+  for (std::size_t i = kSensorIdentificationRows; i < recording.rows.size(); ++i) recording.rows[i].position_m += 1e-5;
+  const SensorSpec after = identify(recording);
+  EXPECT_EQ(before.encoder_step_m, after.encoder_step_m);
+  EXPECT_EQ(before.position_noise_m, after.position_noise_m);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,229 @@
+#include "models/fit/fit_direct.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "models/fit/choose_smoothing.h"
+#include "models/fit/projected_kernel.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::random_points;
+using test::smooth_sites;
+
+double rms_error(const RbfFunction& function, const Sites& truth) {
+  Eigen::VectorXd values;
+  RbfEvaluator(function).evaluate_many(truth.points, values);
+  return std::sqrt((values - truth.target_N).squaredNorm() / static_cast<double>(truth.count()));
+}
+
+// The system of eq. 4 with the smoothing on its diagonal, by dense LU with
+// full pivoting.
+RbfFunction saddle_solution(const Sites& sites, KernelKind kernel, double smoothing) {
+  const Eigen::Index n = sites.count();
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + tail.cols(), n + tail.cols());
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      matrix(i, j) = kernel_value(kernel, (sites.points.col(i) - sites.points.col(j)).norm());
+  matrix.topLeftCorner(n, n).diagonal() +=
+      definiteness_sign(kernel) * smoothing * sites.row_scale.cwiseAbs2().cwiseInverse();
+  matrix.topRightCorner(n, tail.cols()) = tail;
+  matrix.bottomLeftCorner(tail.cols(), n) = tail.transpose();
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n + tail.cols());
+  right.head(n) = sites.target_N;
+  const Eigen::VectorXd solution = matrix.fullPivLu().solve(right);
+  return {kernel, sites.points, solution.head(n), solution.tail(tail.cols())};
+}
+
+// Condition up to 1e7 for these sizes: nine digits are left, eight are asked.
+TEST(FitDirect, SolvesTheSaddleSystemOfEquation4) {
+  const Sites sites = smooth_sites(3, 120, 0.01, 1);
+  for (const KernelKind kernel : kKernelKinds)
+    for (const double smoothing : {1e-3, 1e-1, 10.0}) {
+      const auto fitted = fit_direct(sites, {.kernel = kernel, .smoothing = smoothing});
+      ASSERT_TRUE(fitted.ok());
+      const RbfFunction expected = saddle_solution(sites, kernel, smoothing);
+      const double size = expected.weights.cwiseAbs().maxCoeff();
+      EXPECT_LE((fitted->function.weights - expected.weights).cwiseAbs().maxCoeff(), 1e-8 * size)
+          << kernel_name(kernel) << smoothing;
+      EXPECT_LE((fitted->function.tail - expected.tail).cwiseAbs().maxCoeff(), 1e-8 * (1 + size));
+    }
+}
+
+TEST(FitDirect, InterpolatesWithoutSmoothing) {
+  const Sites sites = smooth_sites(4, 300, 0.0, 1);
+  for (const KernelKind kernel : kKernelKinds) {
+    const auto fitted = fit_direct(sites, {.kernel = kernel, .smoothing = 0.0});
+    ASSERT_TRUE(fitted.ok());
+    // The least smoothing is 1e-15 of the trace; its bias is below 1e-7 here.
+    EXPECT_LE(rms_error(fitted->function, sites), 1e-7) << kernel_name(kernel);
+    const Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel), sites.points);
+    const double size = fitted->function.weights.cwiseAbs().sum();
+    EXPECT_LE((tail.transpose() * fitted->function.weights).cwiseAbs().maxCoeff(), 1e-12 * size) << "eq. 3";
+  }
+}
+
+TEST(FitDirect, ReproducesAPolynomialOfTheTail) {
+  for (const KernelKind kernel : kKernelKinds) {
+    Sites sites = smooth_sites(2, 150, 0.0, 1);
+    const Eigen::VectorXd tail = random_points(1, tail_size(tail_degree(kernel), 2), 3).transpose();
+    sites.target_N = tail_matrix(tail_degree(kernel), sites.points) * tail;
+    const auto fitted = fit_direct(sites, {.kernel = kernel, .smoothing = 1e-2});
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_LE((fitted->function.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
+  }
+}
+
+TEST(FitDirect, ReportsTheResidualsInClosedForm) {
+  const Sites sites = smooth_sites(3, 200, 0.05, 1);
+  const auto fitted = fit_direct(sites, {.smoothing = 0.3});
+  ASSERT_TRUE(fitted.ok());
+  Eigen::VectorXd values;
+  RbfEvaluator(fitted->function).evaluate_many(sites.points, values);
+  const double rms = (values - sites.target_N).cwiseProduct(sites.row_scale).norm() / std::sqrt(200.0);
+  EXPECT_NEAR(fitted->report.residual_rms, rms, 1e-9);
+}
+
+TEST(FitDirect, ChosenSmoothingRemovesNoise) {
+  const Sites sites = smooth_sites(3, 600, 0.1, 1);
+  const Sites truth = smooth_sites(3, 500, 0.0, 99);
+  const double without = rms_error(fit_direct(sites, {.smoothing = 0.0})->function, truth);
+  for (const bool by_group : {true, false}) {
+    const auto fitted = fit_direct(sites, {.by_group = by_group});
+    ASSERT_TRUE(fitted.ok());
+    const double chosen = rms_error(fitted->function, truth);
+    EXPECT_LT(chosen, 0.6 * without);
+    // Near the best of a grid of refits on the noise-free truth.
+    double best = without;
+    for (double smoothing = 1e-6; smoothing < 1e6; smoothing *= 10.0)
+      best = std::min(best, rms_error(fit_direct(sites, {.smoothing = smoothing})->function, truth));
+    EXPECT_LT(chosen, 1.2 * best);
+  }
+}
+
+// The closed form against its definition: fit without each stroke, predict it.
+TEST(ChooseSmoothing, GroupCriterionIsTheErrorOfRefitsWithoutEachGroup) {
+  const Sites sites = smooth_sites(2, 250, 0.05, 1);
+  const Result<SmoothingChoice> choice = choose_smoothing(sites, KernelKind::cubic, true);
+  ASSERT_TRUE(choice.ok());
+  EXPECT_TRUE(choice->by_group);
+  double sum = 0.0;
+  for (int group = 0; group < 5; ++group) {
+    Sites rest = sites;
+    rest.row_scale.segment(group * 50, 50).setZero();
+    const auto fitted = fit_direct(rest, {.smoothing = choice->smoothing});
+    ASSERT_TRUE(fitted.ok());
+    for (Eigen::Index i = group * 50; i < (group + 1) * 50; ++i) {
+      const double error = rbf_value(fitted->function, sites.points.col(i).data()) - sites.target_N[i];
+      sum += std::pow(error * sites.row_scale[i], 2);
+    }
+  }
+  EXPECT_NEAR(choice->criterion / (sum / 250.0), 1.0, 1e-6);
+}
+
+// Forty places with four sites each, 1e-5 apart; strokes that all visit the same
+// places. Leaving out a stroke says nothing about what happens between places,
+// and was seen to choose next to no smoothing: 57 N where the forces are 2 N.
+TEST(ChooseSmoothing, IsNeverFarBelowTheMostLikely) {
+  const Sites base = smooth_sites(3, 40, 0.0, 1);
+  const Sites truth = smooth_sites(3, 200, 0.0, 99);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Sites sites = smooth_sites(3, 160, 0.0, seed);
+    const Eigen::MatrixXd noise = random_points(1, 160, seed + 50);
+    for (Eigen::Index i = 0; i < 160; ++i) {
+      sites.points.col(i) = base.points.col(i % 40) + 1e-5 * sites.points.col(i);
+      sites.target_N[i] = base.target_N[i % 40] + 0.01 * noise(0, i);
+      sites.group[static_cast<std::size_t>(i)] = static_cast<int>(6 * i / 160);
+    }
+    const auto fitted = fit_direct(sites, {});
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_LT(rms_error(fitted->function, truth), 0.3) << seed;
+  }
+}
+
+TEST(FitDirect, TruncatedSvdAgreesWithinTheNoise) {
+  const double noise_N = 0.05;
+  const Sites sites = smooth_sites(3, 400, noise_N, 1);
+  const Sites truth = smooth_sites(3, 300, 0.0, 99);
+  const auto cholesky = fit_direct(sites, {.by_group = false});
+  const auto svd = fit_direct(sites, {.solver = DirectSolver::truncated_svd});
+  ASSERT_TRUE(cholesky.ok() && svd.ok());
+  Eigen::VectorXd a;
+  Eigen::VectorXd b;
+  RbfEvaluator(cholesky->function).evaluate_many(truth.points, a);
+  RbfEvaluator(svd->function).evaluate_many(truth.points, b);
+  EXPECT_LT((a - b).norm() / std::sqrt(300.0), noise_N);
+  EXPECT_LT(rms_error(svd->function, truth), noise_N);
+}
+
+TEST(FitDirect, DegenerateDataHaveADefinedOutcome) {
+  Sites identical = smooth_sites(3, 50, 0.0, 1);
+  identical.points.colwise() = identical.points.col(0).eval();
+  Sites duplicates = smooth_sites(3, 60, 0.0, 1);
+  duplicates.points.rightCols(30) = duplicates.points.leftCols(30).eval();
+  Sites clusters = smooth_sites(3, 60, 0.0, 1);
+  clusters.points.rightCols(30) = clusters.points.leftCols(30).array() + 1e-9;
+  Sites constant = smooth_sites(3, 50, 0.0, 1);
+  constant.points.row(1).setConstant(-0.3);
+  Sites zero = smooth_sites(3, 50, 0.0, 1);
+  zero.target_N.setZero();
+  Sites line = smooth_sites(3, 50, 0.0, 1);
+  line.points.row(1) = line.points.row(0);
+  line.points.row(2) = 2.0 * line.points.row(0);
+  for (const DirectSolver solver : {DirectSolver::cholesky, DirectSolver::truncated_svd})
+    for (const KernelKind kernel : kKernelKinds) {
+      for (const Sites& sites : {identical, duplicates, clusters, constant, zero, line, smooth_sites(4, 1, 0, 1),
+                                 smooth_sites(4, 2, 0, 1), smooth_sites(4, 5, 0, 1), smooth_sites(4, 6, 0, 1)}) {
+        const auto fitted = fit_direct(sites, {.kernel = kernel, .solver = solver});
+        ASSERT_TRUE(fitted.ok());
+        EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
+        // Nowhere among the data does the fit leave the range of the forces by
+        // more than that range.
+        const double range = sites.target_N.cwiseAbs().maxCoeff();
+        Eigen::VectorXd values;
+        RbfEvaluator(fitted->function).evaluate_many(sites.points, values);
+        EXPECT_LE(values.cwiseAbs().maxCoeff(), 2.0 * range + 1e-9) << kernel_name(kernel);
+      }
+      const Sites one = smooth_sites(4, 1, 0.0, 1);
+      const auto fitted = fit_direct(one, {.kernel = kernel, .solver = solver});
+      EXPECT_NEAR(rbf_value(fitted->function, one.points.data()), one.target_N[0], 1e-12);
+    }
+}
+
+TEST(FitDirect, SameDataSameBits) {
+  const Sites sites = smooth_sites(4, 700, 0.01, 1);
+  const auto a = fit_direct(sites, {});
+  const auto b = fit_direct(sites, {});
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->function.weights, b->function.weights);
+  EXPECT_EQ(a->function.tail, b->function.tail);
+}
+
+TEST(FitDirect, RefusesTooManySitesAndCanBeInterrupted) {
+  Sites large;
+  large.points = Eigen::MatrixXd::Zero(1, kMostDirectSites + 1);
+  large.target_N = large.row_scale = Eigen::VectorXd::Ones(kMostDirectSites + 1);
+  EXPECT_EQ(fit_direct(large, {}).error().message,
+            "a direct fit of 20001 sites is too large, at most 20000; reduce the recording further or use greedy");
+  // Whenever it asks, the last time included; a large factorisation asks on its way.
+  const Sites sites = smooth_sites(2, 1100, 0, 1);
+  std::vector<double> asked;
+  ASSERT_TRUE(fit_direct(sites, {}, {[&](double f) { return asked.push_back(f), true; }}).ok());
+  EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
+  EXPECT_GE(asked.size(), 7u);
+  for (const double fraction : asked) {
+    const auto stopped = fit_direct(sites, {}, {[&](double f) { return f < fraction; }});
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().message, "interrupted") << fraction;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,119 @@
+#include "models/fit/fit_greedy.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <limits>
+
+#include "models/fit/fit_random.h"
+#include "models/fit/solve_weights.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::smooth_sites;
+
+// Section 4.2.3 to the letter: tries every site by solving the least squares
+// problem anew.
+Eigen::MatrixXd brute_force_centres(const Sites& sites, KernelKind kernel, int count) {
+  Eigen::MatrixXd matrix = tail_matrix(tail_degree(kernel), sites.points).array().colwise() * sites.row_scale.array();
+  const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+  Eigen::MatrixXd centres(sites.dimension(), count);
+  for (int step = 0; step < count; ++step) {
+    matrix.conservativeResize(Eigen::NoChange, matrix.cols() + 1);
+    double best_error = std::numeric_limits<double>::max();
+    Eigen::VectorXd best_column;
+    for (Eigen::Index j = 0; j < sites.count(); ++j) {
+      for (Eigen::Index i = 0; i < sites.count(); ++i)
+        matrix(i, matrix.cols() - 1) =
+            sites.row_scale[i] * kernel_value(kernel, (sites.points.col(i) - sites.points.col(j)).norm());
+      const Eigen::VectorXd solution = matrix.colPivHouseholderQr().solve(data);
+      const double error = (data - matrix * solution).squaredNorm();
+      if (error < best_error) {
+        best_error = error;
+        best_column = matrix.rightCols(1);
+        centres.col(step) = sites.points.col(j);
+      }
+    }
+    matrix.rightCols(1) = best_column;
+  }
+  return centres;
+}
+
+TEST(FitGreedy, AllSitesEqualsBruteForceForwardSelection) {
+  const Sites sites = smooth_sites(2, 60, 0.05, 1);
+  for (const KernelKind kernel : kKernelKinds) {
+    const auto fitted = fit_greedy(sites, {.kernel = kernel, .centres = 12, .candidates = 0});
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_EQ(fitted->function.centres, brute_force_centres(sites, kernel, 12)) << kernel_name(kernel);
+  }
+}
+
+TEST(FitGreedy, SubsetsOfAllSitesAreAllSites) {
+  const Sites sites = smooth_sites(3, 200, 0.05, 1);
+  const auto all = fit_greedy(sites, {.centres = 20, .candidates = 0});
+  const auto subsets = fit_greedy(sites, {.centres = 20, .candidates = 200});
+  ASSERT_TRUE(all.ok() && subsets.ok());
+  EXPECT_EQ(all->function.weights, subsets->function.weights);
+}
+
+TEST(FitGreedy, MoreCandidatesFitBetterAndAllFitBetterThanRandomCentres) {
+  const Sites sites = smooth_sites(4, 1500, 0.01, 1);
+  const double random = fit_random(sites, {.centres = 40})->report.residual_rms;
+  const double few = fit_greedy(sites, {.centres = 40, .candidates = 20})->report.residual_rms;
+  const double all = fit_greedy(sites, {.centres = 40, .candidates = 0})->report.residual_rms;
+  EXPECT_LT(few, random);
+  EXPECT_LT(all, few);
+}
+
+TEST(FitGreedy, SameSeedSameBits) {
+  const Sites sites = smooth_sites(4, 1500, 0.01, 1);
+  for (const int candidates : {0, 30}) {
+    const auto a = fit_greedy(sites, {.centres = 25, .candidates = candidates, .seed = 9});
+    const auto b = fit_greedy(sites, {.centres = 25, .candidates = candidates, .seed = 9});
+    ASSERT_TRUE(a.ok() && b.ok());
+    EXPECT_EQ(a->function.centres, b->function.centres);
+    EXPECT_EQ(a->function.weights, b->function.weights);
+    EXPECT_EQ(a->function.tail, b->function.tail);
+  }
+}
+
+// In one dimension a hundred cubic columns are all but dependent: the case in
+// which |c|^2 - |Q^T c|^2 alone picks at random.
+TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
+  const Sites sites = smooth_sites(1, 400, 0.0, 3);
+  const auto fitted = fit_greedy(sites, {.centres = 60, .candidates = 0});
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_LE(fitted->report.residual_rms, 1e-5);
+  EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
+}
+
+TEST(FitGreedy, DegenerateDataHaveADefinedOutcome) {
+  for (const int candidates : {0, 5}) {
+    const GreedyOptions options{.centres = 30, .candidates = candidates};
+    const std::vector<Sites> all = test::degenerate_sites();
+    const Sites& zero = all.front();
+    const Sites& one = all.back();
+    for (const Sites& sites : all) {
+      const auto fitted = fit_greedy(sites, options);
+      ASSERT_TRUE(fitted.ok());
+      EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
+      EXPECT_LE(fitted->report.centres_used, 30);
+    }
+    EXPECT_EQ(fit_greedy(zero, options)->function.tail.norm(), 0.0);
+    EXPECT_NEAR(rbf_value(fit_greedy(one, options)->function, one.points.data()), one.target_N[0], 1e-12);
+  }
+}
+
+TEST(FitGreedy, CanBeInterrupted) {
+  const Sites sites = smooth_sites(2, 100, 0.0, 2);
+  int calls = 0;
+  const auto fitted = fit_greedy(sites, {.centres = 20}, FitControl{[&](double) { return ++calls < 5; }});
+  ASSERT_FALSE(fitted.ok());
+  EXPECT_EQ(fitted.error().message, "interrupted");
+  EXPECT_EQ(calls, 5);
+}
+
+}  // namespace
+}  // namespace palpate

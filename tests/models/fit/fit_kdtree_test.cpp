@@ -1,0 +1,85 @@
+#include "models/fit/fit_kdtree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "models/fit/fit_random.h"
+#include "models/fit/site_tree.h"
+#include "models/fit/solve_weights.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::smooth_sites;
+
+Eigen::VectorXd jnd_of(const Sites& sites) {
+  return (0.065 + 0.0633 * sites.target_N.array().abs()).matrix();
+}
+
+// Section 4.2.2 to the letter: a full least squares fit after every split.
+Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, KernelKind kernel, int count) {
+  SiteTree tree(sites.points);
+  tree.split(0);
+  while (true) {
+    Eigen::MatrixXd centres(sites.dimension(), tree.leaf_count());
+    for (Eigen::Index k = 0; k < tree.leaf_count(); ++k) centres.col(k) = tree.barycentre(k);
+    if (tree.leaf_count() == count) return centres;
+    const RbfFunction function = solve_weights(sites, kernel, centres)->function;
+    std::vector<std::pair<double, Eigen::Index>> worst_first;
+    for (Eigen::Index i = 0; i < sites.count(); ++i) {
+      const double error = std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]);
+      worst_first.emplace_back(-error / jnd_N[i], i);
+    }
+    std::sort(worst_first.begin(), worst_first.end());
+    for (const auto& [excess, site] : worst_first)
+      if (tree.split(tree.leaf_of(site))) break;
+  }
+}
+
+TEST(FitKdTree, EqualsAFullRefitAfterEverySplit) {
+  const Sites sites = smooth_sites(3, 500, 0.05, 1);
+  const Eigen::VectorXd jnd_N = jnd_of(sites);
+  for (const KernelKind kernel : kKernelKinds) {
+    const auto fitted = fit_kdtree(sites, jnd_N, {.kernel = kernel, .centres = 25});
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_EQ(fitted->function.centres, plain_centres(sites, jnd_N, kernel, 25)) << kernel_name(kernel);
+  }
+}
+
+TEST(FitKdTree, SameDataSameBits) {
+  const Sites sites = smooth_sites(4, 2000, 0.01, 1);
+  const auto a = fit_kdtree(sites, jnd_of(sites), {.centres = 50});
+  const auto b = fit_kdtree(sites, jnd_of(sites), {.centres = 50});
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->function.centres, b->function.centres);
+  EXPECT_EQ(a->function.weights, b->function.weights);
+}
+
+TEST(FitKdTree, DegenerateDataHaveADefinedOutcome) {
+  for (const Sites& sites : test::degenerate_sites())
+    for (const Eigen::Index centres : {0, 1, 2, 40, 1000}) {
+      const auto fitted = fit_kdtree(sites, jnd_of(sites), {.centres = centres});
+      ASSERT_TRUE(fitted.ok());
+      EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
+      EXPECT_LE(fitted->report.centres_used, std::min(centres, static_cast<Eigen::Index>(distinct_sites(sites).size())));
+    }
+  const Sites duplicates = test::degenerate_sites()[2];
+  const auto cut = fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000});
+  EXPECT_EQ(cut->report.centres_used, 40);
+  ASSERT_FALSE(cut->report.notes.empty());
+  EXPECT_EQ(cut->report.notes.back(), "only 40 centres: no leaf can be split further");
+}
+
+TEST(FitKdTree, RefusesThresholdsOfZeroAndCanBeInterrupted) {
+  const Sites sites = smooth_sites(2, 30, 0.0, 1);
+  EXPECT_EQ(fit_kdtree(sites, Eigen::VectorXd::Zero(30), {}).error().message,
+            "jnd_N has 30 entries or one that is not positive, expected 30 thresholds above 0 N");
+  EXPECT_EQ(fit_kdtree(sites, jnd_of(sites), {}, {[](double) { return false; }}).error().message, "interrupted");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,305 @@
+// Hard inputs for the whole fit: each ends in a usable, safe model or in one
+// clear error.
+#include "models/fit/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/example_model.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using Recordings = std::vector<Recording>;
+
+TrainingRequest request_for(const std::vector<FeatureSpec>& features) {
+  TrainingRequest request;
+  request.scene = "test";
+  request.features = features;
+  return request;
+}
+
+Result<PreparedTraining> prepare(const Recordings& recordings, const TrainingRequest& request,
+                                 const FitControl& control = {}) {
+  std::vector<MotionSource::Input> inputs;
+  for (const Recording& recording : recordings) {
+    inputs.push_back({"", std::make_shared<const Recording>(recording)});
+  }
+  MotionSource source(std::move(inputs));
+  return prepare_training(source, request, control);
+}
+
+// Forces of `data` within, around and far beyond its domain: finite, no pull,
+// no more than 1.2 times the largest training force.
+void expect_safe(const ModelData& data) {
+  ASSERT_TRUE(validate_model(data).ok());
+  const FittedModel model(data);
+  test::Numbers numbers(5);
+  for (int i = 0; i < 3000; ++i) {
+    std::array<double, kMaxFeatures> x{};
+    const double reach = i % 2 == 0 ? 1.0 : 100.0;
+    for (std::size_t k = 0; k < data.features.size(); ++k) {
+      const auto j = static_cast<Eigen::Index>(k);
+      x[k] = data.offset(j) + reach * data.scale(j) * 2.0 * numbers.next();
+    }
+    const double force_N = model.evaluate(x.data()).force_N;
+    ASSERT_TRUE(force_N >= 0.0 && force_N <= kForceMargin * data.largest_force_N) << force_N;
+  }
+}
+
+// Fits every method; `least_within`: the share of the training samples that
+// each model must give within the JND.
+void expect_all_methods(const Recordings& recordings, const TrainingRequest& request, double least_within) {
+  const auto prepared = prepare(recordings, request);
+  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  for (const Method method : kMethods) {
+    MethodRequest asked;
+    asked.method = method;
+    asked.centres = 40;
+    asked.grid.assign(prepared->common.features.size(), 5);
+    const auto fit = fit_method(*prepared, asked);
+    ASSERT_TRUE(fit.ok()) << method_name(method) << ": " << fit.error().message;
+    expect_safe(fit->data);
+    EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << method_name(method);
+    EXPECT_TRUE(std::isfinite(fit->report.condition)) << method_name(method);
+    EXPECT_TRUE(std::isfinite(fit->report.residual_rms)) << method_name(method);
+  }
+}
+
+Recording constant(int rows, double position_m, double force_N) {
+  Recording recording;
+  recording.name = "constant";
+  for (int i = 0; i < rows; ++i) recording.rows.push_back({1e-3 * i, position_m, force_N, 0.0, 0.0});
+  return recording;
+}
+
+TEST(Fit, AnOrdinaryRecording) {
+  expect_all_methods({test::example_recording(1500, 250.0)}, request_for(test::paper_features()), 0.9);
+}
+
+TEST(Fit, PositionAlone) {
+  expect_all_methods({test::example_recording(1500, 250.0)}, request_for(test::position_features()), 0.5);
+}
+
+TEST(Fit, OneSampleInContact) {
+  for (const auto& features : {test::position_features(), test::paper_features()}) {
+    Recording recording = constant(20, -1e-3, 0.0);
+    recording.rows[10].position_m = 1e-3;
+    recording.rows[10].force_N = 0.5;
+    expect_all_methods({recording}, request_for(features), 0.0);
+  }
+}
+
+TEST(Fit, AllSamplesIdentical) {
+  for (const auto& features : {test::position_features(), test::paper_features()}) {
+    expect_all_methods({constant(500, 2e-3, 1.0)}, request_for(features), 1.0);
+  }
+}
+
+TEST(Fit, AllForcesZero) {
+  Recording recording = test::example_recording(1000, 250.0);
+  for (RecordingRow& row : recording.rows) row.force_N = 0.0;
+  expect_all_methods({recording}, request_for(test::paper_features()), 1.0);
+}
+
+TEST(Fit, AllForcesEqual) {
+  Recording recording = test::example_recording(1000, 250.0);
+  for (RecordingRow& row : recording.rows) row.force_N = 1.0;
+  expect_all_methods({recording}, request_for(test::paper_features()), 0.5);
+}
+
+TEST(Fit, NegativeForcesGiveNoPull) {
+  Recording recording = test::example_recording(1000, 250.0);
+  for (RecordingRow& row : recording.rows) row.force_N = -std::abs(row.force_N);
+  expect_all_methods({recording}, request_for(test::paper_features()), 0.0);
+}
+
+TEST(Fit, AConstantVelocity) {
+  Recording recording;
+  for (int i = 0; i < 1000; ++i) recording.rows.push_back({1e-3 * i, 4e-6 * i, 1.2e-3 * i, 0.0, 0.0});
+  expect_all_methods({recording}, request_for(test::paper_features()), 0.95);
+}
+
+TEST(Fit, TenHertzWithFourFeatures) {
+  expect_all_methods({test::example_recording(400, 10.0)}, request_for(test::paper_features()), 0.3);
+}
+
+TEST(Fit, TwentyKilohertz) {
+  TrainingRequest request = request_for(test::paper_features());
+  request.reduction = Reduction::force;  // 50 mN steps: few sites, so that the direct fit is quick
+  expect_all_methods({test::example_recording(40000, 20000.0)}, request, 0.5);
+}
+
+TEST(Fit, JitteredTime) {
+  Recording recording = test::example_recording(1500, 250.0);
+  const Recording fine = test::example_recording(15000, 2500.0);
+  test::Numbers numbers(3);
+  for (std::size_t i = 1; i < recording.rows.size(); ++i) {
+    const double shift = 4.0 * numbers.next();  // of 10 steps
+    recording.rows[i] = fine.rows[10 * i + static_cast<std::size_t>(5.0 + shift) - 5];
+  }
+  expect_all_methods({recording}, request_for(test::paper_features()), 0.9);
+}
+
+TEST(Fit, SeveralRecordingsAndOneTwice) {
+  const Recording a = test::example_recording(1000, 250.0);
+  const Recording b = test::example_recording(600, 500.0);
+  const auto prepared = prepare({a, b, a}, request_for(test::paper_features()));
+  ASSERT_TRUE(prepared.ok());
+  EXPECT_EQ(prepared->common.provenance.samples, 2600u);
+  EXPECT_EQ(prepared->common.provenance.recordings.size(), 3u);
+  expect_all_methods({a, b, a}, request_for(test::paper_features()), 0.8);
+}
+
+TEST(Fit, MoreCentresThanSites) {
+  const auto prepared = prepare({test::example_recording(60, 1000.0), test::example_recording(900, 1000.0)},
+                                request_for(test::position_features()));
+  ASSERT_TRUE(prepared.ok());
+  for (const Method method : kMethods) {
+    MethodRequest asked;
+    asked.method = method;
+    asked.centres = 100000;
+    const auto fit = fit_method(*prepared, asked);
+    ASSERT_TRUE(fit.ok()) << method_name(method) << ": " << fit.error().message;
+    expect_safe(fit->data);
+    if (fit->data.rbf) {
+      EXPECT_LE(fit->data.rbf->centre_count(), prepared->sites.count()) << method_name(method);
+    }
+  }
+}
+
+TEST(Fit, EveryKernelWeightingAndReduction) {
+  const Recording recording = test::example_recording(800, 250.0);
+  for (const Weighting weighting : {Weighting::jnd, Weighting::relative, Weighting::none}) {
+    for (const Reduction reduction : {Reduction::coverage, Reduction::force, Reduction::none}) {
+      TrainingRequest request = request_for(test::paper_features());
+      request.weighting = weighting;
+      request.reduction = reduction;
+      const auto prepared = prepare({recording}, request);
+      ASSERT_TRUE(prepared.ok());
+      for (const KernelKind kernel : kKernelKinds) {
+        MethodRequest asked;
+        asked.kernel = kernel;
+        asked.centres = 30;
+        const auto fit = fit_method(*prepared, asked);
+        ASSERT_TRUE(fit.ok()) << fit.error().message;
+        EXPECT_EQ(fit->data.rbf->kernel, kernel);
+        expect_safe(fit->data);
+      }
+    }
+  }
+}
+
+// Both solve the same regularised problem in different ways: the forces agree
+// within the noise of a force sensor, 10 mN.
+TEST(Fit, TruncatedSvdAgreesWithCholeskyWithinTheNoise) {
+  Recording recording = test::example_recording(800, 250.0);
+  test::Numbers numbers(4);
+  for (RecordingRow& row : recording.rows) {
+    if (row.position_m > 0.0) row.force_N += 0.01 * numbers.next();
+  }
+  const auto prepared = prepare({recording}, request_for(test::paper_features()));
+  ASSERT_TRUE(prepared.ok());
+  MethodRequest asked;
+  asked.method = Method::direct;
+  const auto cholesky = fit_method(*prepared, asked);
+  asked.solver = DirectSolverChoice::tsvd;
+  const auto tsvd = fit_method(*prepared, asked);
+  ASSERT_TRUE(cholesky.ok() && tsvd.ok());
+  const FittedModel a(cholesky->data);
+  const FittedModel b(tsvd->data);
+  double squares = 0.0;
+  for (const auto& x : prepared->judge_features) {
+    const double difference_N = a.evaluate(x.data()).force_N - b.evaluate(x.data()).force_N;
+    squares += difference_N * difference_N;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(prepared->judge_features.size())), 0.01);
+}
+
+TEST(Fit, EachRefusalSaysWhy) {
+  const Recording recording = test::example_recording(1000, 1000.0);
+  EXPECT_EQ(prepare({constant(50, -1e-3, 0.0)}, request_for(test::paper_features())).error().message,
+            "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; record a "
+            "press, or check the sign and zero of position_m");
+  TrainingRequest timed = request_for(test::position_features());
+  timed.relaxation = Relaxation::automatic;
+  EXPECT_EQ(prepare({recording}, timed).error().message,
+            "scene \"test\" has no relaxation features; leave out --relaxation, or use a scene that has them "
+            "(palpate scenes)");
+  const auto prepared = prepare({recording}, request_for(test::paper_features()));
+  ASSERT_TRUE(prepared.ok());
+  MethodRequest voxel;
+  voxel.method = Method::voxel;
+  voxel.grid = {5, 5};
+  EXPECT_EQ(fit_method(*prepared, voxel).error().message,
+            "the grid has 2 sizes, the scene has 4 features; give one size per feature, e.g. --grid 25x11x11x11 for "
+            "four");
+  voxel.grid = {5, 5, 1, 5};
+  EXPECT_EQ(fit_method(*prepared, voxel).error().message,
+            "a grid needs at least 2 nodes along every feature, found 1");
+  voxel.grid = {1000, 1000, 1000, 1000};
+  EXPECT_EQ(fit_method(*prepared, voxel).error().message,
+            "the grid would have 1e+12 nodes, at most 1e7 can be saved; give smaller sizes");
+}
+
+TEST(Fit, GivenTimesReplaceTheScenes) {
+  TrainingRequest request = request_for(test::paper_features());
+  request.relaxation = Relaxation::given;
+  request.relaxation_times_s = {0.1, 0.5, 2.0};
+  const auto prepared = prepare({test::example_recording(1000, 250.0)}, request);
+  ASSERT_TRUE(prepared.ok());
+  ASSERT_EQ(prepared->common.features.size(), 5u);
+  EXPECT_EQ(prepared->common.features[4].relaxation_time_s, 2.0);
+  EXPECT_EQ(prepared->common.provenance.relaxation_times.size(), 3u);
+}
+
+// Wherever the question comes, the answer "no" ends the fit.
+TEST(Fit, StopsWhereverItIsAsked) {
+  const Recording recording = test::example_recording(70000, 5000.0);
+  const TrainingRequest request = request_for(test::paper_features());
+  int questions = 0;
+  const auto prepared = prepare({recording}, request, {[&](double) { return ++questions > 0; }});
+  ASSERT_TRUE(prepared.ok());
+  ASSERT_GE(questions, 9);  // the passes over 70,000 rows ask too
+  for (int stop = 1; stop <= questions; ++stop) {
+    int asked = 0;
+    const auto stopped = prepare({recording}, request, {[&](double) { return ++asked < stop; }});
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.error().message, "interrupted");
+  }
+  for (const Method method : kMethods) {
+    MethodRequest asked;
+    asked.method = method;
+    const auto stopped = fit_method(*prepared, asked, {[](double) { return false; }});
+    ASSERT_FALSE(stopped.ok()) << method_name(method);
+    EXPECT_EQ(stopped.error().message, "interrupted");
+  }
+}
+
+TEST(Fit, KnowsItsMethodsByName) {
+  for (const Method method : kMethods) EXPECT_EQ(method_from_name(method_name(method)), method);
+  EXPECT_EQ(method_from_name("position"), std::nullopt);
+}
+
+TEST(Fit, AVoxelGridFromADirectFitIsTheSame) {
+  const auto prepared = prepare({test::example_recording(1500, 500.0)}, request_for(test::paper_features()));
+  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  MethodRequest request;
+  request.method = Method::direct;
+  const auto direct = fit_method(*prepared, request);
+  ASSERT_TRUE(direct.ok()) << direct.error().message;
+  request.method = Method::voxel;
+  request.grid.assign(4, 5);
+  const auto alone = fit_method(*prepared, request);
+  const auto shared = fit_method(*prepared, request, {}, &*direct);
+  ASSERT_TRUE(alone.ok() && shared.ok());
+  EXPECT_EQ(shared->data.grid->nodes, alone->data.grid->nodes);
+  EXPECT_EQ(shared->data.grid->values_N, alone->data.grid->values_N);
+  EXPECT_EQ(shared->report.smoothing, alone->report.smoothing);
+}
+
+}  // namespace
+}  // namespace palpate

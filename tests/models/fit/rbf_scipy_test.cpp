@@ -1,0 +1,85 @@
+// Fits and values against scipy's; tests/golden/rbf_scipy.py made the file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "models/fit/fit_direct.h"
+#include "models/model/rbf/rbf_evaluate.h"
+
+namespace palpate {
+namespace {
+
+Eigen::MatrixXd columns_of(const nlohmann::json& rows) {
+  Eigen::MatrixXd points(static_cast<Eigen::Index>(rows.at(0).size()), static_cast<Eigen::Index>(rows.size()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    for (Eigen::Index k = 0; k < points.rows(); ++k)
+      points(k, i) = rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(k)).get<double>();
+  return points;
+}
+
+Eigen::VectorXd vector_of(const nlohmann::json& values) {
+  Eigen::VectorXd vector(static_cast<Eigen::Index>(values.size()));
+  for (Eigen::Index i = 0; i < vector.size(); ++i) vector[i] = values.at(static_cast<std::size_t>(i)).get<double>();
+  return vector;
+}
+
+class AgainstScipy : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ifstream file(std::filesystem::path(PALPATE_SOURCE_DIR) / "tests/golden/rbf_scipy.json");
+    ASSERT_TRUE(file.is_open());
+    golden_ = nlohmann::json::parse(file);
+    ASSERT_EQ(golden_.at("cases").size(), 16U);
+  }
+  nlohmann::json golden_;
+};
+
+TEST_F(AgainstScipy, EvaluatesScipysWeightsToScipysValues) {
+  for (const auto& item : golden_.at("cases")) {
+    const Eigen::VectorXd tail = vector_of(item.at("tail"));
+    if (tail.size() == 0) continue;  // degree 2: scipy's shifted squares are not turned back
+    const RbfFunction function{*kernel_from_name(item.at("kernel").get<std::string>()), columns_of(item.at("points")),
+                               vector_of(item.at("weights")), tail};
+    Eigen::VectorXd values;
+    RbfEvaluator(function).evaluate_many(columns_of(item.at("queries")), values);
+    // 32 eps of the terms, which the weights' size bounds; distances stay below 4.4.
+    const double terms = function.weights.cwiseAbs().sum() * 86.0 + tail.cwiseAbs().sum();
+    EXPECT_LE((values - vector_of(item.at("values"))).cwiseAbs().maxCoeff(), 64 * 0x1p-53 * terms);
+  }
+}
+
+// Two backward stable solvers, one of which adds the least smoothing (1e-15 of
+// the trace), agree to some 100 eps times the condition number. That is 1e-10
+// or better with smoothing; the quintic in one dimension without any has a
+// condition of 2e13, which leaves no digit, in scipy's weights either.
+TEST_F(AgainstScipy, FitsTheSameWeightsTailAndValues) {
+  for (const auto& item : golden_.at("cases")) {
+    Sites sites;
+    sites.points = columns_of(item.at("points"));
+    sites.target_N = vector_of(item.at("forces"));
+    sites.row_scale = Eigen::VectorXd::Ones(sites.count());
+    const std::string name = item.at("kernel").get<std::string>();
+    const double smoothing = item.at("smoothing").get<double>();
+    const auto fitted = fit_direct(sites, {.kernel = *kernel_from_name(name), .smoothing = smoothing});
+    ASSERT_TRUE(fitted.ok());
+    SCOPED_TRACE(name + ", " + std::to_string(sites.dimension()) + "-D, smoothing " + std::to_string(smoothing));
+    const double tolerance = 1e-13 * fitted->report.condition;
+    const Eigen::VectorXd weights = vector_of(item.at("weights"));
+    const double size = weights.cwiseAbs().maxCoeff();
+    EXPECT_LE((fitted->function.weights - weights).cwiseAbs().maxCoeff(), tolerance * size);
+    const Eigen::VectorXd tail = vector_of(item.at("tail"));
+    if (tail.size() > 0) {
+      EXPECT_LE((fitted->function.tail - tail).cwiseAbs().maxCoeff(), tolerance * (1.0 + size));
+    }
+    Eigen::VectorXd values;
+    RbfEvaluator(fitted->function).evaluate_many(columns_of(item.at("queries")), values);
+    const Eigen::VectorXd expected = vector_of(item.at("values"));
+    EXPECT_LE((values - expected).cwiseAbs().maxCoeff(), tolerance * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,88 @@
+#include "models/model/domain_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+double nearest(const Eigen::MatrixXd& points, const Eigen::VectorXd& x) {
+  return (points.colwise() - x).colwise().norm().minCoeff();
+}
+
+TEST(DomainGuard, EverySiteIsCoveredAndTrusted) {
+  for (const int dimension : {1, 2, 4, 8}) {
+    for (const int count : {1, 50, 4000}) {
+      const Eigen::MatrixXd sites = test::random_points(dimension, count, 3);
+      const DomainCover cover = make_cover(sites);
+      ASSERT_LE(cover.points.cols(), kMaximumCoverPoints);
+      ASSERT_GT(cover.outer_radius, cover.inner_radius);
+      const DomainGuard guard(cover);
+      for (Eigen::Index i = 0; i < sites.cols(); ++i) {
+        ASSERT_LE(nearest(cover.points, sites.col(i)), cover.inner_radius);
+        ASSERT_EQ(guard.trust(sites.col(i).data()), 1.0) << dimension << "-D, site " << i << " of " << count;
+      }
+    }
+  }
+}
+
+TEST(DomainGuard, FarAwayThereIsNoTrust) {
+  const Eigen::MatrixXd sites = test::random_points(3, 500, 4);
+  const DomainGuard guard(make_cover(sites));
+  for (const double far : {10.0, 1e6, 1e300}) {
+    EXPECT_EQ(guard.trust(Eigen::Vector3d(far, -far, 0.0).eval().data()), 0.0);
+  }
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(guard.trust(Eigen::Vector3d(0.0, bad, 0.0).eval().data()), 0.0);
+  }
+}
+
+// g(distance): the smoothstep of the header, around a single site. The guard
+// measures distances in single precision: 6e-8 of 0.3 at a slope below 10.
+TEST(DomainGuard, IsTheSmoothstepBetweenTheRadii) {
+  const DomainCover cover = make_cover(Eigen::MatrixXd::Zero(2, 1));
+  const DomainGuard guard(cover);
+  for (double r = 0.0; r < 1.5 * cover.outer_radius; r += 0.001) {
+    const double t = std::clamp((cover.outer_radius - r) / (cover.outer_radius - cover.inner_radius), 0.0, 1.0);
+    EXPECT_NEAR(guard.trust(Eigen::Vector2d(0.6 * r, 0.8 * r).eval().data()), t * t * (3.0 - 2.0 * t), 1e-6);
+  }
+}
+
+TEST(DomainGuard, ChangesNoFasterThanItsSlopeBound) {
+  for (const int dimension : {1, 4}) {
+    const DomainCover cover = make_cover(test::random_points(dimension, 60, 5));
+    const DomainGuard guard(cover);
+    const double slope = 1.5 / (cover.outer_radius - cover.inner_radius);
+    test::Numbers numbers(6);
+    bool between = false;
+    for (int line = 0; line < 50; ++line) {
+      Eigen::VectorXd from(dimension);
+      Eigen::VectorXd step(dimension);
+      for (Eigen::Index k = 0; k < dimension; ++k) {
+        from(k) = 1.5 * numbers.next();
+        step(k) = numbers.next();
+      }
+      step *= 1e-3 / step.norm();
+      double last = guard.trust(from.data());
+      for (int i = 0; i < 2000; ++i) {
+        from += step;
+        const double now = guard.trust(from.data());
+        ASSERT_LE(std::abs(now - last), slope * 1e-3 + 1e-5);  // single precision, as above
+        between = between || (now > 0.01 && now < 0.99);
+        last = now;
+      }
+    }
+    EXPECT_TRUE(between);
+  }
+}
+
+TEST(DomainGuard, IdenticalSitesMakeOnePoint) {
+  EXPECT_EQ(make_cover(Eigen::MatrixXd::Ones(4, 300)).points.cols(), 1);
+}
+
+}  // namespace
+}  // namespace palpate

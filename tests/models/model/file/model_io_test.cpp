@@ -1,0 +1,171 @@
+// Model files: nothing is lost on the way to disk and back, and nothing broken
+// gets in.
+#include "models/model/file/model_io.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <unistd.h>
+
+#include "models/model/file/model_json.h"
+#include "tests/support/example_model.h"
+#include "tests/support/random_points.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::example_model;
+using test::example_models;
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+std::string text_of(const ModelData& data) {
+  const Result<std::string> text = write_model_text(data);
+  EXPECT_TRUE(text.ok()) << (text ? "" : text.error().message);
+  return text ? *text : "";
+}
+
+ModelData read_back(const ModelData& data) {
+  Result<ModelData> back = read_model_text(text_of(data), "m.json");
+  EXPECT_TRUE(back.ok()) << (back ? "" : back.error().message);
+  return back ? *back : ModelData{};
+}
+
+TEST(ModelIo, ForcesAreBitIdenticalAfterLoading) {
+  const test::TemporaryFolder folder;
+  for (const ModelData& data : example_models()) {
+    SCOPED_TRACE(data.name);
+    ASSERT_TRUE(save_model(folder.file(data.name), data, false).ok());
+    const auto loaded = load_model(folder.file(data.name));
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    const FittedModel original(data);
+    test::Numbers numbers(99);
+    int inside = 0;
+    for (int query = 0; query < 2000; ++query) {
+      std::array<double, kMaxFeatures> x{};
+      for (std::size_t i = 0; i < data.features.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        x[i] = data.offset(k) + 1.4 * data.scale(k) * numbers.next();
+      }
+      const ForceEstimate before = original.evaluate(x.data());
+      const ForceEstimate after = (*loaded)->evaluate(x.data());
+      ASSERT_EQ(bits(before.force_N), bits(after.force_N)) << query;
+      ASSERT_EQ(before.out_of_domain, after.out_of_domain);
+      inside += before.out_of_domain ? 0 : 1;
+    }
+    EXPECT_GT(inside, 100) << "the queries hardly reach the correction";
+  }
+}
+
+TEST(ModelIo, EveryFieldComesBack) {
+  for (const ModelData& data : example_models()) {
+    SCOPED_TRACE(data.name);
+    const ModelData back = read_back(data);
+    EXPECT_EQ(back.name, data.name);
+    EXPECT_EQ(back.method, data.method);
+    EXPECT_EQ(back.features, data.features);
+    EXPECT_EQ(back.corrects_trend, data.corrects_trend);
+    EXPECT_EQ(back.lower, data.lower);
+    EXPECT_EQ(back.upper, data.upper);
+    EXPECT_EQ(back.cover.points, data.cover.points);
+    EXPECT_EQ(back.provenance.recordings, data.provenance.recordings);
+    EXPECT_EQ(back.provenance.seed, data.provenance.seed);
+    EXPECT_EQ(back.provenance.relaxation_times.size(), 2u);
+    EXPECT_EQ(back.provenance.training_within_jnd, data.provenance.training_within_jnd);
+    // All the rest by the text, which holds every field.
+    EXPECT_EQ(text_of(back), text_of(data));
+  }
+}
+
+TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
+  ModelData data = example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  const std::vector<double> awkward = {-0.0, 0.1, 1.0 / 3.0, 5e-324, -2.2250738585072014e-308,
+                                       1.7976931348623157e308, 9007199254740993.0, 1e22, 123456789012345678.0,
+                                       -1e-7, 3.0, std::nextafter(1.0, 2.0)};
+  for (std::size_t i = 0; i < awkward.size(); ++i) data.rbf->weights(static_cast<Eigen::Index>(i)) = awkward[i];
+  const ModelData back = read_back(data);
+  for (std::size_t i = 0; i < awkward.size(); ++i) {
+    EXPECT_EQ(bits(back.rbf->weights(static_cast<Eigen::Index>(i))), bits(awkward[i])) << awkward[i];
+  }
+}
+
+TEST(ModelIo, RandomBitPatternsRoundTrip) {
+  ModelData data = example_model("voxel", KernelKind::cubic, test::paper_features(), 1);
+  std::uint64_t state = 2026;
+  for (double& value : data.grid->values_N) {
+    do {
+      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+      value = std::bit_cast<double>(state ^ (state >> 29));
+    } while (!std::isfinite(value));
+  }
+  const ModelData back = read_back(data);
+  for (std::size_t i = 0; i < data.grid->values_N.size(); ++i) {
+    ASSERT_EQ(bits(back.grid->values_N[i]), bits(data.grid->values_N[i])) << i;
+  }
+}
+
+TEST(ModelIo, CentresStandOneToALine) {
+  const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
+  const std::string text = text_of(data);
+  const std::size_t begin = text.find("\"centres\"");
+  const std::string centres = text.substr(begin, text.find("\n  ]", begin) - begin);
+  EXPECT_EQ(std::count(centres.begin(), centres.end(), '\n'), 40);
+}
+
+TEST(ModelIo, TheTimeOfAFitIsStoredInCoarseStepsOnly) {
+  ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
+  data.provenance.fit_seconds = 0.21;
+  const std::string text = text_of(data);
+  data.provenance.fit_seconds = 0.97;
+  EXPECT_EQ(text_of(data), text);
+  EXPECT_NE(text.find("\"fit_seconds\": 1,"), std::string::npos);
+  for (const auto& [seconds, stored] : {std::pair{0.0, 1.0}, std::pair{1.0, 1.0}, std::pair{1.01, 2.0},
+                                        std::pair{2.5, 5.0}, std::pair{5.1, 10.0}, std::pair{19.0, 20.0},
+                                        std::pair{301.0, 500.0}, std::pair{86400.0, 100000.0}}) {
+    data.provenance.fit_seconds = seconds;
+    EXPECT_EQ(read_back(data).provenance.fit_seconds, stored) << seconds;
+  }
+}
+
+TEST(ModelIo, RecordingNamesLoseTheirFolders) {
+  ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
+  data.provenance.recordings = {"/home/someone/rec/press-1"};
+  EXPECT_EQ(read_back(data).provenance.recordings, std::vector<std::string>{"press-1"});
+}
+
+TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
+  const test::TemporaryFolder folder;
+  const auto message = [&](void (*spoil)(ModelData&)) {
+    ModelData data = example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+    spoil(data);
+    const Status status = save_model("m.json", data, false);
+    return status ? "" : status.error().message;
+  };
+  EXPECT_EQ(message([](ModelData& data) { data.name = "a,b"; }),
+            "cannot write m.json: name: found a control character, comma or quote, expected 1 to 100 bytes without "
+            "control characters, commas and quotes");
+  EXPECT_EQ(message([](ModelData& data) { data.method = "guess"; }),
+            "cannot write m.json: method: found \"guess\", expected one of direct, voxel, random, kdtree, greedy");
+  EXPECT_EQ(message([](ModelData& data) { data.rbf->weights(3) = std::numeric_limits<double>::quiet_NaN(); }),
+            "cannot write m.json: centres, weights and tail must be finite numbers");
+  EXPECT_EQ(message([](ModelData& data) { data.provenance.fit_seconds = -1.0; }),
+            "cannot write m.json: provenance: found a number that is negative or not finite, expected finite ones");
+}
+
+TEST(ModelIo, AnExistingFileSurvivesUnlessToldOtherwise) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.with_file("m.json", "mine");
+  const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
+  const Status refused = save_model(path, data, false);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, path + " exists; pass --force to replace it");
+  EXPECT_EQ(test::read_text(path), "mine");
+  ASSERT_TRUE(save_model(path, data, true).ok());
+  EXPECT_EQ(test::read_text(path), text_of(data));
+}
+
+}  // namespace
+}  // namespace palpate

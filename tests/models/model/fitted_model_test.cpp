@@ -1,0 +1,147 @@
+#include "models/model/fitted_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/example_model.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string message_after(void (*spoil)(ModelData&), const char* method = "greedy") {
+  ModelData data = test::example_model(method, KernelKind::cubic, test::maxwell_features(), 1);
+  EXPECT_TRUE(validate_model(data).ok());
+  spoil(data);
+  const Status status = validate_model(data);
+  return status ? "valid" : status.error().message;
+}
+
+TEST(FittedModel, EveryFaultIsNamed) {
+  struct Case {
+    void (*spoil)(ModelData&);
+    const char* message;
+  };
+  const Case cases[] = {
+      {[](ModelData& d) { d.features.clear(); }, "features: found 0 features, expected 1 to 8"},
+      {[](ModelData& d) { d.features.assign(9, {}); }, "features: found 9 features, expected 1 to 8"},
+      {[](ModelData& d) { d.features[2].relaxation_time_s = 0.0; },
+       "features.relaxation_time_s: found 0.000000, expected a positive number"},
+      {[](ModelData& d) { d.features[2].drive.reference_depth_m = -1.0; },
+       "features.drive.reference_depth_m: found -1.000000, expected a positive number"},
+      {[](ModelData& d) { d.features[3].drive.coefficient_N[1] = kNan; },
+       "features.drive: found a non-finite number, expected finite numbers"},
+      {[](ModelData& d) { d.offset.resize(3); },
+       "normalisation.offset: found 3 values, expected 4, one per feature"},
+      {[](ModelData& d) { d.scale(1) = 0.0; }, "normalisation.scale: found 0 or less, expected positive numbers"},
+      {[](ModelData& d) { d.lower(0) = kInfinity; },
+       "domain.lower: found a non-finite number, expected finite numbers"},
+      {[](ModelData& d) { d.trend.reference_depth_m = 0.0; },
+       "trend.reference_depth_m: found 0.000000, expected a positive number"},
+      {[](ModelData& d) { d.trend.elastic_N[5] = kNan; }, "trend: found a non-finite number, expected finite numbers"},
+      {[](ModelData& d) { d.trend.thinning_velocity_m_per_s = 0.0; },
+       "trend.thinning_velocity_m_per_s: found 0.000000, expected a positive number"},
+      {[](ModelData& d) { d.trend.velocity_limit_m_per_s = -1.0; },
+       "trend.velocity_limit_m_per_s: found -1.000000, expected 0 or more"},
+      {[](ModelData& d) { d.cover.points.resize(4, 0); },
+       "domain.points: found 0 points of 4 values, expected at least one point of 4 values"},
+      {[](ModelData& d) { d.cover.points(0, 0) = kNan; },
+       "domain.points: found a non-finite number, expected finite numbers"},
+      {[](ModelData& d) { d.cover.outer_radius = d.cover.inner_radius = 0.5; },
+       "domain radii: found 0.500000 and 0.500000, expected 0 <= inner < outer"},
+      {[](ModelData& d) { d.correction_limit_N = -0.5; }, "correction_limit_N: found -0.500000, expected 0 or more"},
+      {[](ModelData& d) { d.largest_force_N = kInfinity; }, "largest_force_N: found inf, expected 0 or more"},
+      {[](ModelData& d) { d.jnd.offset_N = -1.0; }, "jnd.offset_N: found -1.000000, expected 0 or more"},
+      {[](ModelData& d) { d.rbf.reset(); }, "model: found neither centres nor a grid, expected one of them"},
+      {[](ModelData& d) { d.grid.emplace(); }, "model: found both centres and a grid, expected one of them"},
+      {[](ModelData& d) { d.rbf->centres.conservativeResize(3, Eigen::NoChange); },
+       "centres: found 3 values each, expected 4"},
+  };
+  for (const Case& one : cases) EXPECT_EQ(message_after(one.spoil), one.message);
+  EXPECT_EQ(message_after([](ModelData& d) { d.grid->values_N.pop_back(); }, "voxel"),
+            "grid.values_N: found 359 values, expected 360");
+}
+
+// The equation in the header, term by term.
+TEST(FittedModel, IsItsEquation) {
+  for (const ModelData& data : test::example_models()) {
+    const FittedModel model(data);
+    const DomainGuard guard(data.cover);
+    const Eigen::MatrixXd points = test::random_points(static_cast<int>(data.features.size()), 200, 9);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::VectorXd u = 1.3 * points.col(i);
+      const Eigen::VectorXd x = data.offset + data.scale.cwiseProduct(u);
+      const double trend_N = data.trend.at(x.data(), data.features);
+      const double h_N = data.rbf ? RbfEvaluator(*data.rbf).evaluate(u.data()) : data.grid->evaluate(u.data());
+      const double correction_N = std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N,
+                                             data.correction_limit_N);
+      const double expected_N =
+          std::clamp(trend_N + guard.trust(u.data()) * correction_N, 0.0, 1.2 * data.largest_force_N);
+      const ForceEstimate estimate = model.evaluate(x.data());
+      // u -> x -> u rounds, and the kernel's slope is of order 1.
+      ASSERT_NEAR(estimate.force_N, expected_N, 1e-10) << data.name;
+      ASSERT_EQ(estimate.out_of_domain, guard.trust(u.data()) < 0.5) << data.name;
+    }
+  }
+}
+
+TEST(FittedModel, NeverPullsNorExceedsItsLargestForce) {
+  for (ModelData data : test::example_models()) {
+    if (data.rbf) data.rbf->weights *= 1e6;  // a fit gone wild
+    const FittedModel model(data);
+    test::Numbers numbers(8);
+    bool floor = false;
+    for (int i = 0; i < 20000; ++i) {
+      std::array<double, kMaxFeatures> x{};
+      const double reach = i % 3 == 0 ? 1.0 : i % 3 == 1 ? 3.0 : 1e3;
+      for (std::size_t k = 0; k < data.features.size(); ++k) {
+        const auto j = static_cast<Eigen::Index>(k);
+        x[k] = data.offset(j) + reach * data.scale(j) * numbers.next();
+      }
+      const double force_N = model.evaluate(x.data()).force_N;
+      ASSERT_GE(force_N, 0.0) << data.name;
+      ASSERT_LE(force_N, kForceMargin * data.largest_force_N) << data.name;
+      floor = floor || force_N == 0.0;
+    }
+    EXPECT_TRUE(floor);
+  }
+}
+
+TEST(FittedModel, NotANumberGivesNoForceAndIsOutside) {
+  for (const ModelData& data : test::example_models()) {
+    const FittedModel model(data);
+    for (std::size_t k = 0; k < data.features.size(); ++k) {
+      if (data.features[k].kind == FeatureKind::lowpass_velocity) continue;  // not in the trend; see below
+      std::array<double, kMaxFeatures> x{};
+      x[k] = kNan;
+      EXPECT_EQ(model.evaluate(x.data()).force_N, 0.0) << data.name << ", feature " << k;
+      EXPECT_TRUE(model.evaluate(x.data()).out_of_domain);
+    }
+    std::array<double, kMaxFeatures> all{};
+    all.fill(kNan);
+    EXPECT_EQ(model.evaluate(all.data()).force_N, 0.0);
+    for (const double infinite : {kInfinity, -kInfinity}) {
+      all.fill(infinite);
+      const double force_N = model.evaluate(all.data()).force_N;
+      EXPECT_TRUE(force_N >= 0.0 && force_N <= kForceMargin * data.largest_force_N) << data.name;
+    }
+  }
+}
+
+// A low-pass that is no number costs the correction; the trend, which has no
+// use for it, stands alone.
+TEST(FittedModel, ALowPassThatIsNoNumberLeavesTheTrend) {
+  const ModelData data = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  const double x[] = {3e-3, 0.0, kNan, 0.0};
+  const ForceEstimate estimate = FittedModel(data).evaluate(x);
+  EXPECT_TRUE(estimate.out_of_domain);
+  EXPECT_EQ(estimate.force_N, data.trend.at(x, data.features));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,97 @@
+#include "models/model/grid/voxel_lookup.h"
+#include "models/fit/fill_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::Numbers;
+using test::random_points;
+
+// Ascending nodes from -1 to 1 with steps that differ a thousandfold.
+VoxelGrid even_grid(double low, double high, const std::vector<int>& sizes) {
+  VoxelGrid grid;
+  for (const int size : sizes) {
+    std::vector<double>& axis = grid.nodes.emplace_back();
+    for (int i = 0; i < size; ++i) axis.push_back(low + (high - low) * i / (size - 1));
+  }
+  return grid;
+}
+
+VoxelGrid uneven_grid(int dimension, int size, std::uint64_t seed) {
+  Numbers numbers(seed);
+  VoxelGrid grid;
+  std::size_t count = 1;
+  for (int k = 0; k < dimension; ++k) {
+    std::vector<double>& axis = grid.nodes.emplace_back(1, 0.0);
+    for (int i = 1; i < size; ++i) axis.push_back(axis.back() + std::pow(10.0, 1.5 * numbers.next()));
+    const double extent = axis.back();
+    for (double& node : axis) node = 2.0 * node / extent - 1.0;
+    count *= static_cast<std::size_t>(size);
+  }
+  for (std::size_t i = 0; i < count; ++i) grid.values_N.push_back(numbers.next());
+  return grid;
+}
+
+// Both interpolate between the same values of size 1; a node's coordinate is
+// off by rounding, over the narrowest cell: 1e-16 / 1e-4.
+TEST(VoxelLookup, AgreesWithThePlainGridInsideAndOutsideTheBox) {
+  for (int d = 1; d <= kMaxFeatures; ++d) {
+    const VoxelGrid grid = uneven_grid(d, d <= 4 ? 9 : 3, 5);
+    const VoxelLookup lookup(grid);
+    const Eigen::MatrixXd queries = 1.3 * random_points(d, 300, 2);
+    for (Eigen::Index i = 0; i < queries.cols(); ++i)
+      EXPECT_NEAR(lookup.evaluate(queries.col(i).data()), grid.evaluate(queries.col(i).data()), 1e-11) << d;
+  }
+}
+
+TEST(VoxelLookup, GivesTheNodesTheirValues) {
+  const VoxelGrid grid = uneven_grid(2, 40, 7);
+  const VoxelLookup lookup(grid);
+  for (std::size_t i = 0; i < 40; ++i)
+    for (std::size_t j = 0; j < 40; ++j) {
+      const double x[] = {grid.nodes[0][i], grid.nodes[1][j]};
+      EXPECT_NEAR(lookup.evaluate(x), grid.values_N[i * 40 + j], 1e-14);
+    }
+}
+
+TEST(VoxelLookup, ReproducesAMultilinearFunction) {
+  VoxelGrid grid = even_grid(-1.0, 2.0, {4, 2, 7});
+  const auto value = [](const auto& x) { return 1.0 + x[0] - 2.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2]; };
+  ASSERT_TRUE(fill_grid(grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) {
+                for (Eigen::Index i = 0; i < points.cols(); ++i) out[i] = value(points.col(i));
+              }).ok());
+  ASSERT_TRUE(validate_voxel_grid(grid, 3).ok());
+  const VoxelLookup lookup(grid);
+  const Eigen::MatrixXd queries = random_points(3, 100, 2);
+  for (Eigen::Index i = 0; i < queries.cols(); ++i)
+    EXPECT_NEAR(lookup.evaluate(queries.col(i).data()), value(queries.col(i)), 1e-14);
+}
+
+TEST(VoxelLookup, ClampsInfinitiesAndTakesNanAsTheLowerEdge) {
+  const VoxelGrid grid = uneven_grid(1, 5, 3);
+  const VoxelLookup lookup(grid);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double below = -infinity;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_DOUBLE_EQ(lookup.evaluate(&infinity), grid.values_N.back());
+  EXPECT_DOUBLE_EQ(lookup.evaluate(&below), grid.values_N.front());
+  EXPECT_DOUBLE_EQ(lookup.evaluate(&nan), grid.values_N.front());
+}
+
+TEST(FillGrid, CanBeInterruptedAndRefusesHugeGrids) {
+  VoxelGrid grid = even_grid(0.0, 1.0, {200, 200});
+  const BatchFunction zero = [](const Eigen::MatrixXd&, Eigen::VectorXd& out) { out.setZero(); };
+  EXPECT_EQ(fill_grid(grid, zero, {[](double done) { return done < 0.3; }}).error().message, "interrupted");
+  VoxelGrid huge = even_grid(0.0, 1.0, std::vector<int>(8, 40));
+  EXPECT_EQ(fill_grid(huge, zero).error().message, "the grid has more than 100000000 nodes; use a coarser one");
+}
+
+}  // namespace
+}  // namespace palpate

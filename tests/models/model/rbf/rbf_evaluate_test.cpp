@@ -1,0 +1,194 @@
+#include "models/model/rbf/rbf_evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::random_function;
+using test::random_points;
+
+long double reference(const RbfFunction& f, const double* x, long double* size) {
+  const int d = f.dimension();
+  long double sum = tail_value(f.tail.data(), tail_degree(f.kernel), d, x);
+  *size = std::abs(f.tail[0]);
+  for (Eigen::Index k = 1; k < f.tail.size(); ++k) *size += std::abs(f.tail[k]);
+  for (Eigen::Index j = 0; j < f.centre_count(); ++j) {
+    long double squared = 0;
+    for (int k = 0; k < d; ++k) {
+      const long double difference = static_cast<long double>(x[k]) - f.centres(k, j);
+      squared += difference * difference;
+    }
+    const long double r = std::sqrt(squared);
+    long double phi = r;
+    if (f.kernel == KernelKind::cubic) phi = r * r * r;
+    if (f.kernel == KernelKind::quintic) phi = r * r * r * r * r;
+    if (f.kernel == KernelKind::thin_plate) phi = r > 0 ? squared * std::log(r) : 0;
+    sum += f.weights[j] * phi;
+    *size += std::abs(f.weights[j]) * (f.kernel == KernelKind::thin_plate ? std::abs(phi) + squared : std::abs(phi));
+  }
+  return sum;
+}
+
+// Runs with every instruction set of this machine, and puts the best back.
+class RbfEvaluatorOnTarget : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { ASSERT_TRUE(simd::choose_target(GetParam())); }
+  void TearDown() override { simd::choose_target(""); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Targets, RbfEvaluatorOnTarget, ::testing::ValuesIn(simd::target_names()),
+                         [](const auto& instance) { return instance.param; });
+
+// The bound that rbf_evaluate.h states, 32 eps of the sum of sizes.
+TEST_P(RbfEvaluatorOnTarget, AgreesWithALongDoubleReferenceForEveryKernelAndDimension) {
+  EXPECT_EQ(simd::target_name(), GetParam());
+  for (const KernelKind kernel : kKernelKinds)
+    for (int d = 1; d <= kMaxFeatures; ++d)
+      for (const int n : {0, 1, 7, 8, 9, 16, 100}) {
+        const RbfFunction f = random_function(kernel, d, n, static_cast<std::uint64_t>(100 * d + n));
+        const RbfEvaluator evaluator(f);
+        const Eigen::MatrixXd queries = random_points(d, 20, 5);
+        for (int i = 0; i < 20; ++i) {
+          long double size = 0;
+          const long double expected = reference(f, queries.col(i).data(), &size);
+          EXPECT_NEAR(evaluator.evaluate(queries.col(i).data()), static_cast<double>(expected),
+                      static_cast<double>(32 * 0x1p-53L * size))
+              << kernel_name(kernel) << " d=" << d << " n=" << n;
+        }
+      }
+}
+
+TEST_P(RbfEvaluatorOnTarget, KernelsKeepTheirRelativeAccuracyFromTinyToHugeDistances) {
+  RbfFunction f = random_function(KernelKind::cubic, 1, 16, 1);
+  f.centres.setZero();
+  f.weights.setConstant(1.0 / 16.0);
+  f.tail.setZero();
+  const RbfEvaluator evaluator(f);
+  for (double r = 1.1e-18; r < 1e50; r *= 3.7)
+    EXPECT_NEAR(evaluator.evaluate(&r) / (r * r * r), 1.0, 6 * 0x1p-52) << r;
+  for (const double r : {0.0, 1e-90, 1e-25, 0.9e-18}) EXPECT_NEAR(evaluator.evaluate(&r), 1e-54, 1e-66) << r;
+}
+
+// Estimates as far off as rsqrt14 may be, 2^-14, and rsqrt of a float, 1.5 x
+// 2^-12, on both sides. The series is good to 2^-53; three roundings without
+// fused operations leave 3 ulp.
+TEST_P(RbfEvaluatorOnTarget, RootFromAnEstimateIsGoodToThreeUlp) {
+  for (double squared = 1e-60; squared < 1e120; squared *= 1.7)
+    for (const double share : {-1.0, -0.13, 0.0, 0.5, 1.0})
+      for (const int terms : {3, 4}) {
+        const double error = share * (terms == 3 ? 0x1p-14 : 1.5 * 0x1p-12);
+        const double estimate = (1.0 + error) / std::sqrt(squared);
+        EXPECT_NEAR(simd::refined_root(squared, estimate, terms) / std::sqrt(squared), 1.0, 3 * 0x1p-52) << squared;
+      }
+}
+
+TEST_P(RbfEvaluatorOnTarget, IsExactlyTheTailAtACoincidentCentreOfACubic) {
+  RbfFunction f = random_function(KernelKind::cubic, 4, 1, 3);
+  EXPECT_DOUBLE_EQ(RbfEvaluator(f).evaluate(f.centres.data()),
+                   tail_value(f.tail.data(), 1, 4, f.centres.data()));
+}
+
+TEST_P(RbfEvaluatorOnTarget, DenormalInputsCountAsZero) {
+  RbfFunction f = random_function(KernelKind::quintic, 2, 9, 3);
+  RbfFunction zeroed = f;
+  f.centres.col(0).setConstant(1e-310);
+  zeroed.centres.col(0).setZero();
+  f.weights[1] = 4e-320;
+  zeroed.weights[1] = 0.0;
+  const double denormal[] = {3e-310, 0.5};
+  const double zero[] = {0.0, 0.5};
+  EXPECT_EQ(RbfEvaluator(f).evaluate(denormal), RbfEvaluator(zeroed).evaluate(zero));
+}
+
+TEST_P(RbfEvaluatorOnTarget, ANonFiniteQueryGivesANonFiniteResult) {
+  const RbfEvaluator evaluator(random_function(KernelKind::cubic, 2, 20, 3));
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    const double x[] = {0.1, bad};
+    EXPECT_FALSE(std::isfinite(evaluator.evaluate(x)));
+  }
+}
+
+TEST_P(RbfEvaluatorOnTarget, ManyPointsAtOnceGiveTheSameBits) {
+  const RbfEvaluator evaluator(random_function(KernelKind::cubic, 4, 3000, 3));
+  const Eigen::MatrixXd queries = random_points(4, 1001, 8);
+  Eigen::VectorXd out;
+  evaluator.evaluate_many(queries, out);
+  for (Eigen::Index i = 0; i < queries.cols(); ++i) EXPECT_EQ(out[i], evaluator.evaluate(queries.col(i).data()));
+}
+
+// Each entry within the 4 ulp (thin-plate 8) of the header.
+TEST_P(RbfEvaluatorOnTarget, KernelMatrixAgreesWithTheScalarKernel) {
+  for (const KernelKind kernel : kKernelKinds)
+    for (const int rows : {1, 5, 8, 33}) {
+      const Eigen::MatrixXd points = random_points(3, rows, 1);
+      const Eigen::MatrixXd centres = random_points(3, 4, 2);
+      Eigen::MatrixXd out(rows, 4);
+      kernel_matrix(kernel, PointArrays(points), centres, out);
+      for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < 4; ++j) {
+          const double r = (points.col(i) - centres.col(j)).norm();
+          EXPECT_NEAR(out(i, j), kernel_value(kernel, r), 1e-14 * (1.0 + r * r * r * r * r));
+        }
+    }
+}
+
+TEST_P(RbfEvaluatorOnTarget, KernelMatrixIsTheSameInParts) {
+  const Eigen::MatrixXd points = random_points(4, 37, 1);
+  const PointArrays arrays(points);
+  Eigen::MatrixXd whole(37, 37);
+  kernel_matrix(KernelKind::cubic, arrays, points, whole);
+  Eigen::MatrixXd parts(37, 37);
+  kernel_matrix(KernelKind::cubic, arrays, points, parts.topRows(16));
+  kernel_matrix(KernelKind::cubic, arrays, points, parts.bottomRows(21), 16);
+  // Which root a row gets depends on where its part starts: 4 ulp each.
+  EXPECT_LE((whole - parts).cwiseAbs().maxCoeff(), 8 * 0x1p-52 * whole.maxCoeff());
+}
+
+TEST_P(RbfEvaluatorOnTarget, KernelProductAgreesWithTheMatrix) {
+  for (const KernelKind kernel : kKernelKinds)
+    for (const int count : {1, 8, 255, 600}) {
+      const Eigen::MatrixXd points = random_points(4, count, 1);
+      Eigen::MatrixXd matrix(count, count);
+      kernel_matrix(kernel, PointArrays(points), points, matrix);
+      const Eigen::VectorXd v = random_points(1, count, 2).transpose();
+      const Eigen::VectorXd product = KernelProduct(kernel, PointArrays(points)).multiply(v);
+      // Rounding of a sum of `count` terms.
+      const double tolerance = 1e-15 * count * (matrix.cwiseAbs() * v.cwiseAbs()).maxCoeff();
+      EXPECT_LE((product - matrix * v).cwiseAbs().maxCoeff(), tolerance) << kernel_name(kernel) << count;
+    }
+}
+
+TEST_P(RbfEvaluatorOnTarget, NearestDistanceIsThatOfABruteForceSearch) {
+  for (int d = 1; d <= kMaxFeatures; ++d)
+    for (const int count : {1, 15, 16, 17, 200}) {
+      const Eigen::MatrixXd points = random_points(d, count, 1);
+      const NearestDistance nearest(points);
+      const Eigen::MatrixXd queries = random_points(d, 20, 9);
+      for (int i = 0; i < 20; ++i) {
+        const double expected = (points.colwise() - queries.col(i)).colwise().norm().minCoeff();
+        const double scale = queries.col(i).norm() + points.colwise().norm().maxCoeff();
+        EXPECT_NEAR(std::sqrt(nearest.nearest_squared(queries.col(i).data())), expected, 3e-7 * scale + 1e-10);
+      }
+    }
+}
+
+TEST(NearestDistance, IsInfiniteFarAwayAndForNonFiniteQueries) {
+  const NearestDistance nearest(random_points(2, 5, 1));
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double bad[][2] = {{1e30, 0}, {infinity, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
+  for (const auto& x : bad) EXPECT_EQ(nearest.nearest_squared(x), infinity);
+}
+
+TEST(SimdTargets, UnknownNameIsRefused) {
+  EXPECT_FALSE(simd::choose_target("abacus"));
+  EXPECT_TRUE(simd::choose_target(""));
+}
+
+}  // namespace
+}  // namespace palpate

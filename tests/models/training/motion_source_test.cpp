@@ -1,0 +1,126 @@
+#include "models/training/motion_source.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using Input = MotionSource::Input;
+
+Input in_memory(Recording recording) { return {"", std::make_shared<const Recording>(std::move(recording))}; }
+
+std::vector<MotionRow> rows_of(MotionSource& source) {
+  std::vector<MotionRow> rows;
+  const Status status = source.for_each([&](const MotionRow& row) {
+    rows.push_back(row);
+    return true;
+  });
+  EXPECT_TRUE(status.ok());
+  return rows;
+}
+
+void expect_same(const std::vector<MotionRow>& a, const std::vector<MotionRow>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].sample.position_m, b[i].sample.position_m) << i;
+    ASSERT_EQ(a[i].motion.position_m, b[i].motion.position_m) << i;
+    ASSERT_EQ(a[i].motion.velocity_m_per_s, b[i].motion.velocity_m_per_s) << i;
+    ASSERT_EQ(a[i].force_N, b[i].force_N) << i;
+    ASSERT_EQ(a[i].stroke, b[i].stroke) << i;
+    ASSERT_EQ(a[i].first, b[i].first) << i;
+  }
+}
+
+// Longer than what sensor identification looks at, and than one chunk of the reader.
+TEST(MotionSource, FilesAndMemoryGiveTheSameRows) {
+  const test::TemporaryFolder folder;
+  const Recording recording = test::example_recording(45000, 1000.0, 30e-6);
+  ASSERT_TRUE(write_recording(folder.file("a.csv"), recording, {}, false).ok());
+  MotionSource file({{folder.file("a.csv"), nullptr}});
+  MotionSource memory({in_memory(recording)});
+  const auto first = rows_of(file);
+  expect_same(first, rows_of(memory));
+  expect_same(first, rows_of(file));  // the second pass comes from what was kept
+  EXPECT_EQ(file.rows(), 45000u);
+  EXPECT_EQ(file.names(), std::vector<std::string>{"a"});
+  EXPECT_EQ(file.force_noise_N(), memory.force_noise_N());
+}
+
+TEST(MotionSource, CountsStrokesAndRecordings) {
+  Recording recording;
+  for (int i = 0; i < 40; ++i) {
+    const bool pressed = i % 10 >= 5;  // four presses, the last to the end
+    recording.rows.push_back({1e-3 * i, pressed ? 1e-3 : -1e-3, pressed ? 1.0 : 0.0, 0.0, 0.0});
+  }
+  MotionSource source({in_memory(recording), in_memory(recording)});
+  const auto rows = rows_of(source);
+  ASSERT_EQ(rows.size(), 80u);
+  EXPECT_EQ(rows[5].stroke, 1);
+  EXPECT_EQ(rows[39].stroke, 4);
+  EXPECT_EQ(rows[45].stroke, 5);
+  EXPECT_EQ(rows[79].stroke, 8);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].first, i % 40 == 0);
+    EXPECT_EQ(rows[i].recording, i < 40 ? 0 : 1);
+  }
+}
+
+TEST(MotionSource, AStrokeDoesNotGoOnIntoTheNextRecording) {
+  Recording pressed;
+  for (int i = 0; i < 20; ++i) pressed.rows.push_back({1e-3 * i, 1e-3, 1.0, 0.0, 0.0});
+  MotionSource source({in_memory(pressed), in_memory(pressed)});
+  const auto rows = rows_of(source);
+  EXPECT_EQ(rows.front().stroke, 1);
+  EXPECT_EQ(rows.back().stroke, 2);
+}
+
+// More rows than may be kept: every pass reads and estimates again.
+TEST(MotionSource, LongRecordingsAreReadAgain) {
+  const Input input = in_memory(test::example_recording(40000, 1000.0, 30e-6));
+  MotionSource kept({input, input});
+  MotionSource bounded({input, input}, 50000);
+  const auto expected = rows_of(kept);
+  for (int pass = 0; pass < 3; ++pass) {
+    expect_same(rows_of(bounded), expected);
+    EXPECT_EQ(bounded.rows(), 80000u);
+    EXPECT_EQ(bounded.names().size(), 2u);
+  }
+}
+
+TEST(MotionSource, APassThatBrokeOffLeavesNothingBehind) {
+  MotionSource source({in_memory(test::example_recording(1000, 1000.0))});
+  std::size_t seen = 0;
+  const Status stopped = source.for_each([&](const MotionRow&) { return ++seen < 300; });
+  ASSERT_FALSE(stopped.ok());
+  EXPECT_EQ(stopped.error().message, "interrupted");
+  EXPECT_EQ(rows_of(source).size(), 1000u);
+  EXPECT_EQ(rows_of(source).size(), 1000u);
+  EXPECT_EQ(source.rows(), 1000u);
+}
+
+TEST(MotionSource, AsksNowAndThenWhetherToGoOn) {
+  MotionSource source({in_memory(test::example_recording(200000, 1000.0))});
+  for (int pass = 0; pass < 2; ++pass) {  // from the input, then from what was kept
+    int questions = 0;
+    const FitControl count{[&](double fraction) { return ++questions > 0 && fraction == 0.5; }};
+    ASSERT_TRUE(source.for_each([](const MotionRow&) { return true; }, count, 0.5).ok());
+    EXPECT_EQ(questions, 200000 / static_cast<int>(kRowsPerQuestion));
+  }
+  const FitControl stop{[](double) { return false; }};
+  std::size_t seen = 0;
+  EXPECT_FALSE(source.for_each([&](const MotionRow&) { return ++seen > 0; }, stop).ok());
+  EXPECT_EQ(seen, kRowsPerQuestion);
+}
+
+TEST(MotionSource, AMissingFileIsTold) {
+  MotionSource source({{"none.csv", nullptr}});
+  const Status status = source.for_each([](const MotionRow&) { return true; });
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().message.find("none.csv"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,101 @@
+#include "models/training/trend_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "models/model/bernstein.h"
+#include "models/model/trend.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kDepth_m = 5e-3;
+constexpr double kThinning_m_per_s = 0.02;
+
+struct Step {
+  ToolSample sample;
+  MotionEstimate motion;
+};
+
+// Two strokes a second and a half long, half of the time outside.
+Step step_at(int i) {
+  const double time_s = 1e-3 * i;
+  const double angle = 2.0 * std::numbers::pi * time_s / 1.5;
+  const double position_m = kDepth_m * std::sin(angle);
+  return {{time_s, position_m, 0.0, 0.0}, {position_m, kDepth_m * std::cos(angle) * 2.0 * std::numbers::pi / 1.5}};
+}
+
+TEST(TrendRows, ColumnsAreTheTrendsTerms) {
+  TrendRows rows(kDepth_m, kThinning_m_per_s, {0.17, 1.27});
+  ASSERT_EQ(rows.columns(), kElasticCoefficients + 2 * kViscosityCoefficients + 2 * kBranchTerms);
+  FeatureFilter first(branch_basis(0.17, kDepth_m));
+  FeatureFilter second(branch_basis(1.27, kDepth_m));
+  rows.begin_recording();
+  std::size_t contact = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto [sample, motion] = step_at(i);
+    rows.add(sample, motion, 0.5, 7);
+    const FeatureVector a = first.update(sample, motion);
+    const FeatureVector b = second.update(sample, motion);
+    if (!(sample.position_m > 0.0)) continue;
+    ASSERT_EQ(rows.count(), ++contact);
+    const double* row = rows.row(contact - 1);
+    const double u = motion.position_m / kDepth_m;
+    const double v = motion.velocity_m_per_s;
+    for (std::size_t k = 0; k < kElasticCoefficients; ++k) {
+      ASSERT_DOUBLE_EQ(row[k], u * polynomial(bernstein_integral<5>(k), u));
+    }
+    const double basis[] = {(1 - u) * (1 - u), 2 * u * (1 - u), u * u};
+    for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
+      ASSERT_NEAR(row[6 + k], v * basis[k], 1e-15);
+      ASSERT_NEAR(row[9 + k], v / (1 + std::abs(v) / kThinning_m_per_s) * basis[k], 1e-15);
+    }
+    for (std::size_t k = 0; k < kBranchTerms; ++k) {
+      ASSERT_EQ(row[12 + k], a.values[k]);
+      ASSERT_EQ(row[15 + k], b.values[k]);
+    }
+    ASSERT_EQ(rows.stroke(contact - 1), 7);
+  }
+  EXPECT_GT(contact, 1000u);
+}
+
+// A weighted sum of branch features is one branch with the combined drive:
+// the filter is linear in it.
+TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
+  const double weights[] = {0.5, 2.0, 0.25};
+  FeatureFilter basis(branch_basis(0.3, kDepth_m));
+  FeatureFilter one({{FeatureKind::maxwell_branch, 0.3, combined_drive(weights, kDepth_m)}});
+  for (int i = 0; i < 2000; ++i) {
+    const auto [sample, motion] = step_at(i);
+    const FeatureVector& parts = basis.update(sample, motion);
+    const double sum = 0.5 * parts.values[0] + 2.0 * parts.values[1] + 0.25 * parts.values[2];
+    ASSERT_NEAR(one.update(sample, motion).values[0], sum, 1e-12);  // rounding of 2,000 steps
+  }
+}
+
+TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
+  TrendRows rows(kDepth_m, 0.0, {});
+  EXPECT_EQ(rows.columns(), kElasticCoefficients);
+  EXPECT_EQ(rows.viscous_columns(), 0u);
+}
+
+TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
+  TrendRows rows(1.0, 0.0, {});
+  rows.begin_recording();
+  const int count = 450000;
+  for (int i = 0; i < count; ++i) {
+    rows.add({1e-3 * i, 0.5, 0.0, 0.0}, {0.5, 0.0}, static_cast<double>(i), i);
+    ASSERT_LE(rows.count(), kMaximumTrendRows);
+  }
+  // More than four times the bound: every eighth row.
+  ASSERT_EQ(rows.count(), 56250u);
+  for (std::size_t i = 0; i < rows.count(); ++i) {
+    ASSERT_EQ(rows.force_N(i), 8.0 * static_cast<double>(i));
+    ASSERT_EQ(rows.stroke(i), 8 * static_cast<int>(i));
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,149 @@
+// The study's window on a display in memory, from the code to a stored answer.
+#include "rendering/app/study_app.h"
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "scenes/study/prepare_strokes.h"
+#include "scenes/study/simulated_subject.h"
+#include "scenes/study/study_file.h"
+#include "tests/support/study_driving.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kPatience_s = 60.0;
+const StudyTiming kStrokeTiming{400, 100, 50, 500};  // as stroke_timing has it
+
+class StudyAppTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_FALSE(test::virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
+    before_ = std::filesystem::current_path();
+    std::filesystem::current_path(folder_.path());
+    start(nullptr);
+  }
+  void start(std::shared_ptr<const StrokePair> strokes) {
+    StudyRequest request;
+    request.device = "hand";
+    request.realtime = false;  // a test does not outrank the machine it runs on
+    request.strokes = std::move(strokes);
+    app_.reset();
+    auto app = StudyApp::create(request);
+    ASSERT_TRUE(app.ok()) << app.error().message;
+    app_ = std::move(*app);
+    app_->frame();
+  }
+  void TearDown() override {
+    app_.reset();
+    std::filesystem::current_path(before_);
+  }
+  bool until(StudyState state) {
+    const auto start = std::chrono::steady_clock::now();
+    while (app_->study()->session().state() != state) {
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s)
+        return false;
+      app_->frame();
+    }
+    return true;
+  }
+  void press(int key) {
+    app_->press_key(key);
+    app_->frame();
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path before_;
+  std::unique_ptr<StudyApp> app_;
+};
+
+TEST_F(StudyAppTest, GoesFromTheConsentToAStoredAnswer) {
+  app_->begin("S01");
+  ASSERT_NE(app_->study(), nullptr) << app_->problem();
+  EXPECT_EQ(app_->study()->session().state(), StudyState::consent);
+  press(GLFW_KEY_Y);
+  ASSERT_TRUE(until(StudyState::ready));
+  press(GLFW_KEY_ENTER);
+  ASSERT_TRUE(until(StudyState::presenting));
+  ASSERT_TRUE(until(StudyState::answering));
+  press(GLFW_KEY_1);
+  ASSERT_TRUE(until(StudyState::presenting));
+  press(GLFW_KEY_ESCAPE);
+  EXPECT_EQ(app_->study()->session().state(), StudyState::aborted);
+  app_.reset();
+  const auto data = read_study("study-S01.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  ASSERT_EQ(data->records.size(), 1u);
+  const StudyRecord& record = data->records.front();
+  EXPECT_FALSE(record.answered_second);
+  // What the device got is what was asked for: nothing was held back.
+  EXPECT_NEAR(record.first_rendered_N, record.trial.first_N(), 1e-3);
+  EXPECT_NEAR(record.second_rendered_N, record.trial.second_N(), 1e-3);
+}
+
+TEST_F(StudyAppTest, AsksForTheStrokeThatWasLikeTheReference) {
+  start(test::example_strokes(0.8, kStrokeTiming));
+  app_->begin("S01");
+  ASSERT_NE(app_->study(), nullptr) << app_->problem();
+  press(GLFW_KEY_Y);
+  ASSERT_TRUE(until(StudyState::ready));
+  press(GLFW_KEY_ENTER);
+  ASSERT_TRUE(until(StudyState::answering));
+  const bool second = app_->study()->session().trial().comparison_first;
+  press(second ? GLFW_KEY_2 : GLFW_KEY_1);
+  ASSERT_TRUE(until(StudyState::presenting));
+  EXPECT_TRUE(app_->study()->session().view().was_correct);
+  press(GLFW_KEY_ESCAPE);
+  app_.reset();
+  const auto data = read_study("discriminate-S01.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  ASSERT_EQ(data->records.size(), 1u);
+  const StudyRecord& record = data->records.front();
+  EXPECT_TRUE(record.found_reference());
+  EXPECT_NEAR(record.reminder_rendered_N, record.trial.reference_N, 1e-3);
+  EXPECT_LT(record.worst_N, 1e-3) << "the device got the stroke";
+}
+
+TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {
+  const StudyHeader header{"S01", ProcedureKind::discriminate, kStrokeTiming, test::example_strokes(0.8, kStrokeTiming)};
+  const auto records = run_simulated_session(header, {}, 1);
+  ASSERT_TRUE(records.ok());
+  {
+    auto file = StudyFile::open("discriminate-S01.csv", header);
+    ASSERT_TRUE(file.ok() && (*file)->consent("", "").ok());
+    for (const StudyRecord& record : *records) ASSERT_TRUE((*file)->append(record).ok());
+  }
+  start(header.strokes);
+  app_->begin("S01");
+  ASSERT_NE(app_->study(), nullptr) << app_->problem();
+  EXPECT_EQ(app_->study()->session().state(), StudyState::done);
+  app_->frame();
+}
+
+TEST_F(StudyAppTest, TakesTheCodeInTheOrderItIsTyped) {
+  for (const char letter : {'s', '-', '0', '1', '2'}) app_->type(letter);
+  app_->press_key(GLFW_KEY_BACKSPACE);
+  app_->press_key(GLFW_KEY_ENTER);
+  app_->frame();
+  ASSERT_NE(app_->study(), nullptr) << app_->problem();
+  EXPECT_EQ(app_->study()->session().header().subject, "S01");
+}
+
+TEST_F(StudyAppTest, SaysWhatIsWrongWithACode) {
+  app_->begin("Anna");
+  EXPECT_EQ(app_->study(), nullptr);
+  EXPECT_NE(app_->problem().find("Anna"), std::string::npos) << app_->problem();
+  app_->frame();
+  EXPECT_FALSE(app_->closing());
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,58 @@
+// What the panel's quiet line says, of a session whose device is unplugged.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "models/model/file/model_io.h"
+#include "rendering/panels/panel.h"
+#include "tests/support/example_model.h"
+#include "tests/support/fake_hid_bus.h"
+#include "tests/support/session_frames.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::frames_until;
+
+TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
+  const test::TemporaryFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());  // for the file of the fault
+  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
+  test::FakeHidBus bus;
+  SessionRequest request;
+  request.scene = "skin";
+  request.device = "hid";
+  request.models = {folder.file("m.json")};
+  request.realtime = false;
+  request.bus = &bus;
+  auto opened = LiveSession::open(request);
+  ASSERT_TRUE(opened.ok()) << opened.error().message;
+  LiveSession& session = **opened;
+  const auto unplugged = [&] { return (session.newest().device.faults & device_fault::kUnplugged) != 0; };
+  ASSERT_TRUE(frames_until(session, [&] { return session.newest().device.zeroing == Zeroing::needed; }));
+  bus.plugged_in = false;
+  ASSERT_TRUE(frames_until(session, unplugged));
+  const std::string words = device_fault_words(device_fault::kUnplugged).front();
+  const HealthWords now = health_words(session, FrameFigures{});
+  EXPECT_EQ(now.text, "Device: " + words);
+  EXPECT_TRUE(now.problem && !now.past);
+  bus.plugged_in = true;
+  // It says why it wants to be zeroed until it is; then that it was.
+  ASSERT_TRUE(frames_until(session, [&] { return bus.opened == 2; }));
+  session.start_zeroing();
+  ASSERT_TRUE(frames_until(session, [&] { return session.newest().device.faults == 0; }));
+  const HealthWords later = health_words(session, FrameFigures{});
+  EXPECT_EQ(later.text.rfind("Earlier: " + words, 0), 0u) << later.text;
+  EXPECT_TRUE(later.problem && later.past);
+  // A slow machine may make another alarm at once.
+  EXPECT_TRUE(frames_until(session, [&] { return session.alarms().empty(); }, [&] { session.reset_figures(); }));
+  EXPECT_FALSE(health_words(session, FrameFigures{}).past);
+  opened->reset();
+  std::filesystem::current_path(before);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,72 @@
+#include "rendering/picture/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace palpate {
+namespace {
+
+TEST(Camera, SeesWhatItFrames) {
+  Camera camera;
+  camera.frame(0.1F, 0.5F, true);
+  const glm::vec2 size(768.0F, 720.0F);
+  const glm::mat4 view = camera.view_projection(size.x / size.y);
+  for (const glm::vec3 point :
+       {glm::vec3(0.09F, 0.0F, 0.0F), glm::vec3(-0.09F, 0.0F, 0.0F), glm::vec3(0.0F, 0.0F, 0.09F)}) {
+    const glm::vec2 at = project(view, point, size);
+    EXPECT_GT(at.x, 0.0F);
+    EXPECT_LT(at.x, size.x);
+    EXPECT_GT(at.y, 0.0F);
+    EXPECT_LT(at.y, size.y);
+  }
+  EXPECT_LT(project(view, {0.0F, 0.05F, 0.0F}, size).y, project(view, {0.0F, 0.0F, 0.0F}, size).y)
+      << "up is up";
+}
+
+TEST(Camera, NeverGoesBelowTheTableOrOverTheTop) {
+  Camera camera;
+  camera.frame(0.1F, 0.5F, true);
+  for (const float pitch : {-50.0F, 50.0F}) {
+    camera.orbit(0.0F, pitch);
+    for (int i = 0; i < 300; ++i) camera.advance(0.016F);
+    const glm::vec3 eye = camera.eye();
+    EXPECT_GT(eye.y, 0.0F);
+    EXPECT_GT(std::hypot(eye.x, eye.z), 0.1F * eye.y) << "left stays left";
+  }
+}
+
+TEST(Camera, StaysWithinItsDistances) {
+  Camera camera;
+  camera.frame(0.1F, 0.5F, true);
+  for (const float factor : {1e-3F, 1e3F}) {
+    camera.zoom(factor);
+    for (int i = 0; i < 300; ++i) camera.advance(0.016F);
+    const float distance_m = glm::length(camera.eye());
+    EXPECT_GE(distance_m, 0.15F);
+    EXPECT_LE(distance_m, 1.21F);
+  }
+}
+
+TEST(Camera, EasesInsteadOfJumping) {
+  Camera camera;
+  camera.frame(0.1F, 0.5F, true);
+  const glm::vec3 before = camera.eye();
+  camera.orbit(1.0F, 0.0F);
+  EXPECT_EQ(camera.eye(), before);
+  camera.advance(0.016F);
+  const float first = glm::length(camera.eye() - before);
+  EXPECT_GT(first, 0.0F);
+  for (int i = 0; i < 300; ++i) camera.advance(0.016F);
+  EXPECT_LT(first, 0.3F * glm::length(camera.eye() - before));
+}
+
+TEST(Camera, PutsWhatIsBehindItFarOutside) {
+  Camera camera;
+  camera.frame(0.1F, 0.0F, true);
+  EXPECT_LT(project(camera.view_projection(1.0F), 3.0F * camera.eye(), {100.0F, 100.0F}).x, -1e5F);
+}
+
+}  // namespace
+}  // namespace palpate

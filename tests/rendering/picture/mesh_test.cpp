@@ -1,0 +1,57 @@
+#include "rendering/picture/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace palpate {
+namespace {
+
+// Triangles face the way that their vertices' normals say.
+void expect_consistent(const Mesh& mesh) {
+  ASSERT_EQ(mesh.triangles.size() % 3, 0u);
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
+    const Vertex& a = mesh.vertices.at(mesh.triangles[i]);
+    const Vertex& b = mesh.vertices.at(mesh.triangles[i + 1]);
+    const Vertex& c = mesh.vertices.at(mesh.triangles[i + 2]);
+    const glm::vec3 face = glm::cross(b.position - a.position, c.position - a.position);
+    if (glm::length(face) < 1e-12F) continue;  // at a pole
+    ASSERT_GT(glm::dot(glm::normalize(face), a.normal + b.normal + c.normal), 0.0F) << "triangle " << i / 3;
+  }
+  for (const Vertex& vertex : mesh.vertices) ASSERT_NEAR(glm::length(vertex.normal), 1.0F, 1e-4F);
+}
+
+TEST(Mesh, TheBlockHasItsSizeAndFacesOutwards) {
+  const Mesh mesh = block_mesh(0.10F, 0.08F, 0.04F);
+  expect_consistent(mesh);
+  glm::vec3 low(1.0F);
+  glm::vec3 high(-1.0F);
+  for (const Vertex& vertex : mesh.vertices) {
+    low = glm::min(low, vertex.position);
+    high = glm::max(high, vertex.position);
+  }
+  EXPECT_NEAR(high.x - low.x, 0.10F, 1e-5F);
+  EXPECT_NEAR(high.z - low.z, 0.08F, 1e-5F);
+  EXPECT_NEAR(high.y, 0.0F, 1e-7F);
+  EXPECT_NEAR(low.y, -0.04F, 1e-6F);
+}
+
+TEST(Mesh, TheTopIsFineWhereItIsPressed) {
+  const Mesh mesh = block_mesh(0.10F, 0.10F, 0.04F);
+  int near_the_middle = 0;
+  for (const Vertex& vertex : mesh.vertices) {
+    if (vertex.position.y == 0.0F && std::hypot(vertex.position.x, vertex.position.z) < 0.005F)
+      ++near_the_middle;
+  }
+  EXPECT_GT(near_the_middle, 500);
+}
+
+TEST(Mesh, ALatheFacesOutwards) {
+  expect_consistent(lathe_mesh({{1e-4F, 0.0F}, {0.7F, 0.3F}, {1.0F, 1.0F}, {0.7F, 1.7F}, {1e-4F, 2.0F}}, 24));
+}
+
+TEST(Mesh, TheSquareFacesUp) { expect_consistent(square_mesh()); }
+
+}  // namespace
+}  // namespace palpate

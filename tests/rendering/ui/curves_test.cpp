@@ -1,0 +1,75 @@
+#include "rendering/ui/curves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+// A second of ticks from 100 s on: the reference 1 N, slot 0 at 1.1 N with one
+// peak of 3 N, slot 1 not ready in the first half.
+ForceHistory example() {
+  ForceHistory history;
+  for (int i = 0; i < 1000; ++i) {
+    HistoryPoint point;
+    point.loop_time_s = 100.0 + 1e-3 * i;
+    point.in_contact = true;
+    point.reference_N = 1.0F;
+    point.force_N.fill(kNone);
+    point.force_N[0] = i == 333 ? 3.0F : 1.1F;
+    if (i >= 500) point.force_N[1] = 0.9F;
+    history.append(point);
+  }
+  return history;
+}
+
+TEST(CurveColumns, LoseNoPeakAndKeepGapsOpen) {
+  const ForceHistory history = example();
+  CurveColumns curves;
+  const JndLine jnd;
+  curves.gather(history, jnd, 2, 100.0, 101.0, 50);
+  ASSERT_GE(curves.columns().size(), 50u);
+  EXPECT_FLOAT_EQ(curves.highest_force_N(), 3.0F);
+  EXPECT_FLOAT_EQ(curves.highest_error_over_jnd(), static_cast<float>(2.0 / jnd.at(1.0)));
+  int ready = 0;
+  for (const CurveColumn& column : curves.columns()) {
+    if (!column.any) continue;
+    EXPECT_FLOAT_EQ(column.low_N[0], 1.1F);
+    EXPECT_FLOAT_EQ(column.band_high_N, 1.0F + static_cast<float>(jnd.at(1.0)));
+    if (!std::isnan(column.low_N[1])) ++ready;
+    EXPECT_EQ(std::isnan(column.low_N[1]), std::isnan(column.error_over_jnd[1]));
+  }
+  EXPECT_NEAR(ready, 25, 1);
+}
+
+TEST(CurveColumns, StandOnAGridOfTheirOwnSoThatCurvesDoNotShimmer) {
+  const ForceHistory history = example();
+  CurveColumns one;
+  CurveColumns other;
+  one.gather(history, {}, 2, 100.0, 101.0, 50);
+  other.gather(history, {}, 2, 100.007, 101.007, 50);  // a third of a column later
+  const auto find = [](const CurveColumns& curves, double time_s) {
+    for (const CurveColumn& column : curves.columns()) {
+      if (std::abs(column.time_s - time_s) < 1e-9) return column;
+    }
+    return CurveColumn{};
+  };
+  const CurveColumn peak = find(one, 100.33);
+  ASSERT_TRUE(peak.any);
+  EXPECT_FLOAT_EQ(peak.high_N[0], 3.0F);
+  EXPECT_FLOAT_EQ(find(other, 100.33).high_N[0], 3.0F);
+}
+
+TEST(CurveColumns, HaveNothingToShowOfAnEmptyHistory) {
+  CurveColumns curves;
+  curves.gather(ForceHistory{}, {}, 3, 0.0, 10.0, 100);
+  for (const CurveColumn& column : curves.columns()) EXPECT_FALSE(column.any);
+  EXPECT_EQ(curves.highest_force_N(), 0.0F);
+}
+
+}  // namespace
+}  // namespace palpate

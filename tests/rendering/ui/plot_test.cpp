@@ -1,0 +1,40 @@
+#include "rendering/ui/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+TEST(Plot, TicksAreRoundAndNotTooMany) {
+  EXPECT_DOUBLE_EQ(tick_step(10.0, 5), 2.0);
+  EXPECT_DOUBLE_EQ(tick_step(10.0, 4), 5.0);
+  EXPECT_DOUBLE_EQ(tick_step(0.7, 7), 0.1);
+  EXPECT_DOUBLE_EQ(tick_step(3.0, 10), 0.5);
+  for (const double span : {1e-3, 0.3, 7.0, 12345.0}) {
+    for (int most = 1; most < 12; ++most) EXPECT_LE(span / tick_step(span, most), most * (1.0 + 1e-9));
+  }
+  EXPECT_EQ(tick_step(0.0, 4), 1.0) << "nothing to divide";
+  EXPECT_EQ(tick_step(std::nan(""), 4), 1.0);
+}
+
+TEST(Plot, ScalesEndAtRoundNumbers) {
+  EXPECT_DOUBLE_EQ(round_up(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(round_up(1.01), 1.5);
+  EXPECT_DOUBLE_EQ(round_up(6.3), 8.0);
+  EXPECT_DOUBLE_EQ(round_up(0.081), 0.1);
+  EXPECT_DOUBLE_EQ(round_up(-3.0), 1.0);
+}
+
+TEST(Plot, NumbersHaveThreeDigits) {
+  EXPECT_EQ(three_digits(0.4123), "0.412");
+  EXPECT_EQ(three_digits(2.314), "2.31");
+  EXPECT_EQ(three_digits(9.997), "10.0");
+  EXPECT_EQ(three_digits(23.14), "23.1");
+  EXPECT_EQ(three_digits(-231.4), "-231");
+  EXPECT_EQ(three_digits(std::nan("")), "–");
+}
+
+}  // namespace
+}  // namespace palpate

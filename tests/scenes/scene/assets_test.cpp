@@ -1,0 +1,56 @@
+#include "scenes/scene/assets.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+TEST(Assets, FirstFolderWithScenesWins) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder.file("b/scenes"));
+  std::filesystem::create_directories(folder.file("c/scenes"));
+  const auto found = first_assets_folder({folder.file("a"), folder.file("b"), folder.file("c")});
+  ASSERT_TRUE(found.ok());
+  EXPECT_EQ(*found, folder.file("b"));
+}
+
+TEST(Assets, NamesThePlacesItLookedAt) {
+  const auto found = first_assets_folder({"/none/a", "/none/b"});
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(found.error().message,
+            "cannot find the assets folder (with its subfolder scenes); looked at /none/a, /none/b; "
+            "set PALPATE_ASSETS to it");
+}
+
+TEST(Assets, TheSourceTreeHasThem) {
+  const auto found = find_assets();
+  ASSERT_TRUE(found.ok());
+  EXPECT_TRUE(std::filesystem::exists(*found + "/scenes/silicone_block.json"));
+}
+
+TEST(Assets, TheEnvironmentDecidesAlone) {
+  const auto run = test::run_palpate({"scenes"}, {"PALPATE_ASSETS=/none"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err,
+            "error: cannot find the assets folder (with its subfolder scenes); looked at /none; "
+            "set PALPATE_ASSETS to it\n");
+}
+
+// An installed program: bin/palpate beside share/palpate/scenes.
+TEST(Assets, AnInstalledProgramFindsItsOwn) {
+  const test::TemporaryFolder prefix;
+  std::filesystem::create_directories(prefix.file("bin"));
+  std::filesystem::copy_file(PALPATE_BINARY, prefix.file("bin/palpate"));
+  std::filesystem::create_directories(prefix.file("share/palpate/scenes"));
+  const auto run = test::run_program({prefix.file("bin/palpate"), "scenes"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.out, "SCENE  TITLE  MATERIAL  FEATURES\n");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,43 @@
+#include "scenes/scene/jnd_file.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+std::string complaint(const std::string& text) {
+  const auto line = parse_jnd_file(text, "jnd.json");
+  return line.ok() ? "accepted" : line.error().message;
+}
+
+TEST(JndFile, ReadsBackWhatWasWritten) {
+  const JndLines lines{{0.0712345678901, 0.1234567890123}, {0.1 / 3.0, 0.1234567890123}};
+  const std::string text = jnd_file_text(lines, {{0.3, 0.09, 0.01, "study"}, {2.5, 0.225, 0.0, "a paper"}}, 0.75, {"S01", "S02"});
+  const auto line = parse_jnd_file(text, "jnd.json");
+  ASSERT_TRUE(line.ok()) << line.error().message;
+  EXPECT_EQ(line->offset_N, 0.1 / 3.0);
+  EXPECT_EQ(line->weber_fraction, 0.1234567890123);
+  EXPECT_NE(text.find("\"standard_error_N\": 0.01"), std::string::npos);
+  EXPECT_EQ(text.find("\"standard_error_N\": 0.0,"), std::string::npos) << "none known, none told";
+}
+
+TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
+  const std::string advice = "; write it anew with palpate study analyse";
+  const std::string start = "{\"format\": \"palpate-jnd\",\n\"version\": 1,\n";
+  EXPECT_EQ(complaint(start + "\"offset_N\": 0.1, \"weber_fraction\": 0}"), "accepted");
+  EXPECT_EQ(complaint("[]"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
+  EXPECT_EQ(complaint("{\"format\": 3}"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
+  EXPECT_EQ(complaint("{\"format\": \"palpate-jnd\",\n\"version\": 2}"), "jnd.json:2:12: found 2, expected the version 1" + advice);
+  EXPECT_EQ(complaint(start + "\"weber_fraction\": 0}"),
+            "jnd.json:1:1: found no \"offset_N\", expected a number above 0 up to 100" + advice);
+  EXPECT_EQ(complaint(start + "\"offset_N\": 0, \"weber_fraction\": 0}"),
+            "jnd.json:3:13: found 0, expected a number above 0 up to 100" + advice);
+  EXPECT_EQ(complaint(start + "\"offset_N\": 0.1, \"weber_fraction\": \"6 %\"}"),
+            "jnd.json:3:36: found \"6 %\", expected a number from 0 up to 1" + advice);
+  const std::string broken = complaint(start);
+  EXPECT_EQ(broken.substr(0, 14), "jnd.json:3:1: ") << broken;
+  EXPECT_EQ(read_jnd_file("/none/jnd.json").error().message, "cannot read the JND file /none/jnd.json; does it exist?");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,69 @@
+#include "scenes/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::TemporaryFolder;
+
+TEST(Scene, EveryShippedSceneReads) {
+  const auto names = scene_names();
+  ASSERT_TRUE(names.ok());
+  EXPECT_EQ(*names, (std::vector<std::string>{"elastic_block", "foam_block", "jnd_study", "silicone_block", "skin",
+                                              "stiff_block"}));
+  for (const std::string& name : *names) {
+    const auto scene = load_scene(name);
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    EXPECT_EQ(scene->name, name);
+    // The paper's line, section 4.1.
+    EXPECT_DOUBLE_EQ(scene->jnd.offset_N, 0.065);
+    EXPECT_DOUBLE_EQ(scene->jnd.weber_fraction, 0.0633);
+  }
+}
+
+TEST(Scene, SiliconeHasThePapersFeatures) {
+  const auto scene = load_scene("silicone_block");
+  ASSERT_TRUE(scene.ok());
+  EXPECT_EQ(describe_features(*scene), "depth, velocity, velocity low-pass 0.17 s, velocity low-pass 1.27 s");
+  EXPECT_EQ(scene->material, "silicone");
+  EXPECT_EQ(scene->default_models.size(), 5u);
+}
+
+TEST(Scene, OthersModelOnlyWhatTheyNeed) {
+  EXPECT_EQ(describe_features(*load_scene("elastic_block")), "depth");
+  EXPECT_EQ(describe_features(*load_scene("stiff_block")), "depth, velocity");
+  EXPECT_EQ(describe_features(*load_scene("foam_block")),
+            "depth, velocity, velocity low-pass 0.08 s, velocity low-pass 0.9 s");
+  EXPECT_FALSE(load_scene("skin")->material.has_value());
+  EXPECT_FALSE(load_scene("jnd_study")->material.has_value());
+}
+
+TEST(Scene, UnknownNameListsTheKnownOnes) {
+  for (const std::string name : {"rubber", "", "../scenes/skin", "skin.json"}) {
+    const auto scene = load_scene(name);
+    ASSERT_FALSE(scene.ok());
+    EXPECT_EQ(scene.error().message, "unknown scene \"" + name +
+                                         "\"; known scenes: elastic_block, foam_block, jnd_study, silicone_block, "
+                                         "skin, stiff_block");
+  }
+}
+
+TEST(Scene, MissingFolderIsNamed) {
+  const auto names = scene_names_in("/none");
+  ASSERT_FALSE(names.ok());
+  EXPECT_EQ(names.error().message, "cannot list the scenes in /none: No such file or directory");
+}
+
+TEST(Scene, LoadsFromAnyFolder) {
+  const TemporaryFolder folder;
+  folder.with_file("broken.json", "{");
+  folder.with_file("note.txt", "no scene");
+  EXPECT_EQ(*scene_names_in(folder.path()), std::vector<std::string>{"broken"});
+  EXPECT_FALSE(load_scene_from(folder.path(), "broken").ok());
+}
+
+}  // namespace
+}  // namespace palpate
