@@ -8,7 +8,8 @@
 // Going in, new bristles arrive unbent, so that F_c z does not change by them;
 // coming out, bristles leave with their share. The friction never exceeds what
 // pushes the other way: the probe is not held down. A surface without a probe has
-// none. F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; K a box spectrum, 50 ms to 2 s.
+// none. F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm,
+// 12 kPa; K a box spectrum, 50 ms to 2 s.
 // Passive: V = F_c(s) x_p z^2 / 2 is stored at most, and
 // F_c z ds - dV >= z^2 F_c |ds| (in) or more (out).
 // Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)

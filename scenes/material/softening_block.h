@@ -4,7 +4,7 @@
 //   eta = 1 - r erf((W(m) - W(s)) / (w0 + beta W(m))),
 //   m = s while s is the deepest,  dm/dt = -(m - s) / tau_heal otherwise,
 // W the energy under E. A first press follows E; what comes after, up to the
-// deepest recent depth m, is softer by up to 18 %, and 6 s later mostly healed.
+// deepest recent depth m, is softer by up to 15 %, and 6 s later mostly healed.
 // K is a weak box spectrum, 10 ms to 3 s.
 //   E(s) = k s^1.5 (1 + (s / s0)^2)
 // Passive: the stored energy V = integral_0^s eta E ds + U(m) with
@@ -23,7 +23,7 @@ class SofteningBlock final : public Block {
  public:
   static constexpr double kStiffness_N_per_m1_5 = 5200.0;  // k
   static constexpr double kStiffening_m = 0.012;           // s0
-  static constexpr double kSoftening = 0.18;               // r
+  static constexpr double kSoftening = 0.15;               // r
   static constexpr double kSharpness_J = 1e-3;             // w0
   static constexpr double kSharpnessShare = 0.3;           // beta
   static constexpr double kHealing_s = 6.0;                // tau_heal

@@ -37,14 +37,14 @@ constexpr double edge(size_t ring) {
 
 double SpongeBlock::relaxed_force_N(double depth_m) const noexcept { return skeleton_N(depth_m); }
 
-// A press of some tenths of a second leaves about as much again in the pores as
-// a quarter of the depth would hold at once.
+// A press of some tenths of a second leaves in the pores about a tenth of what
+// they would hold at once.
 double SpongeBlock::held_force_N(double depth_m) const noexcept {
   return skeleton_N(depth_m) + 0.1 * kArea_m2 * kPore_Pa * depth_m / kHeight_m;
 }
 
 std::string SpongeBlock::relaxation_times_text() const {
-  return "a diffusion's series, 0.11 s and quicker, slower with depth";
+  return "a diffusion's series, 0.2 s and quicker, slower with depth";
 }
 
 // Solves (I - h D) p = p_old + M de for any de: two right sides, one elimination.

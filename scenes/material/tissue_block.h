@@ -6,7 +6,7 @@
 //   t^-alpha = 1 / Gamma(alpha) integral tau^-alpha exp(-t / tau) dln tau
 // over tau from 0.1 ms to 1,000 s; slower parts do not relax within a recording
 // and are held, quicker ones are gone within a tick and are left out.
-// Sphere of 8 mm; 12 kPa and b = 3; alpha = 0.15, of the range of liver and
+// Sphere of 8 mm; 25 kPa and b = 3; alpha = 0.15, of the range of liver and
 // kidney (0.1 to 0.2).
 // Passive: see relaxation_spectrum.h.
 // Source: Kiss, Varghese & Hall (2004) (liver as a fractional solid); Nicolle,
