@@ -11,10 +11,10 @@ constexpr double kArea_m2 = 3.14159265358979324 * SpongeBlock::kRadius_m * Spong
 
 TEST(SpongeBlock, SlowPressIsTheSkeleton) {
   SpongeBlock block;
-  for (int i = 1; i <= 36000; ++i) block.step(1e-2 * i / 36000, 1e-2 / 3.6e5, 10.0);
+  for (int i = 1; i <= 1000; ++i) block.step(1e-5 * i, 1e-6, 10.0);
   const double strain = 1e-2 / SpongeBlock::kHeight_m;
   const double skeleton_N = kArea_m2 * SpongeBlock::kSkeleton_Pa * strain / (1.0 - strain / SpongeBlock::kClosed_strain);
-  EXPECT_NEAR(block.force_N() / skeleton_N, 1.0, 1e-4);
+  EXPECT_NEAR(block.force_N() / skeleton_N, 1.0, 2e-3) << "what a diffusion of a second leaves in 10,000";
 }
 
 // Mean pressure of a disc that drains at its rim, uniform at the start:
@@ -40,8 +40,8 @@ TEST(SpongeBlock, StepDrainsAsTheBesselSeriesSlowerWhenDeep) {
     const double diffusivity = SpongeBlock::kDiffusivity_m2_per_s * std::exp(-SpongeBlock::kPermeabilityFall * strain);
     for (int tick = 1; tick <= 1000; ++tick) {
       block.step(depth_m, 0.0, 1e-3);
-      if (tick < 20) continue;
-      // Twelve rings are coarse at first: 1 % of the pressure at the start.
+      // Twelve rings are coarse until the front is wider than one: 1 % from there.
+      if (diffusivity * tick * 1e-3 < 0.015 * SpongeBlock::kRadius_m * SpongeBlock::kRadius_m) continue;
       ASSERT_NEAR((block.force_N() - block.relaxed_force_N(depth_m)) / at_once_N, drained_share(tick * 1e-3, diffusivity), 0.01)
           << tick;
     }
