@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/temporary_paths.h"
 
 namespace palpate {
 namespace {
@@ -62,15 +63,18 @@ Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrit
   ReportFolder folder;
   folder.path_ = clean.string();
   folder.temporary_ = pattern;
+  folder.registry_slot_ = register_temporary(pattern);
   return folder;
 }
 
 ReportFolder::ReportFolder(ReportFolder&& other) noexcept
-    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})) {}
+    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})),
+      registry_slot_(std::exchange(other.registry_slot_, -1)) {}
 
 ReportFolder::~ReportFolder() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  unregister_temporary(registry_slot_);
 }
 
 Status ReportFolder::write(const std::string& name, std::string_view text) const {
