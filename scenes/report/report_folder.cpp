@@ -3,13 +3,13 @@
 #include <stdlib.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/temporary_paths.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
@@ -84,11 +84,9 @@ Status ReportFolder::write(const std::string& name, std::string_view text) const
 }
 
 Result<std::string> ReportFolder::read(const std::string& name) const {
-  std::ifstream file(path_of(name), std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) return Error{"gnuplot wrote no " + name + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
-  return text.str();
+  const std::optional<std::string> text = read_whole_file(path_of(name));
+  if (!text || text->empty()) return Error{"gnuplot wrote no " + name + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+  return *text;
 }
 
 Status ReportFolder::commit() {
