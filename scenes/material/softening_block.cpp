@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
+constexpr double kSofteningWeight = 0.03;  // of the box spectrum, per unit of ln tau
 
 double stiffened(double depth_m) {
   const double share = depth_m / SofteningBlock::kStiffening_m;
@@ -23,7 +23,7 @@ double elastic_energy_J(double depth_m) {
 
 }  // namespace
 
-SofteningBlock::SofteningBlock() : spectrum_(0.01, 3.0, [](double) { return kWeight; }) {}
+SofteningBlock::SofteningBlock() : spectrum_(0.01, 3.0, [](double) { return kSofteningWeight; }) {}
 
 double SofteningBlock::held_force_N(double depth_m) const noexcept {
   return elastic_force_N(depth_m) * (1.0 + 0.5 * spectrum_.total_weight());
