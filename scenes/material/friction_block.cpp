@@ -4,11 +4,6 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
-
-constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
-
-}  // namespace
 
 FrictionBlock::FrictionBlock() : spectrum_(0.05, 2.0, [](double) { return kWeight; }) {}
 

@@ -6,7 +6,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kWeight = 0.06;  // of the box spectrum, per unit of ln tau
 constexpr int kNewtonSteps = 6;
 constexpr double kSolved_N = 1e-12;
 

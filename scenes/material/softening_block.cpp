@@ -5,8 +5,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
-
 double stiffened(double depth_m) {
   const double share = depth_m / SofteningBlock::kStiffening_m;
   return share * share;
