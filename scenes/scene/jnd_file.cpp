@@ -12,7 +12,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 // The format needs three.
-constexpr int kNesting = 8;
+constexpr int kJndNesting = 8;
 constexpr const char* kAdvice = "; write it anew with palpate study analyse";
 
 }  // namespace
@@ -39,7 +39,7 @@ std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& po
 }
 
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
-  const Result<nlohmann::json> document = parse_json(text, path, kNesting, {kAdvice, kAdvice});
+  const Result<nlohmann::json> document = parse_json(text, path, kJndNesting, {kAdvice, kAdvice});
   if (!document) return document.error();
   JsonFields fields(text, path, kAdvice);
   const JsonNode top{&*document, ""};
