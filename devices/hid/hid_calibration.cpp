@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 // The format needs one.
-constexpr int kNesting = 4;
+constexpr int kCalibrationNesting = 4;
 
 class CalibrationReader : private JsonFields {
  public:
@@ -71,7 +71,7 @@ class CalibrationReader : private JsonFields {
 }  // namespace
 
 Result<HidCalibration> parse_hid_calibration(std::string_view text, const std::string& path) {
-  const Result<nlohmann::json> document = parse_json(text, path, kNesting, {});
+  const Result<nlohmann::json> document = parse_json(text, path, kCalibrationNesting, {});
   if (!document) return document.error();
   return CalibrationReader(text, path, *document).read();
 }

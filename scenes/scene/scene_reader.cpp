@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr std::array<const char*, 5> kMethods = {"direct", "voxel", "random", "kdtree", "greedy"};
 // The format needs three.
-constexpr int kNesting = 8;
+constexpr int kSceneNesting = 8;
 constexpr double kLongestRelaxation_s = 100.0;
 constexpr double kLargestLength_m = 10.0;
 constexpr double kLargestJndOffset_N = 100.0;
@@ -168,7 +168,7 @@ class SceneReader : private JsonFields {
 }  // namespace
 
 Result<Scene> parse_scene(std::string_view text, const std::string& path) {
-  const Result<Json> document = parse_json(text, path, kNesting, {});
+  const Result<Json> document = parse_json(text, path, kSceneNesting, {});
   if (!document) return document.error();
   return SceneReader(text, path, *document).read();
 }

@@ -14,8 +14,6 @@
 namespace palpate {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kFitAgain = "; fit the model again";
 constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
 
@@ -25,7 +23,7 @@ class ModelReader : private JsonFields {
       : JsonFields(text, path, kFitAgain), text_(text), path_(path) {}
 
   Result<ModelData> read() {
-    const Result<Json> document = parse_json(text_, path_, kModelNesting, {kFitAgain, kDamaged});
+    const Result<nlohmann::json> document = parse_json(text_, path_, kModelNesting, {kFitAgain, kDamaged});
     if (!document) return document.error();
     read_document({&*document, ""});
     if (error()) return *error();
@@ -244,7 +242,7 @@ class ModelReader : private JsonFields {
     Provenance& from = data_.provenance;
     const JsonNode recordings = list(node, "recordings", "a list of names");
     for (std::size_t i = 0; recordings.value != nullptr && i < recordings.value->size(); ++i) {
-      const Json& name = (*recordings.value)[i];
+      const nlohmann::json& name = (*recordings.value)[i];
       if (!name.is_string()) {
         complain(recordings.pointer + "/" + std::to_string(i), found(name) + ", expected a text");
         return;
