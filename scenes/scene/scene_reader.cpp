@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/json_message.h"
+#include "models/fit/methods.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/jnd_file.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<const char*, 5> kMethods = {"direct", "voxel", "random", "kdtree", "greedy"};
 constexpr double kLongestRelaxation_s = 100.0;
 constexpr double kLargestLength_m = 10.0;
 constexpr double kLargestJndOffset_N = 100.0;
@@ -224,7 +224,7 @@ class SceneReader {
   }
 
   void read_default_models(const Json& document) {
-    const std::string expected = "a list of methods out of direct, voxel, random, kdtree, greedy";
+    const std::string expected = "a list of methods out of " + method_names();
     const Json* list = member(document, "", "default_models", expected);
     if (list == nullptr) return;
     if (!list->is_array() || list->empty()) {
@@ -233,13 +233,10 @@ class SceneReader {
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
       const Json& entry = (*list)[i];
-      const bool known =
-          std::any_of(kMethods.begin(), kMethods.end(), [&](const char* name) { return entry == name; });
-      if (known) {
+      if (entry.is_string() && find_method(entry.get<std::string>()) != nullptr) {
         scene_.default_models.push_back(entry.get<std::string>());
       } else {
-        complain("/default_models/" + std::to_string(i),
-                 found(entry) + ", expected one of direct, voxel, random, kdtree, greedy");
+        complain("/default_models/" + std::to_string(i), found(entry) + ", expected one of " + method_names());
       }
     }
   }
