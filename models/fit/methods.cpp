@@ -35,6 +35,8 @@ const Method* find_method(std::string_view name) {
 
 void add_method(const Method& method) { method_table().push_back(&method); }
 
+void remove_method(const Method& method) { std::erase(method_table(), &method); }
+
 std::string method_names() {
   return joined_names([](const Method&) { return true; });
 }

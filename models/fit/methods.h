@@ -99,8 +99,9 @@ const std::vector<const Method*>& methods();
 // Null for a name that is none of them.
 const Method* find_method(std::string_view name);
 // One more row, for a program with a method of its own: it must outlive every use.
-// Before other threads fit or draw; the name must be new.
+// Before other threads fit or draw; the name must be new. And its end.
 void add_method(const Method& method);
+void remove_method(const Method& method);
 
 // "trend, direct, voxel ...".
 std::string method_names();

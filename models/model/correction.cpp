@@ -1,5 +1,7 @@
 #include "models/model/correction.h"
 
+#include <string_view>
+
 // The table of kinds: one line each. A row is defined beside its class.
 #define PALPATE_CORRECTION_KINDS(ROW) \
   ROW(kRbfCorrectionKind)             \
@@ -26,5 +28,9 @@ std::vector<CorrectionKind>& kind_table() {
 const std::vector<CorrectionKind>& correction_kinds() { return kind_table(); }
 
 void add_correction_kind(const CorrectionKind& kind) { kind_table().push_back(kind); }
+
+void remove_correction_kind(const char* key) {
+  std::erase_if(kind_table(), [&](const CorrectionKind& kind) { return std::string_view(kind.key) == key; });
+}
 
 }  // namespace palpate

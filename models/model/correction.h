@@ -55,7 +55,8 @@ struct CorrectionKind {
 const std::vector<CorrectionKind>& correction_kinds();
 
 // One more kind, for a program with a method of its own. Before other threads use
-// models; `kind.key` must be new.
+// models; `kind.key` must be new. And its end.
 void add_correction_kind(const CorrectionKind& kind);
+void remove_correction_kind(const char* key);
 
 }  // namespace palpate
