@@ -324,7 +324,7 @@ void LiveSession::load_file(const std::string& path) {
   }
   ++outstanding_;
   ++outstanding_files_;
-  supply_->order(kNoSlot, {ModelOrigin::file, Method::greedy, path, nullptr});
+  supply_->order(kNoSlot, {ModelOrigin::file, &kGreedyMethod, path, nullptr});
 }
 
 bool LiveSession::all_settled() const noexcept { return outstanding_ == 0; }

@@ -21,19 +21,17 @@ constexpr int kNice = 10;
 constexpr double kRecorded = 0.3;
 constexpr double kPrepared = 0.7;
 
-// How long a model takes to make, in words of order only. Direct before voxel,
-// which then fills its grid from it.
-int cost(const SlotPlan& plan) {
-  if (plan.origin == ModelOrigin::file) return 0;
-  if (plan.origin == ModelOrigin::position) return 4;
-  switch (plan.method) {
-    case Method::random: return 1;
-    case Method::kdtree: return 2;
-    case Method::greedy: return 3;
-    case Method::direct: return 5;
-    case Method::voxel: return 6;
-  }
-  return 6;
+// Reading a file is quicker than any fit; a model of position alone needs a
+// preparation of its own.
+constexpr double kOwnPreparation_s = 1.0;
+
+// How long a model takes to make, in words of order only. A method's base comes
+// before the method, which then starts from it.
+double expected_cost_s(const SlotPlan& plan) {
+  if (plan.origin == ModelOrigin::file) return 0.0;
+  MethodRequest request;
+  request.method = plan.method;
+  return expected_seconds(request) + (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
 // Of this thread and those that it will start: Linux counts threads one by one.
@@ -67,7 +65,7 @@ Status ModelSupply::start() {
 void ModelSupply::order(std::size_t ticket, const SlotPlan& plan) {
   const std::lock_guard lock(mutex_);
   const auto slower = std::find_if(orders_.begin(), orders_.end(),
-                                   [&](const Order& other) { return cost(other.plan) > cost(plan); });
+                                   [&](const Order& other) { return expected_cost_s(other.plan) > expected_cost_s(plan); });
   orders_.insert(slower, {ticket, plan});
   wake_.notify_one();
 }
@@ -170,10 +168,11 @@ Result<ModelData> ModelSupply::fit(const SlotPlan& plan) {
   MethodRequest request;
   request.method = plan.method;
   request.seed = seed_;
+  const auto base = position ? bases_.end() : bases_.find(plan.method->base);
   Result<MethodFit> fitted = fit_method(*prepared, request, control(prepared_before ? 0.0 : kPrepared, 1.0),
-                                        direct_ ? &*direct_ : nullptr);
+                                        base == bases_.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
-  if (!position && plan.method == Method::direct) direct_ = *fitted;
+  if (!position) bases_.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
 

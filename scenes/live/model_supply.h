@@ -14,6 +14,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -78,7 +79,7 @@ class ModelSupply {
   // The worker's own.
   std::shared_ptr<const Recording> recording_;
   std::optional<PreparedTraining> prepared_;
-  std::optional<MethodFit> direct_;
+  std::map<const Method*, MethodFit> bases_;  // fitted already, for methods that start from one
 
   std::thread thread_;
   std::atomic<bool> cancelled_{false};

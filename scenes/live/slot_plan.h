@@ -21,14 +21,14 @@ enum class ModelOrigin : std::uint8_t {
 
 struct SlotPlan {
   ModelOrigin origin = ModelOrigin::method;
-  Method method = Method::greedy;  // of a fit
-  std::string path;                // of a file
+  const Method* method = &kGreedyMethod;  // of a fit
+  std::string path;                       // of a file
   std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file that has been read already
 };
 
 // What to call it until there is a model with a name of its own.
 std::string plan_name(const SlotPlan& plan);
-// "direct", "voxel", ..., "position"; nothing for a file before it is read.
+// The method's name, or "position"; nothing for a file before it is read.
 std::string plan_method(const SlotPlan& plan);
 
 // `models`: methods or model files as asked for; none: the scene's default. Files

@@ -296,7 +296,9 @@ TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
 
 ModelPtr with_huge_weights(const ModelPtr& model) {
   ModelData data = model->data();
-  for (Eigen::Index i = 0; i < data.rbf->weights.size(); ++i) data.rbf->weights[i] = i % 2 == 0 ? 1e300 : -1e300;
+  test::change_rbf(data, [](RbfFunction& f) {
+    for (Eigen::Index i = 0; i < f.weights.size(); ++i) f.weights[i] = i % 2 == 0 ? 1e300 : -1e300;
+  });
   return std::make_shared<const FittedModel>(std::move(data));
 }
 

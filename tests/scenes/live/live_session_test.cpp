@@ -255,7 +255,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   const auto recording = std::make_shared<const Recording>(must(read_recording(folder.file("live.csv"))));
   EXPECT_TRUE(recording->columns.velocity);
   const PreparedTraining prepared = test::prepare({recording}, test::scene_request("elastic_block"));
-  EXPECT_GT(test::judge(*recording, test::fit(prepared, Method::random)).within_jnd, 0.95);
+  EXPECT_GT(test::judge(*recording, test::fit(prepared, &kRandomMethod)).within_jnd, 0.95);
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ std::vector<SuppliedModel> wait_for(ModelSupply& supply, std::size_t count) {
 
 TEST(ModelSupply, FitsWhatPalpateFitDoesTheQuickestFirst) {
   ModelSupply supply(test::must(load_scene("elastic_block")), 1);
-  supply.order(7, {ModelOrigin::position, Method::greedy, ""});
-  supply.order(3, {ModelOrigin::method, Method::kdtree, ""});
-  supply.order(5, {ModelOrigin::method, Method::random, ""});
+  supply.order(7, {ModelOrigin::position, &kGreedyMethod, ""});
+  supply.order(3, {ModelOrigin::method, &kKdTreeMethod, ""});
+  supply.order(5, {ModelOrigin::method, &kRandomMethod, ""});
   ASSERT_TRUE(supply.start().ok());
   const std::vector<SuppliedModel> made = wait_for(supply, 3);
   EXPECT_EQ(made[0].ticket, 5u);
@@ -35,8 +35,8 @@ TEST(ModelSupply, FitsWhatPalpateFitDoesTheQuickestFirst) {
   EXPECT_EQ(made[2].ticket, 7u);
   const PreparedTraining prepared =
       test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::scene_request("elastic_block"));
-  const std::vector<test::ModelPtr> expected{test::fit(prepared, Method::random), test::fit(prepared, Method::kdtree),
-                                             test::fit(prepared, Method::greedy)};
+  const std::vector<test::ModelPtr> expected{test::fit(prepared, &kRandomMethod), test::fit(prepared, &kKdTreeMethod),
+                                             test::fit(prepared, &kGreedyMethod)};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     ASSERT_NE(made[i].model, nullptr) << made[i].problem;
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
@@ -52,9 +52,9 @@ TEST(ModelSupply, ReadsFilesAndSaysWhatIsWrong) {
   const std::string bad = folder.with_file("bad.json", "{}");
   ModelSupply supply(test::must(load_scene("skin")), 1);
   ASSERT_TRUE(supply.start().ok());
-  supply.order(0, {ModelOrigin::file, Method::greedy, folder.file("good.json")});
-  supply.order(1, {ModelOrigin::file, Method::greedy, bad});
-  supply.order(2, {ModelOrigin::method, Method::greedy, ""});
+  supply.order(0, {ModelOrigin::file, &kGreedyMethod, folder.file("good.json")});
+  supply.order(1, {ModelOrigin::file, &kGreedyMethod, bad});
+  supply.order(2, {ModelOrigin::method, &kGreedyMethod, ""});
   const std::vector<SuppliedModel> made = wait_for(supply, 3);
   ASSERT_NE(made[0].model, nullptr) << made[0].problem;
   EXPECT_EQ(made[0].model->name(), data.name);
@@ -65,7 +65,7 @@ TEST(ModelSupply, ReadsFilesAndSaysWhatIsWrong) {
 
 TEST(ModelSupply, EndsInTheMiddleOfAFit) {
   ModelSupply supply(test::must(load_scene("silicone_block")), 1);
-  for (std::size_t i = 0; i < 8; ++i) supply.order(i, {ModelOrigin::method, Method::greedy, ""});
+  for (std::size_t i = 0; i < 8; ++i) supply.order(i, {ModelOrigin::method, &kGreedyMethod, ""});
   ASSERT_TRUE(supply.start().ok());
   while (supply.progress().share <= 0.0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_TRUE(supply.progress().working);

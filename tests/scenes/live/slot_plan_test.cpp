@@ -43,8 +43,8 @@ TEST(SlotPlan, FilesNeedNoMaterial) {
 
 TEST(SlotPlan, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(names(plan_slots(scene("silicone_block"), {"gredy"}, false)),
-            "error: found no model \"gredy\", expected a method (direct, voxel, random, kdtree, greedy) or a model "
-            "file that exists");
+            "error: found no model \"gredy\", expected a method (trend, direct, voxel, random, kdtree, greedy) or a "
+            "model file that exists");
   EXPECT_EQ(names(plan_slots(scene("silicone_block"), std::vector<std::string>(16, "random"), false)),
             "error: found 17 models, the direct reference included, expected at most 16; leave some out");
 }
