@@ -9,14 +9,14 @@
 #include "devices/virtual/replay_device.h"
 #include "scenes/scene/assets.h"
 #include "scenes/live/live_slot.h"
-#include "scenes/live/model_supply.h"
+#include "scenes/worker/model_worker.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/local_time.h"
 
 namespace palpate {
 namespace {
 
-// A ticket of a file that has no slot yet.
+// A job_id of a file that has no slot yet.
 constexpr std::size_t kNoSlot = static_cast<std::size_t>(-1);
 constexpr std::size_t kSnapshotsAtOnce = 256;
 constexpr std::size_t kMostNotices = 100;
@@ -74,16 +74,16 @@ Status LiveSession::begin() {
   settings.tick.jnd = scene_.jnd;
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
-  supply_ = std::make_unique<ModelSupply>(scene_, request_.seed);
-  for (std::size_t i = 0; i < slots_.size(); ++i) supply_->order(i, slots_[i]->plan);
+  worker_ = std::make_unique<ModelWorker>(scene_, request_.seed);
+  for (std::size_t i = 0; i < slots_.size(); ++i) worker_->add_job(i, slots_[i]->plan);
   outstanding_ = slots_.size();
   if (std::string note = device_->note(); !note.empty()) say(std::move(note), false);
-  if (Status status = supply_->start(); !status) return status;
+  if (Status status = worker_->start(); !status) return status;
   return loop_->start();
 }
 
 LiveSession::~LiveSession() {
-  if (supply_ != nullptr) supply_->cancel();
+  if (worker_ != nullptr) worker_->cancel();
   if (recorder_ != nullptr) {
     stop_recording();
     recorder_->wait();
@@ -216,48 +216,48 @@ double LiveSession::reference_in(const LoopSnapshot& snapshot, const PublishedSe
 // Models.
 
 void LiveSession::take_models() {
-  const ModelSupply::Progress progress = supply_->progress();
-  if (progress.working && progress.ticket < slots_.size()) {
-    SlotView& view = slots_[progress.ticket]->view;
+  const ModelWorker::Progress progress = worker_->progress();
+  if (progress.working && progress.job_id < slots_.size()) {
+    SlotView& view = slots_[progress.job_id]->view;
     if (view.state == SlotState::waiting) view.state = SlotState::fitting;
     if (view.state == SlotState::fitting) view.progress = progress.share;
   }
   bool joined = false;
-  for (SuppliedModel& supplied : supply_->take()) {
+  for (FinishedModel& finished : worker_->take_finished()) {
     --outstanding_;
-    if (supplied.ticket == kNoSlot) {
-      take_file(supplied);
+    if (finished.job_id == kNoSlot) {
+      take_file(finished);
     } else {
-      join(supplied.ticket, supplied);
+      join(finished.job_id, finished);
     }
-    joined = joined || supplied.model != nullptr;
+    joined = joined || finished.model != nullptr;
   }
   if (joined) publish();
 }
 
-void LiveSession::take_file(SuppliedModel& supplied) {
+void LiveSession::take_file(FinishedModel& finished) {
   --outstanding_files_;
-  if (supplied.model == nullptr) {
-    say(supplied.problem, true);
+  if (finished.model == nullptr) {
+    say(finished.problem, true);
     return;
   }
   slots_.push_back(std::make_unique<Slot>());
-  slots_.back()->plan = supplied.plan;
-  join(slots_.size() - 1, supplied);
-  say("loaded " + slots_.back()->view.name + " from " + supplied.plan.path, false);
+  slots_.back()->plan = finished.plan;
+  join(slots_.size() - 1, finished);
+  say("loaded " + slots_.back()->view.name + " from " + finished.plan.path, false);
 }
 
-void LiveSession::join(std::size_t index, SuppliedModel& supplied) {
+void LiveSession::join(std::size_t index, FinishedModel& finished) {
   Slot& slot = *slots_[index];
-  if (supplied.model == nullptr) {
+  if (finished.model == nullptr) {
     slot.view.state = SlotState::failed;
-    slot.view.problem = supplied.problem;
-    say(slot.view.name + ": " + supplied.problem, true);
+    slot.view.problem = finished.problem;
+    say(slot.view.name + ": " + finished.problem, true);
     return;
   }
   const bool first = std::none_of(slots_.begin(), slots_.end(),
                                   [](const auto& other) { return other->view.state == SlotState::ready; });
-  slot.model = supplied.model;
+  slot.model = finished.model;
   slot.dent = Dent(slot.model->features());
   slot.view.state = SlotState::ready;
   slot.view.progress = 1.0;
@@ -324,7 +324,7 @@ void LiveSession::load_file(const std::string& path) {
   }
   ++outstanding_;
   ++outstanding_files_;
-  supply_->order(kNoSlot, {ModelOrigin::file, Method::greedy, path, nullptr});
+  worker_->add_job(kNoSlot, {ModelOrigin::file, Method::greedy, path, nullptr});
 }
 
 bool LiveSession::all_settled() const noexcept { return outstanding_ == 0; }

@@ -33,10 +33,10 @@ namespace palpate {
 
 class AutoDevice;
 class HidBus;
-class ModelSupply;
+class ModelWorker;
 class MouseDevice;
 class ReplayDevice;
-struct SuppliedModel;
+struct FinishedModel;
 
 struct SessionRequest {
   std::string scene = "silicone_block";
@@ -188,8 +188,8 @@ class LiveSession {
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
   Status begin();
   void take_models();
-  void take_file(SuppliedModel& supplied);
-  void join(std::size_t index, SuppliedModel& supplied);
+  void take_file(FinishedModel& finished);
+  void join(std::size_t index, FinishedModel& finished);
   void publish();
   void send_controls();
   void take_snapshots();
@@ -215,7 +215,7 @@ class LiveSession {
   ReplayDevice* replay_ = nullptr;  // likewise
   std::shared_ptr<ReferenceForce> truth_;  // null: none for this scene and device
   std::unique_ptr<HapticsLoop> loop_;
-  std::unique_ptr<ModelSupply> supply_;
+  std::unique_ptr<ModelWorker> worker_;
   std::unique_ptr<SessionRecorder> recorder_;
   std::uint32_t recording_ = 0;  // these four as in LoopControls
   std::uint32_t acknowledged_ = 0;

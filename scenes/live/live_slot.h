@@ -8,7 +8,7 @@
 #include "scenes/live/dent.h"
 #include "scenes/live/evaluation_time.h"
 #include "scenes/live/live_session.h"
-#include "scenes/live/slot_plan.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 
