@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/hid/hid_drivers.h"
 #include "engine/base/json_message.h"
 
 namespace palpate {
@@ -33,7 +34,7 @@ class CalibrationReader {
       complain("direction", found(document_["direction"]) + ", expected 1 or -1");
     }
     calibration_.rest_position_m = number("rest_position_m", {-1.0, 1.0});
-    if (!error_ && pushes(calibration_.kind)) read_force();
+    if (!error_ && calibration_.driver->renders_force) read_force();
     refuse_others();
     if (error_) return *error_;
     return calibration_;
@@ -47,13 +48,14 @@ class CalibrationReader {
 
   void read_kind() {
     known_.push_back("kind");
-    for (const HidKind kind : kHidKinds) {
-      if (!document_.contains("kind") || document_["kind"] != hid_kind_name(kind)) continue;
-      calibration_.kind = kind;
-      return;
+    std::string expected;
+    for (const HidDriver* driver : kHidDrivers) {
+      expected += expected.empty() ? "" : driver == kHidDrivers.back() ? " or " : ", ";
+      expected += '"' + std::string(driver->name) + '"';
+      if (document_.contains("kind") && document_["kind"] == driver->name) calibration_.driver = driver;
     }
-    complain("kind", (document_.contains("kind") ? found(document_["kind"]) : "missing") +
-                         ", expected \"paddle\", \"polhem\", \"openffboard\" or \"spacemouse\"");
+    if (calibration_.driver != nullptr) return;
+    complain("kind", (document_.contains("kind") ? found(document_["kind"]) : "missing") + ", expected " + expected);
   }
 
   double number(const char* key, const NumberRange& range) {
@@ -116,16 +118,16 @@ Result<HidCalibration> parse_hid_calibration(std::string_view text, const std::s
   }
 }
 
-Result<HidCalibration> read_hid_calibration(const std::string& folder, HidKind kind) {
-  const std::string path = folder + "/" + hid_kind_name(kind) + ".json";
+Result<HidCalibration> read_hid_calibration(const std::string& folder, const HidDriver& driver) {
+  const std::string path = folder + "/" + driver.name + ".json";
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{path + ": cannot read the calibration; put the file there, see assets/devices/"};
   std::ostringstream text;
   text << file.rdbuf();
   Result<HidCalibration> calibration = parse_hid_calibration(text.str(), path);
-  if (calibration && calibration->kind != kind) {
-    return Error{path + ": found the calibration of \"" + hid_kind_name(calibration->kind) +
-                 "\", expected \"" + hid_kind_name(kind) + "\", as the file's name says"};
+  if (calibration && calibration->driver != &driver) {
+    return Error{path + ": found the calibration of \"" + calibration->driver->name +
+                 "\", expected \"" + std::string(driver.name) + "\", as the file's name says"};
   }
   return calibration;
 }
