@@ -66,16 +66,16 @@ TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
   Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   std::uint8_t bytes[65] = {};
-  ASSERT_EQ(opened->line->read(bytes, sizeof bytes), 64);
+  ASSERT_EQ(opened->connection->read(bytes, sizeof bytes), 64);
   DeviceReading reading;
   ASSERT_EQ(kPaddleDriver.decode(bytes, 64, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, 1000);
   const OutReports stop = kPaddleDriver.encode_stop();
-  ASSERT_TRUE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  ASSERT_TRUE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
   EXPECT_EQ(paddle.last_write_size, 65u) << "the report id comes first";
   paddle.gone = true;
-  EXPECT_LT(opened->line->read(bytes, sizeof bytes), 0);
-  EXPECT_FALSE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  EXPECT_LT(opened->connection->read(bytes, sizeof bytes), 0);
+  EXPECT_FALSE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
 }
 
 TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
