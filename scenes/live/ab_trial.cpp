@@ -37,8 +37,8 @@ bool AbTrial::begin(const std::vector<TrialModel>& ready) {
 
 const TrialModel* AbTrial::draw_other(const std::vector<TrialModel>& ready, const TrialModel& one) {
   const bool alike = random_.uniform(0.0, 1.0) < 0.5;
-  const TrialModel* wanted = find_method(ready, alike ? "direct" : "position");
-  if (wanted != nullptr && wanted != &one) return wanted;
+  const TrialModel* drawn = find_method(ready, alike ? "direct" : "position");
+  if (drawn != nullptr && drawn != &one) return drawn;
   std::vector<const TrialModel*> rest;
   for (const TrialModel& model : ready) {
     if (&model != &one) rest.push_back(&model);

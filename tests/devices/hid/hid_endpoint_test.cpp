@@ -322,7 +322,7 @@ TEST(HidEndpoint, TheGripIsADeadManSwitch) {
   simulated.controls.dead_man = DeadMan::grip;
   simulated.press();
   EXPECT_EQ(simulated.motor_N(), 0.0);
-  EXPECT_TRUE(simulated.snapshot.released);
+  EXPECT_TRUE(simulated.snapshot.dead_man_released);
   paddle.grip_now = true;
   simulated.run_s(1.0);
   EXPECT_GT(simulated.motor_N(), 3.5);
