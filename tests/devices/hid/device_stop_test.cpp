@@ -1,4 +1,5 @@
 // What goes out when a signal ends the program.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/device_stop.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ Ended run(void (*before)(), void (*end)()) {
   const pid_t child = fork();
   if (child == 0) {
     before();
-    register_device_stop(pipe_ends[1], encode_stop(HidKind::paddle));
+    register_device_stop(pipe_ends[1], kPaddleDriver.encode_stop());
     stop_devices_on_signals();
     end();
     _exit(7);

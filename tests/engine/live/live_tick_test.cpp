@@ -345,7 +345,7 @@ TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
   tick.run(1.000, {});
   tick.run(1.001, {});
   const LoopSnapshot& snapshot = tick.run(1.002, {});
-  EXPECT_EQ(snapshot.mixed_N, 1.5);
+  EXPECT_EQ(snapshot.commanded_N, 1.5);
   EXPECT_EQ(snapshot.rendered_N, 1.0) << "clamped to what the device may be given";
   EXPECT_EQ(device.force_N(), 1.0);
   EXPECT_EQ(source.seen_N, 1.0) << "what was rendered in the tick before";

@@ -1,4 +1,4 @@
-#include "scenes/live/model_supply.h"
+#include "scenes/worker/model_worker.h"
 
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -39,9 +39,9 @@ void lower_priority() { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_
 
 }  // namespace
 
-ModelSupply::ModelSupply(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
+ModelWorker::ModelWorker(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
 
-ModelSupply::~ModelSupply() {
+ModelWorker::~ModelWorker() {
   cancel();
   {
     const std::lock_guard lock(mutex_);
@@ -50,7 +50,7 @@ ModelSupply::~ModelSupply() {
   if (thread_.joinable()) thread_.join();
 }
 
-Status ModelSupply::start() {
+Status ModelWorker::start() {
   try {
     thread_ = std::thread([this] {
       lower_priority();
@@ -62,53 +62,53 @@ Status ModelSupply::start() {
   return {};
 }
 
-void ModelSupply::order(std::size_t ticket, const SlotPlan& plan) {
+void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan) {
   const std::lock_guard lock(mutex_);
-  const auto slower = std::find_if(orders_.begin(), orders_.end(),
-                                   [&](const Order& other) { return expected_cost_s(other.plan) > expected_cost_s(plan); });
-  orders_.insert(slower, {ticket, plan});
+  const auto slower = std::find_if(jobs_.begin(), jobs_.end(),
+                                   [&](const Job& other) { return expected_cost_s(other.plan) > expected_cost_s(plan); });
+  jobs_.insert(slower, {job_id, plan});
   wake_.notify_one();
 }
 
-std::vector<SuppliedModel> ModelSupply::take() {
+std::vector<FinishedModel> ModelWorker::take_finished() {
   const std::lock_guard lock(mutex_);
   return std::exchange(finished_, {});
 }
 
-ModelSupply::Progress ModelSupply::progress() const {
+ModelWorker::Progress ModelWorker::progress() const {
   const std::lock_guard lock(mutex_);
   if (!working_on_) return {};
   return {true, *working_on_, share_.load(std::memory_order_relaxed)};
 }
 
-std::optional<ModelSupply::Order> ModelSupply::next() {
+std::optional<ModelWorker::Job> ModelWorker::next_job() {
   std::unique_lock lock(mutex_);
   working_on_.reset();
-  wake_.wait(lock, [this] { return !orders_.empty() || cancelled_.load(std::memory_order_relaxed); });
+  wake_.wait(lock, [this] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
   if (cancelled_.load(std::memory_order_relaxed)) return std::nullopt;
-  Order order = std::move(orders_.front());
-  orders_.pop_front();
-  working_on_ = order.ticket;
+  Job job = std::move(jobs_.front());
+  jobs_.pop_front();
+  working_on_ = job.job_id;
   share_.store(0.0, std::memory_order_relaxed);
-  return order;
+  return job;
 }
 
-void ModelSupply::work() {
-  while (const std::optional<Order> order = next()) {
-    SuppliedModel model = make(*order);
+void ModelWorker::work() {
+  while (const std::optional<Job> job = next_job()) {
+    FinishedModel model = make(*job);
     const std::lock_guard lock(mutex_);
     finished_.push_back(std::move(model));
   }
 }
 
-SuppliedModel ModelSupply::make(const Order& order) {
-  SuppliedModel made{order.ticket, order.plan, nullptr, ""};
-  if (order.plan.loaded != nullptr) {
-    made.model = order.plan.loaded;
+FinishedModel ModelWorker::make(const Job& job) {
+  FinishedModel made{job.job_id, job.plan, nullptr, ""};
+  if (job.plan.loaded != nullptr) {
+    made.model = job.plan.loaded;
     return made;
   }
-  if (order.plan.origin == ModelOrigin::file) {
-    auto model = load_model(order.plan.path);
+  if (job.plan.origin == ModelOrigin::file) {
+    auto model = load_model(job.plan.path);
     if (model) {
       made.model = std::move(*model);
     } else {
@@ -116,7 +116,7 @@ SuppliedModel ModelSupply::make(const Order& order) {
     }
     return made;
   }
-  Result<ModelData> data = fit(order.plan);
+  Result<ModelData> data = fit(job.plan);
   if (data) {
     made.model = std::make_shared<const FittedModel>(std::move(*data));
   } else {
@@ -125,7 +125,7 @@ SuppliedModel ModelSupply::make(const Order& order) {
   return made;
 }
 
-FitControl ModelSupply::control(double from, double to) {
+FitControl ModelWorker::control(double from, double to) {
   FitControl result;
   result.progress = [this, from, to](double fraction) {
     share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
@@ -134,7 +134,7 @@ FitControl ModelSupply::control(double from, double to) {
   return result;
 }
 
-Status ModelSupply::prepare_recording() {
+Status ModelWorker::prepare_recording() {
   if (recording_ != nullptr) return {};
   if (!scene_.material) return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
   RigSettings settings;
@@ -146,7 +146,7 @@ Status ModelSupply::prepare_recording() {
   return {};
 }
 
-Status ModelSupply::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
+Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
   if (prepared) return {};
   if (Status status = prepare_recording(); !status) return status;
   MotionSource source({{"", recording_}});
@@ -156,7 +156,7 @@ Status ModelSupply::prepare(std::optional<PreparedTraining>& prepared, const Tra
   return {};
 }
 
-Result<ModelData> ModelSupply::fit(const SlotPlan& plan) {
+Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   const bool prepared_before = plan.origin == ModelOrigin::method && prepared_.has_value();
   std::optional<PreparedTraining> of_position;
   const bool position = plan.origin == ModelOrigin::position;

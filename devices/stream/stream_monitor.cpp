@@ -1,9 +1,7 @@
-#include "devices/hid/report_monitor.h"
+#include "devices/stream/stream_monitor.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "devices/firmware/paddle/paddle_protocol.h"
 
 namespace palpate {
 namespace {
@@ -16,59 +14,58 @@ constexpr double kShortestStep_s = 1e-3;
 // Two samples must not have the same time.
 constexpr double kLeastStep_s = 1e-6;
 
+// Of sequence numbers that wrap at 32 bits.
+bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::int32_t>(a - b) > 0; }
+
 }  // namespace
 
-ReportMonitor::ReportMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {
-  if (!pushes(settings_.kind)) state_.zeroing = Zeroing::not_needed;
-}
+StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {}
 
-void ReportMonitor::fault(std::uint32_t bit, double now_s) noexcept {
+void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
   if (now_s >= state_.transient_until_s) state_.transient = 0;
   state_.transient |= bit;
   state_.transient_until_s = now_s + kHold_s;
 }
 
-void ReportMonitor::lose(std::uint32_t bit) noexcept {
-  if (!pushes(settings_.kind)) return;  // its position is where it is pushed to
+void StreamMonitor::lose(std::uint32_t bit) noexcept {
   state_.lost |= bit;
   state_.zeroing = Zeroing::needed;
   state_.zeroing_progress = 0.0F;
 }
 
-void ReportMonitor::unplugged() noexcept {
+void StreamMonitor::unplugged() noexcept {
   connected_ = false;
-  state_.lost |= device_fault::kUnplugged;
   lose(device_fault::kUnplugged);
 }
 
-void ReportMonitor::start_zeroing() noexcept {
+void StreamMonitor::start_zeroing() noexcept {
   if (state_.zeroing == Zeroing::not_needed) return;
   state_.zeroing = Zeroing::hold_still;
   state_.zeroing_progress = 0.0F;
   zeroing_since_s_ = -1.0;
 }
 
-bool ReportMonitor::in_order(const HidReading& reading, double now_s) noexcept {
-  if (!has_sequence(settings_.kind) || !connected_) return true;
+bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.numbered || !connected_) return true;
   if (reading.boot != last_.boot) {
     lose(device_fault::kReset);
     connected_ = false;
     return true;
   }
-  if (paddle::later(reading.sequence, last_.sequence)) return true;
+  if (later(reading.sequence, last_.sequence)) return true;
   // The same report again says nothing new; its age will tell.
   if (reading.sequence != last_.sequence) fault(device_fault::kOutOfOrder, now_s);
   return false;
 }
 
-bool ReportMonitor::recent(const HidReading& reading, double now_s) noexcept {
+bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept {
   const bool together = now_s - arrivals_s_[2] < kTogether_s;
   std::copy_backward(arrivals_s_, arrivals_s_ + 2, arrivals_s_ + 3);
   arrivals_s_[0] = now_s;
-  if (!has_sequence(settings_.kind)) {
+  if (!settings_.numbered) {
     read_time_s_ = now_s;
-    if (together && pushes(settings_.kind)) fault(device_fault::kBurst, now_s);
-    return !(together && pushes(settings_.kind));
+    if (together) fault(device_fault::kBurst, now_s);
+    return !together;
   }
   if (!connected_) clock_.restart();
   read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
@@ -78,26 +75,26 @@ bool ReportMonitor::recent(const HidReading& reading, double now_s) noexcept {
 }
 
 // Unwraps the counter and judges the step.
-void ReportMonitor::move(const HidReading& reading) noexcept {
+void StreamMonitor::move(const DeviceReading& reading) noexcept {
   if (!connected_) {
     state_.counts = reading.counts;
     return;
   }
   std::int64_t step = static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) -
                                                 static_cast<std::uint32_t>(last_.counts));
-  if (count_bits(settings_.kind) == 16) step = static_cast<std::int16_t>(step & 0xFFFF);
+  if (settings_.count_bits == 16) step = static_cast<std::int16_t>(step & 0xFFFF);
   const double step_s = std::max(kShortestStep_s, read_time_s_ - state_.sample_time_s);
   const double most = settings_.counts_per_metre * settings_.fastest_m_per_s * step_s + kNoiseCounts;
-  if (pushes(settings_.kind) && std::abs(static_cast<double>(step)) > most) lose(device_fault::kJump);
+  if (std::abs(static_cast<double>(step)) > most) lose(device_fault::kJump);
   state_.counts += step;
 }
 
-void ReportMonitor::watch_stuck(double now_s, double force_N) noexcept {
+void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
   if (!(std::abs(force_N) >= kPushing_N)) still_since_s_ = now_s;
   if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck);
 }
 
-void ReportMonitor::watch_zeroing(double now_s) noexcept {
+void StreamMonitor::watch_zeroing(double now_s) noexcept {
   if (state_.zeroing != Zeroing::hold_still) return;
   zeroing_from_ = std::min(zeroing_from_, state_.counts);
   zeroing_to_ = std::max(zeroing_to_, state_.counts);
@@ -115,9 +112,8 @@ void ReportMonitor::watch_zeroing(double now_s) noexcept {
   ++state_.zeroings;
 }
 
-void ReportMonitor::take(const std::uint8_t* bytes, std::size_t size, double now_s, double force_N) noexcept {
-  HidReading reading;
-  const ReportVerdict verdict = decode_report(settings_.kind, bytes, size, reading);
+void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, double now_s,
+                           double force_N) noexcept {
   if (verdict == ReportVerdict::corrupt) fault(device_fault::kCorrupt, now_s);
   if (verdict == ReportVerdict::wrong_version) fault(device_fault::kWrongFirmware, now_s);
   if (reading.own_fault) fault(device_fault::kOwn, now_s);
@@ -135,7 +131,6 @@ void ReportMonitor::take(const std::uint8_t* bytes, std::size_t size, double now
   ++state_.samples;
   last_ = reading;
   connected_ = true;
-  if (!pushes(settings_.kind)) state_.lost = 0;  // plugged in again is enough
   watch_stuck(now_s, force_N);
   watch_zeroing(now_s);
 }

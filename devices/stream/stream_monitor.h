@@ -1,5 +1,6 @@
-// Follows the stream of reports of one device: where the tool is, since when it
-// is known, and what is wrong with the stream. Pure: no clock, no thread.
+// Follows the stream of readings of one device, whatever the transport: where the
+// tool is, since when it is known, and what is wrong with the stream. Pure: no
+// clock, no thread, no decoding.
 //
 //   a report that fails its decoder                       kCorrupt
 //   a sequence number that goes back                      kOutOfOrder
@@ -8,7 +9,8 @@
 //   a step faster than the device can move                kJump
 //   another boot number                                   kReset
 //   no count in `stuck_after_s` in spite of kPushing_N    kStuck
-// Reports that do not come at all are found by their age, see HidEndpoint. A
+// Reports that do not come at all are found by their age, by
+// whoever reads the device. A
 // fault that leaves the position known lasts kHold_s after its last occurrence;
 // one that loses it, until the device was zeroed. A faulty report is never used.
 //
@@ -17,14 +19,15 @@
 
 #include <cstdint>
 
-#include "devices/hid/device_clock.h"
-#include "devices/hid/hid_reports.h"
+#include "devices/stream/device_clock.h"
+#include "devices/stream/device_reading.h"
 #include "engine/live/device_health.h"
 
 namespace palpate {
 
 struct MonitorSettings {
-  HidKind kind = HidKind::paddle;
+  bool numbered = false;  // readings carry a sequence, a time and a boot number
+  int count_bits = 32;    // width of the counter; it wraps
   double counts_per_metre = 1.0;
   double fastest_m_per_s = 5.0;
   double stale_after_s = 0.01;
@@ -48,7 +51,7 @@ struct MonitorState {
   bool grip = false;
 };
 
-class ReportMonitor {
+class StreamMonitor {
  public:
   static constexpr double kHold_s = 0.1;
   static constexpr double kTogether_s = 0.5e-3;
@@ -57,11 +60,11 @@ class ReportMonitor {
   static constexpr double kZeroing_s = 0.2;
   static constexpr double kRest_m = 0.5e-3;
 
-  explicit ReportMonitor(const MonitorSettings& settings) noexcept;
+  explicit StreamMonitor(const MonitorSettings& settings) noexcept;
 
-  // A report that came at `now_s`, never earlier than the one before; `force_N`:
-  // what the device was told to push with.
-  void take(const std::uint8_t* bytes, std::size_t size, double now_s, double force_N) noexcept;
+  // A report that came at `now_s`, never earlier than the one before, as its decoder
+  // read it; `force_N`: what the device was told to push with.
+  void update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept;
   // The device is gone; what comes next comes from another start of it.
   void unplugged() noexcept;
   void start_zeroing() noexcept;
@@ -71,18 +74,18 @@ class ReportMonitor {
  private:
   void fault(std::uint32_t bit, double now_s) noexcept;
   void lose(std::uint32_t bit) noexcept;
-  bool in_order(const HidReading& reading, double now_s) noexcept;
-  bool recent(const HidReading& reading, double now_s) noexcept;
-  void move(const HidReading& reading) noexcept;
+  bool in_order(const DeviceReading& reading, double now_s) noexcept;
+  bool recent(const DeviceReading& reading, double now_s) noexcept;
+  void move(const DeviceReading& reading) noexcept;
   void watch_stuck(double now_s, double force_N) noexcept;
   void watch_zeroing(double now_s) noexcept;
 
   MonitorSettings settings_;
   MonitorState state_;
   DeviceClock clock_;
-  HidReading last_;
+  DeviceReading last_;
   bool connected_ = false;                     // a report was accepted since the start or since unplugging
-  double read_time_s_ = 0.0;                   // of the reading in hand
+  double read_time_s_ = 0.0;                   // of the present reading
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three reports, newest first
   double still_since_s_ = 0.0;
   double zeroing_since_s_ = -1.0;  // below 0: not begun

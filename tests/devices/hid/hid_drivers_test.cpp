@@ -1,5 +1,5 @@
 // Every report, there and back; what is not one is refused.
-#include "devices/hid/hid_reports.h"
+#include "devices/hid/hid_drivers.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,9 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-ReportVerdict decode(HidKind kind, const Bytes& bytes, HidReading& reading) {
-  return decode_report(kind, bytes.data(), bytes.size(), reading);
+ReportVerdict decode(const HidDriver* driver, const Bytes& bytes, DeviceReading& reading) {
+  reading = {};
+  return driver->decode(bytes.data(), bytes.size(), reading);
 }
 
 Bytes paddle_report(std::uint8_t status) {
@@ -36,8 +37,8 @@ Bytes ffb_answer(std::uint8_t type, std::int64_t position) {
 }
 
 TEST(HidReports, ReadsThePaddle) {
-  HidReading reading;
-  ASSERT_EQ(decode(HidKind::paddle, paddle_report(paddle::kGrip), reading), ReportVerdict::position);
+  DeviceReading reading;
+  ASSERT_EQ(decode(&kPaddleDriver, paddle_report(paddle::kGrip), reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, -55);
   EXPECT_EQ(reading.sequence, 7u);
   EXPECT_EQ(reading.time_us, 1000u);
@@ -45,73 +46,73 @@ TEST(HidReports, ReadsThePaddle) {
   EXPECT_EQ(reading.confirmed, 6u);
   EXPECT_TRUE(reading.grip);
   EXPECT_FALSE(reading.own_fault);
-  ASSERT_EQ(decode(HidKind::paddle, paddle_report(paddle::kMotorFault), reading), ReportVerdict::position);
+  ASSERT_EQ(decode(&kPaddleDriver, paddle_report(paddle::kMotorFault), reading), ReportVerdict::position);
   EXPECT_TRUE(reading.own_fault);
   Bytes other = paddle_report(0);
   other[1] = 2;
-  EXPECT_EQ(decode(HidKind::paddle, other, reading), ReportVerdict::wrong_version);
+  EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::wrong_version);
   other = paddle_report(0);
   other[30] = 1;
-  EXPECT_EQ(decode(HidKind::paddle, other, reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::corrupt);
 }
 
 TEST(HidReports, ReadsPolhem) {
-  HidReading reading;
+  DeviceReading reading;
   Bytes bytes(14, 0);
   bytes[0] = 0x18;
   bytes[1] = 0xFC;
   bytes[2] = 0x7F;  // axis b is not used
-  ASSERT_EQ(decode(HidKind::polhem, bytes, reading), ReportVerdict::position);
+  ASSERT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, -1000);
   bytes.resize(64, 0);
-  ASSERT_EQ(decode(HidKind::polhem, bytes, reading), ReportVerdict::position);
+  ASSERT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::position);
   bytes[14] = 1;
-  EXPECT_EQ(decode(HidKind::polhem, bytes, reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::corrupt);
 }
 
 TEST(HidReports, ReadsOpenFfBoard) {
-  HidReading reading;
+  DeviceReading reading;
   for (const std::uint8_t type : {std::uint8_t{1}, std::uint8_t{10}}) {
-    ASSERT_EQ(decode(HidKind::openffboard, ffb_answer(type, -70000), reading), ReportVerdict::position);
+    ASSERT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(type, -70000), reading), ReportVerdict::position);
     EXPECT_EQ(reading.counts, -70000);
   }
   // Older firmware leaves the upper half empty.
-  ASSERT_EQ(decode(HidKind::openffboard, ffb_answer(10, 0xFFFFFFFF), reading), ReportVerdict::position);
+  ASSERT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(10, 0xFFFFFFFF), reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, -1);
-  EXPECT_EQ(decode(HidKind::openffboard, ffb_answer(10, 1LL << 40), reading), ReportVerdict::corrupt);
-  EXPECT_EQ(decode(HidKind::openffboard, ffb_answer(77, 0), reading), ReportVerdict::corrupt);
-  EXPECT_EQ(decode(HidKind::openffboard, ffb_answer(15, 0), reading), ReportVerdict::nothing);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(10, 1LL << 40), reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(77, 0), reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(15, 0), reading), ReportVerdict::nothing);
   EXPECT_TRUE(reading.own_fault);
   Bytes joystick(20, 0);
   joystick[0] = 1;
-  EXPECT_EQ(decode(HidKind::openffboard, joystick, reading), ReportVerdict::nothing);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, joystick, reading), ReportVerdict::nothing);
 }
 
 TEST(HidReports, ReadsTheSpaceMouse) {
-  HidReading reading;
-  ASSERT_EQ(decode(HidKind::spacemouse, {1, 0, 0, 0, 0, 0xA2, 0xFE}, reading), ReportVerdict::position);
+  DeviceReading reading;
+  ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 0xA2, 0xFE}, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, -350);
-  ASSERT_EQ(decode(HidKind::spacemouse, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading),
+  ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading),
             ReportVerdict::position)
       << "the wireless ones send six axes";
   EXPECT_EQ(reading.counts, 5);
-  EXPECT_EQ(decode(HidKind::spacemouse, {2, 0, 0, 0, 0, 5, 0}, reading), ReportVerdict::nothing);
-  EXPECT_EQ(decode(HidKind::spacemouse, {3, 1}, reading), ReportVerdict::nothing);
-  EXPECT_EQ(decode(HidKind::spacemouse, {1, 0, 0, 0, 0, 0, 0x20}, reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kSpaceMouseDriver, {2, 0, 0, 0, 0, 5, 0}, reading), ReportVerdict::nothing);
+  EXPECT_EQ(decode(&kSpaceMouseDriver, {3, 1}, reading), ReportVerdict::nothing);
+  EXPECT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 0, 0x20}, reading), ReportVerdict::corrupt);
 }
 
 TEST(HidReports, RefusesEveryOtherLength) {
-  HidReading reading;
+  DeviceReading reading;
   const Bytes zeros(64, 0);
-  for (const HidKind kind : kHidKinds) {
-    EXPECT_EQ(decode_report(kind, zeros.data(), 0, reading), ReportVerdict::corrupt);
-    EXPECT_NE(decode_report(kind, zeros.data(), 13, reading), ReportVerdict::position) << hid_kind_name(kind);
+  for (const HidDriver* driver : kHidDrivers) {
+    EXPECT_EQ(driver->decode(zeros.data(), 0, reading), ReportVerdict::corrupt);
+    EXPECT_NE(driver->decode(zeros.data(), 13, reading), ReportVerdict::position) << driver->name;
   }
 }
 
 TEST(HidReports, WritesThePaddle) {
   HidCommand command{9, 4, true, -250.4};
-  OutReports reports = encode_command(HidKind::paddle, command);
+  OutReports reports = kPaddleDriver.encode_command(command);
   ASSERT_EQ(reports.count, 1u);
   ASSERT_EQ(reports.sizes[0], 65u);
   EXPECT_EQ(reports.bytes[0][0], 0) << "no report id";
@@ -122,18 +123,18 @@ TEST(HidReports, WritesThePaddle) {
   EXPECT_EQ(out.current_mA, -250);
   EXPECT_EQ(out.heartbeat, 4);
   command.drive = false;
-  reports = encode_command(HidKind::paddle, command);
+  reports = kPaddleDriver.encode_command(command);
   ASSERT_EQ(paddle::decode(reports.bytes[0].data() + 1, out), paddle::kGood);
   EXPECT_EQ(out.flags, 0);
   EXPECT_EQ(out.current_mA, 0);
 }
 
 TEST(HidReports, WritesPolhemAndOpenFfBoard) {
-  const OutReports polhem = encode_command(HidKind::polhem, {1, 1, true, 1e9});
+  const OutReports polhem = kPolhemDriver.encode_command({1, 1, true, 1e9});
   ASSERT_EQ(polhem.count, 1u);
   EXPECT_EQ(polhem.sizes[0], 65u);
   EXPECT_EQ(paddle::read16(polhem.bytes[0].data() + 1), 32767) << "clamped";
-  const OutReports ffb = encode_command(HidKind::openffboard, {1, 1, true, -2.0});
+  const OutReports ffb = kOpenFfBoardDriver.encode_command({1, 1, true, -2.0});
   ASSERT_EQ(ffb.count, 2u) << "asks for the position, sets the force";
   EXPECT_EQ(ffb.sizes[1], 25u);
   EXPECT_EQ(ffb.bytes[1][0], 0xA1);
@@ -142,18 +143,18 @@ TEST(HidReports, WritesPolhemAndOpenFfBoard) {
   EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 5), 4u);
   EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 9), 0xFFFFFFFEu);
   EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 13), 0xFFFFFFFFu);
-  EXPECT_EQ(encode_start(HidKind::openffboard).count, 4u);
+  EXPECT_EQ(kOpenFfBoardDriver.encode_start().count, 4u);
 }
 
 TEST(HidReports, NoNumberIsNoForce) {
-  for (const HidKind kind : {HidKind::paddle, HidKind::polhem, HidKind::openffboard}) {
-    const OutReports nan = encode_command(kind, {1, 1, true, std::nan("")});
-    const OutReports zero = encode_command(kind, {1, 1, true, 0.0});
+  for (const HidDriver* driver : {&kPaddleDriver, &kPolhemDriver, &kOpenFfBoardDriver}) {
+    const OutReports nan = driver->encode_command({1, 1, true, std::nan("")});
+    const OutReports zero = driver->encode_command({1, 1, true, 0.0});
     EXPECT_EQ(nan.bytes, zero.bytes);
-    EXPECT_EQ(encode_stop(kind).count, 1u);
+    EXPECT_EQ(driver->encode_stop().count, 1u);
   }
-  EXPECT_EQ(encode_command(HidKind::spacemouse, {1, 1, true, 1.0}).count, 0u);
-  EXPECT_EQ(encode_stop(HidKind::spacemouse).count, 0u);
+  EXPECT_EQ(kSpaceMouseDriver.encode_command({1, 1, true, 1.0}).count, 0u);
+  EXPECT_EQ(kSpaceMouseDriver.encode_stop().count, 0u);
 }
 
 }  // namespace

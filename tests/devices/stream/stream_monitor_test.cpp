@@ -1,33 +1,36 @@
-// One stream of reports at a time; hid_endpoint_test has them with force and time.
-#include "devices/hid/report_monitor.h"
+// One stream of readings at a time, without a transport; hid_endpoint_test has them
+// with reports, force and time.
+#include "devices/stream/stream_monitor.h"
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
-#include "devices/firmware/paddle/paddle_protocol.h"
+#include <cstdint>
 
 namespace palpate {
 namespace {
 
-MonitorSettings settings_for(HidKind kind) {
+MonitorSettings settings_for(bool numbered, int count_bits) {
   MonitorSettings settings;
-  settings.kind = kind;
+  settings.numbered = numbered;
+  settings.count_bits = count_bits;
   settings.counts_per_metre = 50000.0;
   settings.fastest_m_per_s = 5.0;
   return settings;
 }
 
-// A paddle's reports, 1 ms apart.
+// Numbered readings, 1 ms apart.
 struct Stream {
-  ReportMonitor monitor{settings_for(HidKind::paddle)};
-  paddle::FromDevice next{0, 0, 0, 0, 0, 1, 0, 0};
+  StreamMonitor monitor{settings_for(true, 32)};
+  DeviceReading next = first_of_boot(1);
   double now_s = 10.0;
 
-  void send(const paddle::FromDevice& report, double force_N = 0.0) {
-    std::uint8_t bytes[64];
-    paddle::encode(report, bytes);
-    monitor.take(bytes, sizeof bytes, now_s, force_N);
+  static DeviceReading first_of_boot(std::uint16_t boot) {
+    DeviceReading reading;
+    reading.boot = boot;
+    return reading;
+  }
+  void send(const DeviceReading& reading, double force_N = 0.0) {
+    monitor.update(ReportVerdict::position, reading, now_s, force_N);
   }
   void step(std::int32_t counts = 0, double force_N = 0.0) {
     now_s += 1e-3;
@@ -46,7 +49,7 @@ struct Stream {
   }
 };
 
-TEST(ReportMonitor, CountsAndTimesWhatItAccepts) {
+TEST(StreamMonitor, CountsAndTimesWhatItAccepts) {
   Stream stream;
   for (int i = 0; i < 50; ++i) stream.step(i);
   const MonitorState& state = stream.monitor.state();
@@ -57,7 +60,7 @@ TEST(ReportMonitor, CountsAndTimesWhatItAccepts) {
   EXPECT_EQ(state.lost, 0u);
 }
 
-TEST(ReportMonitor, LostReportsAreNoFault) {
+TEST(StreamMonitor, LostReportsAreNoFault) {
   Stream stream;
   stream.steps(10);
   stream.next.sequence += 5;
@@ -68,10 +71,10 @@ TEST(ReportMonitor, LostReportsAreNoFault) {
   EXPECT_EQ(stream.monitor.state().counts, 3);
 }
 
-TEST(ReportMonitor, AnOlderReportIsNotUsed) {
+TEST(StreamMonitor, AnOlderReportIsNotUsed) {
   Stream stream;
   stream.steps(10);
-  paddle::FromDevice older = stream.next;
+  DeviceReading older = stream.next;
   older.sequence -= 3;
   older.counts = 99;
   stream.send(older);
@@ -80,7 +83,7 @@ TEST(ReportMonitor, AnOlderReportIsNotUsed) {
   EXPECT_NEAR(stream.monitor.state().transient_until_s, stream.now_s + 0.1, 1e-9);
 }
 
-TEST(ReportMonitor, SequenceMayWrap) {
+TEST(StreamMonitor, SequenceMayWrap) {
   Stream stream;
   stream.next.sequence = 0xFFFFFFF0u;
   stream.steps(64);
@@ -88,7 +91,7 @@ TEST(ReportMonitor, SequenceMayWrap) {
   EXPECT_EQ(stream.monitor.state().transient, 0u);
 }
 
-TEST(ReportMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
+TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
   Stream stream;
   stream.zero();
   for (int i = 1; i <= 100; ++i) stream.step(250 * i);  // 5 m/s
@@ -101,19 +104,19 @@ TEST(ReportMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
   EXPECT_EQ(stream.monitor.state().zeroings, 2u);
 }
 
-TEST(ReportMonitor, ASixteenBitCounterMayWrap) {
-  ReportMonitor monitor(settings_for(HidKind::polhem));
-  std::uint8_t bytes[14] = {};
+TEST(StreamMonitor, ASixteenBitCounterMayWrap) {
+  StreamMonitor monitor(settings_for(false, 16));
   double now_s = 1.0;
   for (int i = 0; i < 1000; ++i) {
-    paddle::write16(bytes, static_cast<std::uint16_t>(100 * i));
-    monitor.take(bytes, sizeof bytes, now_s += 1e-3, 0.0);
+    DeviceReading reading;
+    reading.counts = static_cast<std::int16_t>(100 * i);
+    monitor.update(ReportVerdict::position, reading, now_s += 1e-3, 0.0);
   }
   EXPECT_EQ(monitor.state().counts, 99'900);
   EXPECT_EQ(monitor.state().lost, 0u);
 }
 
-TEST(ReportMonitor, StandingStillIsStuckOnlyUnderForce) {
+TEST(StreamMonitor, StandingStillIsStuckOnlyUnderForce) {
   Stream stream;
   stream.zero();
   for (int i = 0; i < 2000; ++i) stream.step(0, 0.1);
@@ -124,29 +127,28 @@ TEST(ReportMonitor, StandingStillIsStuckOnlyUnderForce) {
   EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck);
 }
 
-TEST(ReportMonitor, AnotherBootIsAReset) {
+TEST(StreamMonitor, AnotherBootIsAReset) {
   Stream stream;
   stream.zero();
-  stream.next = {0, 0, 0, 0, 0, 2, 0, 0};
+  stream.next = Stream::first_of_boot(2);
   stream.step();
   EXPECT_EQ(stream.monitor.state().lost, device_fault::kReset);
 }
 
-TEST(ReportMonitor, FaultsAddUpWhileTheyLast) {
+TEST(StreamMonitor, FaultsAddUpWhileTheyLast) {
   Stream stream;
   stream.steps(10);
-  std::uint8_t bad[64] = {};
-  stream.monitor.take(bad, sizeof bad, stream.now_s, 0.0);
-  paddle::FromDevice older = stream.next;
+  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
+  DeviceReading older = stream.next;
   older.sequence -= 3;
   stream.send(older);
   EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt | device_fault::kOutOfOrder);
   stream.now_s += 1.0;
-  stream.monitor.take(bad, sizeof bad, stream.now_s, 0.0);
+  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
   EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt);
 }
 
-TEST(ReportMonitor, ZeroingTakesTheMiddleOfWhereItRested) {
+TEST(StreamMonitor, ZeroingTakesTheMiddleOfWhereItRested) {
   Stream stream;
   stream.monitor.start_zeroing();
   for (int i = 0; i < 210; ++i) stream.step(100 + i % 2 * 10);

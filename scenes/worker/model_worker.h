@@ -24,51 +24,51 @@
 
 #include "models/fit/fit.h"
 #include "models/model/fitted_model.h"
-#include "scenes/live/slot_plan.h"
+#include "scenes/worker/slot_plan.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
 
-struct SuppliedModel {
-  std::size_t ticket = 0;  // as ordered
+struct FinishedModel {
+  std::size_t job_id = 0;  // as asked for
   SlotPlan plan;
   std::shared_ptr<const FittedModel> model;  // null: `problem` says why
   std::string problem;
 };
 
-class ModelSupply {
+class ModelWorker {
  public:
-  ModelSupply(Scene scene, std::uint64_t seed);
-  ModelSupply(const ModelSupply&) = delete;
-  ModelSupply& operator=(const ModelSupply&) = delete;
+  ModelWorker(Scene scene, std::uint64_t seed);
+  ModelWorker(const ModelWorker&) = delete;
+  ModelWorker& operator=(const ModelWorker&) = delete;
   // Interrupts what is being made and waits for the worker.
-  ~ModelSupply();
+  ~ModelWorker();
 
-  // What is ordered before this is made the quickest first. Errors: no thread.
+  // What is asked for before this is made the quickest first. Errors: no thread.
   Status start();
-  // `ticket`: comes back with the model.
-  void order(std::size_t ticket, const SlotPlan& plan);
+  // `job_id`: comes back with the model.
+  void add_job(std::size_t job_id, const SlotPlan& plan);
   // What was finished since the last call.
-  std::vector<SuppliedModel> take();
+  std::vector<FinishedModel> take_finished();
 
   struct Progress {
     bool working = false;
-    std::size_t ticket = 0;
+    std::size_t job_id = 0;
     double share = 0.0;  // of this one
   };
   Progress progress() const;
 
-  // Makes `take` end early: no more is begun. Does not wait.
+  // Interrupts the fit that runs; no other is begun. Does not wait.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
 
  private:
-  struct Order {
-    std::size_t ticket = 0;
+  struct Job {
+    std::size_t job_id = 0;
     SlotPlan plan;
   };
   void work();
-  std::optional<Order> next();
-  SuppliedModel make(const Order& order);
+  std::optional<Job> next_job();
+  FinishedModel make(const Job& job);
   Result<ModelData> fit(const SlotPlan& plan);
   Status prepare_recording();
   Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
@@ -87,8 +87,8 @@ class ModelSupply {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   // By mutex_.
-  std::deque<Order> orders_;
-  std::vector<SuppliedModel> finished_;
+  std::deque<Job> jobs_;
+  std::vector<FinishedModel> finished_;
   std::optional<std::size_t> working_on_;
 };
 

@@ -1,5 +1,5 @@
 // The device's time on the host's clock.
-#include "devices/hid/device_clock.h"
+#include "devices/stream/device_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenes/live/slot_plan.h"
+#include "scenes/worker/slot_plan.h"
 
 #include <algorithm>
 #include <filesystem>
