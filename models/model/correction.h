@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-class JsonFields;  // models/model/file/json_fields.h
+class JsonFields;  // engine/json/json_fields.h
 struct JsonNode;
 
 // Fields of a model file: the key and its value as JSON text, in the file's order.

@@ -1,6 +1,6 @@
 #include "models/model/no_correction.h"
 
-#include "models/model/file/json_fields.h"
+#include "engine/json/json_fields.h"
 
 namespace palpate {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "models/model/file/json_fields.h"
+#include "engine/json/json_fields.h"
 
 namespace palpate {
 

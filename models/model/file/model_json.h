@@ -7,8 +7,8 @@
 //   provenance, and the correction: kernel, tail, centres and weights, or grid
 //   {nodes, values_N}, or trend_alone, or what another kind in the table of
 //   models/model/correction.h writes.
-// Every field is required; fields that this version does not know are ignored
-// (older files have provenance.fit_seconds).
+// Every field is required, and others are refused (but provenance.fit_seconds, which
+// older files have).
 // Centres, weights and cover points stand one to a line, so that two models can
 // be compared line by line. Numbers are the shortest decimals that read back as
 // the same double, so a model read back gives bit-identical forces. "filters" in
@@ -40,8 +40,8 @@ Result<std::string> write_model_text(const ModelData& data);
 // Reads what `write_model_text` wrote. `path` names the file in messages:
 //   path:line:column: field[index]: found X, expected Y; what to do
 // Errors: text that is not JSON, a number beyond the range of a double, nesting
-// beyond kModelNesting, another format or version, a field that is missing, of
-// the wrong type, size or sign. The first one counts.
+// beyond kModelNesting, another format or version, a field that is missing,
+// unknown, of the wrong type, size or sign: all of them, a line each.
 Result<ModelData> read_model_text(std::string_view text, const std::string& path);
 
 }  // namespace palpate

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/json/json_fields.h"
 #include "models/model/file/json_arrays.h"
-#include "models/model/file/json_fields.h"
 #include "models/model/file/model_fields.h"
 #include "models/model/file/model_json.h"
 
@@ -17,6 +17,7 @@ namespace palpate {
 namespace {
 
 constexpr const char* kFitAgain = "; fit the model again";
+constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
 
 class ModelReader : private JsonFields {
  public:
@@ -24,7 +25,7 @@ class ModelReader : private JsonFields {
       : JsonFields(text, path, kFitAgain), text_(text), path_(path) {}
 
   Result<ModelData> read() {
-    const Result<nlohmann::json> document = parse_json(text_, path_, kModelNesting);
+    const Result<nlohmann::json> document = parse_json(text_, path_, kModelNesting, {kFitAgain, kDamaged});
     if (!document) return document.error();
     read_document({&*document, ""});
     if (error()) return *error();
@@ -45,8 +46,9 @@ class ModelReader : private JsonFields {
   void read_document(const JsonNode& top) {
     if (!read_format(top)) return;
     read_names(top);
+    const std::size_t named = error_count();
     read_features(top);
-    if (error()) return;  // every size below depends on the features
+    if (error_count() > named) return;  // every size below depends on the features
     const std::string per_feature = "numbers, one per feature";
     const JsonNode normalisation = member(top, "normalisation", "an object with offset and scale");
     data_.offset = read_vector(*this, normalisation, "offset", dimension(), per_feature);
@@ -66,14 +68,17 @@ class ModelReader : private JsonFields {
     data_.cover.outer_radius = number(domain, "outer_radius", Sign::kPositive);
     data_.cover.points = read_points(*this, domain, "points", dimension());
     read_correction(top);
+    // After another error not all that may be there was asked for.
+    if (error_count() == 0) refuse_unknown(top);
   }
 
   bool read_format(const JsonNode& top) {
     const char* advice = "; name a file that palpate fit wrote";
-    if (!top.value->is_object() || !top.value->contains("format") || (*top.value)["format"] != "palpate-model") {
-      const bool none = !top.value->is_object() || !top.value->contains("format");
-      complain(none ? "" : "/format",
-               (none ? "found no \"format\"" : found((*top.value)["format"])) + ", expected \"palpate-model\"", advice);
+    const JsonNode format = optional_member(top, "format");
+    if (format.value == nullptr || *format.value != "palpate-model") {
+      const bool none = format.value == nullptr;
+      complain(none ? "" : format.pointer,
+               (none ? "found no \"format\"" : found(*format.value)) + ", expected \"palpate-model\"", advice);
       return false;
     }
     const JsonNode version = member(top, "version", std::to_string(kModelVersion));
@@ -175,6 +180,7 @@ class ModelReader : private JsonFields {
     from.reduction = text(node, "reduction");
     from.relaxation = text(node, "relaxation");
     from.training_within_jnd = number(node, "training_within_jnd", Sign::kNotNegative);
+    optional_member(node, "fit_seconds");  // older files
     const JsonNode times = list(node, "relaxation_times", "a list");
     for (std::size_t i = 0; times.value != nullptr && i < times.value->size(); ++i) {
       const JsonNode time{&(*times.value)[i], times.pointer + "/" + std::to_string(i)};

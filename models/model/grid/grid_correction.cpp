@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "models/model/file/json_fields.h"
+#include "engine/json/json_fields.h"
 #include "models/model/file/json_text.h"
 
 namespace palpate {
