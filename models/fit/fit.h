@@ -1,7 +1,7 @@
 // From recordings to a model: the whole of `palpate fit`, as two steps, so that
 // a comparison of methods prepares the data once.
 //
-//   prepare_training   greatest depth, relaxation times, trend, features,
+//   prepare_training   surface of every recording, greatest depth, relaxation times, trend, features,
 //                      normalisation, reduction, one-sided contact, domain cover
 //   fit_method         one of the five methods on the prepared sites
 //
@@ -41,6 +41,8 @@ std::string_view method_name(Method method);
 std::optional<Method> method_from_name(std::string_view name);
 
 enum class Relaxation { scene, automatic, given };
+// Where the surface of each recording is: estimated, or 0 as recorded.
+enum class Surface { automatic, recorded };
 enum class DirectSolverChoice { cholesky, tsvd };
 
 struct TrainingRequest {
@@ -52,6 +54,7 @@ struct TrainingRequest {
   Relaxation relaxation = Relaxation::scene;
   std::vector<double> relaxation_times_s;  // when given
   BranchDrive drive = BranchDrive::elastic_rate;
+  Surface surface = Surface::automatic;
 };
 
 struct MethodRequest {
