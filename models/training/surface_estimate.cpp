@@ -91,7 +91,9 @@ SurfaceEstimate estimate_surface(const std::vector<SurfaceRow>& rows, double for
     touches = touches_at_rest(rows, estimate.force_zero_N, threshold_N);
   }
   if (touches.empty()) return estimate;
-  const double least_N = std::max(kLeastZero_N, kSignificant * estimate.force_zero_error_N);
+  // A zero that drifts by more than it is off is not known either.
+  const double least_N = std::max({kLeastZero_N, kSignificant * estimate.force_zero_error_N,
+                                   std::abs(estimate.force_zero_drift_N)});
   if (std::abs(estimate.force_zero_N) < least_N) estimate.force_zero_N = 0.0;
 
   const Onset onset = find_onset(rows, touches, estimate.force_zero_N, force_noise_N);
