@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/live/pacer.h"
+#include "engine/base/text.h"
 #include "rendering/panels/panel.h"
 #include "rendering/ui/plot.h"
 
@@ -124,7 +125,7 @@ void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& sty
   section_title(style, "FORCE");
   ImGui::SameLine();
   const double reference_N = session.reference_N();
-  ImGui::TextColored(paint(kReferenceColour), "%s N", three_digits(reference_N).c_str());
+  ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
   ImGui::SameLine();
   ImGui::TextDisabled("%s", session.reference_words().c_str());
   tip("What the models are compared with. F chooses another.\nThe grey band is one just noticeable "

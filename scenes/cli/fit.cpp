@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
 #include "scenes/cli/progress.h"
@@ -89,12 +90,6 @@ std::string check_grid(const std::string& text) {
   return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
 }
 
-std::string text_of(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 TrainingRequest training_request(const FitArguments& arguments, const Scene& scene) {
   TrainingRequest request = palpate::training_request(scene);
   request.weighting = arguments.weighting == "jnd"        ? Weighting::jnd
@@ -149,10 +144,10 @@ std::vector<RecordingSurface> surfaces_of(const Provenance& provenance) {
 void print_surfaces(const Provenance& provenance) {
   for (const RecordingSurface& surface : provenance.surfaces) {
     const std::string error = std::isfinite(surface.standard_error_m)
-                                  ? text_of("+- %.3f mm", 1e3 * surface.standard_error_m)
-                                  : std::string("(no onset found)");
-    std::cout << "surface             " << text_of("%+.3f mm ", 1e3 * surface.offset_m) << error
-              << text_of(", force zero %+.1f mN: ", 1e3 * surface.force_zero_N) << surface.name << "\n";
+                                  ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
+                                  : std::string(" mm (no onset found)");
+    std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
+              << fixed(1e3 * surface.force_zero_N, 1) << " mN: " << surface.name << "\n";
   }
 }
 

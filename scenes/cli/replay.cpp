@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "scenes/cli/replayed_recording.h"
 #include "scenes/cli/verbs.h"
 
@@ -94,12 +95,6 @@ void print_json(const std::vector<ReplayedRecording>& all, const std::vector<Loa
   // A path need not be UTF-8; what cannot be said is replaced.
   std::printf("%s\n", (all.size() == 1 ? list.front() : list)
                           .dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
-}
-
-std::string fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
 }
 
 using Row = std::vector<std::string>;
