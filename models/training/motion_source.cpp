@@ -126,7 +126,7 @@ Status MotionSource::arrange(const FitControl& control, double fraction) {
       if (*count == 0) break;
       for (std::size_t i = 0; i < *count; ++i) hash.add(chunk[i]);
       one.rows += *count;
-      if (held + one.rows <= std::min(kRowsReadOnce, kept_rows_)) {
+      if (!input.loaded && held + one.rows <= std::min(kRowsReadOnce, kept_rows_)) {
         copy->rows.insert(copy->rows.end(), chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(*count));
       }
       if (!control.go_on(fraction)) return interrupted();
