@@ -12,22 +12,21 @@
 #include "models/training/surface_estimate.h"
 #include "models/training/surface_rows.h"
 #include "models/training/trend_rows.h"
+#include "models/training/surface_numbers.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
 // Rows of all recordings together for the common trend, and of each for its onset.
 constexpr std::size_t kCommonRows = 4000;
 constexpr std::size_t kOnsetRows = 400000;
-constexpr std::size_t kFolds = 8;
+constexpr std::size_t kRegistrationFolds = 8;
 constexpr std::size_t kPiecesOfARecording = 16;
 constexpr int kSteps = 12;
 constexpr int kActivePasses = 3;
 constexpr double kConverged_m = 0.2e-6;
 constexpr double kLongestStep_m = 0.5e-3;
 constexpr double kDerivativeStep_m = 10e-6;
-constexpr double kSignificant = 2.0;  // standard errors
 // Errors beyond this many JND count in proportion only (Huber): another specimen
 // or a slip must not decide where the surface is.
 constexpr double kHuber = 2.0;
@@ -100,11 +99,11 @@ class CommonTrend {
 
   // The Gauss-Newton step of every offset, their sum kept; `without` leaves out
   // one fold. Needs a fit.
-  std::vector<double> step(std::size_t without = kFolds) const {
+  std::vector<double> step(std::size_t without = kRegistrationFolds) const {
     const auto n = static_cast<Eigen::Index>(at_.front().columns());
     const auto m = static_cast<Eigen::Index>(members_.size());
     Sums sums(n + m);
-    for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    for (std::size_t fold = 0; fold < kRegistrationFolds; ++fold) {
       if (fold == without) continue;
       sums.gram += folds_[fold].gram;
       sums.right_side += folds_[fold].right_side;
@@ -128,7 +127,7 @@ class CommonTrend {
   void gather() {
     const auto n = static_cast<Eigen::Index>(at_.front().columns());
     const auto m = static_cast<Eigen::Index>(members_.size());
-    folds_.assign(kFolds, Sums(n + m));
+    folds_.assign(kRegistrationFolds, Sums(n + m));
     Eigen::VectorXd column(n + 1);
     for (std::size_t r = 0; r < at_.size(); ++r) {
       const TrendRows& rows = at_[r];
@@ -137,7 +136,7 @@ class CommonTrend {
       for (std::size_t i = 0; i < rows.count(); ++i) {
         const double scale = scale_[r][i];
         if (scale == 0.0) continue;
-        Sums& fold = folds_[(i / piece) % kFolds];
+        Sums& fold = folds_[(i / piece) % kRegistrationFolds];
         const double slope = (predicted_N(stepped_[r], i) - predicted_N(rows, i)) / kDerivativeStep_m;
         column.head(n) = scale * Eigen::Map<const Eigen::VectorXd>(rows.row(i), n);
         column(n) = scale * slope;
@@ -270,21 +269,15 @@ Consistent align(CommonTrend& trend, std::vector<double> offset_m) {
   trend.gather();
   Consistent result{offset_m, std::vector<double>(offset_m.size(), 0.0)};
   std::vector<std::vector<double>> left_out;
-  for (std::size_t fold = 0; fold < kFolds; ++fold) left_out.push_back(trend.step(fold));
+  for (std::size_t fold = 0; fold < kRegistrationFolds; ++fold) left_out.push_back(trend.step(fold));
   for (std::size_t r = 0; r < offset_m.size(); ++r) {
     double mean = 0.0;
     double sum = 0.0;
-    for (const auto& step : left_out) mean += step[r] / kFolds;
+    for (const auto& step : left_out) mean += step[r] / kRegistrationFolds;
     for (const auto& step : left_out) sum += (step[r] - mean) * (step[r] - mean);
-    result.error_m[r] = std::sqrt(sum * (kFolds - 1.0) / kFolds);
+    result.error_m[r] = std::sqrt(sum * (kRegistrationFolds - 1.0) / kRegistrationFolds);
   }
   return result;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The shift common to all, from the onsets; without any, the one that moves
@@ -299,8 +292,8 @@ void anchor(Consistent& consistent, const std::vector<Member>& members, double& 
     sum += weight * (members[r].own.raw_offset_m - consistent.offset_m[r]);
     weights += weight;
   }
-  const double shift_m = weights > 0.0 ? sum / weights : -median(consistent.offset_m);
-  error_m = weights > 0.0 ? std::sqrt(1.0 / weights) : kUnknown;
+  const double shift_m = weights > 0.0 ? sum / weights : -median_of(consistent.offset_m);
+  error_m = weights > 0.0 ? std::sqrt(1.0 / weights) : kUnknownError;
   for (double& offset_m : consistent.offset_m) offset_m += shift_m;
 }
 
@@ -320,7 +313,7 @@ std::vector<RegisteredSurface> registered(const std::vector<Member>& members, co
   double common_error_m = 0.0;
   anchor(consistent, members, common_error_m);
   for (std::size_t r = 0; r < members.size(); ++r) {
-    const double least_m = std::max(kLeastOffset_m, kSignificant * consistent.error_m[r]);
+    const double least_m = std::max(kLeastOffset_m, kSignificantErrors * consistent.error_m[r]);
     surfaces[r].offset_m = std::abs(consistent.offset_m[r]) > least_m ? consistent.offset_m[r] : 0.0;
     surfaces[r].standard_error_m = std::hypot(consistent.error_m[r], common_error_m);
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kRange_m = 1.5e-3;
 constexpr double kFarthest_m = 3e-3;  // while it still gets better
-constexpr double kCoarseStep_m = 0.1e-3;
+constexpr double kCoarseSearchStep_m = 0.1e-3;
 constexpr std::size_t kCoarseStride = 4;
 constexpr double kFinest_m = 1e-6;
 constexpr double kParabolaStep_m = 15e-6;
@@ -60,14 +60,14 @@ class Search {
     double least = sum(costs(0.0, kCoarseStride));
     for (const double direction : {-1.0, 1.0}) {
       double before = kInfinite;
-      for (int i = 1; i * kCoarseStep_m < kFarthest_m + 0.5 * kCoarseStep_m; ++i) {
-        const double at_m = direction * i * kCoarseStep_m;
+      for (int i = 1; i * kCoarseSearchStep_m < kFarthest_m + 0.5 * kCoarseSearchStep_m; ++i) {
+        const double at_m = direction * i * kCoarseSearchStep_m;
         const double cost = sum(costs(at_m, kCoarseStride));
         if (cost < least) {
           least = cost;
           best_m = at_m;
         }
-        if (i * kCoarseStep_m > kRange_m - 0.5 * kCoarseStep_m && !(cost < before)) break;
+        if (i * kCoarseSearchStep_m > kRange_m - 0.5 * kCoarseSearchStep_m && !(cost < before)) break;
         before = cost;
       }
     }
@@ -139,7 +139,7 @@ SurfaceLocation locate_surface(const std::vector<SurfaceRow>& rows,
   if (rows.empty() || models.empty()) return {0.0, kInfinite};
   const Search search(rows, models, jnd);
   const double coarse_m = search.coarse();
-  const double best_m = search.golden(coarse_m - kCoarseStep_m, coarse_m + kCoarseStep_m);
+  const double best_m = search.golden(coarse_m - kCoarseSearchStep_m, coarse_m + kCoarseSearchStep_m);
   const std::array<BlockCosts, 3> around{search.costs(best_m - kParabolaStep_m, 1), search.costs(best_m, 1),
                                          search.costs(best_m + kParabolaStep_m, 1)};
   SurfaceLocation location{best_m, jackknife_error_m(around)};
