@@ -24,6 +24,7 @@ using Names = std::set<std::string>;
 const std::map<std::string, Names> kRooms = {
     {"engine/base", {}},
     {"engine/recording", {"engine/base"}},
+    {"engine/import", {"engine/recording"}},
     {"engine/tick", {"engine/recording"}},
     {"engine/live", {"engine/tick"}},
     {"models/model", {"engine/tick"}},
@@ -38,7 +39,7 @@ const std::map<std::string, Names> kRooms = {
     {"scenes/live", {"scenes/material", "devices/registry"}},
     {"scenes/report", {"scenes/material"}},
     {"scenes/study", {"scenes/live"}},
-    {"scenes/cli", {"scenes/report", "scenes/study"}},
+    {"scenes/cli", {"engine/import", "scenes/report", "scenes/study"}},
     {"rendering/ui", {"scenes/live"}},
     {"rendering/picture", {"rendering/ui"}},
     {"rendering/panels", {"rendering/picture"}},
