@@ -180,9 +180,12 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
+// A late force hides the surface and the zero, so both are estimated without the lag.
 void Checker::check_lag() {
-  const ForceLag lag = find_force_lag(recording_, surface_.offset_m, surface_.force_zero_N);
-  if (!lag.known || lag.lag_s < kLeastLag_s || lag.improvement > kLagImprovement) return;
+  const ForceLag lag = find_force_lag(recording_);
+  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
+  surface_ = estimate_surface(late ? without_lag(recording_, lag.lag_s) : recording_);
+  if (!late) return;
   add("lag", Severity::warning, lag.lag_s,
       words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,
             1.0 / lag.improvement),
@@ -293,11 +296,10 @@ RecordingCheck Checker::run() {
     const bool right_way = check_.findings.back().severity != Severity::fatal;
     // The surface of a press the wrong way round is nowhere.
     if (right_way) {
-      surface_ = estimate_surface(recording_);
+      check_lag();
       check_surface();
       measures_ = measure_recording(recording_, check_.surface_offset_m);
       check_zero();
-      check_lag();
       check_exploration();
       check_memory();
     }

@@ -70,14 +70,14 @@ std::vector<Terms> terms_of(const EvenSeries& series, double surface_m, double d
   return all;
 }
 
-double residual(const EvenSeries& series, const std::vector<Terms>& terms, int lag, double zero_N) {
+double residual(const EvenSeries& series, const std::vector<Terms>& terms, int lag) {
   Square normal = Square::Zero();
   Terms right = Terms::Zero();
   double squares = 0.0;
   const int count = static_cast<int>(terms.size());
   for (int i = kMostLag; i < count + kLeastLag; ++i) {
     const Terms& row = terms[static_cast<std::size_t>(i - lag)];
-    const double force_N = series.force_N[static_cast<std::size_t>(i)] - zero_N;
+    const double force_N = series.force_N[static_cast<std::size_t>(i)];
     normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
     right += row * force_N;
     squares += force_N * force_N;
@@ -90,23 +90,23 @@ double residual(const EvenSeries& series, const std::vector<Terms>& terms, int l
 
 }  // namespace
 
-ForceLag find_force_lag(const Recording& recording, double surface_m, double force_zero_N) {
+ForceLag find_force_lag(const Recording& recording) {
   ForceLag found;
   const auto& rows = recording.rows;
   const double mean_step_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size() - 1);
   if (mean_step_s > 2.0 * kStep_s) return found;
   const EvenSeries series = even_series(recording);
   if (series.position_m.size() < 100) return found;
-  const double deepest_m = *std::max_element(series.position_m.begin(), series.position_m.end()) - surface_m;
+  const double deepest_m = *std::max_element(series.position_m.begin(), series.position_m.end());
   if (!(deepest_m > 0.0)) return found;
   found.known = true;
   double without = HUGE_VAL;
   double best = HUGE_VAL;
-  // A late force makes the surface seem deeper than it is, so it is looked for again.
-  for (const double shift : {0.0, 0.04, 0.08, 0.16}) {
-    const auto terms = terms_of(series, surface_m - shift * deepest_m, deepest_m);
+  // A late force makes the surface seem to lie elsewhere, so it is looked for here.
+  for (const double share : {-0.15, -0.05, 0.0, 0.05, 0.15}) {
+    const auto terms = terms_of(series, share * deepest_m, deepest_m);
     for (int lag = kLeastLag; lag <= kMostLag; ++lag) {
-      const double one = residual(series, terms, lag, force_zero_N);
+      const double one = residual(series, terms, lag);
       if (lag == 0) without = std::min(without, one);
       if (one >= best) continue;
       best = one;
@@ -115,6 +115,21 @@ ForceLag find_force_lag(const Recording& recording, double surface_m, double for
   }
   found.improvement = without > 0.0 ? best / without : 1.0;
   return found;
+}
+
+Recording without_lag(const Recording& recording, double lag_s) {
+  Recording moved = recording;
+  const auto& rows = recording.rows;
+  std::size_t late = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    while (late < rows.size() && rows[late].time_s < rows[i].time_s + lag_s) ++late;
+    if (late == rows.size()) {
+      moved.rows.resize(i);
+      break;
+    }
+    moved.rows[i].force_N = rows[late].force_N;
+  }
+  return moved;
 }
 
 }  // namespace palpate

@@ -20,6 +20,9 @@ struct ForceLag {
   double improvement = 1.0;  // residual at that lag over that without
 };
 
-ForceLag find_force_lag(const Recording& recording, double surface_m, double force_zero_N);
+ForceLag find_force_lag(const Recording& recording);
+
+// The recording with the force moved back by `lag_s`; the end is cut off.
+Recording without_lag(const Recording& recording, double lag_s);
 
 }  // namespace palpate

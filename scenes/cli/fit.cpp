@@ -10,6 +10,7 @@
 #include "engine/base/atomic_file.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
+#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"

@@ -102,7 +102,7 @@ TEST(ImportTable, SaysWhatIsAmbiguousAndWhatToAdd) {
   EXPECT_EQ(message("t [s],pos,Fz [N]\n" + rows_of(",")),
             "rig.txt: found no unit of the position \"pos\"; add --units mm (or m, cm, um, inch), with a comma between "
             "two units: --units mm,N");
-  EXPECT_EQ(message("t [s],pos [mm],Fx [N],Fy [N],Fz [N]\n" + rows_of(",1,2,")),
+  EXPECT_EQ(message("t [s],pos [mm],Fx [N],Fy [N],Fz [N]\n" + rows_of(",1,")),
             "rig.txt: found 3 columns that can be the force; add --columns force=3, --columns force=4 or --columns "
             "force=5; the columns are 1 \"t [s]\", 2 \"pos [mm]\", 3 \"Fx [N]\", 4 \"Fy [N]\", 5 \"Fz [N]\"");
   EXPECT_EQ(message(rows_of(",")),
