@@ -83,8 +83,8 @@ CheckRequest check_request(const Scene& scene) {
   return request;
 }
 
-Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const Scene& scene) {
-  auto files = check_recording_files(paths, check_request(scene));
+Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request) {
+  auto files = check_recording_files(paths, request);
   if (!files) return files.error();
   if (const Status usable = refuse_unusable(*files); !usable) return usable.error();
   for (const std::string& line : warning_lines(*files)) std::cerr << "warning: " << line << "\n";

@@ -16,6 +16,6 @@ CheckRequest check_request(const Scene& scene);
 
 // Reads and checks `paths`: an error for the first fatal finding, a line on stderr for
 // each warning.
-Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const Scene& scene);
+Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);
 
 }  // namespace palpate::cli

@@ -10,6 +10,7 @@
 #include "engine/tick/replay.h"
 #include "engine/tick/evaluation.h"
 #include "models/model/file/model_io.h"
+#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/forces_file.h"
 #include "scenes/scene/model_timing.h"
 #include "scenes/cli/verbs.h"
@@ -161,6 +162,9 @@ Status run(const Options& options) {
   }
   Result<std::vector<Contestant>> contestants = load_contestants(options.models);
   if (!contestants) return contestants.error();
+  CheckRequest request;
+  request.jnd = contestants->front().model->data().jnd;
+  if (const auto checked = check_before_use({options.recording}, request); !checked) return checked.error();
   Result<RecordingReader> reader = RecordingReader::open(options.recording);
   if (!reader) return reader.error();
 
