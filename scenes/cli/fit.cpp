@@ -12,6 +12,7 @@
 #include "engine/base/text.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
+#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
@@ -249,8 +250,13 @@ Status run_fit(const FitArguments& arguments) {
   FitControl method;
   method.progress = [&](double fraction) { return line.update(0.3 + 0.7 * fraction); };
 
+  auto checked = check_before_use(arguments.recordings, check_request(*scene));
+  if (!checked) return checked.error();
   std::vector<MotionSource::Input> inputs;
-  for (const std::string& path : arguments.recordings) inputs.push_back({path, nullptr});
+  for (CheckedFile& file : *checked) {
+    // What the check has read need not be read again.
+    inputs.push_back({file.path, file.whole ? std::make_shared<const Recording>(std::move(file.recording)) : nullptr});
+  }
   MotionSource source(std::move(inputs));
   const auto prepared = prepare_training(source, training_request(arguments, *scene), prepare);
   if (!prepared) return prepared.error();

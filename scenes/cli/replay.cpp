@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/text.h"
+#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/replayed_recording.h"
 #include "scenes/cli/verbs.h"
 
@@ -156,6 +157,9 @@ Status run(const Options& options) {
   }
   const auto models = load_models(options.models);
   if (!models) return models.error();
+  CheckRequest request;
+  request.jnd = models->front().model->data().jnd;
+  if (const auto checked = check_before_use(options.recordings, request); !checked) return checked.error();
   std::vector<ReplayedRecording> all;
   for (const std::string& recording : options.recordings) {
     auto replayed = replay_recording(recording, *models, options.out, options.force);
