@@ -4,13 +4,8 @@
 #include <cmath>
 
 namespace palpate {
-namespace {
 
-constexpr double kFrictionWeight = 0.03;  // of the box spectrum, per unit of ln tau
-
-}  // namespace
-
-FrictionBlock::FrictionBlock() : spectrum_(0.05, 2.0, [](double) { return kFrictionWeight; }) {}
+FrictionBlock::FrictionBlock() : spectrum_(0.05, 2.0, [](double) { return kWeight; }) {}
 
 double FrictionBlock::held_force_N(double depth_m) const noexcept {
   return kContact.force_N(depth_m) * (1.0 + 0.5 * spectrum_.total_weight());

@@ -29,6 +29,7 @@ class FrictionBlock final : public Block {
   static constexpr double kFriction_N = 0.35;       // F_c
   static constexpr double kPresliding_m = 1e-4;     // x_p
   static constexpr double kGripped_m = 0.004;       // d_c
+  static constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
 
   FrictionBlock();
   double held_force_N(double depth_m) const noexcept override;

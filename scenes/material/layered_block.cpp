@@ -6,13 +6,12 @@
 namespace palpate {
 namespace {
 
-constexpr double kLayeredWeight = 0.06;  // of the box spectrum, per unit of ln tau
 constexpr int kNewtonSteps = 6;
 constexpr double kSolved_N = 1e-12;
 
 }  // namespace
 
-LayeredBlock::LayeredBlock() : spectrum_(0.02, 4.0, [](double) { return kLayeredWeight; }) {}
+LayeredBlock::LayeredBlock() : spectrum_(0.02, 4.0, [](double) { return kWeight; }) {}
 
 double LayeredBlock::held_force_N(double depth_m) const noexcept {
   const double slope = kSupport_N_per_m + 0.5 * kSupportBranch_N_per_m;

@@ -6,7 +6,7 @@ namespace palpate {
 namespace {
 
 // Keeps a block that rests in free air from computing with denormal numbers.
-constexpr double kNoForce_N = 1e-30;
+constexpr double kSmallest_N = 1e-30;
 // Sums in so many lanes that the additions need not wait for each other.
 constexpr std::size_t kLanes = 4;
 static_assert(RelaxationSpectrum::kTimes % kLanes == 0);
@@ -36,7 +36,7 @@ void RelaxationSpectrum::relax() noexcept {
   for (std::size_t i = 0; i < kTimes; i += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const double left_N = memory_N_[i + lane] * decay_[i + lane];
-      memory_N_[i + lane] = std::abs(left_N) > kNoForce_N ? left_N : 0.0;
+      memory_N_[i + lane] = std::abs(left_N) > kSmallest_N ? left_N : 0.0;
       sum_N[lane] += memory_N_[i + lane];
     }
   }

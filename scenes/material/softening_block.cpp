@@ -5,8 +5,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kSofteningWeight = 0.03;  // of the box spectrum, per unit of ln tau
-
 double stiffened(double depth_m) {
   const double share = depth_m / SofteningBlock::kStiffening_m;
   return share * share;
@@ -23,7 +21,7 @@ double elastic_energy_J(double depth_m) {
 
 }  // namespace
 
-SofteningBlock::SofteningBlock() : spectrum_(0.01, 3.0, [](double) { return kSofteningWeight; }) {}
+SofteningBlock::SofteningBlock() : spectrum_(0.01, 3.0, [](double) { return kWeight; }) {}
 
 double SofteningBlock::held_force_N(double depth_m) const noexcept {
   return elastic_force_N(depth_m) * (1.0 + 0.5 * spectrum_.total_weight());

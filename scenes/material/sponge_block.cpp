@@ -15,7 +15,7 @@ constexpr double kMostClosed = 0.9;
 constexpr double kNoPressure_Pa = 1e-25;
 
 // The ring's share of the tool's area: rings are equally wide.
-constexpr double share(size_t ring) {
+constexpr double ring_share(size_t ring) {
   return (2.0 * static_cast<double>(ring) + 1.0) / (kRingCount * kRingCount);
 }
 
@@ -28,7 +28,7 @@ double skeleton_N(double depth_m) {
 // Over the outer edge of `ring`: diffusivity times perimeter over the distance of
 // the pressures, per ring's width squared times 2 pi. At the rim the pressure 0
 // is half a ring away.
-constexpr double edge(size_t ring) {
+constexpr double ring_edge(size_t ring) {
   const double outer = static_cast<double>(ring) + 1.0;
   return ring + 1 == SpongeBlock::kRings ? 2.0 * outer : outer;
 }
@@ -57,8 +57,8 @@ void SpongeBlock::begin_substep() noexcept {
   double from_inside = 0.0, last_drained = 0.0, last_squeezed = 0.0;
   for (size_t i = 0; i < kRings; ++i) {
     const double volume = static_cast<double>(i) + 0.5;
-    const double inner = i == 0 ? 0.0 : flow * edge(i - 1);
-    const double outer = flow * edge(i);
+    const double inner = i == 0 ? 0.0 : flow * ring_edge(i - 1);
+    const double outer = flow * ring_edge(i);
     const double pivot = 1.0 / (volume + inner + outer - inner * from_inside);
     drained_Pa_[i] = last_drained = (volume * pressure_Pa_[i] + inner * last_drained) * pivot;
     squeezed_Pa_[i] = last_squeezed = (volume * kPore_Pa + inner * last_squeezed) * pivot;
@@ -70,8 +70,8 @@ void SpongeBlock::begin_substep() noexcept {
       drained_Pa_[i] += above[i] * drained_Pa_[i + 1];
       squeezed_Pa_[i] += above[i] * squeezed_Pa_[i + 1];
     }
-    mean_drained_Pa_ += share(i) * drained_Pa_[i];
-    mean_squeezed_Pa_ += share(i) * squeezed_Pa_[i];
+    mean_drained_Pa_ += ring_share(i) * drained_Pa_[i];
+    mean_squeezed_Pa_ += ring_share(i) * squeezed_Pa_[i];
   }
 }
 

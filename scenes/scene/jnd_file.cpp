@@ -12,8 +12,8 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 // The format needs three.
-constexpr int kJndFileNesting = 8;
-constexpr const char* kJndFileAdvice = "; write it anew with palpate study analyse";
+constexpr int kJndNesting = 8;
+constexpr const char* kAdvice = "; write it anew with palpate study analyse";
 
 }  // namespace
 
@@ -39,9 +39,9 @@ std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& po
 }
 
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
-  const Result<nlohmann::json> document = parse_json(text, path, kJndFileNesting, {kJndFileAdvice, kJndFileAdvice});
+  const Result<nlohmann::json> document = parse_json(text, path, kJndNesting, {kAdvice, kAdvice});
   if (!document) return document.error();
-  JsonFields fields(text, path, kJndFileAdvice);
+  JsonFields fields(text, path, kAdvice);
   const JsonNode top{&*document, ""};
   const JsonNode format = fields.optional_member(top, "format");
   if (format.value == nullptr || *format.value != "palpate-jnd") {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 #include "scenes/material/block.h"
 
 namespace palpate::test {

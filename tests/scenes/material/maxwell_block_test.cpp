@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/random_stream.h"
+#include "engine/base/random_stream.h"
 #include "tests/support/wandering.h"
 
 namespace palpate {
