@@ -11,6 +11,7 @@
 #include "models/check/force_lag.h"
 #include "models/check/recording_measures.h"
 #include "models/training/surface_estimate.h"
+#include "models/training/surface_rows.h"
 
 namespace palpate {
 namespace {
@@ -40,6 +41,8 @@ constexpr double kLargeOffset_m = 0.2e-3;
 constexpr double kSurfaceDrift_m = 0.1e-3;
 constexpr int kFewStrokes = 5;
 constexpr double kLeastCell_s = 0.05;
+// Ten minutes at 500 Hz.
+constexpr std::size_t kSurfaceRows = 300000;
 
 template <typename... Values>
 std::string words(const char* format, Values... values) {
@@ -184,7 +187,9 @@ void Checker::check_clipping() {
 void Checker::check_lag() {
   const ForceLag lag = find_force_lag(recording_);
   const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
-  surface_ = estimate_surface(late ? without_lag(recording_, lag.lag_s) : recording_);
+  // Of a long recording every so-many-th row: the onset needs no more, and the motion of
+  // every row costs more than reading it.
+  surface_ = estimate_surface(thinned_rows(late ? without_lag(recording_, lag.lag_s) : recording_, kSurfaceRows), noise_N_);
   if (!late) return;
   add("lag", Severity::warning, lag.lag_s,
       words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,
@@ -206,8 +211,7 @@ void Checker::check_surface() {
         words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
         "the specimen creeps or has slipped: fasten it, let it recover between strokes");
   }
-  const std::size_t as_recorded = measure_recording(recording_, 0.0).contact_rows;
-  if (as_recorded == 0) {
+  if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
     add("no_contact", Severity::fatal, measures_.highest_position_m,
         words("the highest position is %.3g mm, so the tool never touches the surface at 0", 1e3 * measures_.highest_position_m),
         "set position_m to 0 where force begins, and check its sign");
@@ -298,7 +302,7 @@ RecordingCheck Checker::run() {
     if (right_way) {
       check_lag();
       check_surface();
-      measures_ = measure_recording(recording_, check_.surface_offset_m);
+      if (check_.surface_offset_m != 0.0) measures_ = measure_recording(recording_, check_.surface_offset_m);
       check_zero();
       check_exploration();
       check_memory();
