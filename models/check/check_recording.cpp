@@ -11,7 +11,6 @@
 #include "models/check/force_lag.h"
 #include "models/check/recording_measures.h"
 #include "models/training/surface_estimate.h"
-#include "models/training/surface_rows.h"
 
 namespace palpate {
 namespace {
@@ -183,13 +182,22 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
+// At most `rows` rows, evenly spread.
+Recording every_so_many(const Recording& recording, std::size_t rows) {
+  const std::size_t step = (recording.rows.size() + rows - 1) / rows;
+  if (step < 2) return recording;
+  Recording thin{recording.name, recording.columns, {}};
+  for (std::size_t i = 0; i < recording.rows.size(); i += step) thin.rows.push_back(recording.rows[i]);
+  return thin;
+}
+
 // A late force hides the surface and the zero, so both are estimated without the lag.
 void Checker::check_lag() {
   const ForceLag lag = find_force_lag(recording_);
   const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
   // Of a long recording every so-many-th row: the onset needs no more, and the motion of
   // every row costs more than reading it.
-  surface_ = estimate_surface(thinned_rows(late ? without_lag(recording_, lag.lag_s) : recording_, kSurfaceRows), noise_N_);
+  surface_ = estimate_surface(every_so_many(late ? without_lag(recording_, lag.lag_s) : recording_, kSurfaceRows));
   if (!late) return;
   add("lag", Severity::warning, lag.lag_s,
       words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,
