@@ -7,11 +7,11 @@
 
 #include "models/training/fit_trend.h"
 #include "models/training/surface_estimate.h"
+#include "models/training/surface_numbers.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
 // A touch is followed from this far out of the first guess to this far into it.
 constexpr double kTouchOut_m = 1e-3;
 constexpr double kTouchIn_m = 1.2e-3;
@@ -130,9 +130,9 @@ std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double z
 Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches, double zero_N,
                  double force_noise_N) {
   const double first_force_m = touches.front().first_force_m;
-  Onset onset{first_force_m, kUnknown};
+  Onset onset{first_force_m, kUnknownError};
   const OnsetCost cost(rows, touches, zero_N);
-  double least = kUnknown;
+  double least = kUnknownError;
   const auto scan = [&](double from_m, double to_m, double step_m) {
     for (double at_m = from_m; at_m < to_m + 0.5 * step_m; at_m += step_m) {
       const double value = cost.at(at_m);

@@ -17,6 +17,23 @@ struct SurfaceRow {
   double force_N = 0.0;
 };
 
+// Every row up to a bound; beyond, every second one, then every fourth ...
+class GrowingStride {
+ public:
+  explicit GrowingStride(std::size_t most) : most_(most) {}
+
+  void add(const SurfaceRow& row);
+  const std::vector<SurfaceRow>& rows() const { return rows_; }
+
+ private:
+  std::size_t most_;
+  std::size_t stride_ = 1;
+  std::size_t seen_ = 0;
+  std::vector<SurfaceRow> rows_;
+};
+
+// Every n-th row, at most `most` of them.
+std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
 // Every n-th row of a recording, at most `most` of them.
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
 
