@@ -175,6 +175,8 @@ void Checker::check_zero() {
 }
 
 void Checker::check_clipping() {
+  // Zero force is no limit.
+  if (!(measures_.highest_force_N > 0.0)) return;
   if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
   add("clipping", Severity::warning, measures_.highest_force_N,
       words("the force stays at exactly %.5g N for %zu rows while the tool moves on by %.3g mm", measures_.highest_force_N,
