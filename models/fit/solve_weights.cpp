@@ -152,6 +152,11 @@ bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, Ridge ri
 
 }  // namespace
 
+bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
+               Eigen::MatrixXd& triangle) {
+  return RowFolder(sites, kernel, centres).fold(control, triangle);
+}
+
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
                                 const FitControl& control, Ridge ridge, double truncation) {
   if (const Status status = validate_sites(sites); !status) return status.error();

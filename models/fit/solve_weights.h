@@ -33,6 +33,12 @@ namespace palpate {
 // thousand columns; what lies two decades above is still data.
 inline constexpr double kDefaultTruncation = 1e-12;
 
+// R of the QR factorisation of [row_scale * (Phi G f)], n + tail + 1 columns, where
+// the columns are the kernel at the n centres, the tail and the data. False if
+// cancelled.
+bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
+               Eigen::MatrixXd& triangle);
+
 enum class Ridge { none, by_evidence };
 
 // `centres`: d x n, any points, n may be 0. Errors: those of validate_sites; a
