@@ -11,7 +11,6 @@
 #include "models/fit/fit_greedy.h"
 #include "models/fit/fit_kdtree.h"
 #include "models/fit/fit_random.h"
-#include "models/fit/penalised_weights.h"
 #include "models/fit/fill_grid.h"
 
 namespace palpate {
@@ -91,8 +90,7 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
 }
 
 Result<FittedRbf> fit_function(const Sites& sites, const Eigen::VectorXd& jnd_N, const MethodRequest& request,
-                               const FitControl& control, const MethodFit* direct,
-                               const std::optional<StrengthChoice>& strength) {
+                               const FitControl& control, const MethodFit* direct) {
   if (request.method == Method::voxel && direct != nullptr) return FittedRbf{*direct->data.rbf, direct->report};
   switch (request.method) {
     case Method::random: return fit_random(sites, {request.kernel, request.centres, request.seed}, control);
@@ -104,7 +102,6 @@ Result<FittedRbf> fit_function(const Sites& sites, const Eigen::VectorXd& jnd_N,
   }
   DirectOptions options;
   options.kernel = request.kernel;
-  if (strength) options.smoothing = strength->smoothing;
   options.solver =
       request.solver == DirectSolverChoice::tsvd ? DirectSolver::truncated_svd : DirectSolver::cholesky;
   return fit_direct(sites, options, control);
@@ -162,20 +159,8 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   for (Eigen::Index i = 0; i < jnd_N.size(); ++i) {
     jnd_N(i) = prepared.common.jnd.at(prepared.set.sites[static_cast<std::size_t>(i)].force_N);
   }
-  auto fitted = fit_function(prepared.sites, jnd_N, request, control, direct, prepared.strength);
+  auto fitted = fit_function(prepared.sites, jnd_N, request, control, direct);
   if (!fitted) return fitted.error();
-  if (prepared.strength && (request.method != Method::voxel || direct == nullptr)) {
-    if (request.method != Method::direct && request.method != Method::voxel) {
-      auto again = penalised_weights(prepared.sites, request.kernel, fitted->function.centres,
-                                     prepared.strength->smoothing);
-      if (!again) return again.error();
-      again->report.notes = fitted->report.notes;
-      again->report.centres_asked = fitted->report.centres_asked;
-      *fitted = std::move(*again);
-    }
-    fitted->function.weights *= prepared.strength->strength;
-    fitted->function.tail *= prepared.strength->strength;
-  }
   MethodFit fit{prepared.common, std::move(fitted->report)};
   fit.data.method = method_name(request.method);
   fit.data.provenance.seed = request.seed;

@@ -86,7 +86,7 @@ PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
 }
 
 Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                    double smoothing, const FitControl& control) {
+                                    const FitControl& control) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   if (centres.rows() != sites.points.rows() || !centres.allFinite()) {
     return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
@@ -94,6 +94,7 @@ Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const
   }
   if (!control.go_on(0.0)) return interrupted();
   const BlasThreads one_thread(1);
+  const double smoothing = sites.smoothing.value_or(0.0);
   Eigen::MatrixXd triangle;
   if (!fold_rows(sites, kernel, centres, control, triangle)) return interrupted();
   const Eigen::Index n = centres.cols();
@@ -126,6 +127,8 @@ Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const
   const Eigen::VectorXd rest =
       triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights - triangle.middleCols(n, tail) * fitted.function.tail;
   report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(sites.count()));
+  fitted.function.weights *= sites.strength;
+  fitted.function.tail *= sites.strength;
   if (!control.go_on(1.0)) return interrupted();
   return fitted;
 }

@@ -1,7 +1,8 @@
 // Weights and tail for given centres by penalised least squares:
 //   minimise sum_i row_scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w
 //   subject to G^T w = 0,
-// Phi and G the kernel and the tail at the centres. With every site a centre this
+// Phi and G the kernel and the tail at the centres; h is then multiplied by the
+// sites' strength. With every site a centre this
 // is the smoothing spline of fit_direct.h; with fewer it is the regression spline
 // on a subset of its basis, and comes closer to it the more there are.
 // Source: Wahba (1990), sections 1.3 and 7.2.
@@ -26,8 +27,8 @@ struct PenaltySpace {
 };
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres);
 
-// Errors: those of validate_sites; centres of another dimension; interrupted.
+// With the sites' own smoothing, 0 where they have none. Errors: those of validate_sites; centres of another dimension; interrupted.
 Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                    double smoothing, const FitControl& control = {});
+                                    const FitControl& control = {});
 
 }  // namespace palpate

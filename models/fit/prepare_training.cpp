@@ -256,6 +256,8 @@ void decide_strength(PreparedTraining& prepared, const TrainingRequest& request,
   input.least_radius = common.cover.inner_radius;
   input.outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
   prepared.strength = choose_strength(input);
+  prepared.sites.smoothing = prepared.strength->smoothing;
+  prepared.sites.strength = prepared.strength->strength;
   common.cover.inner_radius = prepared.strength->inner_radius;
   common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
 }

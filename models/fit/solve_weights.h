@@ -18,6 +18,8 @@
 //   N ln(sum_i lambda z_i^2 / (s_i^2 + lambda) + rho^2) + sum_i ln(1 + s_i^2 / lambda).
 // It is taken where sites are fewer than ten to an unknown, or where it says that
 // noise rules (lambda above 1e-6 s_1^2); a healthy fit stays plain least squares.
+// Sites that come with a smoothing of their own get that penalty instead
+// (penalised_weights.h).
 // Source: Hoever & Harders (2009), eq. 8 and section 4.2.1; MacKay (1992),
 // "Bayesian interpolation", for the evidence.
 #pragma once

@@ -24,10 +24,6 @@ inline std::string known_methods() {
   return names;
 }
 
-inline bool is_filter(FeatureKind kind) {
-  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch;
-}
-
 // What is wrong with a model's name, empty if nothing is. It heads a column of a
 // CSV file, so it holds nothing that would break a line into other columns.
 inline std::string model_name_fault(const std::string& name) {

@@ -43,18 +43,44 @@ std::string columns(const Eigen::MatrixXd& matrix) {
   return lines(items);
 }
 
+std::string drive(const DriveCurve& curve) {
+  return "{\"reference_depth_m\": " + number(curve.reference_depth_m) +
+         ", \"coefficient_N\": " + list(curve.coefficient_N) + "}";
+}
+
+std::string parts(const FeatureSpec& spec) {
+  std::string text;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const FeaturePart& part = spec.parts[p];
+    text += p == 0 ? "{" : ", {";
+    text += spec.kind == FeatureKind::stops ? "\"threshold_m\": " + number(part.threshold_m)
+                                            : "\"relaxation_time_s\": " + number(part.relaxation_time_s);
+    text += ", \"drive\": " + drive(part.drive) + "}";
+  }
+  return "[" + text + "]";
+}
+
 std::string features(const std::vector<FeatureSpec>& specs) {
   std::vector<std::string> items;
   for (const FeatureSpec& spec : specs) {
     std::string text = "{\"kind\": " + quoted(std::string(feature_kind_name(spec.kind)));
-    if (is_filter(spec.kind)) text += ", \"relaxation_time_s\": " + number(spec.relaxation_time_s);
-    if (spec.kind == FeatureKind::maxwell_branch) {
-      text += ", \"drive\": {\"reference_depth_m\": " + number(spec.drive.reference_depth_m) +
-              ", \"coefficient_N\": " + list(spec.drive.coefficient_N) + "}";
-    }
+    if (has_time(spec.kind)) text += ", \"relaxation_time_s\": " + number(spec.relaxation_time_s);
+    if (spec.kind == FeatureKind::maxwell_branch) text += ", \"drive\": " + drive(spec.drive);
+    if (has_parts(spec.kind)) text += ", \"parts\": " + parts(spec);
     items.push_back(text + "}");
   }
   return lines(items);
+}
+
+bool softens(const std::vector<FeatureSpec>& specs) {
+  return std::any_of(specs.begin(), specs.end(),
+                     [](const FeatureSpec& spec) { return spec.kind == FeatureKind::fading_peak; });
+}
+
+std::string softening(const Trend& trend) {
+  std::string text;
+  for (const DriveCurve& curve : trend.softening) text += (text.empty() ? "" : ", ") + drive(curve);
+  return ",\n    \"softening\": [" + text + "]";
 }
 
 std::string domain(const ModelData& data) {
@@ -64,13 +90,14 @@ std::string domain(const ModelData& data) {
          ",\n    \"points\": " + columns(data.cover.points) + "\n  }";
 }
 
-std::string trend(const Trend& trend) {
+std::string trend(const ModelData& data) {
+  const Trend& trend = data.trend;
   return "{\n    \"reference_depth_m\": " + number(trend.reference_depth_m) +
          ",\n    \"elastic_N\": " + list(trend.elastic_N) +
          ",\n    \"viscosity_Ns_per_m\": " + list(trend.viscosity_Ns_per_m) +
          ",\n    \"thinning_Ns_per_m\": " + list(trend.thinning_Ns_per_m) +
          ",\n    \"thinning_velocity_m_per_s\": " + number(trend.thinning_velocity_m_per_s) +
-         ",\n    \"velocity_limit_m_per_s\": " + number(trend.velocity_limit_m_per_s) + "\n  }";
+         ",\n    \"velocity_limit_m_per_s\": " + number(trend.velocity_limit_m_per_s) + (softens(data.features) ? softening(trend) : "") + "\n  }";
 }
 
 // Axes first, then the values, one line for each run along the last axis.
@@ -151,7 +178,7 @@ Result<std::string> write_model_text(const ModelData& data) {
       {"method", quoted(data.method)},
       {"features", features(data.features)},
       {"normalisation", "{\n    \"offset\": " + list(data.offset) + ",\n    \"scale\": " + list(data.scale) + "\n  }"},
-      {"trend", trend(data.trend)},
+      {"trend", trend(data)},
       {"corrects_trend", data.corrects_trend ? "true" : "false"},
       {"correction_limit_N", number(data.correction_limit_N)},
       {"largest_force_N", number(data.largest_force_N)},
