@@ -17,6 +17,10 @@
 // low-pass. Both are driven by the depth, not by the velocity estimate: free
 // air relaxes the material and does not load it.
 //
+// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau, and of the store
+// integral_0^d g ds - q d + integral_0^q g^-1 ds it loses
+// (d - g^-1(q)) (g(d) - q) / tau >= 0 while g rises.
+//
 // A stop operator of threshold r follows the depth like the tip of a bristle that
 // bends by at most r and then slips: s' = clamp(s + d' - d, -r, r), and 0 out of
 // contact. Several together are a Prandtl-Ishlinskii operator: dry friction with

@@ -10,6 +10,7 @@
 #include "models/fit/seeded_random.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
+#include "models/training/weighting.h"
 
 namespace palpate {
 namespace {
@@ -181,6 +182,12 @@ std::vector<char> inside_depth(const StrengthInput& input) {
   return counts;
 }
 
+// Errors that are felt anyhow all count much the same.
+double saturated_square(double error_over_jnd) {
+  const double scaled = error_over_jnd * robust_scale(error_over_jnd);
+  return scaled * scaled;
+}
+
 struct Variant {
   double smoothing = 0.0;
   double strength = 0.0;
@@ -232,7 +239,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
       const double trusted = trust(distance[i], radius, input.outer_to_inner * radius);
       const double force_N = force_of(sample, input, strength, trusted, h(static_cast<Eigen::Index>(i)));
       const double error = input.jnd.error_over_jnd(force_N, sample.force_N);
-      variant.fold_squares[static_cast<std::size_t>(sample.fold)] += error * error;
+      variant.fold_squares[static_cast<std::size_t>(sample.fold)] += saturated_square(error);
     }
     variants.push_back(std::move(variant));
   };

@@ -194,7 +194,8 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
   }, control, 0.15);
   if (!status) return status;
   const FittedTrend fitted =
-      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N, request.drive);
+      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N, request.drive,
+                !papers);
   prepared.common.trend = fitted.trend;
   prepared.common.corrects_trend = !papers;
   if (!papers) {

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kOneSidedPasses = 3;
+constexpr int kPasses = 3;
 constexpr Eigen::Index kBlock = 256;
 
 // Adds blocks of scaled rows to a Gram matrix.
@@ -100,20 +100,20 @@ CrossValidatedTrend::CrossValidatedTrend(const TrendRows& rows, int folds, Weigh
   for (std::size_t i = 0; i < rows.count(); ++i) scale[i] = row_scale(weighting, jnd, rows.force_N(i));
   std::vector<char> active(rows.count(), 1);
   const std::vector<double> elsewhere_m = deepest_elsewhere(rows, folds);
-  const bool one_sided = [&] {
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-      if (rows.force_N(i) <= no_force_N) return true;
-    }
-    return false;
-  }();
   accumulate(rows, scale, active, elsewhere_m);
-  for (int pass = 0; one_sided && pass < kOneSidedPasses; ++pass) {
-    // All columns together tell well enough where the tool outran the material.
+  for (int pass = 0; pass < kPasses; ++pass) {
+    // All columns together tell well enough where the tool outran the material, and
+    // which samples no set of features will ever explain.
     const Eigen::VectorXd x = solve_non_negative(total_.gram, total_.right_side);
     bool changed = false;
     for (std::size_t i = 0; i < rows.count(); ++i) {
+      const double trend_N = Eigen::Map<const Eigen::VectorXd>(rows.row(i), x.size()).dot(x);
+      const double plain = row_scale(weighting, jnd, rows.force_N(i));
+      const double robust = plain * robust_scale(jnd.error_over_jnd(trend_N, rows.force_N(i)));
+      changed = changed || std::abs(robust - scale[i]) > 0.1 * plain;
+      scale[i] = robust;
       if (rows.force_N(i) > no_force_N) continue;
-      const char counts = Eigen::Map<const Eigen::VectorXd>(rows.row(i), x.size()).dot(x) > 0.0 ? 1 : 0;
+      const char counts = trend_N > 0.0 ? 1 : 0;
       changed = changed || counts != active[i];
       active[i] = counts;
     }

@@ -246,6 +246,24 @@ std::vector<double> in_use(const Candidate& candidate, const Eigen::VectorXd& so
   return constants;
 }
 
+FeatureList list_of(const Search& search, const Search::Set& set, const Eigen::VectorXd& solution) {
+  FeatureList list;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (!set[i]) continue;
+    const Candidate& candidate = search.candidates()[i];
+    if (candidate.family == Family::velocity) {
+      list.velocity = true;
+      continue;
+    }
+    std::vector<double> constants = in_use(candidate, solution);
+    if (constants.empty()) continue;
+    if (candidate.family == Family::relaxation) list.relaxation_times_s.push_back(std::move(constants));
+    if (candidate.family == Family::stops) list.stop_thresholds_m = std::move(constants);
+    if (candidate.family == Family::peak) list.peak_times_s = std::move(constants);
+  }
+  return list;
+}
+
 }  // namespace
 
 Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer& dealer, const SelectionInput& input,
@@ -273,23 +291,11 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   const Search::Judged chosen = smallest_as_good(search, std::move(path));
 
   FeatureSelection selection;
+  const Eigen::VectorXd solution = problem.solve(search.columns(chosen.set));
+  selection.list = list_of(search, chosen.set, solution);
   selection.worth = table_of_worth(search, chosen);
   selection.left_out_error_over_jnd = std::sqrt(chosen.error.mean());
-  const Eigen::VectorXd solution = problem.solve(search.columns(chosen.set));
   selection.training_error_over_jnd = std::sqrt(problem.training_error(solution));
-  for (std::size_t i = 0; i < chosen.set.size(); ++i) {
-    if (!chosen.set[i]) continue;
-    const Candidate& candidate = search.candidates()[i];
-    if (candidate.family == Family::velocity) {
-      selection.list.velocity = true;
-      continue;
-    }
-    std::vector<double> constants = in_use(candidate, solution);
-    if (constants.empty()) continue;
-    if (candidate.family == Family::relaxation) selection.list.relaxation_times_s.push_back(std::move(constants));
-    if (candidate.family == Family::stops) selection.list.stop_thresholds_m = std::move(constants);
-    if (candidate.family == Family::peak) selection.list.peak_times_s = std::move(constants);
-  }
   if (!control.go_on(fraction)) return interrupted();
   return selection;
 }

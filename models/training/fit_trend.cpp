@@ -195,7 +195,7 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
 }
 
 FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
-                      BranchDrive drive) {
+                      BranchDrive drive, bool robust) {
   FittedTrend fitted;
   const Eigen::MatrixXd directions = free_directions(rows, drive);
   std::vector<double> scale(rows.count());
@@ -208,6 +208,12 @@ FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine&
                                         directions.transpose() * equations.right_side);
     bool changed = false;
     for (std::size_t i = 0; i < rows.count(); ++i) {
+      if (robust) {
+        const double plain = row_scale(weighting, jnd, rows.force_N(i));
+        const double scaled = plain * robust_scale(jnd.error_over_jnd(dot(rows.row(i), x), rows.force_N(i)));
+        changed = changed || std::abs(scaled - scale[i]) > 0.1 * plain;
+        scale[i] = scaled;
+      }
       if (rows.force_N(i) > no_force_N) continue;
       const char counts = dot(rows.row(i), x) > 0.0 ? 1 : 0;
       changed = changed || counts != fitted.active[i];
