@@ -18,6 +18,7 @@
 
 #include "engine/live/device.h"
 #include "engine/live/fault_recorder.h"
+#include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
 #include "engine/tick/haptics_tick.h"
@@ -88,22 +89,6 @@ struct LoopControls {
   std::uint32_t acknowledged = 0;
 };
 
-// What a tick found wrong, bits.
-namespace loop_fault {
-inline constexpr std::uint32_t kBadSample = 1;
-inline constexpr std::uint32_t kTimeNotLater = 2;
-inline constexpr std::uint32_t kModelNotFinite = 4;
-inline constexpr std::uint32_t kForceNotFinite = 8;   // reached the limiter
-inline constexpr std::uint32_t kForceClamped = 16;
-inline constexpr std::uint32_t kForceSlewed = 32;
-inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop; not latched, missed_deadlines tells
-inline constexpr std::uint32_t kStaleSample = 128;    // too old to push by
-inline constexpr std::uint32_t kDeviceFault = 256;    // see LoopSnapshot::device
-inline constexpr std::uint32_t kForceThermal = 512;   // clamped by the motor's thermal budget
-// Those that take the force away; kModelNotFinite that of the one model alone, in the hand or not.
-inline constexpr std::uint32_t kStops = kBadSample | kModelNotFinite | kForceNotFinite | kStaleSample | kDeviceFault;
-}  // namespace loop_fault
-
 inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 
 // What a live tick has to say. `tick.force_N[i]` are the models' forces,
@@ -111,7 +96,7 @@ inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 struct LoopSnapshot {
   TickSnapshot tick;
   double loop_time_s = 0.0;  // steady clock; goes on where `tick.time_s` starts over
-  double mixed_N = 0.0;      // what the models ask for
+  double commanded_N = 0.0;      // what the models ask for
   double passive_N = 0.0;    // what the passivity controller left of it, before the limiter
   double rendered_N = 0.0;
   double measured_N = kNoForce;   // of the device's force sensor; NaN: none
@@ -125,7 +110,7 @@ struct LoopSnapshot {
   DeviceHealth device;               // at this tick
   std::uint32_t device_faults_latched = 0;
   float heat_share = 0.0F;  // of the motor's thermal budget
-  bool released = false;    // nobody holds the dead-man switch: no force
+  bool dead_man_released = false;    // nobody holds the dead-man switch: no force
   bool ramping = false;  // the limiter still holds back
   bool fading = false;   // the hand is on its way from one model to another
   bool restarted = false;  // a new stream began in this tick
@@ -191,9 +176,9 @@ class LiveTick {
   void hand_over_sample(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
   void acknowledge(const LoopControls& controls) noexcept;
-  bool released(const LoopControls& controls) const noexcept;
-  double passive(double mixed_N, double step_s) noexcept;
-  void render(double wanted_N, double passive_N, double step_s, bool released) noexcept;
+  bool dead_man_released(const LoopControls& controls) const noexcept;
+  double passive(double commanded_N, double step_s) noexcept;
+  void render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept;
   void record_fault() noexcept;
 
   Device& device_;

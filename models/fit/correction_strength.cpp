@@ -206,19 +206,27 @@ double force_of(const LeftOutSample& sample, const StrengthInput& input, double 
 }
 
 // Standard error of the sum of the differences between two variants.
-double standard_error(const Variant& a, const Variant& b) {
-  const auto folds = static_cast<double>(a.fold_squares.size());
+double standard_error(const std::vector<double>& a, const std::vector<double>& b) {
+  const auto folds = static_cast<double>(a.size());
   if (folds < 2.0) return 0.0;
-  const double mean = (a.total() - b.total()) / folds;
+  double mean = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) mean += (a[k] - b[k]) / folds;
   double squares = 0.0;
-  for (std::size_t k = 0; k < a.fold_squares.size(); ++k) {
-    const double rest = a.fold_squares[k] - b.fold_squares[k] - mean;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double rest = a[k] - b[k] - mean;
     squares += rest * rest;
   }
   return std::sqrt(squares * folds / (folds - 1.0));
 }
 
 }  // namespace
+
+bool is_better(const StrengthChoice& a, const StrengthChoice& b) {
+  if (a.fold_squares.size() != b.fold_squares.size()) return false;
+  double gain = 0.0;
+  for (std::size_t k = 0; k < a.fold_squares.size(); ++k) gain += b.fold_squares[k] - a.fold_squares[k];
+  return gain > standard_error(a.fold_squares, b.fold_squares);
+}
 
 StrengthChoice choose_strength(const StrengthInput& input) {
   StrengthChoice choice;
@@ -259,7 +267,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   for (const Variant& variant : variants) {
     if (variant.strength != best->strength && variant.strength != 0.0) continue;
     if (variant.inner_radius != best->inner_radius && variant.strength != 0.0) continue;
-    if (variant.total() - best->total() <= standard_error(variant, *best)) {
+    if (variant.total() - best->total() <= standard_error(variant.fold_squares, best->fold_squares)) {
       chosen = &variant;
       break;
     }
@@ -270,6 +278,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.smoothing = chosen->smoothing;
   choice.strength = chosen->strength;
   choice.inner_radius = chosen->inner_radius;
+  choice.fold_squares = chosen->fold_squares;
   choice.trend_error_over_jnd = std::sqrt(variants.front().total() / counted);
   choice.error_over_jnd = std::sqrt(chosen->total() / counted);
   const Eigen::VectorXd h = chosen->strength > 0.0 ? fits.predictions(chosen->smoothing) : nothing;

@@ -63,8 +63,13 @@ struct StrengthChoice {
   double inner_radius = 0.0;
   double trend_error_over_jnd = 0.0;  // RMS on the samples left out
   double error_over_jnd = 0.0;
+  std::vector<double> fold_squares;   // sums of squared errors over the JND, by fold
   std::vector<LeftOutPrediction> predictions;
 };
+
+// Whether `a` predicts the same left-out samples better than `b`, by more than one
+// standard error of the differences between the folds.
+bool is_better(const StrengthChoice& a, const StrengthChoice& b);
 
 StrengthChoice choose_strength(const StrengthInput& input);
 

@@ -5,6 +5,7 @@
 #include "models/fit/fit.h"
 #include "models/fit/fit_random.h"
 #include "models/training/relaxation.h"
+#include "models/training/surface_registration.h"
 
 namespace palpate {
 namespace {
@@ -19,6 +20,11 @@ constexpr int kOneSidedPasses = 3;
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumJudged = 100000;
 constexpr std::size_t kLeftOutSamples = 4000;
+// Where the error on strokes left out stays above these, other lists of features are
+// tried beside the selected one.
+constexpr double kLittleIsLeft_jnd = 0.1;
+constexpr double kMuchIsLeft_jnd = 0.3;
+constexpr int kLadderTimes = 6;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
 
@@ -208,6 +214,21 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
   return {};
 }
 
+// Moves every recording to its own surface.
+Status find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
+                     const FitControl& control) {
+  source.correct({});
+  if (request.surface == Surface::recorded) return {};
+  const auto surfaces = register_surfaces(source, request.features, control);
+  if (!surfaces) return surfaces.error();
+  source.correct(corrections_of(*surfaces));
+  for (std::size_t i = 0; i < surfaces->size(); ++i) {
+    const RegisteredSurface& one = (*surfaces)[i];
+    provenance.surfaces.push_back({source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N});
+  }
+  return {};
+}
+
 Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, const FoldDealer& dealer,
                            const FitControl& control) {
   FeatureFilter filter(prepared.common.features);
@@ -288,10 +309,97 @@ Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequ
   return times_s;
 }
 
+// What all candidate lists of features share.
+struct Ground {
+  MotionSource& source;
+  const TrainingRequest& request;
+  const Extent& extent;
+  const FoldDealer& dealer;
+  double no_force_N;
+};
+
+// Trend, sites and correction strength of one list of features.
+Status prepare_list(PreparedTraining& prepared, const Ground& ground, const FeatureList& list,
+                    const FitControl& control) {
+  const TrainingRequest& request = ground.request;
+  ModelData& common = prepared.common;
+  if (Status status = fit_common_trend(prepared, ground.source, request, ground.extent, ground.no_force_N, list, control);
+      !status) {
+    return status;
+  }
+  const bool papers = is_papers_recipe(request);
+  auto set = make_training_set(ground.source, common.features, request.reduction, ground.no_force_N, control, 0.2,
+                               papers ? nullptr : &ground.dealer);
+  if (!set) return set.error();
+  prepared.set = std::move(*set);
+  if (!control.go_on(0.25)) return interrupted();
+  common.largest_force_N = std::max(0.0, ground.extent.force_N);
+  common.offset = prepared.set.normalisation.offset;
+  common.scale = prepared.set.normalisation.scale;
+  common.lower = prepared.set.normalisation.lower;
+  common.upper = prepared.set.normalisation.upper;
+  common.jnd = request.jnd;
+  if (!papers) prepared.strength.emplace();
+  if (Status status = make_sites(prepared, request); !status) return status;
+  common.cover = make_cover(prepared.sites.points);
+  if (Status status = keep_judged_samples(prepared, ground.source, ground.dealer, control); !status) return status;
+  if (!papers) decide_strength(prepared, request, ground.dealer, ground.no_force_N);
+  return {};
+}
+
+// Lists that the selected one must not lose against: the scene's own, and, where much
+// is left to explain, six times on a logarithmic ladder, each a feature.
+std::vector<FeatureList> rivals_of(const FeatureSelection& selection, const TrainingRequest& request,
+                                   double left_over_jnd) {
+  std::vector<FeatureList> rivals;
+  if (selection.turns_round && left_over_jnd > kLittleIsLeft_jnd) {
+    rivals.push_back(scene_list(request.features, filter_times(request.features)));
+  }
+  if (selection.turns_round && left_over_jnd > kMuchIsLeft_jnd) {
+    FeatureList ladder;
+    ladder.velocity = true;
+    for (int i = 0; i < kLadderTimes; ++i) {
+      ladder.relaxation_times_s.push_back({selection.shortest_s * std::pow(selection.longest_s / selection.shortest_s,
+                                                                           static_cast<double>(i) / (kLadderTimes - 1))});
+    }
+    rivals.push_back(std::move(ladder));
+  }
+  return rivals;
+}
+
+// Features as the recordings have it; `prepared` brings its provenance.
+Result<PreparedTraining> prepare_automatic(const PreparedTraining& begun, const Ground& ground,
+                                           const FitControl& control) {
+  const TrainingRequest& request = ground.request;
+  const SelectionInput input{ground.extent.depth_m, ground.extent.rms_velocity_m_per_s, ground.no_force_N,
+                             request.weighting, request.jnd};
+  auto selection = select_features(ground.source, ground.dealer, input, control, 0.1);
+  if (!selection) return selection.error();
+  const auto prepare = [&](const FeatureList& list) -> Result<PreparedTraining> {
+    PreparedTraining prepared = begun;
+    for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
+    if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
+    return prepared;
+  };
+  auto best = prepare(selection->list);
+  if (!best) return best.error();
+  for (const FeatureList& rival : rivals_of(*selection, request, best->strength->error_over_jnd)) {
+    auto other = prepare(rival);
+    if (!other) return other.error();
+    if (is_better(*other->strength, *best->strength)) best = std::move(other);
+  }
+  best->selection = std::move(*selection);
+  return best;
+}
+
 }  // namespace
 
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
+  PreparedTraining prepared;
+  if (Status status = find_surfaces(source, request, prepared.common.provenance, control); !status) {
+    return status.error();
+  }
   const auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (!control.go_on(0.05)) return interrupted();
@@ -300,55 +408,37 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
                  "record a press, or check the sign and zero of position_m"};
   }
   const double no_force_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
-
-  PreparedTraining prepared;
-  ModelData& common = prepared.common;
   const FoldDealer dealer(source.names().size(), extent->strokes, extent->contact_samples);
-  FeatureList list;
+  const Ground ground{source, request, *extent, dealer, no_force_N};
   if (request.choice == FeatureChoice::automatic) {
-    const SelectionInput input{extent->depth_m, extent->rms_velocity_m_per_s, no_force_N, request.weighting,
-                               request.jnd};
-    auto selection = select_features(source, dealer, input, control, 0.1);
-    if (!selection) return selection.error();
-    prepared.selection = std::move(*selection);
-    list = prepared.selection.list;
-    for (const double time_s : all_times(list)) common.provenance.relaxation_times.push_back({time_s, 0.0});
-  } else if (request.choice == FeatureChoice::given) {
-    list = request.list;
-    for (const double time_s : all_times(list)) common.provenance.relaxation_times.push_back({time_s, 0.0});
+    auto automatic = prepare_automatic(prepared, ground, control);
+    if (!automatic) return automatic.error();
+    prepared = std::move(*automatic);
   } else {
-    const auto times_s = scene_times(source, request, *extent, no_force_N, common.provenance, control);
-    if (!times_s) return times_s.error();
-    list = scene_list(request.features, *times_s);
+    FeatureList list = request.list;
+    if (request.choice == FeatureChoice::scene) {
+      const auto times_s = scene_times(source, request, *extent, no_force_N, prepared.common.provenance, control);
+      if (!times_s) return times_s.error();
+      list = scene_list(request.features, *times_s);
+    } else {
+      for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
+    }
+    if (!control.go_on(0.15)) return interrupted();
+    if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
   }
-  if (!control.go_on(0.15)) return interrupted();
-  if (Status status = fit_common_trend(prepared, source, request, *extent, no_force_N, list, control); !status) {
-    return status.error();
-  }
-  const bool papers = is_papers_recipe(request);
-  auto set = make_training_set(source, common.features, request.reduction, no_force_N, control, 0.2,
-                               papers ? nullptr : &dealer);
-  if (!set) return set.error();
-  prepared.set = std::move(*set);
-  if (!control.go_on(0.25)) return interrupted();
-  common.largest_force_N = std::max(0.0, extent->force_N);
-  common.offset = prepared.set.normalisation.offset;
-  common.scale = prepared.set.normalisation.scale;
-  common.lower = prepared.set.normalisation.lower;
-  common.upper = prepared.set.normalisation.upper;
-  common.jnd = request.jnd;
-  if (!papers) prepared.strength.emplace();
-  if (Status status = make_sites(prepared, request); !status) return status.error();
-  common.cover = make_cover(prepared.sites.points);
-  if (Status status = keep_judged_samples(prepared, source, dealer, control); !status) return status.error();
-  if (!papers) decide_strength(prepared, request, dealer, no_force_N);
 
-  Provenance& provenance = common.provenance;
+  Provenance& provenance = prepared.common.provenance;
   provenance.recordings = source.names();
   provenance.scene = request.scene;
   provenance.samples = source.rows();
   provenance.contact_samples = prepared.set.contact_samples;
   provenance.samples_after_reduction = prepared.set.sites.size();
+  provenance.weighting = weighting_name(request.weighting);
+  provenance.reduction = reduction_name(request.reduction);
+  const Relaxation relaxation = request.choice == FeatureChoice::automatic ? Relaxation::automatic
+                                : request.choice == FeatureChoice::given   ? Relaxation::given
+                                                                           : request.relaxation;
+  provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(relaxation)];
   if (!control.go_on(0.3)) return interrupted();
   return prepared;
 }

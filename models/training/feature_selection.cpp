@@ -23,6 +23,9 @@ constexpr std::array kPeakTimes_s{0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
 // A candidate that lowers the error by less ends the forward selection.
 constexpr double kLeastGain = 0.003;
 
+// Of the way in: with less way out in contact the recording is one way in.
+constexpr double kLeastWayOut = 0.1;
+
 enum class Family { velocity, relaxation, stops, peak };
 
 struct Candidate {
@@ -35,11 +38,14 @@ struct Candidate {
 struct TimeScales {
   double sample_s = 0.0;
   double longest_recording_s = 0.0;
+  double way_in_m = 0.0;  // in contact, over all recordings
+  double way_out_m = 0.0;
 };
 
 Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction) {
   double start_s = 0.0;
   double last_s = 0.0;
+  double last_m = 0.0;
   double duration_s = 0.0;
   std::size_t steps = 0;
   TimeScales scales;
@@ -49,8 +55,11 @@ Result<TimeScales> measure_times(MotionSource& source, const FitControl& control
     } else {
       duration_s += row.sample.time_s - last_s;
       ++steps;
+      const double way_m = row.motion.position_m - last_m;
+      if (row.sample.position_m > 0.0) (way_m > 0.0 ? scales.way_in_m : scales.way_out_m) += std::abs(way_m);
     }
     last_s = row.sample.time_s;
+    last_m = row.motion.position_m;
     scales.longest_recording_s = std::max(scales.longest_recording_s, last_s - start_s);
     return true;
   }, control, fraction);
@@ -282,7 +291,11 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   const Search search(problem, make_candidates(rows));
 
   std::vector<Search::Judged> path{search.judge(Search::Set(search.candidates().size(), 0), nullptr)};
-  while (auto more = search.best_with_one_more(path.back())) {
+  FeatureSelection selection;
+  selection.turns_round = scales->way_out_m > kLeastWayOut * scales->way_in_m;
+  while (selection.turns_round) {
+    auto more = search.best_with_one_more(path.back());
+    if (!more) break;
     if (!control.go_on(fraction)) return interrupted();
     const bool worthwhile = more->error.mean() < (1.0 - kLeastGain) * path.back().error.mean();
     if (!worthwhile) break;
@@ -290,9 +303,12 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   }
   const Search::Judged chosen = smallest_as_good(search, std::move(path));
 
-  FeatureSelection selection;
   const Eigen::VectorXd solution = problem.solve(search.columns(chosen.set));
   selection.list = list_of(search, chosen.set, solution);
+  if (const auto& times_s = rows.relaxation_times_s(); !times_s.empty()) {
+    selection.shortest_s = times_s.front();
+    selection.longest_s = times_s.back();
+  }
   selection.worth = table_of_worth(search, chosen);
   selection.left_out_error_over_jnd = std::sqrt(chosen.error.mean());
   selection.training_error_over_jnd = std::sqrt(problem.training_error(solution));

@@ -56,6 +56,11 @@ struct FeatureList {
 struct FeatureSelection {
   FeatureList list;
   std::vector<FeatureWorth> worth;   // in the order of the features, then what was not taken
+  // Whether the tool turns round in contact: a single way in cannot tell memory from
+  // elasticity, and gets the depth alone.
+  bool turns_round = false;
+  double shortest_s = 0.0;  // of the ladder of relaxation times
+  double longest_s = 0.0;
   double training_error_over_jnd = 0.0;
   double left_out_error_over_jnd = 0.0;
 };

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <glm/common.hpp>
-#include <utility>
+
+#include "scenes/scene/method_look.h"
 
 namespace palpate {
 namespace {
@@ -24,19 +26,13 @@ const Palette kDark{hex(0x14171A), hex(0x262B30), hex(0x1B1F23), hex(0x2D343B), 
 constexpr std::array<Rgb, 5> kScale{hex(0x440154), hex(0x3B528B), hex(0x21918C), hex(0x5EC962),
                                     hex(0xFDE725)};
 
-constexpr std::array<std::pair<std::string_view, Rgb>, 5> kMethodColours{{{"voxel", hex(0x56B4E9)},
-                                                                          {"random", hex(0xE69F00)},
-                                                                          {"kdtree", hex(0x0072B2)},
-                                                                          {"greedy", hex(0xD55E00)},
-                                                                          {"position", hex(0xCC79A7)}}};
 }  // namespace
 
 const Palette& palette(Theme theme) noexcept { return theme == Theme::light ? kLight : kDark; }
 
-Rgb method_colour(std::string_view method, Theme theme) noexcept {
-  for (const auto& [name, colour] : kMethodColours) {
-    if (name == method) return colour;
-  }
+Rgb method_colour(std::string_view method, Theme theme) {
+  const std::uint32_t colour = method_rgb(method);
+  if (colour != 0) return hex(colour);
   return theme == Theme::light ? Rgb(0.0F) : Rgb(1.0F);
 }
 

@@ -26,8 +26,9 @@ struct Palette {
 };
 const Palette& palette(Theme theme) noexcept;
 
-// Of a fitting method; direct is black or white, and so is what is not known.
-Rgb method_colour(std::string_view method, Theme theme) noexcept;
+// Of a fitting method (scenes/scene/method_look.h); one without a hue is black or
+// white, and so is what is not known.
+Rgb method_colour(std::string_view method, Theme theme);
 // The measured or true force.
 inline constexpr Rgb kReferenceColour{0.0F, 0.62F, 0.45F};
 

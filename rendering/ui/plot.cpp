@@ -25,16 +25,6 @@ double round_up(double value) noexcept {
   return 10.0 * decade;
 }
 
-std::string three_digits(double value) {
-  char text[32];
-  const double size = std::abs(value);
-  if (!std::isfinite(value)) return "–";
-  // What rounds to the next power of ten has a digit more before the point.
-  const int decimals = size < 0.9995 ? 3 : size < 9.995 ? 2 : size < 99.95 ? 1 : 0;
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
 Plot::Plot(const UiStyle& style, const ImVec2& size, const Range& x, const Range& y, const char* x_unit,
            const char* y_unit, bool x_numbers)
     : style_(style), list_(ImGui::GetWindowDrawList()), x_(x), y_(y) {

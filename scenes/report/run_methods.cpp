@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <utility>
 
 #include "engine/tick/replay.h"
+#include "models/training/surface_search.h"
 #include "scenes/report/judge.h"
 #include "scenes/report/scaling.h"
 #include "scenes/report/steps.h"
@@ -15,6 +17,9 @@ namespace palpate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// A method's base has been fitted before it.
+double own_seconds(const MethodRequest& request) { return request.method->expected_seconds(request); }
 
 constexpr double kPrepareWeight = 1.0;
 constexpr double kJudgeWeight = 0.1;  // a model
@@ -27,9 +32,9 @@ double seconds_since(Clock::time_point start) {
 
 double total_weight(const RecordingSet& recordings, const ReportPlan& plan) {
   double fold = kPrepareWeight;
-  for (const PlannedModel& model : plan.models) fold += expected_seconds(model.request) + kJudgeWeight;
+  for (const PlannedModel& model : plan.models) fold += own_seconds(model.request) + kJudgeWeight;
   for (const PlannedModel& model : plan.repeated) {
-    fold += static_cast<double>(plan.seeds.size()) * (expected_seconds(model.request) + kJudgeWeight);
+    fold += static_cast<double>(plan.seeds.size()) * (own_seconds(model.request) + kJudgeWeight);
   }
   return fold * static_cast<double>(recordings.folds.size()) + kSitesWeight + kDimensionWeight;
 }
@@ -61,6 +66,7 @@ class Run {
         plan_(plan),
         steps_(control, total_weight(recordings, plan)),
         jury_(plan.models.size(), scene.jnd),
+        moved_jury_(plan.models.size(), scene.jnd),
         seed_jury_(plan.repeated.size() * plan.seeds.size(), scene.jnd),
         trace_(scene.jnd),
         coverage_(scene.jnd, main_names(plan), largest_force_N(recordings)) {}
@@ -128,25 +134,23 @@ class Run {
 
   Result<std::vector<ModelPointer>> fit_models(int fold, const PreparedTraining& prepared) {
     std::vector<ModelPointer> models;
-    MethodFit direct;
-    double direct_seconds = 0.0;
+    std::map<const Method*, std::pair<MethodFit, double>> done;  // the main fit of each method, and its seconds
     for (ModelResult& result : data_.models) {
       const MethodRequest& request = result.plan.request;
-      const bool voxel = request.method == Method::voxel;
+      const auto base = done.find(request.method->base);
+      const bool has_base = base != done.end();
       const auto start = Clock::now();
-      auto fit = fit_method(prepared, request, steps_.next(expected_seconds(request)), voxel ? &direct : nullptr);
+      auto fit = fit_method(prepared, request, steps_.next(own_seconds(request)),
+                            has_base ? &base->second.first : nullptr);
       if (!fit) return fit.error();
-      const double seconds = seconds_since(start) + (voxel ? direct_seconds : 0.0);
+      const double seconds = seconds_since(start) + (has_base ? base->second.second : 0.0);
       result.fit_seconds += seconds / static_cast<double>(recordings_.folds.size());
       result.health.push_back({fold, fit->report, prepared.common.provenance.samples, prepared.set.sites.size(),
                                fit->data.provenance.training_within_jnd});
-      if (request.method == Method::direct) {
-        direct = *fit;
-        direct_seconds = seconds;
-      }
+      done.try_emplace(request.method, *fit, seconds);
       models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       result.size = models.back()->centre_count();
-      if (voxel && result.plan.main) result.plan.name = models.back()->name();
+      if (result.plan.main && request.method->can_take(kTakesGrid)) result.plan.name = models.back()->name();
     }
     return models;
   }
@@ -157,7 +161,7 @@ class Run {
       for (const std::uint64_t seed : plan_.seeds) {
         MethodRequest request = model.request;
         request.seed = seed;
-        auto fit = fit_method(prepared, request, steps_.next(expected_seconds(request)));
+        auto fit = fit_method(prepared, request, steps_.next(own_seconds(request)));
         if (!fit) return fit.error();
         models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       }
@@ -166,7 +170,7 @@ class Run {
   }
 
   Status judge(const Fold& fold, const std::vector<ModelPointer>& models, const std::vector<ModelPointer>& repeated) {
-    const std::vector<ModelPointer> main(models.begin(), models.begin() + kMainModels);
+    const std::vector<ModelPointer> main(models.begin(), models.begin() + static_cast<std::ptrdiff_t>(main_models(data_)));
     for (const std::size_t index : fold.test) {
       const Recording& recording = *recordings_.all[index];
       const double share = kJudgeWeight / static_cast<double>(fold.test.size());
@@ -174,12 +178,25 @@ class Run {
       if (!errors) return errors.error();
       data_.test_names.push_back(recording.name);
       for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording.push_back((*errors)[i]);
+      if (const Status status = judge_moved(recording, models, main); !status) return status;
       const auto again =
           seed_jury_.judge(recording, repeated, steps_.next(share * static_cast<double>(repeated.size())));
       if (!again) return again.error();
       if (const Status status = trace_.look_at(recording, main); !status) return status;
       if (const Status status = coverage_.look_at(recording, main); !status) return status;
     }
+    return {};
+  }
+
+  // The main models say together where the surface is.
+  Status judge_moved(const Recording& recording, const std::vector<ModelPointer>& models,
+                     const std::vector<ModelPointer>& main) {
+    const SurfaceLocation surface =
+        locate_surface(thinned_rows(recording, kSearchRows), {main.begin(), main.end()}, scene_.jnd);
+    data_.surface_offset_m.push_back(surface.offset_m);
+    const auto errors = moved_jury_.judge(recording, models, {}, surface.offset_m);
+    if (!errors) return errors.error();
+    for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording_moved.push_back((*errors)[i]);
     return {};
   }
 
@@ -203,16 +220,20 @@ class Run {
   void finish_models() {
     const std::vector<ErrorSummary> pooled = jury_.pooled();
     for (std::size_t i = 0; i < pooled.size(); ++i) data_.models[i].pooled = pooled[i];
+    const std::vector<ErrorSummary> moved = moved_jury_.pooled();
+    for (std::size_t i = 0; i < moved.size(); ++i) data_.models[i].pooled_moved = moved[i];
     const std::vector<ErrorSummary> seeds = seed_jury_.pooled();
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       data_.seeds.push_back(
-          {plan_.repeated[i / plan_.seeds.size()].name, plan_.seeds[i % plan_.seeds.size()], seeds[i]});
+          {plan_.repeated[i / plan_.seeds.size()], plan_.seeds[i % plan_.seeds.size()], seeds[i]});
     }
     data_.trace = trace_.worst();
     data_.coverage = coverage_.result();
-    for (std::size_t i = 0; i < kMainModels; ++i) data_.models[i].bins = coverage_.bins(i);
+    for (std::size_t i = 0; i < main_models(data_); ++i) data_.models[i].bins = coverage_.bins(i);
     for (CoverageErrors& errors : data_.coverage.errors) {
-      if (errors.model == plan_.models[1].name) errors.model = data_.models[1].plan.name;
+      for (std::size_t i = 0; i < plan_.models.size(); ++i) {
+        if (errors.model == plan_.models[i].name) errors.model = data_.models[i].plan.name;
+      }
     }
   }
 
@@ -221,6 +242,7 @@ class Run {
   const ReportPlan& plan_;
   Steps steps_;
   Jury jury_;
+  Jury moved_jury_;
   Jury seed_jury_;
   TraceFinder trace_;
   CoverageFinder coverage_;

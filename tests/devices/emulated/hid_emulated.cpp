@@ -1,13 +1,18 @@
 // The real libhidapi on an emulated paddle: found, opened, read, written, lost.
 // A program of its own: it runs with the preload library of umockdev.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_device.h"
 #include "devices/hid/hidapi_bus.h"
+#include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_paddle.h"
 #include "tests/support/hid_ticks.h"
@@ -31,7 +36,7 @@ class HidEmulated : public ::testing::Test {
 
 TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EmulatedPaddle paddle;
-  const std::vector<HidFound> found = bus.list();
+  const std::vector<HidDeviceInfo> found = bus.list();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].path, "/dev/hidraw0");
   EXPECT_EQ(found[0].product, "Teensyduino RawHID");
@@ -41,7 +46,7 @@ TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EXPECT_EQ(found[0].usage, 0x0200);
   const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
   ASSERT_EQ(diagnosis.size(), 1u);
-  EXPECT_EQ(diagnosis[0].kind, HidKind::paddle);
+  EXPECT_EQ(diagnosis[0].driver, &kPaddleDriver);
   EXPECT_EQ(diagnosis[0].problem, "");
 }
 
@@ -55,32 +60,32 @@ TEST_F(HidEmulated, SaysThatTheFirmwareIsOfAnotherVersion) {
 
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
   EmulatedPaddle paddle;
-  Result<HidOpened> first = open_first(bus, {HidKind::paddle});
+  Result<HidOpened> first = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(first.ok());
   EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: in use by another program; close it");
 }
 
 TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
   EmulatedPaddle paddle;
-  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   std::uint8_t bytes[65] = {};
-  ASSERT_EQ(opened->line->read(bytes, sizeof bytes), 64);
-  HidReading reading;
-  ASSERT_EQ(decode_report(HidKind::paddle, bytes, 64, reading), ReportVerdict::position);
+  ASSERT_EQ(opened->connection->read(bytes, sizeof bytes), 64);
+  DeviceReading reading;
+  ASSERT_EQ(kPaddleDriver.decode(bytes, 64, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, 1000);
-  const OutReports stop = encode_stop(HidKind::paddle);
-  ASSERT_TRUE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  const OutReports stop = kPaddleDriver.encode_stop();
+  ASSERT_TRUE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
   EXPECT_EQ(paddle.last_write_size, 65u) << "the report id comes first";
   paddle.gone = true;
-  EXPECT_LT(opened->line->read(bytes, sizeof bytes), 0);
-  EXPECT_FALSE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  EXPECT_LT(opened->connection->read(bytes, sizeof bytes), 0);
+  EXPECT_FALSE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
 }
 
 TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EmulatedPaddle paddle;
-  const HidCalibration calibration = test::patient(test::example_calibration(HidKind::paddle));
-  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  const HidCalibration calibration = test::patient(test::example_calibration(&kPaddleDriver));
+  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   HidDevice device(bus, calibration, std::move(*opened));
   ASSERT_TRUE(device.open().ok());
@@ -103,6 +108,51 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
   device.close();
   EXPECT_GT(paddle.writes, 10);
+}
+
+// Another process that pushes until a signal ends it; a byte through `ready` says that
+// it does.
+[[noreturn]] void push_until_ended(HidBus& bus, int ready) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+  const StopListener listener;
+  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  if (!opened) _exit(3);
+  HidDevice device(bus, test::patient(test::example_calibration(HidKind::paddle)), std::move(*opened));
+  if (!device.open()) _exit(4);
+  device.start_zeroing();
+  tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });
+  int ticks = 0;
+  tick_until(device, 2.0, [&](const DeviceHealth&) {
+    if (++ticks == 50 && write(ready, "1", 1) != 1) _exit(5);
+    return false;
+  });
+  _exit(6);
+}
+
+TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
+  for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int second : {SIGINT, SIGTERM, SIGHUP}) {
+      EmulatedPaddle paddle;
+      int ready[2];
+      ASSERT_EQ(pipe(ready), 0);
+      const pid_t child = fork();
+      if (child == 0) push_until_ended(bus, ready[1]);
+      close(ready[1]);
+      char byte = 0;
+      EXPECT_EQ(read(ready[0], &byte, 1), 1);
+      close(ready[0]);
+      EXPECT_EQ(paddle.told_mA, -500);
+      kill(child, first);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "the first only asks";
+      EXPECT_EQ(paddle.told_mA, -500) << "this program does not answer";
+      kill(child, second);
+      int status = 0;
+      waitpid(child, &status, 0);
+      EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == second) << status;
+      EXPECT_EQ(paddle.told_mA, 0) << first << " then " << second;
+    }
+  }
 }
 
 }  // namespace

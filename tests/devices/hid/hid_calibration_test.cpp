@@ -1,4 +1,5 @@
 // Calibration files, good and broken.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_calibration.h"
 
 #include <gtest/gtest.h>
@@ -23,13 +24,13 @@ std::string complaint(const std::string& text) {
 }
 
 TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
-  for (const HidKind kind : kHidKinds) {
-    const Result<HidCalibration> calibration = read_hid_calibration(kAssets, kind);
+  for (const HidDriver* driver : kHidDrivers) {
+    const Result<HidCalibration> calibration = read_hid_calibration(kAssets, *driver);
     ASSERT_TRUE(calibration.ok()) << calibration.error().message;
-    EXPECT_EQ(calibration->kind, kind);
+    EXPECT_EQ(calibration->driver, driver);
     EXPECT_GT(calibration->counts_per_metre, 0.0);
   }
-  const Result<HidCalibration> paddle = read_hid_calibration(kAssets, HidKind::paddle);
+  const Result<HidCalibration> paddle = read_hid_calibration(kAssets, kPaddleDriver);
   EXPECT_EQ(paddle->limits.largest_N, 5.0);
   EXPECT_EQ(paddle->limits.continuous_N, 2.0);
   EXPECT_EQ(paddle->limits.stale_after_s, 0.008);
@@ -37,7 +38,7 @@ TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
 
 TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint("{").rfind("paddle.json:1:2: syntax error", 0), 0u) << complaint("{");
-  EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found [], expected an object");
+  EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found a list of 0, expected an object with \"kind\"");
   EXPECT_EQ(complaint(changed("\"direction\": 1", "\"direction\": 0.5")),
             "paddle.json:4:16: direction: found 0.5, expected 1 or -1");
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 500")),
@@ -45,24 +46,24 @@ TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 1")),
             "paddle.json:10:19: continuous_N: found 2, expected at most peak_N");
   EXPECT_EQ(complaint(changed("  \"ramp_s\": 0.5,\n", "")),
-            "paddle.json:1:1: ramp_s: missing, expected a number from 0.05 up to 10");
+            "paddle.json:1:1: ramp_s: found no such field, expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
             "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
-            "paddle.json:2:11: kind: found \"joystick\", expected \"paddle\", \"polhem\", \"openffboard\" or "
-            "\"spacemouse\"");
+            "paddle.json:2:11: kind: found \"joystick\", expected one of paddle, polhem, openffboard, "
+            "spacemouse");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
-                .rfind("paddle.json:13:28: colour: unknown; expected kind, counts_per_metre", 0),
+                .rfind("paddle.json:13:28: colour: found an unknown field, expected one of kind, counts_per_metre", 0),
             0u);
 }
 
 TEST(HidCalibration, SaysWhenTheFileIsNotThereOrOfAnotherKind) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(
-      read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+      read_hid_calibration(folder.path(), kPolhemDriver).error().message,
       folder.file("polhem.json") + ": cannot read the calibration; put the file there, see assets/devices/");
   folder.with_file("polhem.json", good());
-  EXPECT_EQ(read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+  EXPECT_EQ(read_hid_calibration(folder.path(), kPolhemDriver).error().message,
             folder.file("polhem.json") +
                 ": found the calibration of \"paddle\", expected \"polhem\", as the file's name says");
 }
