@@ -49,7 +49,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
-  yield_to_haptics(session_->scheduling());
+  yield_to_haptics(session_->loop().scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
   auto window = Window::open(request.window);
   if (!window) return window.error();
@@ -169,12 +169,12 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   pose.tool_m = static_cast<float>(newest.tick.position_m);
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
-    const SlotView& model = session_->slot(slot);
+    const SlotView& model = session_->models().view(slot);
     pose.dent_m = static_cast<float>(model.dent_m);
-    pose.error_over_jnd = static_cast<float>(model.dent_error_over_jnd);
+    pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
     pose.force_N = static_cast<float>(model.force_N);
     pose.arrow = method_colour(model.method, view_.theme);
-    pose.chosen = slot == session_->selected();
+    pose.chosen = slot == session_->models().selected();
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
     pose.judged = view_.hidden_choice == 0;
     poses.push_back(pose);
@@ -277,7 +277,7 @@ void DemoApp::next_dead_man() {
 }
 
 void DemoApp::next_reference() {
-  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->reference());
+  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->comparison().reference());
   const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
   for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
     const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];

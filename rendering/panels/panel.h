@@ -1,36 +1,16 @@
-// The panel at the right: curves, models, errors, the loop's health. One file
-// for each part; every one draws at the cursor of the current ImGui window.
+// The panel at the right: curves, models, errors, the loop's health. One pair of
+// files and one view (panel_views.h) for each part; every one draws at the cursor of
+// the current ImGui window.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
-#include <string>
-
-#include "rendering/ui/curves.h"
-#include "rendering/ui/ui_style.h"
+#include "rendering/panels/panel_force.h"
 #include "rendering/panels/view_state.h"
+#include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
 
-// Live force against time with the JND band, and the error over the JND below.
-class ForceCurves {
- public:
-  void draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height,
-            float error_height);
-  // The force plot alone, with the reference and the model in the hand, which has no
-  // colour of its own while it is a secret.
-  void draw_for_visitors(LiveSession& session, ViewState& view, const UiStyle& style, float height);
-
- private:
-  void gather(const LiveSession& session, ViewState& view, double end_s);
-  void draw_force(const LiveSession& session, ViewState& view, const UiStyle& style, float height,
-                  double end_s);
-  void draw_error(const LiveSession& session, const ViewState& view, const UiStyle& style, float height,
-                  double end_s);
-  CurveColumns curves_;
-};
-
-// All of it.
 class Panel {
  public:
   // Into a window at (x, y).
@@ -40,28 +20,5 @@ class Panel {
  private:
   ForceCurves curves_;
 };
-
-void draw_model_table(LiveSession& session, const UiStyle& style, float height);
-void draw_error_bins(const LiveSession& session, const UiStyle& style, float height);
-// Lines of text that draw_health takes, at most as a rule.
-int health_lines(const LiveSession& session, const ViewState& view);
-void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style,
-                 const FrameFigures& frames);
-
-// What the panel's quiet line says; `problem` when it is not quiet.
-struct HealthWords {
-  std::string text;
-  bool problem = false;
-  bool past = false;  // over, said until the user has seen it (LiveSession::reset_figures)
-};
-HealthWords health_words(const LiveSession& session, const FrameFigures& frames);
-
-// Whether the model in the hand is used where nothing was recorded.
-bool away_from_data(const LiveSession& session);
-
-// Small parts that several use.
-void section_title(const UiStyle& style, const char* title);
-// A tooltip for the item before.
-void tip(const char* text);
 
 }  // namespace palpate

@@ -1,9 +1,11 @@
+#include "rendering/panels/panel_force.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "engine/live/pacer.h"
 #include "engine/base/text.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
 namespace palpate {
@@ -21,20 +23,19 @@ double end_time_s(const ViewState& view) {
   return view.paused ? view.paused_at_s - view.scrolled_back_s : steady_now_s();
 }
 
-// The models' order of drawing: the one in the hand on top.
+// The models' order of drawing: the active one on top.
 template <typename Draw>
-void for_each_slot(const LiveSession& session, const ViewState& view, Draw draw) {
-  for (std::size_t i = 0; i < session.slot_count() && !view.kiosk; ++i) {
-    if (i != session.selected() && session.slot(i).state == SlotState::ready) draw(i);
+void for_each_slot(const ModelsView& models, const ViewState& view, Draw draw) {
+  for (std::size_t i = 0; i < models.slots.size() && !view.kiosk; ++i) {
+    if (i != models.selected && models.slots[i]->state == SlotState::ready) draw(i);
   }
-  if (session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready)
-    draw(session.selected());
+  if (models.active() != nullptr) draw(models.selected);
 }
 
-ImU32 slot_ink(const LiveSession& session, const ViewState& view, std::size_t slot, const UiStyle& style) {
+ImU32 slot_ink(const ModelsView& models, const ViewState& view, std::size_t slot, const UiStyle& style) {
   if (view.hidden_choice > 0) return ink(style.colours().text);
-  const bool selected = slot == session.selected();
-  return ink(method_colour(session.slot(slot).method, style.theme()), selected ? 1.0F : 0.75F);
+  const bool selected = slot == models.selected;
+  return ink(method_colour(models.slots[slot]->method, style.theme()), selected ? 1.0F : 0.75F);
 }
 
 void draw_band(const Plot& plot, const std::vector<CurveColumn>& columns, const UiStyle& style) {
@@ -103,7 +104,7 @@ double eased_scale(double scale, double wanted) {
   return scale + (target > scale ? 0.25 : 0.03) * (target - scale);
 }
 
-void scroll_with_wheel(const Plot& plot, const LiveSession& session, ViewState& view, double end_s) {
+void scroll_with_wheel(const Plot& plot, const ForceView& force, ViewState& view, double end_s) {
   const float wheel = ImGui::GetIO().MouseWheel;
   if (!plot.hovered() || wheel == 0.0F) return;
   if (!view.paused) {
@@ -111,26 +112,26 @@ void scroll_with_wheel(const Plot& plot, const LiveSession& session, ViewState& 
     view.paused_at_s = end_s;
     view.scrolled_back_s = 0.0;
   }
-  const double oldest_s = session.history().size() > 0 ? session.history()[0].loop_time_s : end_s;
+  const double oldest_s = force.history->size() > 0 ? (*force.history)[0].loop_time_s : end_s;
   const double most_s = std::max(0.0, view.paused_at_s - kShown_s - oldest_s);
   view.scrolled_back_s = std::clamp(view.scrolled_back_s + static_cast<double>(wheel), 0.0, most_s);
 }
 
 }  // namespace
 
-void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height,
+void ForceCurves::draw(const ForceView& force, ViewState& view, const UiStyle& style, float force_height,
                        float error_height) {
   const double end_s = end_time_s(view);
-  gather(session, view, end_s);
+  gather(force, view, end_s);
   section_title(style, "FORCE");
   ImGui::SameLine();
-  const double reference_N = session.reference_N();
+  const double reference_N = force.reference_N;
   ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", session.reference_words().c_str());
+  ImGui::TextDisabled("%s", force.reference_words.c_str());
   tip("What the models are compared with. F chooses another.\nThe grey band is one just noticeable "
       "difference (JND) either way.");
-  draw_force(session, view, style, force_height, end_s);
+  draw_force(force, view, style, force_height, end_s);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "Force of every model in the last 10 s, and the reference in green.\nThe grey band: what a hand "
@@ -138,27 +139,27 @@ void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& sty
         "them).\nWheel: back in time. Space: stop and go.");
   section_title(style, "ERROR / JND");
   ImGui::SameLine();
-  if (away_from_data(session)) {
+  if (force.models.out_of_domain()) {
     ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
   } else {
     ImGui::TextDisabled(view.paused ? "stopped, Space goes on" : "above 1 a hand could tell");
   }
-  draw_error(session, view, style, error_height, end_s);
+  draw_error(force, view, style, error_height, end_s);
   if (view.paused && ImGui::IsItemHovered())
     ImGui::SetTooltip("%.1f s before the stop", view.scrolled_back_s);
 }
 
-void ForceCurves::draw_for_visitors(LiveSession& session, ViewState& view, const UiStyle& style,
+void ForceCurves::draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style,
                                     float height) {
   const double end_s = end_time_s(view);
-  gather(session, view, end_s);
-  draw_force(session, view, style, height, end_s);
+  gather(force, view, end_s);
+  draw_force(force, view, style, height, end_s);
 }
 
-void ForceCurves::gather(const LiveSession& session, ViewState& view, double end_s) {
+void ForceCurves::gather(const ForceView& force, ViewState& view, double end_s) {
   const auto columns =
       static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
-  curves_.gather(session.history(), session.jnd(), session.slot_count(), end_s - kShown_s, end_s, columns);
+  curves_.gather(*force.history, force.jnd, force.models.slots.size(), end_s - kShown_s, end_s, columns);
   view.force_scale_N =
       eased_scale(view.force_scale_N, std::max(1.0, 1.05 * static_cast<double>(curves_.highest_force_N())));
   // Beyond 8 JND the line would only hide what is near 1.
@@ -166,7 +167,7 @@ void ForceCurves::gather(const LiveSession& session, ViewState& view, double end
       view.error_scale, std::clamp(1.1 * static_cast<double>(curves_.highest_error_over_jnd()), 1.5, 8.0));
 }
 
-void ForceCurves::draw_force(const LiveSession& session, ViewState& view, const UiStyle& style, float height,
+void ForceCurves::draw_force(const ForceView& force, ViewState& view, const UiStyle& style, float height,
                              double end_s) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
   const Plot plot(style, size, {end_s - kShown_s, end_s}, {-0.04 * view.force_scale_N, view.force_scale_N},
@@ -177,18 +178,18 @@ void ForceCurves::draw_force(const LiveSession& session, ViewState& view, const 
       plot, curves_.columns(), ink(kReferenceColour), kReferenceLine_px * thin,
       [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; },
       [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
-  for_each_slot(session, view, [&](std::size_t slot) {
+  for_each_slot(force.models, view, [&](std::size_t slot) {
     draw_curve(
-        plot, curves_.columns(), slot_ink(session, view, slot, style),
-        (slot == session.selected() ? kSelectedLine_px : kModelLine_px) * thin,
+        plot, curves_.columns(), slot_ink(force.models, view, slot, style),
+        (slot == force.models.selected ? kSelectedLine_px : kModelLine_px) * thin,
         [slot](const CurveColumn& c) { return c.low_N[slot]; },
         [slot](const CurveColumn& c) { return c.high_N[slot]; });
   });
   draw_faults(plot, curves_.columns(), style);
-  scroll_with_wheel(plot, session, view, end_s);
+  scroll_with_wheel(plot, force, view, end_s);
 }
 
-void ForceCurves::draw_error(const LiveSession& session, const ViewState& view, const UiStyle& style,
+void ForceCurves::draw_error(const ForceView& force, const ViewState& view, const UiStyle& style,
                              float height, double end_s) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
   const Plot plot(style, size, {end_s - kShown_s, end_s}, {0.0, view.error_scale}, "", "", false);
@@ -196,10 +197,10 @@ void ForceCurves::draw_error(const LiveSession& session, const ViewState& view, 
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()},
                             ink(style.colours().band, 0.45F));
   plot.level(1.0, ink(style.colours().text), 1.5F * thin);
-  for_each_slot(session, view, [&](std::size_t slot) {
+  for_each_slot(force.models, view, [&](std::size_t slot) {
     const auto value = [slot](const CurveColumn& c) { return c.error_over_jnd[slot]; };
-    draw_curve(plot, curves_.columns(), slot_ink(session, view, slot, style),
-               (slot == session.selected() ? kSelectedLine_px : kModelLine_px) * thin, value, value);
+    draw_curve(plot, curves_.columns(), slot_ink(force.models, view, slot, style),
+               (slot == force.models.selected ? kSelectedLine_px : kModelLine_px) * thin, value, value);
   });
 }
 

@@ -1,9 +1,12 @@
+#include "rendering/panels/panel_models.h"
+
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
 namespace palpate {
@@ -17,7 +20,7 @@ struct Heading {
   float share;
 };
 constexpr Heading kHeadings[kColumns] = {
-    {"model", "Click, or press its number, to take a model into the hand.", 2.5F},
+    {"model", "Click, or press its number, to make a model the active one.", 2.5F},
     {"N", "Force now, newtons", 1.0F},
     {"mN off", "Error now: model minus reference, millinewtons", 1.25F},
     {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", 1.0F},
@@ -45,8 +48,8 @@ double sort_value(const SlotView& slot, int column) {
   }
 }
 
-std::vector<std::size_t> sorted_slots(const LiveSession& session) {
-  std::vector<std::size_t> order(session.slot_count());
+std::vector<std::size_t> sorted_slots(const ModelsView& models) {
+  std::vector<std::size_t> order(models.slots.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();
   if (specs == nullptr || specs->SpecsCount == 0) return order;
@@ -54,10 +57,10 @@ std::vector<std::size_t> sorted_slots(const LiveSession& session) {
   const bool rising = specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (column == kName)
-      return rising ? session.slot(a).name < session.slot(b).name
-                    : session.slot(b).name < session.slot(a).name;
-    const double left = sort_value(session.slot(a), column);
-    const double right = sort_value(session.slot(b), column);
+      return rising ? models.slots[a]->name < models.slots[b]->name
+                    : models.slots[b]->name < models.slots[a]->name;
+    const double left = sort_value(*models.slots[a], column);
+    const double right = sort_value(*models.slots[b], column);
     return rising ? left < right : right < left;
   });
   return order;
@@ -103,8 +106,9 @@ std::string grouped(int count) {
   return text;
 }
 
-void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
-  const SlotView& slot = session.slot(index);
+// Whether it was clicked.
+bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style) {
+  const SlotView& slot = *models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
   const ImU32 colour =
@@ -116,21 +120,17 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
   const std::string label = "      " + name + "##slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
-  if (ImGui::Selectable(label.c_str(), index == session.selected(), flags)) session.select(index);
-  if (ImGui::IsItemHovered()) {
-    const std::string words = index == session.selected() ? slot.name + " is in the hand"
-                                                          : "Click, or press " + std::to_string(index + 1) +
-                                                                ", to take " + slot.name + " into the hand";
-    ImGui::SetTooltip("%s", words.c_str());
-  }
+  const bool clicked = ImGui::Selectable(label.c_str(), index == models.selected, flags);
+  tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
-  if (index == session.selected()) {
+  if (index == models.selected) {
     list.AddCircleFilled(middle, 0.40F * line, colour);
     list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
   } else {
     list.AddCircleFilled(middle, 0.27F * line, colour);
   }
+  return clicked;
 }
 
 // Over the columns of the figures that are not there yet.
@@ -138,17 +138,8 @@ void draw_waiting(const SlotView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
-  switch (slot.state) {
-    case SlotState::waiting:
-      ImGui::TextDisabled("waits");
-      break;
-    case SlotState::fitting:
-      ImGui::TextDisabled("fits %.0f %%", 100.0 * slot.progress);
-      break;
-    default:
-      ImGui::TextDisabled("failed");
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", slot.problem.c_str());
-  }
+  ImGui::TextDisabled("%s", waiting_words(slot).c_str());
+  if (slot.state == SlotState::failed) tip(slot.problem.c_str());
   ImGui::PopClipRect();
 }
 
@@ -171,10 +162,22 @@ void draw_figures(const SlotView& slot, const UiStyle& style) {
 
 }  // namespace
 
-void draw_model_table(LiveSession& session, const UiStyle& style, float height) {
+std::string waiting_words(const SlotView& slot) {
+  if (slot.state == SlotState::waiting) return "waits";
+  return slot.state == SlotState::fitting ? format("fits %.0f %%", 100.0 * slot.progress) : "failed";
+}
+
+std::string name_tip(const ModelsView& models, std::size_t slot) {
+  const std::string& name = models.slots[slot]->name;
+  if (slot == models.selected) return name + " is the active model";
+  return "Click, or press " + std::to_string(slot + 1) + ", to make " + name + " the active model";
+}
+
+std::optional<std::size_t> draw_model_table(const ModelsView& models, const UiStyle& style, float height) {
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_SortTristate | ImGuiTableFlags_ScrollY |
                      ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
-  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return;
+  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return std::nullopt;
+  std::optional<std::size_t> clicked;
   ImGui::TableSetupScrollFreeze(0, 1);
   for (const Heading& heading : kHeadings)
     ImGui::TableSetupColumn(heading.text, ImGuiTableColumnFlags_WidthStretch, heading.share);
@@ -183,17 +186,18 @@ void draw_model_table(LiveSession& session, const UiStyle& style, float height) 
     ImGui::TableSetColumnIndex(column);
     draw_heading(column);
   }
-  for (const std::size_t index : sorted_slots(session)) {
+  for (const std::size_t index : sorted_slots(models)) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    draw_name(session, index, style);
-    if (session.slot(index).state == SlotState::ready) {
-      draw_figures(session.slot(index), style);
+    if (draw_name(models, index, style)) clicked = index;
+    if (models.slots[index]->state == SlotState::ready) {
+      draw_figures(*models.slots[index], style);
     } else {
-      draw_waiting(session.slot(index));
+      draw_waiting(*models.slots[index]);
     }
   }
   ImGui::EndTable();
+  return clicked;
 }
 
 }  // namespace palpate

@@ -7,7 +7,8 @@
 #include <string>
 
 #include "engine/base/text.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel_views.h"
 #include "rendering/ui/plot.h"
 #include "scenes/scene/assets.h"
 
@@ -54,7 +55,7 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
 }
 
 std::string label_text(const LiveSession& session, std::size_t slot) {
-  return std::to_string(slot + 1) + "  " + session.slot(slot).name;
+  return std::to_string(slot + 1) + "  " + session.models().view(slot).name;
 }
 
 void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
@@ -62,13 +63,13 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
   const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
   ImFont* font = style.fonts().heading;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const SlotView& slot = session.slot(slots[i]);
+    const SlotView& slot = session.models().view(slots[i]);
     const bool secret = view.hidden_choice > 0;
     const std::string text =
         secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
-    const bool chosen = slots[i] == session.selected();
+    const bool chosen = slots[i] == session.models().selected();
     const Rgb colour = secret ? style.colours().text : method_colour(slot.method, style.theme());
     const float pad = 0.25F * font->FontSize;
     back().AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
@@ -78,10 +79,10 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
                          {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
     text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
     if (slots.size() < 2 || !chosen) continue;
-    const std::string hand = "in the hand";
-    const ImVec2 below = text_size(style.fonts().body, hand);
+    const std::string active = "active model";
+    const ImVec2 below = text_size(style.fonts().body, active);
     text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad},
-            ink(style.colours().text), hand);
+            ink(style.colours().text), active);
   }
 }
 
@@ -92,20 +93,19 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   ImFont* body = style.fonts().body;
   const float line = body->FontSize;
   const ImVec2 corner(area.at.x + 1.1F * line, area.at.y + area.size.y - lift);
-  const bool known = session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready &&
-                     !std::isnan(session.reference_N());
-  const double error = known ? session.slot(session.selected()).dent_error_over_jnd : 0.0;
-  // Two decimals are more than anyone can see change.
-  const std::string number = !known           ? "–"
-                             : error < 0.9995 ? at_most_three_decimals(error).substr(0, 4)
-                                              : at_most_three_decimals(error);
+  const ModelsView models = models_view(session);
+  const SlotView* active = models.active();
+  const double error = active != nullptr && !std::isnan(session.comparison().reference_N())
+                           ? active->recent_peak_error_over_jnd
+                           : 0.0;
+  const std::string number = peak_error_words(models, session.comparison().reference_N());
   const ImVec2 size = text_size(big, "0.00");
   const float y = corner.y - size.y - 1.9F * line;
   text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);
   const float beside = corner.x + size.x + 0.7F * line;
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), "of what a hand can notice:");
   text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet),
-          "the error of the model in the hand");
+          "the error of the active model");
   const float width = 11.0F * line;
   const float top = y + size.y + 0.35F * line;
   const float high = 0.55F * line;
@@ -148,7 +148,7 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
 }
 
 void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (!session.takes_mouse() || !session.hand_is_exploring()) return;
+  if (session.mouse() == nullptr || !session.mouse()->hand_is_exploring()) return;
   const std::string hint = "The hand moves by itself. Move the mouse over the block to press it.";
   const ImVec2 size = text_size(style.fonts().body, hint);
   text_at(style.fonts().body,
@@ -176,42 +176,45 @@ void draw_buttons(const LiveSession& session, const ViewState& view, const Scene
 }
 
 void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift) {
-  const ReplayStatus replay = session.replay();
-  if (!replay.present) return;
+  if (session.replay() == nullptr) return;
+  ReplayControl& replay = *session.replay();
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
   ImGui::Begin("replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
-  if (ImGui::Button(replay.paused ? "Play" : "Pause")) session.pause_replay(!replay.paused);
+  if (ImGui::Button(replay.paused() ? "Play" : "Pause")) replay.pause(!replay.paused());
   tip("The recording (P)");
   ImGui::SameLine();
   // Figures beside the sliders: on them the grip hides what it is dragged over.
   ImGui::SetNextItemWidth(0.50F * area.size.x);
-  auto at_s = static_cast<float>(replay.at_s);
-  if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s), "")) {
-    session.seek_replay(static_cast<double>(at_s));
+  auto at_s = static_cast<float>(replay.playhead_s());
+  if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) {
+    replay.seek(static_cast<double>(at_s));
   }
   tip("Where in the recording ([ and ] by 2 s)");
   ImGui::SameLine();
-  ImGui::Text("%5.1f of %.1f s", replay.at_s, replay.duration_s);
+  ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-4.5F * ImGui::GetFontSize());
-  auto speed = static_cast<float>(replay.speed);
+  auto speed = static_cast<float>(replay.speed());
   if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) {
-    session.set_replay_speed(static_cast<double>(speed));
+    replay.set_speed(static_cast<double>(speed));
   }
   tip("Its speed (, and .)");
   ImGui::SameLine();
-  ImGui::Text("%.2f x", replay.speed);
+  ImGui::Text("%.2f x", replay.speed());
+  if (session.surface().found_m() != 0.0) {
+    bool moved = session.surface().moved();
+    const std::string label = "surface " + fixed(1e3 * session.surface().found_m(), 2) + " mm from the models'; moved there";
+    if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
+    tip("Where the forces of the models fit the recording best; off: positions as recorded");
+  }
   ImGui::End();
 }
 
 void draw_recording(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
   const RecordingStatus recording = session.recording();
   if (!recording.active && !recording.saving) return;
-  char text[256];
-  std::snprintf(text, sizeof text, recording.saving ? "saving %s" : "recording %s: %.1f s, %llu samples",
-                std::filesystem::path(recording.path).filename().c_str(), recording.seconds,
-                static_cast<unsigned long long>(recording.rows));
+  const std::string text = recording_words(recording);
   const ImVec2 size = text_size(style.fonts().body, text);
   const ImVec2 at(area.at.x + area.size.x - size.x - size.y, area.at.y + 0.9F * size.y);
   back().AddCircleFilled({at.x - 0.7F * size.y, at.y + 0.55F * size.y}, 0.35F * size.y,
@@ -238,9 +241,8 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
 }
 
 void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (!away_from_data(session)) return;
-  const std::string text = "Nothing like this was recorded: here " + session.slot(session.selected()).name +
-                           " only follows the trend";
+  const std::string text = data_warning(models_view(session));
+  if (text.empty()) return;
   const ImVec2 size = text_size(style.fonts().body, text);
   const float pad = 0.4F * size.y;
   const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.2F * size.y);
@@ -282,7 +284,7 @@ void draw_help(ViewState& view, const UiStyle& style, const SceneArea& area) {
   line("mouse", "moves the probe, over the block; down is deeper");
   line("wheel, Up, Down", "move the probe step by step");
   line("right button", "turns the view; Ctrl + wheel comes nearer");
-  line("1 ... 9", "take a model into the hand; a click on its block too");
+  line("1 ... 9", "make a model the active one; a click on its block too");
   for (const CommandEntry& entry : commands()) line(entry.key, entry.help);
   line("Left, Right", "scroll back and forth while the curves stand still");
   line("P [ ] , .", "pause, seek, speed of a replayed recording");
@@ -340,17 +342,40 @@ const std::vector<CommandEntry>& commands() {
   return all;
 }
 
+std::string data_warning(const ModelsView& models) {
+  if (!models.out_of_domain()) return {};
+  return "Nothing like this was recorded: here " + models.active()->name + " only follows the trend";
+}
+
+std::string recording_words(const RecordingStatus& recording) {
+  if (!recording.active && !recording.saving) return {};
+  const std::string name = std::filesystem::path(recording.path).filename().string();
+  if (recording.saving) return "saving " + name;
+  char length[64];
+  std::snprintf(length, sizeof length, ": %.1f s, %llu samples", recording.seconds,
+                static_cast<unsigned long long>(recording.rows));
+  return "recording " + name + length;
+}
+
+std::string peak_error_words(const ModelsView& models, double reference_N) {
+  const SlotView* active = models.active();
+  if (active == nullptr || std::isnan(reference_N)) return "–";
+  const double error = active->recent_peak_error_over_jnd;
+  // Two decimals are more than anyone can see change.
+  return error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+}
+
 std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count) {
   std::vector<std::size_t> slots;
-  for (std::size_t i = 0; i < session.slot_count() && slots.size() < block_count; ++i) {
-    if (session.slot(i).state == SlotState::ready) slots.push_back(i);
+  for (std::size_t i = 0; i < session.models().size() && slots.size() < block_count; ++i) {
+    if (session.models().view(i).state == SlotState::ready) slots.push_back(i);
   }
   if (slots.size() == 3) slots.pop_back();  // one, two or four
   const bool selectable =
-      session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready;
-  if (selectable && std::find(slots.begin(), slots.end(), session.selected()) == slots.end() &&
+      session.models().size() > 0 && session.models().view(session.models().selected()).state == SlotState::ready;
+  if (selectable && std::find(slots.begin(), slots.end(), session.models().selected()) == slots.end() &&
       !slots.empty()) {
-    slots.back() = session.selected();
+    slots.back() = session.models().selected();
   }
   return slots;
 }
@@ -381,9 +406,10 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
                         const std::function<void(Command)>& run) {
   const float line = style.fonts().body->FontSize;
   const float buttons = 2.4F * line;
-  const float bars = buttons + (session.replay().present ? 2.4F * line : 0.0F);
+  const float surface = session.surface().found_m() != 0.0 ? 1.7F * line : 0.0F;
+  const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
   // Who only passes by needs no model's name.
-  const bool passing = view.kiosk && session.takes_mouse() && session.hand_is_exploring();
+  const bool passing = view.kiosk && session.mouse() != nullptr && session.mouse()->hand_is_exploring();
   if (!passing) draw_labels(session, blocks, view, style, area);
   if (view.hidden_choice == 0) draw_big_number(session, style, area, bars);
   draw_data_warning(session, style, area);

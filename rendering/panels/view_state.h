@@ -10,7 +10,6 @@
 
 #include "engine/live/time_histogram.h"
 #include "rendering/ui/colours.h"
-#include "scenes/live/live_session.h"
 
 namespace palpate {
 
@@ -19,7 +18,7 @@ inline constexpr double kShown_s = 10.0;  // of the curves at a time
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
-  int hidden_choice = 0;        // above 0: which model is in the hand is a secret, shown as this
+  int hidden_choice = 0;        // above 0: which model is active is a secret, shown as this
   std::size_t block_count = 1;  // 1, 2 or 4
   bool help = false;
   bool details = false;    // of the loop, faults
@@ -45,9 +44,5 @@ struct Toast {
   bool problem = false;
   double until_s = 0.0;  // window time
 };
-
-// The slots that the blocks show: all there is room for, in order, the one in the
-// hand always among them.
-std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count);
 
 }  // namespace palpate
