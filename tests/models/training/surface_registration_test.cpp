@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "models/model/file/model_io.h"
+#include "models/model/file/model_json.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
