@@ -225,7 +225,7 @@ bool is_better(const StrengthChoice& a, const StrengthChoice& b) {
   if (a.fold_squares.size() != b.fold_squares.size()) return false;
   double gain = 0.0;
   for (std::size_t k = 0; k < a.fold_squares.size(); ++k) gain += b.fold_squares[k] - a.fold_squares[k];
-  return gain > standard_error(a.fold_squares, b.fold_squares);
+  return gain > 0.5 * standard_error(a.fold_squares, b.fold_squares);
 }
 
 StrengthChoice choose_strength(const StrengthInput& input) {

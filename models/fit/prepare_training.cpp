@@ -25,6 +25,9 @@ constexpr std::size_t kLeftOutSamples = 4000;
 constexpr double kLittleIsLeft_jnd = 0.1;
 constexpr double kMuchIsLeft_jnd = 0.3;
 constexpr int kLadderTimes = 6;
+// As a hand moves.
+constexpr double kLadderFrom_s = 0.01;
+constexpr double kLadderTo_s = 3.0;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
 
@@ -358,9 +361,11 @@ std::vector<FeatureList> rivals_of(const FeatureSelection& selection, const Trai
   if (selection.turns_round && left_over_jnd > kMuchIsLeft_jnd) {
     FeatureList ladder;
     ladder.velocity = true;
+    const double shortest_s = std::max(kLadderFrom_s, selection.shortest_s);
+    const double longest_s = std::min(kLadderTo_s, selection.longest_s);
     for (int i = 0; i < kLadderTimes; ++i) {
-      ladder.relaxation_times_s.push_back({selection.shortest_s * std::pow(selection.longest_s / selection.shortest_s,
-                                                                           static_cast<double>(i) / (kLadderTimes - 1))});
+      const double share = static_cast<double>(i) / (kLadderTimes - 1);
+      ladder.relaxation_times_s.push_back({shortest_s * std::pow(longest_s / shortest_s, share)});
     }
     rivals.push_back(std::move(ladder));
   }
