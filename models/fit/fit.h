@@ -1,8 +1,8 @@
 // From recordings to a model: the whole of `palpate fit`, as two steps, so that
 // a comparison of methods prepares the data once.
 //
-//   prepare_training   surface of every recording, greatest depth, relaxation times, trend, features,
-//                      normalisation, reduction, one-sided contact, domain cover
+//   prepare_training   surface of every recording, greatest depth, relaxation times,
+//                      trend, features, normalisation, reduction, one-sided contact, domain cover
 //   fit_method         one of the methods of models/fit/methods.h on the prepared sites
 //
 // The paper's own recipe (reduction by force and weighting 1/f, together) is

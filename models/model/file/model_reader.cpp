@@ -209,16 +209,16 @@ class ModelReader : private JsonFields {
 
   // Models of positions as recorded have no such list.
   void read_surfaces(const JsonNode& provenance) {
+    if (optional_member(provenance, "surfaces").value == nullptr) return;
     const JsonNode surfaces = list(provenance, "surfaces", "a list");
     for (std::size_t i = 0; surfaces.value != nullptr && i < surfaces.value->size(); ++i) {
-      const nlohmann::json& entry = (*surfaces.value)[i];
-      const JsonNode node{&entry, surfaces.pointer + "/" + std::to_string(i)};
+      const JsonNode node = entry(surfaces, i);
       RecordingSurface surface;
       surface.name = text(node, "name");
       surface.offset_m = number(node, "surface_offset_m");
       surface.force_zero_N = number(node, "force_zero_N");
       surface.standard_error_m = std::numeric_limits<double>::infinity();
-      if (entry.is_object() && entry.contains("standard_error_m")) {
+      if (optional_member(node, "standard_error_m").value != nullptr) {
         surface.standard_error_m = number(node, "standard_error_m", Sign::kNotNegative);
       }
       data_.provenance.surfaces.push_back(std::move(surface));
@@ -244,7 +244,7 @@ class ModelReader : private JsonFields {
     from.weighting = text(node, "weighting");
     from.reduction = text(node, "reduction");
     from.relaxation = text(node, "relaxation");
-    if (node.value != nullptr && node.value->is_object() && node.value->contains("surfaces")) read_surfaces(node);
+    read_surfaces(node);
     from.training_within_jnd = number(node, "training_within_jnd", Sign::kNotNegative);
     optional_member(node, "fit_seconds");  // older files
     const JsonNode times = list(node, "relaxation_times", "a list");

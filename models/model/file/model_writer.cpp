@@ -93,7 +93,8 @@ std::string provenance(const Provenance& provenance) {
              ", \"standard_error_s\": " + json_number(time.standard_error_s) + "}";
   }
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
-  return "{\n    \"recordings\": [" + recordings + "]" + surfaces(provenance.surfaces) + ",\n    \"scene\": " + json_quoted(provenance.scene) +
+  return "{\n    \"recordings\": [" + recordings + "]" + surfaces(provenance.surfaces) +
+         ",\n    \"scene\": " + json_quoted(provenance.scene) +
          ",\n    \"samples\": " + count(provenance.samples) +
          ",\n    \"contact_samples\": " + count(provenance.contact_samples) +
          ",\n    \"samples_after_reduction\": " + count(provenance.samples_after_reduction) +

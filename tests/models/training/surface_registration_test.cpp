@@ -59,7 +59,7 @@ TEST(SurfaceRegistration, InventsNothing) {
 std::string model_of(const std::vector<RecordingPtr>& recordings, Surface surface = Surface::automatic) {
   TrainingRequest request = test::scene_request("silicone_block");
   request.surface = surface;
-  const auto model = test::fit(test::prepare(recordings, request), Method::kdtree);
+  const auto model = test::fit(test::prepare(recordings, request), &kKdTreeMethod);
   return test::must(write_model_text(model->data()));
 }
 
@@ -78,7 +78,7 @@ TEST(SurfaceRegistration, AModelSaysWhereTheSurfacesWere) {
   const auto& surfaces = prepared.common.provenance.surfaces;
   ASSERT_EQ(surfaces.size(), 1u);
   EXPECT_NEAR(surfaces[0].offset_m, 0.2e-3, 0.02e-3);
-  const auto model = test::fit(prepared, Method::random);
+  const auto model = test::fit(prepared, &kRandomMethod);
   const ModelData back = test::must(read_model_text(test::must(write_model_text(model->data())), "m.json"));
   ASSERT_EQ(back.provenance.surfaces.size(), 1u);
   EXPECT_EQ(back.provenance.surfaces[0].offset_m, surfaces[0].offset_m);

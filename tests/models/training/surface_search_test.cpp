@@ -29,8 +29,8 @@ TEST(SurfaceSearch, FindsTheShiftOfATestRecording) {
   for (const char* material : {"silicone", "foam", "gel"}) {
     const auto training = std::make_shared<const Recording>(shorter(test::train_settings(material), 1));
     const auto prepared = test::prepare({training}, test::scene_request("silicone_block"));
-    const std::vector<std::shared_ptr<const ForceModel>> models{test::fit(prepared, Method::greedy),
-                                                                test::fit(prepared, Method::random)};
+    const std::vector<std::shared_ptr<const ForceModel>> models{test::fit(prepared, &kGreedyMethod),
+                                                                test::fit(prepared, &kRandomMethod)};
     const Recording recording = shorter(test::test_settings(material), 2);
     for (const double shift_m : {-1.4e-3, -0.5e-3, -0.05e-3, 0.0, 0.05e-3, 0.3e-3, 1.0e-3}) {
       const SurfaceLocation found = locate_surface(moved(recording, shift_m), models, JndLine{});

@@ -38,7 +38,8 @@ class FitVerb : public ::testing::Test {
     Arguments arguments = {"fit"};
     std::vector<std::pair<std::string, std::string>> defaults = {
         {"--recording", recording()}, {"--method", method}, {"--out", out()}};
-    if (find_method(method)->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
+    const Method* row = find_method(method);
+    if (row != nullptr && row->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
     for (const auto& [option, value] : defaults) {
       if (std::find(more.begin(), more.end(), option) == more.end()) arguments.insert(arguments.end(), {option, value});
     }
