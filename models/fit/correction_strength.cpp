@@ -288,6 +288,8 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     const double trusted = trust(distance[i], chosen->inner_radius, input.outer_to_inner * chosen->inner_radius);
     const double force_N = force_of(sample, input, chosen->strength, trusted, h(static_cast<Eigen::Index>(i)));
     choice.predictions.push_back({i, std::abs(force_N - sample.force_N), force_N, distance[i]});
+    const double trend_N = force_of(sample, input, 0.0, 0.0, 0.0);
+    choice.trend_predictions.push_back({i, std::abs(trend_N - sample.force_N), trend_N, distance[i]});
   }
   return choice;
 }
