@@ -19,7 +19,6 @@ namespace palpate {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr float kSceneShare = 0.6F;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
@@ -29,6 +28,19 @@ constexpr std::size_t kMostToasts = 4;
 void yield_to_haptics(const RtStatus& granted) {
   constexpr int kPictureNice = 5;
   if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
+}
+
+// ImGui counts down from the top, OpenGL up from the bottom.
+Viewport pixels_of(const SceneArea& area) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 scale = io.DisplayFramebufferScale;
+  const auto whole = [](float value) { return static_cast<int>(std::round(value)); };
+  Viewport part;
+  part.x = whole(area.at.x * scale.x);
+  part.y = whole((io.DisplaySize.y - area.at.y - area.size.y) * scale.y);
+  part.width = whole((area.at.x + area.size.x) * scale.x) - part.x;
+  part.height = whole((io.DisplaySize.y - area.at.y) * scale.y) - part.y;
+  return part;
 }
 
 }  // namespace
@@ -60,6 +72,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   listen();
   if (find_font().empty())
     toasts_.push_back({"no font found; install fonts-dejavu-core", true, steady_now_s() + kProblemToast_s});
+  view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
 }
@@ -99,8 +112,7 @@ void DemoApp::drop_files(const std::vector<std::string>& paths) {
 }
 
 SceneArea DemoApp::scene_area() const {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  return {{0.0F, 0.0F}, {std::round(kSceneShare * size.x), size.y}};
+  return lay_out(ImGui::GetIO().DisplaySize).scene;
 }
 
 void DemoApp::frame() {
@@ -118,30 +130,25 @@ void DemoApp::frame() {
 }
 
 void DemoApp::draw() {
-  const Framebuffer picture = window_->framebuffer();
-  style_.update(picture.height, picture.content_scale, view_.kiosk, view_.theme);
+  style_.update(window_->ui_size(), view_.kiosk, view_.theme);
   ui_->begin_frame();
+  wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
   draw_blocks();
   clear_panel();
   const SceneArea area = scene_area();
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_, [this](Command command) { run(command); });
-  const ImVec2 at(area.size.x, 0.0F);
-  const ImVec2 size(all.x - area.size.x, all.y);
   if (view_.kiosk) {
-    open_day_.draw(*session_, view_, style_, at, size);
+    open_day_.draw(*session_, view_, style_, panel.at, panel.size);
   } else {
-    panel_.draw(*session_, view_, style_, frames_, at, size);
+    panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
   ui_->end_frame();
 }
 
 void DemoApp::draw_blocks() {
   const SceneArea area = scene_area();
-  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-  Viewport viewport;
-  viewport.width = static_cast<int>(area.size.x * scale.x);
-  viewport.height = static_cast<int>(area.size.y * scale.y);
+  const Viewport viewport = pixels_of(area);
   const std::vector<BlockPose> poses = block_poses();
   // More models become ready: more blocks.
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
@@ -151,13 +158,10 @@ void DemoApp::draw_blocks() {
 
 // Clearing costs less than filling a rectangle, where the processor draws.
 void DemoApp::clear_panel() {
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto left = static_cast<int>(scene_area().size.x * io.DisplayFramebufferScale.x);
-  const auto right = static_cast<int>(io.DisplaySize.x * io.DisplayFramebufferScale.x);
-  const auto height = static_cast<int>(io.DisplaySize.y * io.DisplayFramebufferScale.y);
+  const Viewport part = pixels_of(lay_out(ImGui::GetIO().DisplaySize).panel);
   const Rgb& panel = style_.colours().panel;
   glEnable(GL_SCISSOR_TEST);
-  glScissor(left, 0, right - left, height);
+  glScissor(part.x, part.y, part.width, part.height);
   glClearColor(panel.r, panel.g, panel.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   glDisable(GL_SCISSOR_TEST);
@@ -173,7 +177,7 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     pose.dent_m = static_cast<float>(model.dent_m);
     pose.error_over_jnd = static_cast<float>(model.dent_error_over_jnd);
     pose.force_N = static_cast<float>(model.force_N);
-    pose.arrow = method_colour(model.method, view_.theme);
+    pose.arrow = slot_colour(*session_, slot, view_.theme);
     pose.chosen = slot == session_->selected();
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
     pose.judged = view_.hidden_choice == 0;
@@ -212,11 +216,14 @@ void DemoApp::run(Command command) {
   switch (command) {
     case Command::next_block_count:
       view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
+      notify_of_missing_blocks();
       break;
     case Command::pause_curves:
-      view_.paused = !view_.paused;
-      view_.paused_at_s = steady_now_s();
-      view_.scrolled_back_s = 0.0;
+      if (view_.time.paused) {
+        view_.time.run();
+      } else {
+        view_.time.pause(steady_now_s());
+      }
       break;
     case Command::reset_figures:
       session_->reset_figures();
@@ -251,6 +258,15 @@ void DemoApp::run(Command command) {
   }
 }
 
+// Fewer models than blocks were asked for: no block stays away without a word.
+void DemoApp::notify_of_missing_blocks() {
+  const std::size_t shown = shown_slots(*session_, view_.block_count).size();
+  if (shown >= view_.block_count) return;
+  toasts_.push_back({std::to_string(shown) + " of " + std::to_string(view_.block_count) +
+                         " blocks: no more models are ready",
+                     false, steady_now_s() + kToast_s});
+}
+
 void DemoApp::record() {
   if (session_->recording().active) {
     session_->stop_recording();
@@ -263,6 +279,10 @@ void DemoApp::record() {
 }
 
 void DemoApp::next_dead_man() {
+  if (!session_->device_pushes()) {
+    toasts_.push_back({"there is no device that pushes: nothing to hold a switch for", false, steady_now_s() + kToast_s});
+    return;
+  }
   switch (session_->dead_man()) {
     case DeadMan::off:
       session_->use_dead_man(DeadMan::key);

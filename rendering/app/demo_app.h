@@ -77,6 +77,7 @@ class DemoApp {
   void record();
   void next_reference();
   void next_dead_man();
+  void notify_of_missing_blocks();
 
   // What lies on the window goes before it.
   std::unique_ptr<Window> window_;
@@ -96,6 +97,7 @@ class DemoApp {
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
+  float wheel_ = 0.0F;  // of the mouse, in this frame
   bool orbiting_ = false;
   bool leaving_ = false;  // a kiosk's only way out
 };

@@ -40,9 +40,7 @@ constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_F11, Command::fullscreen}};
 
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
-  if (!view.paused || session.history().size() == 0) return;
-  const double most_s = std::max(0.0, view.paused_at_s - kShown_s - session.history()[0].loop_time_s);
-  view.scrolled_back_s = std::clamp(view.scrolled_back_s + by_s, 0.0, most_s);
+  if (session.history().size() > 0) view.time.scroll_back(by_s, session.history()[0].loop_time_s);
 }
 
 }  // namespace
@@ -113,11 +111,11 @@ void DemoApp::handle_mouse() {
     return;
   }
   if (!over_scene) return;
-  if (io.MouseWheel != 0.0F) {
+  if (wheel_ != 0.0F) {
     if (io.KeyCtrl) {
-      blocks_->camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
+      blocks_->camera().zoom(std::pow(kZoom_per_step, wheel_));
     } else {
-      session_->nudge_tool(-kWheelStep_m * static_cast<double>(io.MouseWheel));
+      session_->nudge_tool(-kWheelStep_m * static_cast<double>(wheel_));
     }
   }
   if (!view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&

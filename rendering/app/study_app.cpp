@@ -138,7 +138,7 @@ void StudyApp::take_key(int key) {
 
 void StudyApp::draw() {
   const Framebuffer picture = window_->framebuffer();
-  style_.update(picture.height, picture.content_scale, true, kTheme);
+  style_.update(window_->ui_size(), true, kTheme);
   ui_->begin_frame();
   const Rgb& background = style_.colours().background;
   glViewport(0, 0, picture.width, picture.height);
@@ -258,7 +258,7 @@ void StudyApp::draw_intervals(const StudyView& view) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = style_.fonts().big;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float side = 2.4F * font->FontSize;
+  const float side = 2.4F * height_of(font);
   const int first = view.has_reminder ? 0 : 1;
   for (int interval = first; interval <= 2; ++interval) {
     const float x = at.x + 1.3F * side * static_cast<float>(interval - first);
@@ -266,8 +266,8 @@ void StudyApp::draw_intervals(const StudyView& view) {
     list.AddRectFilled({x, at.y}, {x + side, at.y + side},
                        ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
     const char text[2] = {interval == 0 ? 'R' : static_cast<char>('0' + interval), '\0'};
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
-    list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
+    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
+    list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
                  ink(style_.colours().text), text);
   }
   ImGui::Dummy({(view.has_reminder ? 3.6F : 2.3F) * side, side});

@@ -49,7 +49,9 @@ void OpenDay::forget(LiveSession& session, ViewState& view) {
   trial_.reset();
   session.select(home_);
   session.reset_figures();
+  const double zero_s = view.time.zero_s;
   view = ViewState{};
+  view.time.zero_s = zero_s;
   view.kiosk = true;
   view.theme = Theme::dark;
 }
@@ -129,18 +131,18 @@ void OpenDay::draw_keys(const UiStyle& style, float width) const {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = style.fonts().heading;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float side = 1.7F * font->FontSize;
+  const float side = 1.7F * height_of(font);
   for (const int key : {1, 2}) {
-    const float x = at.x + (key == 1 ? 0.0F : side + 0.5F * font->FontSize);
+    const float x = at.x + (key == 1 ? 0.0F : side + 0.5F * height_of(font));
     const bool down = trial_.pressed() == key;
     list.AddRectFilled({x, at.y}, {x + side, at.y + side},
                        ink(down ? style.colours().text : style.colours().raised), 8.0F);
     const char text[2] = {static_cast<char>('0' + key), '\0'};
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
-    list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
+    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
+    list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
                  ink(down ? style.colours().panel : style.colours().text), text);
   }
-  ImGui::Dummy({width, side + 0.3F * font->FontSize});
+  ImGui::Dummy({width, side + 0.3F * height_of(font)});
 }
 
 }  // namespace palpate

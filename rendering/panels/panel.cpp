@@ -21,8 +21,29 @@ void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
 }
 
+Rgb slot_colour(const LiveSession& session, std::size_t slot, Theme theme) {
+  const std::string& method = session.slot(slot).method;
+  std::size_t which = 0;
+  for (std::size_t i = 0; i < slot; ++i) {
+    if (session.slot(i).method == method) ++which;
+  }
+  return method_colour(method, theme, which);
+}
+
 void tip(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+  if (!ImGui::IsItemHovered()) return;
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 high = ImGui::GetItemRectMax();
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float gap = 0.3F * ImGui::GetFontSize();
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  const float wide = size.x + 2.0F * padding.x;
+  const float tall = size.y + 2.0F * padding.y;
+  const float x = std::clamp(low.x, 0.0F, std::max(0.0F, all.x - wide));
+  const bool below = high.y + gap + tall <= all.y;
+  ImGui::SetNextWindowPos({x, below ? high.y + gap : low.y - gap - tall});
+  ImGui::SetTooltip("%s", text);
 }
 
 void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
@@ -39,13 +60,13 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   const float titles = line * 3.4F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health - table - titles);
   const bool bins = !view.details || rest > 14.0F * line;
-  curves_.draw(session, view, style, rest * (bins ? 0.42F : 0.65F), rest * (bins ? 0.24F : 0.35F));
+  curves_.draw(session, view, style, rest * (bins ? 0.32F : 0.48F), rest * (bins ? 0.36F : 0.52F));
   draw_model_table(session, style, table);
   if (bins) {
     section_title(style, "ERROR AGAINST FORCE");
     ImGui::SameLine();
     ImGui::TextDisabled("mean + std, largest, JND line");
-    draw_error_bins(session, style, rest * 0.34F);
+    draw_error_bins(session, style, rest * 0.32F);
   }
   draw_health(session, view, style, frames);
   ImGui::End();

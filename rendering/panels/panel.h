@@ -6,13 +6,15 @@
 #include <string>
 
 #include "rendering/ui/curves.h"
+#include "rendering/ui/plot.h"
 #include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
 
-// Live force against time with the JND band, and the error over the JND below.
+// Force against time with the JND band, and below it how far every model is from the
+// reference: the difference in a band of constant height, or what a hand feels of it.
 class ForceCurves {
  public:
   void draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height,
@@ -20,14 +22,20 @@ class ForceCurves {
   // The force plot alone, with the reference and the model in the hand, which has no
   // colour of its own while it is a secret.
   void draw_for_visitors(LiveSession& session, ViewState& view, const UiStyle& style, float height);
+  const CurveColumns& columns() const noexcept { return curves_; }
 
  private:
-  void gather(const LiveSession& session, ViewState& view, double end_s);
-  void draw_force(const LiveSession& session, ViewState& view, const UiStyle& style, float height,
-                  double end_s);
-  void draw_error(const LiveSession& session, const ViewState& view, const UiStyle& style, float height,
-                  double end_s);
+  struct Scene;  // what all plots of a frame share
+  Scene begin(const LiveSession& session, ViewState& view, const UiStyle& style);
+  void draw_force(const Scene& scene, float height);
+  void draw_difference(const Scene& scene, float height);
+  void draw_felt(const Scene& scene, float height);
+  void draw_titles_of_force(const Scene& scene) const;
+  void draw_titles_of_error(const Scene& scene) const;
+  void finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
+                   const char* unit);
   CurveColumns curves_;
+  bool hovered_ = false;  // in this frame
 };
 
 // All of it.
@@ -59,9 +67,12 @@ HealthWords health_words(const LiveSession& session, const FrameFigures& frames)
 // Whether the model in the hand is used where nothing was recorded.
 bool away_from_data(const LiveSession& session);
 
+// The colour of a model: of its method, another shade for each further one of it.
+Rgb slot_colour(const LiveSession& session, std::size_t slot, Theme theme);
+
 // Small parts that several use.
 void section_title(const UiStyle& style, const char* title);
-// A tooltip for the item before.
+// A tooltip for the item before, below it or above it, never over it.
 void tip(const char* text);
 
 }  // namespace palpate

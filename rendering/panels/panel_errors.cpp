@@ -51,8 +51,8 @@ void draw_slot(const Plot& plot, const SlotView& slot, const LiveSession& sessio
 void draw_error_bins(const LiveSession& session, const UiStyle& style, float height) {
   const Limits limits = limits_of(session);
   {
-    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height}, {0.0, limits.force_N},
-                    {0.0, limits.error_N}, "N", "N", true);
+    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height},
+                    {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N", true});
     const double ends[2] = {0.0, limits.force_N};
     std::vector<ImVec2> line;
     std::vector<ImVec2> floor;

@@ -21,11 +21,11 @@ constexpr auto kFloating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMo
 ImDrawList& back() { return *ImGui::GetBackgroundDrawList(); }
 
 void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& text) {
-  back().AddText(font, font->FontSize, at, colour, text.c_str());
+  back().AddText(font, height_of(font), at, colour, text.c_str());
 }
 
 ImVec2 text_size(ImFont* font, const std::string& text) {
-  return font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text.c_str());
+  return font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text.c_str());
 }
 
 // Top left corner of block `index`'s label: at its foot; of a block with another one
@@ -61,15 +61,14 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
   const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
   ImFont* font = style.fonts().heading;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const SlotView& slot = session.slot(slots[i]);
     const bool secret = view.hidden_choice > 0;
     const std::string text =
         secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
     const bool chosen = slots[i] == session.selected();
-    const Rgb colour = secret ? style.colours().text : method_colour(slot.method, style.theme());
-    const float pad = 0.25F * font->FontSize;
+    const Rgb colour = secret ? style.colours().text : slot_colour(session, slots[i], style.theme());
+    const float pad = 0.25F * height_of(font);
     back().AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
                          {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
                          ink(style.colours().panel, 0.88F), 6.0F);
@@ -89,7 +88,7 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   const Palette& p = style.colours();
   ImFont* big = style.fonts().big;
   ImFont* body = style.fonts().body;
-  const float line = body->FontSize;
+  const float line = height_of(body);
   const ImVec2 corner(area.at.x + 1.1F * line, area.at.y + area.size.y - lift);
   const bool known = session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready &&
                      !std::isnan(session.reference_N());
@@ -151,8 +150,8 @@ void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea
   const std::string hint = "The hand moves by itself. Move the mouse over the block to press it.";
   const ImVec2 size = text_size(style.fonts().body, hint);
   text_at(style.fonts().body,
-          {area.at.x + 0.9F * style.fonts().body->FontSize,
-           area.at.y + 2.6F * style.fonts().heading->FontSize - 0.6F * size.y},
+          {area.at.x + 0.9F * height_of(style.fonts().body),
+           area.at.y + 2.6F * height_of(style.fonts().heading) - 0.6F * size.y},
           ink(style.colours().quiet), hint);
 }
 
@@ -167,7 +166,7 @@ void draw_buttons(const LiveSession& session, const ViewState& view, const Scene
     first = false;
     std::string label = entry.label;
     if (entry.command == Command::record && session.recording().active) label = "Stop recording";
-    if (entry.command == Command::pause_curves && view.paused) label = "Go on";
+    if (entry.command == Command::pause_curves && view.time.paused) label = "Go on";
     if (ImGui::Button(label.c_str())) run(entry.command);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s (%s)", entry.help, entry.key);
   }
@@ -219,19 +218,19 @@ void draw_recording(const LiveSession& session, const UiStyle& style, const Scen
 }
 
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 4.6F * style.fonts().heading->FontSize;
+  float y = area.at.y + 4.6F * height_of(style.fonts().heading);
   ImFont* font = style.fonts().body;
-  const float pad = 0.6F * font->FontSize;
+  const float pad = 0.6F * height_of(font);
   const float wrap = 0.86F * area.size.x;
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   for (const Toast& toast : toasts) {
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, wrap, toast.text.c_str());
+    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, wrap, toast.text.c_str());
     const float x = area.at.x + 0.5F * (area.size.x - size.x);
     list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised),
                        6.0F);
     list.AddRectFilled({x - pad, y - pad}, {x - 0.6F * pad, y + size.y + pad},
                        ink(toast.problem ? style.colours().fault : kReferenceColour), 3.0F);
-    list.AddText(font, font->FontSize, {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
+    list.AddText(font, height_of(font), {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
     y += size.y + 2.6F * pad;
   }
 }
@@ -344,7 +343,6 @@ std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t blo
   for (std::size_t i = 0; i < session.slot_count() && slots.size() < block_count; ++i) {
     if (session.slot(i).state == SlotState::ready) slots.push_back(i);
   }
-  if (slots.size() == 3) slots.pop_back();  // one, two or four
   const bool selectable =
       session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready;
   if (selectable && std::find(slots.begin(), slots.end(), session.selected()) == slots.end() &&
@@ -378,7 +376,7 @@ std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, con
 void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
                         const SceneArea& area, const std::vector<Toast>& toasts,
                         const std::function<void(Command)>& run) {
-  const float line = style.fonts().body->FontSize;
+  const float line = height_of(style.fonts().body);
   const float buttons = 2.4F * line;
   const float bars = buttons + (session.replay().present ? 2.4F * line : 0.0F);
   // Who only passes by needs no model's name.

@@ -9,21 +9,13 @@
 #include <optional>
 #include <vector>
 
+#include "rendering/panels/layout.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
-
-// Where the picture is, in ImGui's coordinates.
-struct SceneArea {
-  ImVec2 at;
-  ImVec2 size;
-  bool holds(const ImVec2& point) const {
-    return point.x >= at.x && point.y >= at.y && point.x < at.x + size.x && point.y < at.y + size.y;
-  }
-};
 
 // What can be asked for by button or key.
 enum class Command {

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,7 +14,30 @@
 
 namespace palpate {
 
-inline constexpr double kShown_s = 10.0;  // of the curves at a time
+inline constexpr double kShown_s = 10.0;     // of the curves at a time, as long as nobody zooms
+inline constexpr double kLeastShown_s = 0.02;  // of the curves, zoomed in
+
+// The part of the time that the curves show.
+struct CurveTime {
+  double zero_s = 0.0;   // loop time at which the axes' time begins
+  double shown_s = kShown_s;
+  // Curves stand still, and end so long before.
+  bool paused = false;
+  double paused_at_s = 0.0;  // loop time
+  double scrolled_back_s = 0.0;
+  // Loop time under the mouse, and where it began to drag; NaN: nothing of that.
+  double hover_s = std::numeric_limits<double>::quiet_NaN();
+  double drag_from_s = std::numeric_limits<double>::quiet_NaN();
+
+  // The loop time at the right edge of the curves; `now_s` while they run.
+  double end_s(double now_s) const noexcept { return paused ? paused_at_s - scrolled_back_s : now_s; }
+  void pause(double at_s) noexcept;
+  void run() noexcept { paused = false; scrolled_back_s = 0.0; shown_s = kShown_s; }
+  // Stops and shows what lies between two times, in either order.
+  void zoom(double one_s, double other_s) noexcept;
+  // While paused; not beyond `oldest_s`, the first there is.
+  void scroll_back(double by_s, double oldest_s) noexcept;
+};
 
 struct ViewState {
   Theme theme = Theme::light;
@@ -24,10 +47,8 @@ struct ViewState {
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load
-  // Curves stand still, and end so long before now.
-  bool paused = false;
-  double paused_at_s = 0.0;  // loop time
-  double scrolled_back_s = 0.0;
+  CurveTime time;
+  bool difference = true;  // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot
 };

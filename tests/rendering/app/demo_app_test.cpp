@@ -208,7 +208,7 @@ TEST_F(DemoAppTest, KeysDoWhatTheHelpSays) {
   press(GLFW_KEY_B);
   EXPECT_EQ(app_->view().block_count, 2u);
   press(GLFW_KEY_SPACE);
-  EXPECT_TRUE(app_->view().paused);
+  EXPECT_TRUE(app_->view().time.paused);
   press(GLFW_KEY_H);
   press(GLFW_KEY_L);
   press(GLFW_KEY_M);
