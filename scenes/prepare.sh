@@ -6,11 +6,12 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # The one list of Debian packages: to build and run, and more for .ci/run.
 packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
-  libcli11-dev nlohmann-json3-dev gnuplot-nox libgtest-dev libbenchmark-dev
+  libcli11-dev nlohmann-json3-dev gnuplot-nox
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
   fonts-dejavu-core libhidapi-dev)
-# For the tests: of the window a display in memory (xauth: for xvfb-run), of devices an emulated one.
-test_packages=(xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev)
+# For the tests and benchmarks: of the window a display in memory (xauth: for
+# xvfb-run), of devices an emulated one, of numbers a German locale.
+test_packages=(libgtest-dev libbenchmark-dev python3 locales xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev)
 # libalglib-dev: a library that palpate-bench compares with where it is there.
 ci_packages=(clang-14 libclang-rt-14-dev libalglib-dev)
 
@@ -63,15 +64,16 @@ job_count() {
   echo $((by_memory < cores ? by_memory : cores))
 }
 
-# build_in FOLDER TARGET [CMAKE OPTION...]: configures when the folder is new or
-# options are given, then builds.
+# build_in FOLDER TARGETS [CMAKE OPTION...]: configures when the folder is new or
+# options are given, then builds. TARGETS: one or several, in one word.
 build_in() {
-  local folder=$1 target=$2
+  local folder=$1 targets
+  read -r -a targets <<<"$2"
   shift 2
   if [ ! -f "$folder/build.ninja" ]; then say "building in ${folder#"$root"/}, a few minutes the first time"; fi
   if [ ! -f "$folder/build.ninja" ] || [ $# -gt 0 ]; then
     if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
     quietly cmake -S "$root" -B "$folder" -G Ninja "$@" || return
   fi
-  cmake --build "$folder" --target "$target" -j "$(job_count)" -- --quiet | sed '/^ninja: no work to do/d'
+  cmake --build "$folder" --target "${targets[@]}" -j "$(job_count)" -- --quiet | sed '/^ninja: no work to do/d'
 }
