@@ -56,12 +56,12 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   const float health = line * static_cast<float>(health_lines(session, view));
   const float rows = static_cast<float>(std::clamp<std::size_t>(session.slot_count(), 2, 7)) + 1.0F;
   const float table =
-      rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 2.0F;
+      rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health - table - titles);
   const bool bins = !view.details || rest > 14.0F * line;
   curves_.draw(session, view, style, rest * (bins ? 0.32F : 0.48F), rest * (bins ? 0.36F : 0.52F));
-  draw_model_table(session, style, table);
+  draw_model_table(session, view, style, table);
   if (bins) {
     section_title(style, "ERROR AGAINST FORCE");
     ImGui::SameLine();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "rendering/ui/curves.h"
 #include "rendering/ui/plot.h"
@@ -49,7 +50,11 @@ class Panel {
   ForceCurves curves_;
 };
 
-void draw_model_table(LiveSession& session, const UiStyle& style, float height);
+void draw_model_table(LiveSession& session, ViewState& view, const UiStyle& style, float height);
+// The columns of that table that `room` holds, dropped in a fixed order: the error in
+// millinewtons first, then centres, time, force, error over the JND. Name and share
+// within the JND always stay.
+std::vector<int> shown_columns(float room, float (*width)(int column));
 void draw_error_bins(const LiveSession& session, const UiStyle& style, float height);
 // Lines of text that draw_health takes, at most as a rule.
 int health_lines(const LiveSession& session, const ViewState& view);

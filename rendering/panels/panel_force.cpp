@@ -94,7 +94,7 @@ ForceCurves::Scene ForceCurves::begin(const LiveSession& session, ViewState& vie
 void ForceCurves::draw_titles_of_force(const Scene& scene) const {
   const CurveTime& time = scene.view.time;
   // What stands still is read where it stands.
-  const CurveColumn* last = time.paused ? curves_.at(scene.end_s - 1e-3) : nullptr;
+  const CurveColumn* last = time.paused ? curves_.last() : nullptr;
   const double reference_N = !time.paused ? scene.session.reference_N()
                              : last != nullptr && last->reference ? static_cast<double>(last->reference_N)
                                                                   : std::nan("");
@@ -135,7 +135,7 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
   std::vector<CurveLabel> labels;
   std::vector<Reading> readings;
   const CurveColumn* under = curves_.at(time.hover_s);
-  const CurveColumn* last = curves_.at(scene.end_s - 0.02 * time.shown_s);
+  const CurveColumn* last = curves_.last();
   if (under != nullptr && under->reference)
     readings.push_back({"reference  " + three_digits(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
   for (std::size_t i = 0; i < scene.session.slot_count(); ++i) {

@@ -39,11 +39,18 @@ struct CurveTime {
   void scroll_back(double by_s, double oldest_s) noexcept;
 };
 
+// What the table of models is sorted by.
+struct TableSort {
+  int column = -1;  // none: in the order in which they were asked for
+  bool rising = false;
+};
+
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
   int hidden_choice = 0;        // above 0: which model is in the hand is a secret, shown as this
   std::size_t block_count = 1;  // 1, 2 or 4
+  TableSort table_sort;
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load

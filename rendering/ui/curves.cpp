@@ -134,4 +134,9 @@ const CurveColumn* CurveColumns::at(double time_s) const noexcept {
   return column.any ? &column : nullptr;
 }
 
+const CurveColumn* CurveColumns::last() const noexcept {
+  const auto found = std::find_if(columns_.rbegin(), columns_.rend(), [](const CurveColumn& column) { return column.any; });
+  return found != columns_.rend() ? &*found : nullptr;
+}
+
 }  // namespace palpate

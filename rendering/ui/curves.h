@@ -47,6 +47,8 @@ class CurveColumns {
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
   // The column of a time; null: none, or one without ticks.
   const CurveColumn* at(double time_s) const noexcept;
+  // The newest that has ticks; null: none has.
+  const CurveColumn* last() const noexcept;
   // Over all columns and slots; 0 without.
   float highest_force_N() const noexcept { return highest_force_N_; }
   float highest_error_over_jnd() const noexcept { return highest_error_; }
