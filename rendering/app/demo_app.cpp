@@ -225,6 +225,9 @@ void DemoApp::run(Command command) {
         view_.time.pause(steady_now_s());
       }
       break;
+    case Command::difference:
+      view_.difference = !view_.difference;
+      break;
     case Command::reset_figures:
       session_->reset_figures();
       break;

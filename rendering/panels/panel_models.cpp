@@ -207,7 +207,7 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
 }
 
 void draw_model_table(LiveSession& session, ViewState& view, const UiStyle& style, float height) {
-  const auto flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
+  const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
   const std::vector<int> shown =
       shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
   if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return;

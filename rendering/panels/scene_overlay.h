@@ -19,6 +19,7 @@ namespace palpate {
 
 // What can be asked for by button or key.
 enum class Command {
+  difference,
   next_block_count,
   pause_curves,
   reset_figures,
@@ -49,6 +50,9 @@ class SceneOverlay {
   // The slot whose block or label is at `point`.
   std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks,
                                      const ViewState& view, const SceneArea& area, const ImVec2& point) const;
+
+ private:
+  float buttons_height_ = 0.0F;  // in the last frame
 };
 
 }  // namespace palpate
