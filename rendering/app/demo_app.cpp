@@ -11,9 +11,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
 #include "rendering/app/screenshot.h"
 #include "scenes/scene/local_time.h"
+#include "scenes/scene/user_folders.h"
 
 namespace palpate {
 namespace {
@@ -22,6 +24,7 @@ constexpr double kNsPerS = 1e9;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
+constexpr float kTextStep = 0.1F;
 
 // Where real-time priority was refused, the picture steps back for the force:
 // that needs no privilege.
@@ -61,6 +64,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
+  use_settings(request);
   yield_to_haptics(session_->scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
   auto window = Window::open(request.window);
@@ -69,12 +73,40 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
+  blocks_->camera().turn(settings_.camera);
   listen();
   if (find_font().empty())
-    toasts_.push_back({"no font found; install fonts-dejavu-core", true, steady_now_s() + kProblemToast_s});
+    notify("no font found; install fonts-dejavu-core", true);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
+}
+
+void DemoApp::use_settings(const DemoRequest& request) {
+  settings_file_ = request.settings_file;
+  view_.block_count = 1;
+  if (settings_file_.empty() || view_.kiosk) return;
+  auto settings = read_settings(settings_file_);
+  if (!settings) {
+    notify(settings.error().message, true);
+    return;
+  }
+  settings_ = *settings;
+  view_.theme = settings_.theme;
+  view_.block_count = settings_.block_count;
+  view_.difference = settings_.difference;
+  view_.text_size = settings_.text_size;
+}
+
+void DemoApp::save_settings() {
+  if (settings_file_.empty() || view_.kiosk || blocks_ == nullptr) return;
+  settings_.theme = view_.theme;
+  settings_.block_count = view_.block_count;
+  settings_.difference = view_.difference;
+  settings_.text_size = view_.text_size;
+  settings_.camera = blocks_->camera().turned();
+  // Nobody is there to read of it any more.
+  (void)write_settings(settings_file_, settings_);
 }
 
 void DemoApp::listen() {
@@ -94,6 +126,7 @@ void DemoApp::listen() {
 DemoApp::~DemoApp() {
   // A fit that cannot be stopped at once is not waited for in sight.
   if (window_ != nullptr) glfwHideWindow(window_->handle());
+  save_settings();
   session_.reset();
   blocks_.reset();
 }
@@ -130,7 +163,7 @@ void DemoApp::frame() {
 }
 
 void DemoApp::draw() {
-  style_.update(window_->ui_size(), view_.kiosk, view_.theme);
+  style_.update(window_->ui_size(), view_.kiosk ? kKioskText : view_.text_size, view_.theme);
   ui_->begin_frame();
   wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
   draw_blocks();
@@ -206,7 +239,7 @@ void DemoApp::count_frame(double now_s) {
 
 void DemoApp::take_notices(double now_s) {
   for (const Notice& notice : session_->take_notices()) {
-    toasts_.push_back({notice.text, notice.problem, now_s + (notice.problem ? kProblemToast_s : kToast_s)});
+    notify(notice.text, notice.problem);
   }
   std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
   if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
@@ -255,6 +288,18 @@ void DemoApp::run(Command command) {
     case Command::help:
       view_.help = !view_.help;
       break;
+    case Command::save_curves:
+      save_curves();
+      break;
+    case Command::home_view:
+      blocks_->camera().go_home();
+      break;
+    case Command::larger_text:
+      view_.text_size = std::min(kLargestText, view_.text_size + kTextStep);
+      break;
+    case Command::smaller_text:
+      view_.text_size = std::max(kSmallestText, view_.text_size - kTextStep);
+      break;
     case Command::fullscreen:
       window_->set_fullscreen(!window_->fullscreen());
       break;
@@ -265,9 +310,7 @@ void DemoApp::run(Command command) {
 void DemoApp::notify_of_missing_blocks() {
   const std::size_t shown = shown_slots(*session_, view_.block_count).size();
   if (shown >= view_.block_count) return;
-  toasts_.push_back({std::to_string(shown) + " of " + std::to_string(view_.block_count) +
-                         " blocks: no more models are ready",
-                     false, steady_now_s() + kToast_s});
+  notify(std::to_string(shown) + " of " + std::to_string(view_.block_count) + " blocks: no more models are ready", false);
 }
 
 void DemoApp::record() {
@@ -275,15 +318,48 @@ void DemoApp::record() {
     session_->stop_recording();
     return;
   }
-  const std::string path = local_time_text("session-%Y%m%d-%H%M%S.csv");
+  const auto folder = data_folder();
+  if (!folder) {
+    notify(folder.error().message, true);
+    return;
+  }
+  const std::string path = *folder + local_time_text("/session-%Y%m%d-%H%M%S.csv");
   const Status status = session_->start_recording(path);
-  const double until_s = steady_now_s() + (status ? kToast_s : kProblemToast_s);
-  toasts_.push_back({status ? "recording to " + path : status.error().message, !status, until_s});
+  notify(status ? "recording to " + path : status.error().message, !status);
+}
+
+void DemoApp::notify(std::string text, bool problem) {
+  toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
+}
+
+CurveSource DemoApp::curve_source() const {
+  CurveSource source{session_->scene().title, session_->device_name(), session_->reference_words(), view_.time.zero_s, {}};
+  for (std::size_t i = 0; i < session_->slot_count(); ++i) {
+    if (session_->slot(i).state == SlotState::ready)
+      source.models.push_back({i, session_->slot(i).name, slot_colour(*session_, i, Theme::light)});
+  }
+  return source;
+}
+
+// What the curves show now, as a figure and as data.
+void DemoApp::save_curves() {
+  const auto folder = data_folder();
+  if (!folder) {
+    notify(folder.error().message, true);
+    return;
+  }
+  const std::string path = *folder + local_time_text("/curves-%Y%m%d-%H%M%S");
+  const double to_s = view_.time.end_s(steady_now_s());
+  const double from_s = to_s - view_.time.shown_s;
+  const CurveSource source = curve_source();
+  Status status = write_file_atomically(path + ".svg", curve_svg(panel_.columns(), source, from_s, to_s), false);
+  if (status) status = write_file_atomically(path + ".csv", curve_csv(session_->history(), source, from_s, to_s), false);
+  notify(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
 }
 
 void DemoApp::next_dead_man() {
   if (!session_->device_pushes()) {
-    toasts_.push_back({"there is no device that pushes: nothing to hold a switch for", false, steady_now_s() + kToast_s});
+    notify("there is no device that pushes: nothing to hold a switch for", false);
     return;
   }
   switch (session_->dead_man()) {

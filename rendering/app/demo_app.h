@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "rendering/app/settings.h"
+#include "rendering/panels/curve_files.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/panels/open_day.h"
 #include "rendering/panels/panel.h"
@@ -25,6 +27,7 @@ struct DemoRequest {
   SessionRequest session;
   WindowRequest window;
   bool kiosk = false;
+  std::string settings_file;  // empty: nothing is remembered
 };
 
 class DemoApp {
@@ -74,7 +77,12 @@ class DemoApp {
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
   SceneArea scene_area() const;
+  void use_settings(const DemoRequest& request);
+  void save_settings();
+  void notify(std::string text, bool problem);
   void record();
+  void save_curves();
+  CurveSource curve_source() const;
   void next_reference();
   void next_dead_man();
   void notify_of_missing_blocks();
@@ -89,6 +97,8 @@ class DemoApp {
   SceneOverlay overlay_;
   OpenDay open_day_{1};
   ViewState view_;
+  Settings settings_;
+  std::string settings_file_;
   FrameFigures frames_;
   std::vector<Toast> toasts_;
   std::vector<KeyPress> keys_;  // since the last frame

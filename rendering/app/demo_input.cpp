@@ -38,6 +38,12 @@ constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_T, Command::theme},
                                                     {GLFW_KEY_Z, Command::zero},
                                                     {GLFW_KEY_D, Command::dead_man},
+                                                    {GLFW_KEY_S, Command::save_curves},
+                                                    {GLFW_KEY_HOME, Command::home_view},
+                                                    {GLFW_KEY_EQUAL, Command::larger_text},
+                                                    {GLFW_KEY_KP_ADD, Command::larger_text},
+                                                    {GLFW_KEY_MINUS, Command::smaller_text},
+                                                    {GLFW_KEY_KP_SUBTRACT, Command::smaller_text},
                                                     {GLFW_KEY_F11, Command::fullscreen}};
 
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {

@@ -13,6 +13,7 @@
 #include "rendering/app/demo_app.h"
 #include "rendering/app/stats_file.h"
 #include "rendering/app/study_app.h"
+#include "scenes/scene/user_folders.h"
 #include "scenes/study/prepare_strokes.h"
 
 namespace palpate {
@@ -122,6 +123,9 @@ Status run_demo(Arguments& arguments) {
   if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
+  // A picture is the same whoever takes it.
+  if (const auto folder = config_folder(); folder && arguments.screenshot.empty())
+    arguments.demo.settings_file = *folder + "/window.json";
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);

@@ -138,7 +138,7 @@ void StudyApp::take_key(int key) {
 
 void StudyApp::draw() {
   const Framebuffer picture = window_->framebuffer();
-  style_.update(window_->ui_size(), true, kTheme);
+  style_.update(window_->ui_size(), kKioskText, kTheme);
   ui_->begin_frame();
   const Rgb& background = style_.colours().background;
   glViewport(0, 0, picture.width, picture.height);

@@ -16,7 +16,7 @@ constexpr float kSelectedLine_px = 2.0F;
 constexpr float kColumn_px = 2.0F;
 // JNDs to either side of 0 in the difference view: three times the band's own height.
 constexpr double kDifference_jnd = 3.0;
-constexpr float kLabelRoom = 4.6F;  // for names beside the curves, in heights of a line
+constexpr float kLabelRoom = 6.0F;  // for names beside the curves, in heights of a line
 
 // Towards a nice number above what is shown, quickly up, slowly down.
 double eased_scale(double scale, double wanted) {
@@ -24,9 +24,10 @@ double eased_scale(double scale, double wanted) {
   return scale + (target > scale ? 0.25 : 0.03) * (target - scale);
 }
 
-// "greedy" of "greedy-100": what there is room for beside a curve.
+// "voxel" of "voxel-25x11x11x11": what there is room for beside a curve.
 std::string short_name(const SlotView& slot) {
-  return slot.name.size() <= 8 ? slot.name : slot.name.substr(0, std::min<std::size_t>(8, slot.name.find('-')));
+  constexpr std::size_t kMost = 11;
+  return slot.name.size() <= kMost ? slot.name : slot.name.substr(0, std::min(kMost, slot.name.find('-')));
 }
 
 }  // namespace

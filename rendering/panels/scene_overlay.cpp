@@ -133,6 +133,10 @@ const std::vector<CommandEntry>& commands() {
       {Command::theme, "T", "Theme", "light or dark"},
       {Command::details, "L", "Loop", "all figures of the loop, and its faults"},
       {Command::next_block_count, "B", "", "one, two or four blocks side by side"},
+      {Command::save_curves, "S", "Save", "save what the curves show, as a figure and as data"},
+      {Command::home_view, "Home", "", "the view as it was at the beginning"},
+      {Command::larger_text, "+", "", "larger text"},
+      {Command::smaller_text, "-", "", "smaller text"},
       {Command::fullscreen, "F11", "", "full screen and back"},
   };
   return all;

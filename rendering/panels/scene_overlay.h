@@ -20,6 +20,10 @@ namespace palpate {
 // What can be asked for by button or key.
 enum class Command {
   difference,
+  save_curves,
+  home_view,
+  larger_text,
+  smaller_text,
   next_block_count,
   pause_curves,
   reset_figures,

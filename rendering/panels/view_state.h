@@ -17,6 +17,9 @@ namespace palpate {
 inline constexpr double kShown_s = 10.0;     // of the curves at a time, as long as nobody zooms
 inline constexpr double kLeastShown_s = 0.02;  // of the curves, zoomed in
 
+inline constexpr float kSmallestText = 0.8F;  // times the usual size
+inline constexpr float kLargestText = 1.6F;
+
 // The part of the time that the curves show.
 struct CurveTime {
   double zero_s = 0.0;   // loop time at which the axes' time begins
@@ -48,6 +51,7 @@ struct TableSort {
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
+  float text_size = 1.0F;  // times the usual
   int hidden_choice = 0;        // above 0: which model is in the hand is a secret, shown as this
   std::size_t block_count = 1;  // 1, 2 or 4
   TableSort table_sort;

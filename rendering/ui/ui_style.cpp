@@ -20,7 +20,6 @@ constexpr float kDesignWidth = 1500.0F;
 // Smaller is not legible, whatever the window.
 constexpr float kSmallestScale = 0.78F;
 constexpr float kLargestScale = 4.0F;
-constexpr float kKiosk = 1.5F;
 // The scale goes in steps, so that dragging a corner does not rebuild fonts in
 // every frame.
 constexpr float kScaleStep = 0.04F;
@@ -52,15 +51,15 @@ std::string find_font() {
   return {};
 }
 
-float ui_scale(const UiSize& size, bool large) noexcept {
+float ui_scale(const UiSize& size, float larger) noexcept {
   const float unit = size.content_scale / size.pixels_per_unit;
   const float fit = std::min(size.height / kDesignHeight, size.width / kDesignWidth) / unit;
-  const float scale = std::clamp(fit, kSmallestScale, kLargestScale) * (large ? kKiosk : 1.0F);
+  const float scale = std::clamp(fit, kSmallestScale, kLargestScale) * larger;
   return unit * kScaleStep * std::round(scale / kScaleStep);
 }
 
-void UiStyle::update(const UiSize& size, bool large, Theme theme) {
-  const float wanted = ui_scale(size, large);
+void UiStyle::update(const UiSize& size, float larger, Theme theme) {
+  const float wanted = ui_scale(size, larger);
   if (wanted != scale_ || size.pixels_per_unit != pixels_per_unit_) {
     scale_ = wanted;
     pixels_per_unit_ = size.pixels_per_unit;

@@ -28,7 +28,9 @@ struct UiSize {
 
 // Units of the window for one pixel of the 1080-line design: follows the size that the
 // window has to the eye, so that a display with twice the pixels shows the same text.
-float ui_scale(const UiSize& size, bool large) noexcept;
+float ui_scale(const UiSize& size, float larger) noexcept;
+// How much larger text is for people who stand.
+inline constexpr float kKioskText = 1.5F;
 
 struct Fonts {
   ImFont* body = nullptr;
@@ -43,7 +45,7 @@ class UiStyle {
  public:
   // Before each frame. Rebuilds the fonts when the scale has changed; sets all colours
   // when the theme has.
-  void update(const UiSize& size, bool large, Theme theme);
+  void update(const UiSize& size, float larger, Theme theme);
 
   const Fonts& fonts() const noexcept { return fonts_; }
   // As ui_scale has it.

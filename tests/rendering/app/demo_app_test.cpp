@@ -6,9 +6,11 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
+#include <imgui_internal.h>
 #include <png.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -184,8 +186,7 @@ TEST_F(DemoAppTest, SwitchingWhilePressingFadesTheForce) {
 }
 
 TEST_F(DemoAppTest, ClosingWhileRecordingLeavesTheFileWhole) {
-  const auto here = std::filesystem::current_path();
-  std::filesystem::current_path(folder_.path());
+  setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);
   const std::string replayed = folder_.file("strokes.csv");
   ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
   open("replay:" + replayed);
@@ -195,8 +196,8 @@ TEST_F(DemoAppTest, ClosingWhileRecordingLeavesTheFileWhole) {
   ASSERT_TRUE(until([&] { return app_->session().recording().rows > 300; }));
   EXPECT_FALSE(std::filesystem::exists(path)) << "not before it is whole";
   app_.reset();
+  EXPECT_EQ(path.rfind(folder_.file("palpate/session-"), 0), 0u) << path;
   const auto recording = read_recording(path);
-  std::filesystem::current_path(here);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_GT(recording->rows.size(), 300u);
 }
@@ -218,6 +219,75 @@ TEST_F(DemoAppTest, KeysDoWhatTheHelpSays) {
   EXPECT_FALSE(app_->closing());
   press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
   EXPECT_TRUE(app_->closing());
+}
+
+TEST_F(DemoAppTest, TheWheelMovesTheProbeAndWithCtrlTheCamera) {
+  open("mouse");
+  GLFWwindow* window = app_->window().handle();
+  const auto scroll = [&](double steps) {
+    const GLFWscrollfun callback = glfwSetScrollCallback(window, nullptr);
+    glfwSetScrollCallback(window, callback);
+    callback(window, 0.0, steps);
+    app_->frame();
+  };
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 380.0);
+  frames(5);
+  const double before_m = app_->session().newest().tick.position_m;
+  for (int i = 0; i < 6; ++i) scroll(-1.0);
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 0.001; }));
+}
+
+TEST_F(DemoAppTest, TheKeysAreListedInsideTheSmallestWindow) {
+  open("hand");
+  app_->run(Command::help);
+  app_->run(Command::file_list);
+  for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
+    glfwSetWindowSize(app_->window().handle(), width, height);
+    frames(8);
+    for (const char* name : {"Keys", "Load a model", "buttons", "title"}) {
+      const ImGuiWindow* window = ImGui::FindWindowByName(name);
+      ASSERT_NE(window, nullptr) << name;
+      EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
+      EXPECT_GE(window->Pos.y, 0.0F) << name << " " << width;
+      EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << name;
+      EXPECT_LE(window->Pos.y + window->Size.y, static_cast<float>(height)) << name;
+    }
+  }
+}
+
+TEST_F(DemoAppTest, SavesWhatTheCurvesShow) {
+  setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);
+  open("hand");
+  frames(30);
+  press(GLFW_KEY_S);
+  ASSERT_TRUE(told("saved"));
+  std::size_t figures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
+    figures += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
+  EXPECT_EQ(figures, 2u);
+}
+
+TEST_F(DemoAppTest, StandsStillAsAWholeAndSaysWhatItShows) {
+  open("hand");
+  frames(20);
+  press(GLFW_KEY_SPACE);
+  const CurveTime time = app_->view().time;
+  frames(10);
+  EXPECT_EQ(app_->view().time.end_s(1e9), time.end_s(0.0));
+  press(GLFW_KEY_SPACE);
+  EXPECT_FALSE(app_->view().time.paused);
+}
+
+TEST_F(DemoAppTest, SaysWhatThereIsNotForAKey) {
+  open("hand");
+  press(GLFW_KEY_D);
+  EXPECT_EQ(app_->session().dead_man(), DeadMan::off);
+  EXPECT_TRUE(told("no device that pushes"));
+  press(GLFW_KEY_B);
+  press(GLFW_KEY_B);
+  EXPECT_EQ(app_->view().block_count, 4u);
+  EXPECT_TRUE(told("2 of 4 blocks"));
 }
 
 TEST_F(DemoAppTest, AKioskHasOneWayOut) {
