@@ -1,12 +1,12 @@
 #include "devices/hid/device_stop.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <csignal>
-#include <mutex>
+
+#include "engine/base/signals.h"
 
 namespace palpate {
 namespace {
@@ -21,27 +21,11 @@ struct Slot {
 static_assert(std::atomic<int>::is_always_lock_free);
 std::array<Slot, kSlots> slots;
 
-constexpr std::array<int, 10> kSignals = {SIGINT,  SIGTERM, SIGHUP, SIGQUIT, SIGPIPE,
-                                          SIGSEGV, SIGBUS,  SIGFPE, SIGILL,  SIGABRT};
-struct sigaction before[kSignals.size()];
-
-void on_signal(int signal, siginfo_t* info, void* context) {
-  const int saved_errno = errno;
-  stop_all_devices();
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    if (kSignals[i] != signal) continue;
-    if ((before[i].sa_flags & SA_SIGINFO) != 0 && before[i].sa_sigaction != nullptr) {
-      before[i].sa_sigaction(signal, info, context);
-    } else if (before[i].sa_handler == SIG_DFL) {
-      // Comes again, or happens again, when this handler returns.
-      sigaction(signal, &before[i], nullptr);
-      raise(signal);
-    } else if (before[i].sa_handler != SIG_IGN) {
-      before[i].sa_handler(signal);
-    }
-  }
-  errno = saved_errno;
-}
+// Writes of forces that are under way, and whether any more may begin. The two are read
+// and written in one order by all threads (sequentially consistent).
+std::atomic<int> writes_under_way{0};
+std::atomic<bool> no_more_forces{false};
+constexpr int kLongestWrite_ms = 20;  // several times what a report takes on USB
 
 }  // namespace
 
@@ -62,7 +46,19 @@ void unregister_device_stop(int slot) noexcept {
   one.taken.store(false, std::memory_order_release);
 }
 
+bool begin_force_write() noexcept {
+  writes_under_way.fetch_add(1);
+  if (!no_more_forces.load()) return true;
+  end_force_write();
+  return false;
+}
+
+void end_force_write() noexcept { writes_under_way.fetch_sub(1); }
+
 void stop_all_devices() noexcept {
+  no_more_forces.store(true);
+  // The thread that this handler interrupted may be the one that writes.
+  for (int i = 0; i < kLongestWrite_ms && writes_under_way.load() > 0; ++i) poll(nullptr, 0, 1);
   for (Slot& slot : slots) {
     const int descriptor = slot.descriptor.load(std::memory_order_acquire);
     if (descriptor < 0) continue;
@@ -75,19 +71,8 @@ void stop_all_devices() noexcept {
 }
 
 void stop_devices_on_signals() noexcept {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      if (sigaction(kSignals[i], nullptr, &before[i]) != 0) continue;
-      const bool plain = (before[i].sa_flags & SA_SIGINFO) == 0;
-      if (plain && before[i].sa_handler == SIG_IGN) continue;
-      struct sigaction action {};
-      action.sa_sigaction = on_signal;
-      action.sa_flags = SA_SIGINFO | SA_ONSTACK | (before[i].sa_flags & SA_RESTART);
-      action.sa_mask = before[i].sa_mask;
-      sigaction(kSignals[i], &action, nullptr);
-    }
-  });
+  set_clean_up(CleanUp::stop_forces, stop_all_devices);
+  own_signals();
 }
 
 }  // namespace palpate

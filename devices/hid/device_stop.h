@@ -12,14 +12,18 @@ int register_device_stop(int descriptor, const OutReports& reports) noexcept;
 // Slow side. -1 is ignored.
 void unregister_device_stop(int slot) noexcept;
 
-// Any thread, also in a signal handler: writes all registered reports.
+// Around every report that may carry a force, in any thread; wait-free. False: a signal
+// ends the program, nothing but the stop may be written any more, and the write counts
+// as refused. Otherwise `end_force_write` follows.
+bool begin_force_write() noexcept;
+void end_force_write() noexcept;
+
+// Async-signal-safe: lets writes that are under way finish (20 ms at most), lets no
+// other begin, then writes all registered reports: nothing comes after them.
 void stop_all_devices() noexcept;
 
-// Slow side, any number of times: SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and the
-// signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) first stop all
-// devices, then do what they did before. A signal that is ignored stays ignored.
-// Opening a device that pushes calls it; a handler that is installed later has to
-// call stop_all_devices itself.
+// Slow side, any number of times: owns the signals (signals.h), and all devices stop
+// before one of them ends the program. Opening a device that pushes calls it.
 void stop_devices_on_signals() noexcept;
 
 }  // namespace palpate

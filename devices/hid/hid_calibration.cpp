@@ -1,128 +1,86 @@
 #include "devices/hid/hid_calibration.h"
 
-#include <algorithm>
-#include <exception>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
-#include <utility>
+#include <string>
 #include <vector>
 
-#include "engine/base/json_message.h"
+#include "engine/base/whole_file.h"
+#include "engine/json/json_fields.h"
 
 namespace palpate {
 namespace {
 
-using Json = nlohmann::json;
+// The format needs one.
+constexpr int kCalibrationNesting = 4;
 
-class CalibrationReader {
+class CalibrationReader : private JsonFields {
  public:
-  CalibrationReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+  CalibrationReader(std::string_view text, const std::string& path, const nlohmann::json& document)
+      : JsonFields(text, path, ""), top_{&document, ""} {}
 
   Result<HidCalibration> read() {
-    Result<Json> document = parse_json_document<Json>(text_, path_);
-    if (!document) return document.error();
-    document_ = std::move(*document);
-    if (!document_.is_object())
-      return Error{position_prefix(path_, {}) + found(document_) + ", expected an object"};
-    read_kind();
-    calibration_.counts_per_metre = number("counts_per_metre", {1.0, 1e9});
-    calibration_.direction = number("direction", {-1.0, 1.0});
-    if (!error_ && calibration_.direction != 1.0 && calibration_.direction != -1.0) {
-      complain("direction", found(document_["direction"]) + ", expected 1 or -1");
+    const bool knows_kind = read_kind();
+    calibration_.counts_per_metre = number(top_, "counts_per_metre", {1.0, 1e9});
+    calibration_.direction = number(top_, "direction", {-1.0, 1.0});
+    if (calibration_.direction != 1.0 && calibration_.direction != -1.0) refuse("direction", "1 or -1");
+    calibration_.rest_position_m = number(top_, "rest_position_m", {-1.0, 1.0});
+    // What a kind that is not known may have is not known either.
+    if (knows_kind) {
+      if (pushes(calibration_.kind)) read_force();
+      refuse_unknown(top_);
     }
-    calibration_.rest_position_m = number("rest_position_m", {-1.0, 1.0});
-    if (!error_ && pushes(calibration_.kind)) read_force();
-    refuse_others();
-    if (error_) return *error_;
+    if (std::optional<Error> wrong = error()) return *wrong;
     return calibration_;
   }
 
  private:
-  void complain(const std::string& key, const std::string& words) {
-    if (!error_)
-      error_ = Error{position_prefix(path_, position_of_value(text_, "/" + key)) + key + ": " + words};
+  void refuse(const char* key, const std::string& expected) {
+    const JsonNode node = optional_member(top_, key);
+    if (node.value != nullptr) complain(node.pointer, found(*node.value) + ", expected " + expected);
   }
 
-  void read_kind() {
-    known_.push_back("kind");
-    for (const HidKind kind : kHidKinds) {
-      if (!document_.contains("kind") || document_["kind"] != hid_kind_name(kind)) continue;
-      calibration_.kind = kind;
-      return;
-    }
-    complain("kind", (document_.contains("kind") ? found(document_["kind"]) : "missing") +
-                         ", expected \"paddle\", \"polhem\", \"openffboard\" or \"spacemouse\"");
-  }
-
-  double number(const char* key, const NumberRange& range) {
-    known_.emplace_back(key);
-    const std::string expected = ", expected " + range.words();
-    if (!document_.contains(key)) {
-      complain(key, "missing" + expected);
-      return range.low;
-    }
-    const Json& value = document_[key];
-    if (value.is_number() && range.holds(value.get<double>())) return value.get<double>();
-    complain(key, found(value) + expected);
-    return range.low;
+  bool read_kind() {
+    std::vector<std::string> names;
+    for (const HidKind kind : kHidKinds) names.emplace_back(hid_kind_name(kind));
+    const auto index = choice(member(top_, "kind", "the kind of device"), names);
+    if (index) calibration_.kind = kHidKinds[*index];
+    return index.has_value();
   }
 
   void read_force() {
     ForceLimits& limits = calibration_.limits;
-    calibration_.fastest_m_per_s = number("fastest_m_per_s", {0.01, 100.0});
-    calibration_.force_N_per_unit = number("force_N_per_unit", {1e-9, 1e3});
-    calibration_.stuck_after_s = number("stuck_after_s", {0.05, 60.0});
-    limits.largest_N = number("peak_N", {1e-3, 100.0});
-    limits.continuous_N = number("continuous_N", {1e-3, 100.0});
-    limits.thermal_time_s = number("thermal_time_s", {0.1, 1e4});
-    limits.fastest_N_per_s = number("fastest_N_per_s", {1.0, 1e6});
-    limits.ramp_s = number("ramp_s", {0.05, 10.0});
-    limits.stale_after_s = number("stale_after_s", {0.002, 0.01});
-    if (!error_ && limits.continuous_N > limits.largest_N) {
-      complain("continuous_N", found(document_["continuous_N"]) + ", expected at most peak_N");
-    }
+    const std::size_t before = error_count();
+    calibration_.fastest_m_per_s = number(top_, "fastest_m_per_s", {0.01, 100.0});
+    calibration_.force_N_per_unit = number(top_, "force_N_per_unit", {1e-9, 1e3});
+    calibration_.stuck_after_s = number(top_, "stuck_after_s", {0.05, 60.0});
+    limits.largest_N = number(top_, "peak_N", {1e-3, 100.0});
+    limits.continuous_N = number(top_, "continuous_N", {1e-3, 100.0});
+    limits.thermal_time_s = number(top_, "thermal_time_s", {0.1, 1e4});
+    limits.fastest_N_per_s = number(top_, "fastest_N_per_s", {1.0, 1e6});
+    limits.ramp_s = number(top_, "ramp_s", {0.05, 10.0});
+    limits.stale_after_s = number(top_, "stale_after_s", {0.002, 0.01});
+    const bool all_read = error_count() == before;
+    if (all_read && limits.continuous_N > limits.largest_N) refuse("continuous_N", "at most peak_N");
   }
 
-  void refuse_others() {
-    for (const auto& entry : document_.items()) {
-      if (std::find(known_.begin(), known_.end(), entry.key()) != known_.end()) continue;
-      complain(entry.key(), "unknown; expected " + list_of_known());
-    }
-  }
-
-  std::string list_of_known() const {
-    std::string list;
-    for (const std::string& key : known_) list += (list.empty() ? "" : ", ") + key;
-    return list;
-  }
-
-  std::string_view text_;
-  std::string path_;
-  Json document_;
+  JsonNode top_;
   HidCalibration calibration_;
-  std::vector<std::string> known_;
-  std::optional<Error> error_;
 };
 
 }  // namespace
 
 Result<HidCalibration> parse_hid_calibration(std::string_view text, const std::string& path) {
-  try {
-    return CalibrationReader(text, path).read();
-  } catch (const std::exception& error) {
-    return Error{path + ": " + error.what()};
-  }
+  const Result<nlohmann::json> document = parse_json(text, path, kCalibrationNesting, {});
+  if (!document) return document.error();
+  return CalibrationReader(text, path, *document).read();
 }
 
 Result<HidCalibration> read_hid_calibration(const std::string& folder, HidKind kind) {
   const std::string path = folder + "/" + hid_kind_name(kind) + ".json";
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{path + ": cannot read the calibration; put the file there, see assets/devices/"};
-  std::ostringstream text;
-  text << file.rdbuf();
-  Result<HidCalibration> calibration = parse_hid_calibration(text.str(), path);
+  const std::optional<std::string> text = read_whole_file(path);
+  if (!text) return Error{path + ": cannot read the calibration; put the file there, see assets/devices/"};
+  Result<HidCalibration> calibration = parse_hid_calibration(*text, path);
   if (calibration && calibration->kind != kind) {
     return Error{path + ": found the calibration of \"" + hid_kind_name(calibration->kind) +
                  "\", expected \"" + hid_kind_name(kind) + "\", as the file's name says"};

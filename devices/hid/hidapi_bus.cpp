@@ -47,7 +47,10 @@ class HidapiLine final : public HidLine {
                         : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
   }
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
-    return hid_write(writer_, bytes, size) >= 0;
+    if (!begin_force_write()) return false;
+    const bool taken = hid_write(writer_, bytes, size) >= 0;
+    end_force_write();
+    return taken;
   }
   void stop_with(const OutReports& reports) noexcept override {
     unregister_device_stop(slot_);

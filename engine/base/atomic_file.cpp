@@ -1,11 +1,9 @@
 #include "engine/base/atomic_file.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -13,55 +11,12 @@
 #include <cstring>
 #include <system_error>
 
+#include "engine/base/temporary_paths.h"
+
 namespace palpate {
 namespace {
 
 constexpr std::size_t kFlushBytes = std::size_t{1} << 18;
-
-// --- Registry of temporary files: what a signal handler may read ------------
-
-constexpr std::size_t kPathBytes = 4096;  // PATH_MAX on Linux
-constexpr int kSlots = 32;                // more files open at once are merely not registered
-
-enum SlotState : int { kFree, kFilling, kLive };
-
-struct Slot {
-  std::atomic<int> state{kFree};
-  pid_t owner = 0;  // a forked child must not remove its parent's files
-  char path[kPathBytes] = {};
-};
-static_assert(std::atomic<int>::is_always_lock_free, "read by a signal handler");
-
-std::array<Slot, kSlots> slots;
-
-int register_temporary(const std::string& path) {
-  if (path.size() >= kPathBytes) return -1;
-  for (int i = 0; i < kSlots; ++i) {
-    Slot& slot = slots[static_cast<std::size_t>(i)];
-    int expected = kFree;
-    if (!slot.state.compare_exchange_strong(expected, kFilling)) continue;
-    std::memcpy(slot.path, path.c_str(), path.size() + 1);
-    slot.owner = getpid();
-    slot.state.store(kLive);
-    return i;
-  }
-  return -1;
-}
-
-void unregister_temporary(int index) noexcept {
-  if (index >= 0) slots[static_cast<std::size_t>(index)].state.store(kFree);
-}
-
-// Async-signal-safe calls only.
-extern "C" void remove_and_die(int signal_number) {
-  for (const Slot& slot : slots) {
-    if (slot.state.load() == kLive && slot.owner == getpid()) unlink(slot.path);
-  }
-  signal(signal_number, SIG_DFL);
-  raise(signal_number);  // delivered when this handler returns
-}
-
-// --- Names -------------------------------------------------------------------
 
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
@@ -130,19 +85,6 @@ void flush_folder(const std::string& folder) {
 }
 
 }  // namespace
-
-void remove_temporary_files_on_signals() {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
-    struct sigaction current {};
-    sigaction(number, nullptr, &current);
-    if (current.sa_handler == SIG_IGN) continue;
-    struct sigaction action {};
-    action.sa_handler = remove_and_die;
-    sigfillset(&action.sa_mask);
-    sigaction(number, &action, nullptr);
-  }
-  signal(SIGXFSZ, SIG_IGN);
-}
 
 Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
   if (const Status target = check_target(path, overwrite); !target) return target.error();

@@ -12,7 +12,8 @@ namespace palpate {
 
 // Collects output in a temporary file beside `path`; `commit` flushes it to
 // disk and renames it. Destroyed without commit, killed or interrupted, it
-// leaves nothing under the final name.
+// leaves nothing under the final name; where signals are owned (signals.h), one that
+// ends the program removes the temporary file too.
 class AtomicFile {
  public:
   // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
@@ -48,12 +49,6 @@ class AtomicFile {
   int registry_slot_ = -1;
   bool overwrite_ = false;
 };
-
-// For main, once, before the first thread: SIGINT, SIGTERM, SIGHUP, SIGQUIT and
-// SIGPIPE remove the temporary files of this process before they end it as
-// usual (a signal that is ignored at the start stays ignored), and a file that
-// outgrows the process's size limit is an error of commit, not a crash.
-void remove_temporary_files_on_signals();
 
 // Writes `text` to `path` in one go; errors as AtomicFile.
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);

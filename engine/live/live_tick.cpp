@@ -22,15 +22,12 @@ ToolSample warm_up_sample(int index) noexcept {
   return sample;
 }
 
-std::uint32_t fault_bits(TickFault fault) noexcept {
-  switch (fault) {
-    case TickFault::none: return 0;
-    case TickFault::bad_sample: return loop_fault::kBadSample;
-    case TickFault::time_not_later: return loop_fault::kTimeNotLater;
-    case TickFault::force_not_finite: return loop_fault::kModelNotFinite;
-  }
-  return 0;
+constexpr std::uint32_t fault_bits(TickFault fault) noexcept {
+  return fault == TickFault::none ? 0U : 1U << (static_cast<unsigned>(fault) - 1U);
 }
+static_assert(fault_bits(TickFault::bad_sample) == loop_fault::kBadSample &&
+              fault_bits(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
+              fault_bits(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
 
 std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
   std::uint32_t bits = 0;

@@ -18,6 +18,7 @@
 
 #include "engine/live/device.h"
 #include "engine/live/fault_recorder.h"
+#include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
 #include "engine/tick/haptics_tick.h"
@@ -87,22 +88,6 @@ struct LoopControls {
   // Raised by one each time the user has seen the latched faults: they are cleared.
   std::uint32_t acknowledged = 0;
 };
-
-// What a tick found wrong, bits.
-namespace loop_fault {
-inline constexpr std::uint32_t kBadSample = 1;
-inline constexpr std::uint32_t kTimeNotLater = 2;
-inline constexpr std::uint32_t kModelNotFinite = 4;
-inline constexpr std::uint32_t kForceNotFinite = 8;   // reached the limiter
-inline constexpr std::uint32_t kForceClamped = 16;
-inline constexpr std::uint32_t kForceSlewed = 32;
-inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop; not latched, missed_deadlines tells
-inline constexpr std::uint32_t kStaleSample = 128;    // too old to push by
-inline constexpr std::uint32_t kDeviceFault = 256;    // see LoopSnapshot::device
-inline constexpr std::uint32_t kForceThermal = 512;   // clamped by the motor's thermal budget
-// Those that take the force away; kModelNotFinite that of the one model alone, in the hand or not.
-inline constexpr std::uint32_t kStops = kBadSample | kModelNotFinite | kForceNotFinite | kStaleSample | kDeviceFault;
-}  // namespace loop_fault
 
 inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 

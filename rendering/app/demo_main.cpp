@@ -1,7 +1,5 @@
 // palpate-demo: the window program's command line.
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/app/stats_file.h"
@@ -27,9 +26,6 @@ constexpr double kPictureAfter_s = 12.0;
 // No block to press: two forces to tell apart.
 constexpr const char* kStudyScene = "jnd_study";
 
-std::atomic<bool> stop_asked{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
-
 struct Arguments {
   DemoRequest demo;
   double seconds = 0.0;  // 0: until closed
@@ -39,13 +35,6 @@ struct Arguments {
   bool discriminates = false;
   std::string recording;  // to discriminate; empty: virtual
 };
-
-// The first signal ends the program as closing the window does, so that the force
-// goes to zero and a recording is saved; the second ends it at once.
-void ask_to_stop(int signal) {
-  stop_asked.store(true, std::memory_order_relaxed);
-  std::signal(signal, SIG_DFL);
-}
 
 int fail(const std::string& message) {
   std::fprintf(stderr, "error: %s\n", message.c_str());
@@ -91,11 +80,13 @@ Status check_outputs(const Arguments& arguments) {
   return {};
 }
 
-// Frame after frame until closed, stopped, or so many seconds have passed.
+// Frame after frame until closed, stopped, or so many seconds have passed. A first
+// signal ends the program as closing the window does, so that the force goes to zero
+// and a recording is saved.
 template <typename App>
 void run_frames(App& app, double seconds) {
   const double start_s = steady_now_s();
-  while (!app.closing() && !stop_asked.load(std::memory_order_relaxed)) {
+  while (!app.closing() && stop_requested() == 0) {
     app.frame();
     if (seconds > 0.0 && steady_now_s() - start_s >= seconds) break;
   }
@@ -158,9 +149,9 @@ int run_program(int argc, char** argv) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, palpate::ask_to_stop);
-  std::signal(SIGPIPE, SIG_IGN);
   try {
+    palpate::ignore_broken_pipes();
+    const palpate::StopListener listener;
     return palpate::run_program(argc, argv);
   } catch (const std::exception& error) {
     return palpate::fail(std::string("unexpected: ") + error.what());

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "rendering/panels/overlay_parts.h"
+#include "engine/base/text.h"
 #include "rendering/panels/panel.h"
 #include "rendering/ui/plot.h"
 
@@ -78,8 +79,8 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   const double error = known ? session.slot(session.selected()).dent_error_over_jnd : 0.0;
   // Two decimals are more than anyone can see change.
   const std::string number = !known           ? "–"
-                             : error < 0.9995 ? three_digits(error).substr(0, 4)
-                                              : three_digits(error);
+                             : error < 0.9995 ? at_most_three_decimals(error).substr(0, 4)
+                                              : at_most_three_decimals(error);
   const ImVec2 size = text_size(big, "0.00");
   const float y = corner.y - size.y - 1.9F * line;
   text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);

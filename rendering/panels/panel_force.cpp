@@ -3,6 +3,7 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/panels/curve_drawing.h"
+#include "engine/base/text.h"
 #include "rendering/panels/panel.h"
 #include "rendering/panels/time_plot.h"
 
@@ -101,7 +102,7 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
                                                                   : std::nan("");
   section_title(scene.style, "FORCE");
   ImGui::SameLine();
-  ImGui::TextColored(paint(kReferenceColour), "%s N", three_digits(reference_N).c_str());
+  ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
   ImGui::SameLine();
   ImGui::TextDisabled("%s", scene.session.reference_words().c_str());
   tip("Force of every model, and in green what they are compared with (F chooses another).\n"
@@ -138,13 +139,13 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
   const CurveColumn* under = curves_.at(time.hover_s);
   const CurveColumn* last = curves_.last();
   if (under != nullptr && under->reference)
-    readings.push_back({"reference  " + three_digits(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
+    readings.push_back({"reference  " + at_most_three_decimals(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
   for (std::size_t i = 0; i < scene.session.slot_count(); ++i) {
     if (scene.session.slot(i).state != SlotState::ready) continue;
     if (last != nullptr && !std::isnan(value(*last, i)))
       labels.push_back({short_name(scene.session.slot(i)), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
     if (under != nullptr && !std::isnan(value(*under, i)))
-      readings.push_back({scene.session.slot(i).name + "  " + three_digits(static_cast<double>(value(*under, i))) + unit,
+      readings.push_back({scene.session.slot(i).name + "  " + at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
                           scene.colour(i)});
   }
   if (scene.names()) draw_labels(plot, labels);

@@ -25,16 +25,6 @@ double round_up(double value) noexcept {
   return 10.0 * decade;
 }
 
-std::string three_digits(double value) {
-  char text[32];
-  const double size = std::abs(value);
-  if (!std::isfinite(value)) return "–";
-  // What rounds to the next power of ten has a digit more before the point.
-  const int decimals = size < 0.9995 ? 3 : size < 9.995 ? 2 : size < 99.95 ? 1 : 0;
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
 std::vector<float> spread_labels(const std::vector<float>& wanted, float gap, float low, float high) {
   std::vector<std::size_t> order(wanted.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;

@@ -20,8 +20,6 @@ struct Range {
 double tick_step(double span, int most) noexcept;
 // The next such number of "1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten" at or above.
 double round_up(double value) noexcept;
-// At most three significant digits, at most three decimals, no exponent: "0.412", "12.3", "1234".
-std::string three_digits(double value);
 
 // Where labels of height `gap` go that want to stand at `wanted`: in the same order, none
 // over another, between `low` and `high` as long as there is room.

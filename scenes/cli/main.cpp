@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/atomic_file.h"
-#include "scenes/cli/progress.h"
+#include "engine/base/signals.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -88,7 +87,7 @@ int run_program(int argc, char** argv) {
     const Status status = run_chosen(verbs);
     if (status) return kDone;
     // As a shell has it of a program that the signal ended.
-    return fail(status.error().message, interrupted() != 0 ? 128 + interrupted() : kFailed);
+    return fail(status.error().message, stop_requested() != 0 ? 128 + stop_requested() : kFailed);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       app.exit(error);  // --help and --version
@@ -103,7 +102,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    palpate::remove_temporary_files_on_signals();
+    palpate::own_signals();
     return palpate::cli::run_program(argc, argv);
   } catch (const std::bad_alloc&) {
     return palpate::cli::fail("out of memory", palpate::cli::kFailed);

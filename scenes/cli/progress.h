@@ -1,17 +1,19 @@
 // How far a long job is, on stderr when that is a terminal, and whether the
 // user wants it to stop.
 //
-// Thread guarantee: one thread; the signal handler only sets an atomic flag.
+// Thread guarantee: one thread.
 #pragma once
 
 #include <chrono>
 #include <string>
 
+#include "engine/base/signals.h"
+
 namespace palpate::cli {
 
 // While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks the job to
 // stop instead of ending the program, so that it can tidy up; the second ends it
-// as before. One at a time. Use as
+// (signals.h). One at a time. Use as
 //   ProgressLine line("fitting greedy-100");
 //   control.progress = [&](double fraction) { return line.update(fraction); };
 class ProgressLine {
@@ -29,15 +31,13 @@ class ProgressLine {
   using Clock = std::chrono::steady_clock;
   void draw(double fraction, Clock::time_point now);
 
+  StopListener listener_;
   std::string label_;
   Clock::time_point start_;
   Clock::time_point last_drawn_;
   bool terminal_;
   bool drawn_ = false;
 };
-
-// The signal that asked the job of the newest ProgressLine to stop; 0: none did.
-int interrupted() noexcept;
 
 // The text of a line: "label  37 %  12 s left". `elapsed_s` ≥ 0; the remaining
 // time appears once it can be guessed (2 % and 1 s).

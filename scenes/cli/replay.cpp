@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/tick/replay.h"
 #include "engine/tick/evaluation.h"
 #include "models/model/file/model_io.h"
@@ -109,12 +110,6 @@ void print_json(const Options& options, const ReplaySummary& summary, const std:
                        {"models", models}};
   // A path need not be UTF-8; what cannot be said is replaced.
   std::printf("%s\n", object.dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
-}
-
-std::string fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
 }
 
 using Row = std::vector<std::string>;

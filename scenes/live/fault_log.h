@@ -55,7 +55,6 @@ class FaultLog {
   void acknowledge() noexcept { stall_unseen_ = false; }
 
  private:
-  static constexpr std::size_t kKinds = 32;  // the loop's, then the device's by bit
   void see_device(std::uint32_t faults, double at_s);
   void note(std::size_t kind, std::uint64_t count, double at_s);
 
@@ -64,7 +63,7 @@ class FaultLog {
     double at_s = 0.0;
   };
   std::vector<FaultEvent> events_;
-  std::array<Last, kKinds> last_{};
+  std::array<Last, kFaults.size()> last_{};
   std::uint32_t device_faults_ = 0;
   std::uint64_t missed_ = 0;
   double missed_of_late_ = 0.0;

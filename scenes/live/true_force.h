@@ -7,6 +7,8 @@
 // Thread guarantee: as ReferenceForce; `step` is wait-free and allocates nothing.
 #pragma once
 
+#include <memory>
+
 #include "engine/live/live_tick.h"
 #include "scenes/material/material.h"
 
@@ -14,14 +16,14 @@ namespace palpate {
 
 class TrueForce final : public ReferenceForce {
  public:
-  explicit TrueForce(const Material& material) noexcept : block_(material) {}
+  explicit TrueForce(const Material& material) : block_(material.make_block()) {}
 
   // The first step, and one with `restart`, finds the block fully relaxed under
   // the tool: the state in which a model's filters begin as well.
   double step(const TickSnapshot& snapshot, bool restart) noexcept override;
 
  private:
-  MaterialState block_;
+  std::unique_ptr<Block> block_;
   double time_s_ = 0.0;
   bool started_ = false;
 };

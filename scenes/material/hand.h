@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "devices/virtual/hand_motion.h"
 #include "scenes/material/material.h"
@@ -15,13 +16,13 @@ class Hand final : public HandMotion {
  public:
   // `material`: what it presses, to aim by force.
   Hand(const Material& material, const HandSettings& settings, std::uint64_t seed)
-      : HandMotion(settings, seed), material_(material) {}
+      : HandMotion(settings, seed), block_(material.make_block()) {}
 
  protected:
   double held_depth_m(double force_N) const noexcept override;
 
  private:
-  Material material_;
+  std::unique_ptr<const Block> block_;  // untouched, for what it would hold
 };
 
 }  // namespace palpate

@@ -17,6 +17,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,11 +33,16 @@ namespace palpate {
 struct SensorSettings {
   double encoder_step_m = 30e-6;
   double force_noise_N = 0.005;
-  double force_range_N = 10.0;  // -range .. +range in 4096 steps; clips beyond
+  double force_range_N = 0.0;  // -range .. +range in 4096 steps; clips beyond; 0: as suits the material
   double acceleration_noise_m_per_s2 = 0.07;
   double acceleration_range_m_per_s2 = 40.0;  // -range .. +range in 4096 steps
   double acceleration_bias_m_per_s2 = 0.1;  // standard deviation
   double acceleration_bias_time_s = 20.0;   // how slowly it wanders
+  // What real rigs do as well:
+  double surface_offset_m = 0.0;   // the recorded position is so much too large
+  double force_zero_N = 0.0;       // the recorded force is so much too large
+  double force_filter_time_s = 0.0;  // first-order lag before the force cell; 0: none
+  double jitter_share = 0.0;  // rows are late by up to this share of their spacing, 0 .. < 1
 };
 
 inline constexpr double kRigStep_s = 1.0 / 20000.0;
@@ -50,7 +57,7 @@ struct RigSettings {
   double seconds = 0.0;     // 0: the material's own length
   double rate_Hz = 1000.0;  // kSlowestRate_Hz .. kFastestRate_Hz
   SensorSettings sensors;
-  HandSettings hand;
+  std::optional<HandSettings> hand{};  // empty: the hand that suits the material
 };
 
 // What really was, at the time of one row.
@@ -60,6 +67,7 @@ struct RigTruth {
   double acceleration_m_per_s2 = 0.0;
   double force_N = 0.0;          // of the material, without noise; >= 0
   double surface_depth_m = 0.0;  // more than the depth when the tool has left
+  double cell_force_N = 0.0;     // force_N as the force cell gets it, after its filter
 };
 
 struct RigRecording {
@@ -71,11 +79,12 @@ struct RigRecording {
 class Rig {
  public:
   // Errors: unknown material (the message lists the known), seconds negative,
-  // not finite or fewer than 10 rows, rate out of range, more than kMostRows.
+  // not finite or fewer than 10 rows, rate out of range, more than kMostRows,
+  // a sensor's setting that is not a number or out of range.
   static Result<Rig> create(const RigSettings& settings);
 
   std::size_t row_count() const noexcept { return row_count_; }
-  const Material& material() const noexcept { return block_.material(); }
+  const Material& material() const noexcept { return material_; }
 
   // The next row and the truth behind it; false after the last.
   bool next(RecordingRow& row, RigTruth& truth) noexcept;
@@ -88,12 +97,14 @@ class Rig {
 
   RigSettings settings_;
   Hand hand_;
-  MaterialState block_;
-  RandomStream force_noise_, acceleration_noise_, bias_noise_;
+  Material material_;
+  std::unique_ptr<Block> block_;
+  RandomStream force_noise_, acceleration_noise_, bias_noise_, jitter_;
   std::size_t row_count_ = 0, row_ = 0;
   std::uint64_t grid_index_ = 0;
   RigTruth before_, after_;  // at grid_index_ and one step later
   double bias_m_per_s2_ = 0.0;
+  double filter_share_ = 1.0;  // of the change that passes the force filter in a step
 };
 
 // A whole recording as the sensors see it, without the truth. `progress` is told

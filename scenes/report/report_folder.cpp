@@ -3,12 +3,13 @@
 #include <stdlib.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/temporary_paths.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
@@ -62,15 +63,18 @@ Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrit
   ReportFolder folder;
   folder.path_ = clean.string();
   folder.temporary_ = pattern;
+  folder.registry_slot_ = register_temporary(pattern);
   return folder;
 }
 
 ReportFolder::ReportFolder(ReportFolder&& other) noexcept
-    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})) {}
+    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, {})),
+      registry_slot_(std::exchange(other.registry_slot_, -1)) {}
 
 ReportFolder::~ReportFolder() {
   std::error_code ignored;
   if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  unregister_temporary(registry_slot_);
 }
 
 Status ReportFolder::write(const std::string& name, std::string_view text) const {
@@ -80,11 +84,9 @@ Status ReportFolder::write(const std::string& name, std::string_view text) const
 }
 
 Result<std::string> ReportFolder::read(const std::string& name) const {
-  std::ifstream file(path_of(name), std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) return Error{"gnuplot wrote no " + name + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
-  return text.str();
+  const std::optional<std::string> text = read_whole_file(path_of(name));
+  if (!text || text->empty()) return Error{"gnuplot wrote no " + name + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+  return *text;
 }
 
 Status ReportFolder::commit() {

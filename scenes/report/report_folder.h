@@ -11,7 +11,7 @@
 namespace palpate {
 
 // Files collect in a hidden folder beside `path`; `commit` renames it. Destroyed
-// without commit it leaves nothing.
+// without commit, or ended by a signal that is owned (signals.h), it leaves nothing.
 class ReportFolder {
  public:
   // Errors: `path` exists and `overwrite` is false, or is not a folder; the folder
@@ -35,6 +35,7 @@ class ReportFolder {
   ReportFolder() = default;
   std::string path_;
   std::string temporary_;  // empty: nothing to remove
+  int registry_slot_ = -1;
 };
 
 }  // namespace palpate

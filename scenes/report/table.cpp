@@ -1,36 +1,11 @@
 #include "scenes/report/table.h"
 
-#include <charconv>
 #include <cmath>
-#include <cstdio>
+
+#include "engine/base/csv_scanner.h"
 
 namespace palpate {
 namespace {
-
-std::string shortest(double value) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
-}
-
-std::string fixed(double value, int decimals) {
-  char text[400];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-// 1234567.5 -> 1,234,567.5; `digits` as printf has it.
-std::string with_thousands(const std::string& digits) {
-  const std::size_t first = !digits.empty() && digits[0] == '-' ? 1 : 0;
-  std::size_t end = digits.find('.');
-  if (end == std::string::npos) end = digits.size();
-  std::string text;
-  for (std::size_t at = 0; at < digits.size(); ++at) {
-    if (at > first && at < end && (end - at) % 3 == 0) text.push_back(',');
-    text.push_back(digits[at]);
-  }
-  return text;
-}
 
 std::string quoted_if_needed(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -65,22 +40,6 @@ bool is_text(const Table& table, std::size_t column) {
 }
 
 }  // namespace
-
-std::string three_digits(double value) {
-  if (!std::isfinite(value)) return "–";
-  if (value == 0.0) return "0";
-  const double size = std::abs(value);
-  if (size >= 1e7 || size < 1e-4) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2e", value);
-    return text;
-  }
-  // Rounded first, so that 9.999 has as many digits as the 10.0 it becomes.
-  const double magnitude = std::pow(10.0, std::floor(std::log10(size)) - 2.0);
-  const double rounded = std::round(value / magnitude) * magnitude;
-  const int decimals = 2 - static_cast<int>(std::floor(std::log10(std::abs(rounded)) + 1e-12));
-  return with_thousands(fixed(rounded, std::max(0, decimals)));
-}
 
 std::string escape_html(std::string_view text) {
   std::string safe;

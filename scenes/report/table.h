@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/text.h"
+
 namespace palpate {
 
 // How the page shows a column; the CSV and report.json always hold the SI value
@@ -57,9 +59,6 @@ nlohmann::ordered_json table_json(const Table& table);
 // <div><table>...</table></div>, everything from outside escaped; numbers to the
 // right.
 std::string table_html(const Table& table);
-
-// Three significant digits with thousands separated: 8.87, 0.0123, 12,300.
-std::string three_digits(double value);
 
 // & < > " ' as entities.
 std::string escape_html(std::string_view text);

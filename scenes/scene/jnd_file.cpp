@@ -1,45 +1,19 @@
 #include "scenes/scene/jnd_file.h"
 
-#include <exception>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <optional>
 
-#include "engine/base/json_message.h"
+#include "engine/base/whole_file.h"
+#include "engine/json/json_fields.h"
 
 namespace palpate {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
+// The format needs three.
+constexpr int kJndNesting = 8;
 constexpr const char* kAdvice = "; write it anew with palpate study analyse";
-
-Error wrong(std::string_view text, const std::string& path, const std::string& pointer, const std::string& words) {
-  return Error{position_prefix(path, position_of_value(text, pointer)) + words + kAdvice};
-}
-
-Result<double> number(const OrderedJson& document, std::string_view text, const std::string& path, const char* key,
-                      const NumberRange& range) {
-  const auto entry = document.find(key);
-  if (entry == document.end()) {
-    return wrong(text, path, "", std::string("found no \"") + key + "\", expected " + range.words());
-  }
-  if (entry->is_number() && range.holds(entry->get<double>())) return entry->get<double>();
-  return wrong(text, path, std::string("/") + key, found(*entry) + ", expected " + range.words());
-}
-
-Result<JndLine> line_of(const OrderedJson& document, std::string_view text, const std::string& path) {
-  if (!document.is_object() || document.value("format", OrderedJson()) != "palpate-jnd") {
-    return wrong(text, path, "", "found no \"format\": \"palpate-jnd\", expected a JND file");
-  }
-  const OrderedJson version = document.value("version", OrderedJson());
-  if (version != 1) return wrong(text, path, "/version", found(version) + ", expected the version 1");
-  const Result<double> offset_N = number(document, text, path, "offset_N", {0.0, 100.0, true});
-  if (!offset_N) return offset_N.error();
-  const Result<double> weber_fraction = number(document, text, path, "weber_fraction", {0.0, 1.0});
-  if (!weber_fraction) return weber_fraction.error();
-  return JndLine{*offset_N, *weber_fraction};
-}
 
 }  // namespace
 
@@ -65,21 +39,32 @@ std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& po
 }
 
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
-  const Result<OrderedJson> document = parse_json_document<OrderedJson>(text, path);
-  if (!document) return Error{document.error().message + kAdvice};
-  try {
-    return line_of(*document, text, path);
-  } catch (const std::exception& error) {
-    return Error{path + ": " + error.what() + kAdvice};
+  const Result<nlohmann::json> document = parse_json(text, path, kJndNesting, {kAdvice, kAdvice});
+  if (!document) return document.error();
+  JsonFields fields(text, path, kAdvice);
+  const JsonNode top{&*document, ""};
+  const JsonNode format = fields.optional_member(top, "format");
+  if (format.value == nullptr || *format.value != "palpate-jnd") {
+    fields.complain("", "found no \"format\": \"palpate-jnd\", expected a JND file");
+    return *fields.error();
   }
+  const JsonNode version = fields.member(top, "version", "1");
+  if (version.value != nullptr && *version.value != 1) {
+    fields.complain(version.pointer, found(*version.value) + ", expected the version 1");
+    return *fields.error();
+  }
+  const JndLine line{fields.number(top, "offset_N", {0.0, 100.0, true}),
+                     fields.number(top, "weber_fraction", {0.0, 1.0})};
+  for (const char* told : {"criterion", "subjects", "fitted", "points"}) fields.optional_member(top, told);
+  fields.refuse_unknown(top);
+  if (const std::optional<Error> error = fields.error()) return *error;
+  return line;
 }
 
 Result<JndLine> read_jnd_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || !text) return Error{"cannot read the JND file " + path + "; does it exist?"};
-  return parse_jnd_file(text.str(), path);
+  const std::optional<std::string> text = read_whole_file(path);
+  if (!text) return Error{"cannot read the JND file " + path + "; does it exist?"};
+  return parse_jnd_file(*text, path);
 }
 
 }  // namespace palpate

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
 
+#include "engine/base/whole_file.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate {
@@ -73,11 +73,9 @@ Result<Scene> load_scene_from(const std::string& folder, const std::string& name
     return Error{"unknown scene \"" + name + "\"; known scenes: " + joined(*names)};
   }
   const std::string path = folder + "/" + name + ".json";
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || !text) return Error{"cannot read the scene " + path};
-  return parse_scene(text.str(), path);
+  const std::optional<std::string> text = read_whole_file(path);
+  if (!text) return Error{"cannot read the scene " + path};
+  return parse_scene(*text, path);
 }
 
 Result<Scene> load_scene(const std::string& name) {

@@ -6,13 +6,13 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/whole_file.h"
 #include "scenes/scene/gnuplot.h"
 
 namespace palpate {
@@ -116,11 +116,9 @@ class ScratchFolder {
 };
 
 Result<std::string> read_figure(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || !text) return Error{"gnuplot wrote no " + path + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
-  return text.str();
+  const std::optional<std::string> text = read_whole_file(path);
+  if (!text || text->empty()) return Error{"gnuplot wrote no " + path + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+  return *text;
 }
 
 // All figures that gnuplot left in `drawn`, each whole, into `folder`.

@@ -2,13 +2,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <memory>
 #include <sstream>
 #include <utility>
 
-#include "engine/base/json_position.h"
+#include "engine/base/whole_file.h"
+#include "engine/json/json_position.h"
 #include "scenes/study/study_file.h"
 
 namespace palpate {
@@ -197,11 +197,9 @@ Result<StudyData> parse_study(std::string_view text, const std::string& path) {
 }
 
 Result<StudyData> read_study(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file || !text) return Error{"cannot read the study file " + path + "; does it exist?"};
-  return parse_study(text.str(), path);
+  const std::optional<std::string> text = read_whole_file(path);
+  if (!text) return Error{"cannot read the study file " + path + "; does it exist?"};
+  return parse_study(*text, path);
 }
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "tests/support/scripted_press.h"
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "scenes/material/material.h"
@@ -10,7 +11,7 @@ namespace palpate::test {
 namespace {
 
 constexpr double kStart_m = -0.002;
-constexpr double kStep_s = 0.001;  // MaterialState goes through it in finer ones
+constexpr double kStep_s = 0.001;  // Block goes through it in finer ones
 constexpr double kForceNoise_N = 0.005;
 // Peak speed of a minimum-jerk path of length 1 in time 1.
 constexpr double kPeakSpeed = 1.875;
@@ -21,8 +22,8 @@ ScriptedPress scripted_press(const std::string& material, const std::vector<Stre
                              std::uint64_t seed) {
   const auto found = find_material(material);
   if (!found) throw std::runtime_error(found.error().message);
-  MaterialState block(*found);
-  block.reset(kStart_m);
+  const std::unique_ptr<Block> block = found->make_block();
+  block->reset(kStart_m);
   RandomStream noise(seed, 0);
   ScriptedPress press;
   press.recording.name = material + "_scripted";
@@ -34,7 +35,7 @@ ScriptedPress scripted_press(const std::string& material, const std::vector<Stre
       const double u = static_cast<double>(i) / steps;
       const double position_m = from_m + length_m * u * u * u * (10.0 - u * (15.0 - 6.0 * u));
       const double velocity_m_per_s = length_m * 30.0 * u * u * (1.0 - u) * (1.0 - u) / (steps * kStep_s);
-      const double force_N = block.step(position_m, velocity_m_per_s, kStep_s);
+      const double force_N = block->step(position_m, velocity_m_per_s, kStep_s);
       RecordingRow row;
       row.time_s = kStep_s * static_cast<double>(press.recording.rows.size());
       row.position_m = encoder_step_m > 0.0 ? encoder_step_m * std::round(position_m / encoder_step_m) : position_m;

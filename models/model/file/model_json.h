@@ -6,7 +6,7 @@
 //   trend, corrects_trend, correction_limit_N, largest_force_N, jnd,
 //   either kernel, tail, centres and weights, or grid {nodes, values_N},
 //   provenance.
-// Every field is required; fields that this version does not know are ignored.
+// Every field is required, and others are refused.
 // Centres, weights and cover points stand one to a line, so that two models can
 // be compared line by line. Numbers are the shortest decimals that read back as
 // the same double, so a model read back gives bit-identical forces. "filters" in
@@ -41,8 +41,8 @@ Result<std::string> write_model_text(const ModelData& data);
 // Reads what `write_model_text` wrote. `path` names the file in messages:
 //   path:line:column: field[index]: found X, expected Y; what to do
 // Errors: text that is not JSON, a number beyond the range of a double, nesting
-// beyond kModelNesting, another format or version, a field that is missing, of
-// the wrong type, size or sign. The first one counts.
+// beyond kModelNesting, another format or version, a field that is missing,
+// unknown, of the wrong type, size or sign: all of them, a line each.
 Result<ModelData> read_model_text(std::string_view text, const std::string& path);
 
 }  // namespace palpate

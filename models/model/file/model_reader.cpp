@@ -7,16 +7,15 @@
 #include <optional>
 
 #include "engine/base/csv_scanner.h"
-#include "models/model/file/json_fields.h"
+#include "engine/json/json_fields.h"
 #include "models/model/file/model_fields.h"
 #include "models/model/file/model_json.h"
 
 namespace palpate {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kFitAgain = "; fit the model again";
+constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
 
 class ModelReader : private JsonFields {
  public:
@@ -24,7 +23,7 @@ class ModelReader : private JsonFields {
       : JsonFields(text, path, kFitAgain), text_(text), path_(path) {}
 
   Result<ModelData> read() {
-    const Result<Json> document = parse_json(text_, path_, kModelNesting);
+    const Result<nlohmann::json> document = parse_json(text_, path_, kModelNesting, {kFitAgain, kDamaged});
     if (!document) return document.error();
     read_document({&*document, ""});
     if (error()) return *error();
@@ -67,8 +66,9 @@ class ModelReader : private JsonFields {
   void read_document(const JsonNode& top) {
     if (!read_format(top)) return;
     read_names(top);
+    const std::size_t named = error_count();
     read_features(top);
-    if (error()) return;  // every size below depends on the features
+    if (error_count() > named) return;  // every size below depends on the features
     const std::string per_feature = "numbers, one per feature";
     const JsonNode normalisation = member(top, "normalisation", "an object with offset and scale");
     data_.offset = vector(normalisation, "offset", dimension(), per_feature);
@@ -88,14 +88,17 @@ class ModelReader : private JsonFields {
     data_.cover.outer_radius = number(domain, "outer_radius", Sign::kPositive);
     data_.cover.points = points(domain, "points");
     read_function(top);
+    // After another error not all that may be there was asked for.
+    if (error_count() == 0) refuse_unknown(top);
   }
 
   bool read_format(const JsonNode& top) {
     const char* advice = "; name a file that palpate fit wrote";
-    if (!top.value->is_object() || !top.value->contains("format") || (*top.value)["format"] != "palpate-model") {
-      const bool none = !top.value->is_object() || !top.value->contains("format");
-      complain(none ? "" : "/format",
-               (none ? "found no \"format\"" : found((*top.value)["format"])) + ", expected \"palpate-model\"", advice);
+    const JsonNode format = optional_member(top, "format");
+    if (format.value == nullptr || *format.value != "palpate-model") {
+      const bool none = format.value == nullptr;
+      complain(none ? "" : format.pointer,
+               (none ? "found no \"format\"" : found(*format.value)) + ", expected \"palpate-model\"", advice);
       return false;
     }
     const JsonNode version = member(top, "version", std::to_string(kModelVersion));
@@ -239,7 +242,7 @@ class ModelReader : private JsonFields {
     Provenance& from = data_.provenance;
     const JsonNode recordings = list(node, "recordings", "a list of names");
     for (std::size_t i = 0; recordings.value != nullptr && i < recordings.value->size(); ++i) {
-      const Json& name = (*recordings.value)[i];
+      const nlohmann::json& name = (*recordings.value)[i];
       if (!name.is_string()) {
         complain(recordings.pointer + "/" + std::to_string(i), found(name) + ", expected a text");
         return;

@@ -16,9 +16,9 @@ constexpr double kBranchStiffness_N_per_m = 100.0;
 constexpr double kRelaxationTime_s = 0.17;
 
 // The material's state, moved along a path.
-class Block {
+class PressedBlock {
  public:
-  explicit Block(const Path& path) : path_(path), position_m_(path(0.0)) {}
+  explicit PressedBlock(const Path& path) : path_(path), position_m_(path(0.0)) {}
 
   double force_at(double time_s) {
     // In equal steps: a last one of rounding alone would spoil the velocity.
@@ -55,7 +55,7 @@ class Block {
 
 Press press_along(const Path& path, const std::vector<double>& times_s, const PressSensors& sensors) {
   RandomStream noise(1, 0);
-  Block block(path);
+  PressedBlock block(path);
   Press press;
   press.recording.name = "press";
   for (const double time_s : times_s) {

@@ -144,6 +144,8 @@ bool EmulatedPaddle::write(UMockdevIoctlClient* client) {
     umockdev_ioctl_client_complete(client, -1, EIO);
     return true;
   }
+  paddle::FromHost told{};
+  if (paddle::decode(data->data + 1, told) == paddle::kGood) told_mA = told.current_mA;
   paddle_.hear(Report(data->data + 1, data->data + data->data_len));
   umockdev_ioctl_client_complete(client, data->data_len, 0);
   return true;

@@ -1,13 +1,17 @@
 // The real libhidapi on an emulated paddle: found, opened, read, written, lost.
 // A program of its own: it runs with the preload library of umockdev.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include "devices/hid/hid_device.h"
 #include "devices/hid/hidapi_bus.h"
+#include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_paddle.h"
 #include "tests/support/hid_ticks.h"
@@ -103,6 +107,51 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
   device.close();
   EXPECT_GT(paddle.writes, 10);
+}
+
+// Another process that pushes until a signal ends it; a byte through `ready` says that
+// it does.
+[[noreturn]] void push_until_ended(HidBus& bus, int ready) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+  const StopListener listener;
+  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  if (!opened) _exit(3);
+  HidDevice device(bus, test::patient(test::example_calibration(HidKind::paddle)), std::move(*opened));
+  if (!device.open()) _exit(4);
+  device.start_zeroing();
+  tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });
+  int ticks = 0;
+  tick_until(device, 2.0, [&](const DeviceHealth&) {
+    if (++ticks == 50 && write(ready, "1", 1) != 1) _exit(5);
+    return false;
+  });
+  _exit(6);
+}
+
+TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
+  for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int second : {SIGINT, SIGTERM, SIGHUP}) {
+      EmulatedPaddle paddle;
+      int ready[2];
+      ASSERT_EQ(pipe(ready), 0);
+      const pid_t child = fork();
+      if (child == 0) push_until_ended(bus, ready[1]);
+      close(ready[1]);
+      char byte = 0;
+      EXPECT_EQ(read(ready[0], &byte, 1), 1);
+      close(ready[0]);
+      EXPECT_EQ(paddle.told_mA, -500);
+      kill(child, first);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "the first only asks";
+      EXPECT_EQ(paddle.told_mA, -500) << "this program does not answer";
+      kill(child, second);
+      int status = 0;
+      waitpid(child, &status, 0);
+      EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == second) << status;
+      EXPECT_EQ(paddle.told_mA, 0) << first << " then " << second;
+    }
+  }
 }
 
 }  // namespace

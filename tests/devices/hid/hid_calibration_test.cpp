@@ -37,7 +37,7 @@ TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
 
 TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint("{").rfind("paddle.json:1:2: syntax error", 0), 0u) << complaint("{");
-  EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found [], expected an object");
+  EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found a list of 0, expected an object with \"kind\"");
   EXPECT_EQ(complaint(changed("\"direction\": 1", "\"direction\": 0.5")),
             "paddle.json:4:16: direction: found 0.5, expected 1 or -1");
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 500")),
@@ -45,14 +45,14 @@ TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 1")),
             "paddle.json:10:19: continuous_N: found 2, expected at most peak_N");
   EXPECT_EQ(complaint(changed("  \"ramp_s\": 0.5,\n", "")),
-            "paddle.json:1:1: ramp_s: missing, expected a number from 0.05 up to 10");
+            "paddle.json:1:1: ramp_s: found no such field, expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
             "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
-            "paddle.json:2:11: kind: found \"joystick\", expected \"paddle\", \"polhem\", \"openffboard\" or "
-            "\"spacemouse\"");
+            "paddle.json:2:11: kind: found \"joystick\", expected one of paddle, polhem, openffboard, "
+            "spacemouse");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
-                .rfind("paddle.json:13:28: colour: unknown; expected kind, counts_per_metre", 0),
+                .rfind("paddle.json:13:28: colour: found an unknown field, expected one of kind, counts_per_metre", 0),
             0u);
 }
 

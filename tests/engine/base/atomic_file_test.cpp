@@ -8,6 +8,7 @@
 
 #include <functional>
 
+#include "engine/base/signals.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -34,7 +35,7 @@ int in_child(const std::function<void()>& body) {
 // that then sends itself `signal_number`.
 int killed_while_writing(const TemporaryFolder& folder, int signal_number) {
   return in_child([&] {
-    remove_temporary_files_on_signals();
+    own_signals();
     auto file = AtomicFile::create(folder.file("out"), true);
     if (!file) _exit(3);
     file->write(kMegabyte);
@@ -144,7 +145,7 @@ TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
   const TemporaryFolder folder;
   const std::string path = folder.with_file("out", "old");
   const int status = in_child([&] {
-    remove_temporary_files_on_signals();
+    own_signals();
     const rlimit limit{1000, 1000};  // stands in for a disk with 1000 bytes left
     setrlimit(RLIMIT_FSIZE, &limit);
     const Status written = write_file_atomically(path, kMegabyte, true);
@@ -180,7 +181,7 @@ TEST(AtomicFile, AnInterruptedChildLeavesTheParentsFileAlone) {
   auto file = AtomicFile::create(folder.file("out"), false);
   ASSERT_TRUE(file.ok());
   in_child([] {
-    remove_temporary_files_on_signals();
+    own_signals();
     raise(SIGTERM);
   });
   file->write("whole");

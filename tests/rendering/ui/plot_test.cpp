@@ -39,14 +39,5 @@ TEST(Plot, LabelsKeepTheirOrderAndStandApart) {
   EXPECT_TRUE(spread_labels({}, 10.0F, 0.0F, 100.0F).empty());
 }
 
-TEST(Plot, NumbersHaveThreeDigits) {
-  EXPECT_EQ(three_digits(0.4123), "0.412");
-  EXPECT_EQ(three_digits(2.314), "2.31");
-  EXPECT_EQ(three_digits(9.997), "10.0");
-  EXPECT_EQ(three_digits(23.14), "23.1");
-  EXPECT_EQ(three_digits(-231.4), "-231");
-  EXPECT_EQ(three_digits(std::nan("")), "–");
-}
-
 }  // namespace
 }  // namespace palpate

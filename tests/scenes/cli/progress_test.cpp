@@ -31,14 +31,14 @@ TEST(Progress, FirstInterruptAsksToStop) {
   EXPECT_TRUE(line.update(0.1));
   raise(SIGINT);
   EXPECT_FALSE(line.update(0.2));
-  EXPECT_EQ(interrupted(), SIGINT);
+  EXPECT_EQ(stop_requested(), SIGINT);
 }
 
 TEST(Progress, SoDoesARequestToTerminate) {
   ProgressLine line("fitting");
   raise(SIGTERM);
   EXPECT_FALSE(line.update(0.2));
-  EXPECT_EQ(interrupted(), SIGTERM);
+  EXPECT_EQ(stop_requested(), SIGTERM);
 }
 
 TEST(Progress, ANewLineStartsUninterrupted) {

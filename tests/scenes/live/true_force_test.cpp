@@ -23,8 +23,8 @@ TickSnapshot press_at(double time_s) {
 
 TEST(TrueForce, IsTheMaterialsUnderTheSameTool) {
   TrueForce force(silicone());
-  MaterialState block(silicone());
-  block.reset(0.0);
+  const auto block = silicone().make_block();
+  block->reset(0.0);
   EXPECT_EQ(force.step(press_at(0.0), false), 0.0);
   double time_s = 0.0;
   for (int i = 1; i < 2000; ++i) {
@@ -32,7 +32,7 @@ TEST(TrueForce, IsTheMaterialsUnderTheSameTool) {
     const double next_s = time_s + step_s;
     const TickSnapshot snapshot = press_at(next_s);
     ASSERT_EQ(force.step(snapshot, false),
-              block.step(snapshot.position_m, snapshot.velocity_m_per_s, next_s - time_s));
+              block->step(snapshot.position_m, snapshot.velocity_m_per_s, next_s - time_s));
     time_s = next_s;
   }
 }

@@ -12,7 +12,7 @@ constexpr double kStep_s = 5e-5;
 
 Material silicone() { return find_material("silicone").value(); }
 
-void advance(Hand& hand, MaterialState& block) {
+void advance(Hand& hand, Block& block) {
   hand.move(kStep_s);
   hand.feel(block.step(hand.position_m(), hand.velocity_m_per_s(), kStep_s), kStep_s);
 }
@@ -47,7 +47,8 @@ TEST(Hand, TremblesAtEightToTwelveHertz) {
 
 TEST(Hand, VelocityAndAccelerationAreTheDerivativesOfPosition) {
   Hand hand(silicone(), {}, 2);
-  MaterialState block(silicone());
+  const auto owned = silicone().make_block();
+  Block& block = *owned;
   block.reset(hand.position_m());
   int jumps = 0;
   double x0 = 0.0, x1 = 0.0, v0 = 0.0, v1 = 0.0, a1 = 0.0;
@@ -74,7 +75,8 @@ TEST(Hand, VelocityAndAccelerationAreTheDerivativesOfPosition) {
 
 TEST(Hand, HalvingTheStepHardlyChangesTheMotion) {
   Hand coarse(silicone(), {}, 4), fine(silicone(), {}, 4);
-  MaterialState coarse_block(silicone()), fine_block(silicone());
+  const auto coarse_owned = silicone().make_block(), fine_owned = silicone().make_block();
+  Block &coarse_block = *coarse_owned, &fine_block = *fine_owned;
   coarse_block.reset(coarse.position_m());
   fine_block.reset(fine.position_m());
   double worst_m = 0.0;
@@ -93,7 +95,8 @@ TEST(Hand, HalvingTheStepHardlyChangesTheMotion) {
 
 TEST(Hand, PressesTouchesAndLeavesAgain) {
   Hand hand(silicone(), {}, 1);
-  MaterialState block(silicone());
+  const auto owned = silicone().make_block();
+  Block& block = *owned;
   block.reset(hand.position_m());
   int touches = 0;
   double fastest = 0.0, strongest_N = 0.0;

@@ -36,17 +36,5 @@ TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
   EXPECT_NE(html.find("&lt;i&gt;</td><td>0</td><td>–</td><td>100.00</td>"), std::string::npos) << html;
 }
 
-TEST(ThreeDigits, RoundsToThreeAndKeepsThousandsApart) {
-  EXPECT_EQ(three_digits(8.8749), "8.87");
-  EXPECT_EQ(three_digits(0.012345), "0.0123");
-  EXPECT_EQ(three_digits(9.999), "10.0");
-  EXPECT_EQ(three_digits(99.96), "100");
-  EXPECT_EQ(three_digits(12345.0), "12,300");
-  EXPECT_EQ(three_digits(-1234567.0), "-1,230,000");
-  EXPECT_EQ(three_digits(0.0), "0");
-  EXPECT_EQ(three_digits(4.5e9), "4.50e+09");
-  EXPECT_EQ(three_digits(std::numeric_limits<double>::infinity()), "–");
-}
-
 }  // namespace
 }  // namespace palpate

@@ -27,13 +27,13 @@ TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
   EXPECT_EQ(complaint(start + "\"offset_N\": 0.1, \"weber_fraction\": 0}"), "accepted");
   EXPECT_EQ(complaint("[]"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
   EXPECT_EQ(complaint("{\"format\": 3}"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
-  EXPECT_EQ(complaint("{\"format\": \"palpate-jnd\",\n\"version\": 2}"), "jnd.json:2:12: found 2, expected the version 1" + advice);
+  EXPECT_EQ(complaint("{\"format\": \"palpate-jnd\",\n\"version\": 2}"), "jnd.json:2:12: version: found 2, expected the version 1" + advice);
   EXPECT_EQ(complaint(start + "\"weber_fraction\": 0}"),
-            "jnd.json:1:1: found no \"offset_N\", expected a number above 0 up to 100" + advice);
+            "jnd.json:1:1: offset_N: found no such field, expected a number above 0 up to 100" + advice);
   EXPECT_EQ(complaint(start + "\"offset_N\": 0, \"weber_fraction\": 0}"),
-            "jnd.json:3:13: found 0, expected a number above 0 up to 100" + advice);
+            "jnd.json:3:13: offset_N: found 0, expected a number above 0 up to 100" + advice);
   EXPECT_EQ(complaint(start + "\"offset_N\": 0.1, \"weber_fraction\": \"6 %\"}"),
-            "jnd.json:3:36: found \"6 %\", expected a number from 0 up to 1" + advice);
+            "jnd.json:3:36: weber_fraction: found \"6 %\", expected a number from 0 up to 1" + advice);
   const std::string broken = complaint(start);
   EXPECT_EQ(broken.substr(0, 14), "jnd.json:3:1: ") << broken;
   EXPECT_EQ(read_jnd_file("/none/jnd.json").error().message, "cannot read the JND file /none/jnd.json; does it exist?");

@@ -57,7 +57,7 @@ TEST(SceneReader, TakesAStrongestPress) {
   ASSERT_TRUE(scene.ok()) << scene.error().message;
   EXPECT_EQ(scene->strongest_press_N, 0.9);
   EXPECT_EQ(complaint_after("\"material\": null,", "\"material\": null, \"strongest_press_N\": 0,"),
-            "x.json:5:42: found 0, expected a number above 0 up to 20");
+            "x.json:5:42: strongest_press_N: found 0, expected a number above 0 up to 20");
 }
 
 TEST(SceneReader, TakesItsJndFromAFile) {
@@ -72,40 +72,40 @@ TEST(SceneReader, TakesItsJndFromAFile) {
 
 TEST(SceneReader, RefusesAJndFileThatIsNone) {
   EXPECT_EQ(complaint_after("\"jnd\":", "\"jnd_file\": \"none.json\", \"jnd\":"),
-            "x.json:10:15: found a \"jnd\" and a \"jnd_file\", expected one of them\n"
-            "x.json:10:15: cannot read the JND file none.json; does it exist?");
+            "x.json:10:35: jnd: found a \"jnd\" and a \"jnd_file\", expected one of them\n"
+            "x.json:10:15: jnd_file: cannot read the JND file none.json; does it exist?");
   EXPECT_EQ(complaint_after("\"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0}", "\"jnd_file\": 3"),
-            "x.json:10:15: found 3, expected a text that is not empty");
+            "x.json:10:15: jnd_file: found 3, expected a text that is not empty");
   EXPECT_EQ(complaint_after("  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", ""),
-            "x.json:1:1: found no \"jnd\", expected an object with offset_N and weber_fraction, or a \"jnd_file\"");
+            "x.json:1:1: jnd: found no such field, expected an object with offset_N and weber_fraction, or a \"jnd_file\"");
 }
 
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   EXPECT_EQ(complaint_after("\"name\": \"x\"", "\"name\": \"y\""),
-            "x.json:2:11: found \"y\", expected \"x\", the name of the file");
+            "x.json:2:11: name: found \"y\", expected \"x\", the name of the file");
   EXPECT_EQ(complaint_after("\"title\": \"X\"", "\"title\": 3"),
-            "x.json:3:12: found 3, expected a text that is not empty");
+            "x.json:3:12: title: found 3, expected a text that is not empty");
   EXPECT_EQ(complaint_after("  \"material\": null,\n", ""),
-            "x.json:1:1: found no \"material\", expected the name of a virtual material, or null");
+            "x.json:1:1: material: found no such field, expected the name of a virtual material, or null");
   EXPECT_EQ(complaint_after("\"depth\"", "\"dept\""),
-            "x.json:7:14: found \"dept\", expected depth, velocity or lowpass_velocity\n"
-            "x.json:6:15: found no feature of kind \"depth\", expected one: no force without it");
-  EXPECT_EQ(complaint_after("0.5", "-1"), "x.json:8:55: found -1, expected a number above 0 up to 100");
+            "x.json:7:14: features[0].kind: found \"dept\", expected one of depth, velocity, lowpass_velocity\n"
+            "x.json:6:15: features: found no feature of kind \"depth\", expected one: no force without it");
+  EXPECT_EQ(complaint_after("0.5", "-1"), "x.json:8:55: features[1].relaxation_time_s: found -1, expected a number above 0 up to 100");
   EXPECT_EQ(complaint_after(", \"relaxation_time_s\": 0.5", ""),
-            "x.json:8:5: found no \"relaxation_time_s\", expected a number above 0 up to 100");
+            "x.json:8:5: features[1].relaxation_time_s: found no such field, expected a number above 0 up to 100");
   EXPECT_EQ(complaint_after("{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"relaxation_time_s\": 1}"),
-            "x.json:7:44: found a relaxation time, expected none for the kind \"depth\"");
+            "x.json:7:44: features[0].relaxation_time_s: found a relaxation time, expected none for the kind \"depth\"");
   EXPECT_EQ(complaint_after("{\"kind\": \"depth\"},", "{\"kind\": \"depth\"}, {\"kind\": \"depth\"},"),
-            "x.json:7:24: found the same feature twice, expected each once");
+            "x.json:7:24: features[1]: found the same feature twice, expected each once");
   EXPECT_EQ(complaint_after("\"offset_N\": 0.1", "\"offset_mN\": 100"),
-            "x.json:10:24: found the unknown field \"offset_mN\", expected one of offset_N, weber_fraction\n"
-            "x.json:10:10: found no \"offset_N\", expected a number above 0 up to 100");
+            "x.json:10:10: jnd.offset_N: found no such field, expected a number above 0 up to 100\n"
+            "x.json:10:24: jnd.offset_mN: found an unknown field, expected one of offset_N, weber_fraction");
   EXPECT_EQ(complaint_after("\"weber_fraction\": 0", "\"weber_fraction\": 7"),
-            "x.json:10:46: found 7, expected a number from 0 up to 1");
+            "x.json:10:46: jnd.weber_fraction: found 7, expected a number from 0 up to 1");
   EXPECT_EQ(complaint_after("#56B4E9", "red"),
-            "x.json:12:24: found \"red\", expected a colour such as \"#56B4E9\"");
+            "x.json:12:24: colours.block: found \"red\", expected a colour such as \"#56B4E9\"");
   EXPECT_EQ(complaint_after("\"greedy\"", "\"best\""),
-            "x.json:13:22: found \"best\", expected one of direct, voxel, random, kdtree, greedy");
+            "x.json:13:22: default_models[0]: found \"best\", expected one of direct, voxel, random, kdtree, greedy");
 }
 
 TEST(SceneReader, LimitsTheNumberOfFeatures) {
@@ -117,7 +117,7 @@ TEST(SceneReader, LimitsTheNumberOfFeatures) {
   document["features"].push_back({{"kind", "velocity"}});
   const auto nine = parse_scene(document.dump(), "x.json");
   ASSERT_FALSE(nine.ok());
-  EXPECT_NE(nine.error().message.find("found 9 features, expected a list of 1 to 8 features"),
+  EXPECT_NE(nine.error().message.find("found a list of 9, expected a list of 1 to 8 features"),
             std::string::npos);
   document["features"] = Json::array();
   EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());

@@ -114,8 +114,12 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
        "m.json:9:113: features[2].drive.coefficient_N: found a list of 3, expected 4 coefficients; fit "
        "the model again"},
       {"{\"kind\": \"depth\"},", "",
-       "m.json:12:15: normalisation.offset: found a list of 3, expected 2 numbers, one per feature; fit "
-       "the model again"},
+       "m.json:12:15: normalisation.offset: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:13:14: normalisation.scale: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:42:14: domain.lower: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:43:14: domain.upper: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:47:5: domain.points[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:53:5: centres[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again"},
   });
 }
 
@@ -170,6 +174,17 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
        "m.json:1:1: found neither \"centres\" nor \"grid\", expected one of them; fit the model again"},
       {"\"centres\"", "\"grid\": {}, \"centres\"",
        "m.json:1:1: found both \"centres\" and \"grid\", expected one of them; fit the model again"},
+  });
+}
+
+TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
+  expect_all(small_text(), {
+      {"\"tail\"", "\"tails\": 3,\n\"tail\"",
+       "m.json:51:12: tails: found an unknown field, expected one of format, version, name, method, features, "
+       "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, jnd, provenance, domain, kernel, "
+       "tail, centres, weights; fit the model again"},
+      {"{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"time\": 1}",
+       "m.json:7:31: features[0].time: found an unknown field, expected one of kind; fit the model again"},
   });
 }
 

@@ -1,15 +1,20 @@
-#include "models/model/file/json_fields.h"
+#include "engine/json/json_fields.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/base/json_position.h"
+#include "engine/json/json_position.h"
 
 namespace palpate {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr std::size_t kMostLines = 20;
 
 // Where brackets open beyond the allowed nesting, if they do. Counts before the
 // parser runs, which would need memory for each level.
@@ -34,7 +39,8 @@ std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
 // documents does not always tell (numbers beyond the range of a double).
 class SyntaxCheck final : public nlohmann::json_sax<Json> {
  public:
-  SyntaxCheck(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+  SyntaxCheck(std::string_view text, const std::string& path, const JsonAdvice& advice)
+      : text_(text), path_(path), advice_(advice) {}
   const std::optional<Error>& error() const { return error_; }
 
   bool null() override { return true; }
@@ -56,20 +62,21 @@ class SyntaxCheck final : public nlohmann::json_sax<Json> {
     if (fault.id == kNumberOverflow) {
       const std::size_t start = position - std::min(position, token.size());
       error_ = Error{position_prefix(path_, position_of_offset(text_, start)) + "found " + printable(token) +
-                     ", expected a finite number" + "; fit the model again"};
+                     ", expected a finite number" + advice_.field};
       return false;
     }
     std::string what = fault.what();
     const std::size_t detail = what.find("syntax error");
     if (detail != std::string::npos) what = what.substr(detail);
     const std::size_t offset = position > 0 ? position - 1 : 0;
-    error_ = Error{position_prefix(path_, position_of_offset(text_, offset)) + printable(what, 200) + kDamaged};
+    error_ = Error{position_prefix(path_, position_of_offset(text_, offset)) + printable(what, 200) + advice_.damaged};
     return false;
   }
 
  private:
   std::string_view text_;
   const std::string& path_;
+  const JsonAdvice& advice_;
   std::optional<Error> error_;
 };
 
@@ -81,7 +88,11 @@ std::string field_name(std::string_view pointer) {
     const std::size_t end = std::min(pointer.find('/'), pointer.size());
     const std::string step(pointer.substr(0, end));
     const bool index = !step.empty() && step.find_first_not_of("0123456789") == std::string::npos;
-    name += index ? "[" + step + "]" : (name.empty() ? "" : ".") + step;
+    if (index) {
+      name.append("[").append(step).append("]");
+    } else {
+      name.append(name.empty() ? "" : ".").append(printable(step));
+    }
     pointer.remove_prefix(end);
   }
   return name;
@@ -89,14 +100,14 @@ std::string field_name(std::string_view pointer) {
 
 }  // namespace
 
-Result<Json> parse_json(std::string_view text, const std::string& path, int nesting) {
+Result<Json> parse_json(std::string_view text, const std::string& path, int nesting, const JsonAdvice& advice) {
   if (const auto offset = too_deep_at(text, nesting)) {
     return Error{position_prefix(path, position_of_offset(text, *offset)) + "found more than " +
-                 std::to_string(nesting) + " lists inside each other, expected fewer" + kDamaged};
+                 std::to_string(nesting) + " lists inside each other, expected fewer" + advice.damaged};
   }
-  SyntaxCheck syntax(text, path);
+  SyntaxCheck syntax(text, path, advice);
   if (!Json::sax_parse(text, &syntax)) {
-    return syntax.error().value_or(Error{path + ": found text that is not JSON" + kDamaged});
+    return syntax.error().value_or(Error{path + ": found text that is not JSON" + advice.damaged});
   }
   return Json::parse(text);
 }
@@ -109,26 +120,60 @@ std::string found(const Json& value) {
   }
 }
 
-// Keeps the first complaint; what follows from it is of no interest.
-void JsonFields::complain(const std::string& pointer, const std::string& words, const std::string& advice) {
-  if (error_) return;
-  const std::string name = field_name(pointer);
-  error_ = Error{position_prefix(path_, position_of_value(text_, pointer)) + (name.empty() ? "" : name + ": ") +
-                 words + advice};
+std::string NumberRange::words() const {
+  char text[80];
+  std::snprintf(text, sizeof text, "a number %s %g up to %g", open ? "above" : "from", low, high);
+  return text;
 }
 
-// The member `key`; without one, complains and gives a JsonNode without value.
-JsonNode JsonFields::member(const JsonNode& object, const char* key, const std::string& expected) {
+std::optional<Error> JsonFields::error() const {
+  if (error_count_ == 0) return std::nullopt;
+  std::string all;
+  for (const std::string& line : lines_) all.append(all.empty() ? "" : "\n").append(line);
+  if (error_count_ > lines_.size()) all += "\n" + path_ + ": and " + std::to_string(error_count_ - lines_.size()) + " more";
+  return Error{all};
+}
+
+bool JsonFields::told_already(const std::string& pointer) const {
+  return std::any_of(told_.begin(), told_.end(), [&](const std::string& told) {
+    if (pointer == told) return true;
+    return !told.empty() && pointer.size() > told.size() && pointer.compare(0, told.size(), told) == 0 &&
+           pointer[told.size()] == '/';
+  });
+}
+
+void JsonFields::complain(const std::string& pointer, const std::string& words, const std::string& advice) {
+  if (told_already(pointer)) return;
+  ++error_count_;
+  if (lines_.size() == kMostLines) return;
+  told_.push_back(pointer);
+  const std::string name = field_name(pointer);
+  lines_.push_back(position_prefix(path_, position_of_value(text_, pointer)) + (name.empty() ? "" : name + ": ") +
+                   words + advice);
+}
+
+JsonNode JsonFields::optional_member(const JsonNode& object, const char* key) {
   const std::string pointer = object.pointer + "/" + key;
-  if (object.value == nullptr) return {nullptr, pointer};
-  if (!object.value->is_object()) {
-    complain(object.pointer, found(*object.value) + ", expected an object with \"" + key + "\"");
-    return {nullptr, pointer};
-  }
+  if (object.value == nullptr || !object.value->is_object()) return {nullptr, pointer};
+  std::vector<std::string>& asked = asked_[object.pointer];
+  if (std::find(asked.begin(), asked.end(), key) == asked.end()) asked.emplace_back(key);
   const auto entry = object.value->find(key);
-  if (entry != object.value->end()) return {&*entry, pointer};
-  complain(pointer, "found no such field, expected " + expected);
-  return {nullptr, pointer};
+  return {entry != object.value->end() ? &*entry : nullptr, pointer};
+}
+
+JsonNode JsonFields::member(const JsonNode& object, const char* key, const std::string& expected) {
+  if (object.value != nullptr && !object.value->is_object()) {
+    complain(object.pointer, found(*object.value) + ", expected an object with \"" + key + "\"");
+  }
+  const JsonNode node = optional_member(object, key);
+  if (node.value == nullptr && object.value != nullptr && object.value->is_object()) {
+    complain(node.pointer, "found no such field, expected " + expected);
+  }
+  return node;
+}
+
+JsonNode JsonFields::entry(const JsonNode& list, std::size_t index) {
+  return {&(*list.value)[index], list.pointer + "/" + std::to_string(index)};
 }
 
 std::string JsonFields::text(const JsonNode& object, const char* key) {
@@ -155,19 +200,61 @@ std::uint64_t JsonFields::count(const JsonNode& object, const char* key) {
   return 0;
 }
 
-double JsonFields::number(const JsonNode& object, const char* key, Sign sign) {
-  const std::string expected = sign == Sign::kAny           ? "a number"
-                               : sign == Sign::kNotNegative ? "a number, 0 or more"
-                                                            : "a number above 0";
+std::string JsonFields::filled_text(const JsonNode& object, const char* key) {
+  const std::string expected = "a text that is not empty";
   const JsonNode node = member(object, key, expected);
-  if (node.value == nullptr) return 1.0;
+  if (node.value == nullptr) return {};
+  std::string text = node.value->is_string() ? node.value->get<std::string>() : "";
+  if (text.empty()) complain(node.pointer, found(*node.value) + ", expected " + expected);
+  return text;
+}
+
+double JsonFields::number_where(const JsonNode& object, const char* key, const std::string& expected,
+                                double instead, bool (*good)(double, const NumberRange&), const NumberRange& range) {
+  const JsonNode node = member(object, key, expected);
+  if (node.value == nullptr) return instead;
   const double value = node.value->is_number() ? node.value->get<double>() : std::nan("");
-  const bool good = sign == Sign::kAny           ? std::isfinite(value)
-                    : sign == Sign::kNotNegative ? value >= 0.0
-                                                 : value > 0.0;
-  if (good) return value;
+  if (good(value, range)) return value;
   complain(node.pointer, found(*node.value) + ", expected " + expected);
-  return 1.0;
+  return instead;
+}
+
+double JsonFields::number(const JsonNode& object, const char* key, Sign sign) {
+  const auto good = [](double value, const NumberRange& range) { return std::isfinite(value) && range.holds(value); };
+  const double most = std::numeric_limits<double>::max();
+  if (sign == Sign::kAny) return number_where(object, key, "a number", 1.0, good, {-most, most});
+  const bool positive = sign == Sign::kPositive;
+  return number_where(object, key, positive ? "a number above 0" : "a number, 0 or more", 1.0, good,
+                      {0.0, most, positive});
+}
+
+double JsonFields::number(const JsonNode& object, const char* key, const NumberRange& range) {
+  return number_where(
+      object, key, range.words(), range.low,
+      [](double value, const NumberRange& wanted) { return wanted.holds(value); }, range);
+}
+
+std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::vector<std::string>& names) {
+  if (node.value == nullptr) return std::nullopt;
+  std::string known;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (*node.value == names[i]) return i;
+    known.append(known.empty() ? "" : ", ").append(names[i]);
+  }
+  complain(node.pointer, found(*node.value) + ", expected one of " + known);
+  return std::nullopt;
+}
+
+void JsonFields::refuse_unknown(const JsonNode& top) {
+  for (const auto& [pointer, keys] : asked_) {
+    const Json& object = pointer.empty() ? *top.value : top.value->at(Json::json_pointer(pointer));
+    std::string known;
+    for (const std::string& key : keys) known.append(known.empty() ? "" : ", ").append(key);
+    for (const auto& one : object.items()) {
+      if (std::find(keys.begin(), keys.end(), one.key()) != keys.end()) continue;
+      complain(pointer + "/" + one.key(), "found an unknown field, expected one of " + known);
+    }
+  }
 }
 
 // A list; without one, complains and gives a JsonNode without value.

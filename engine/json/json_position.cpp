@@ -1,4 +1,4 @@
-#include "engine/base/json_position.h"
+#include "engine/json/json_position.h"
 
 #include <algorithm>
 

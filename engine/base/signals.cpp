@@ -1,0 +1,96 @@
+#include "engine/base/signals.h"
+
+#include <signal.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <mutex>
+
+namespace palpate {
+namespace {
+
+constexpr std::array<int, 10> kSignals = {SIGINT,  SIGTERM, SIGHUP, SIGQUIT, SIGPIPE,
+                                          SIGSEGV, SIGBUS,  SIGFPE, SIGILL,  SIGABRT};
+// The first of them may be asked to wait.
+constexpr std::size_t kRequests = 3;
+
+struct sigaction before[kSignals.size()];
+std::array<std::atomic<CleanUpFunction>, 2> clean_ups{};
+std::atomic<bool> listening{false};
+std::atomic<int> requested_by{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<CleanUpFunction>::is_always_lock_free,
+              "read by a signal handler");
+
+// Whether the signal is a first request that somebody listens to.
+bool is_taken_as_request(std::size_t index, int number) noexcept {
+  int none = 0;
+  return index < kRequests && listening.load() && requested_by.compare_exchange_strong(none, number);
+}
+
+void pass_on(std::size_t index, int number, siginfo_t* info, void* context) noexcept {
+  const struct sigaction& earlier = before[index];
+  if ((earlier.sa_flags & SA_SIGINFO) != 0) {
+    earlier.sa_sigaction(number, info, context);
+  } else if (earlier.sa_handler != SIG_DFL) {
+    earlier.sa_handler(number);
+  } else {
+    // Comes again, or happens again, when this handler returns.
+    sigaction(number, &earlier, nullptr);
+    raise(number);
+  }
+}
+
+void on_signal(int number, siginfo_t* info, void* context) {
+  const int saved_errno = errno;
+  std::size_t index = 0;
+  while (index + 1 < kSignals.size() && kSignals[index] != number) ++index;
+  if (!is_taken_as_request(index, number)) {
+    for (const auto& slot : clean_ups) {
+      if (const CleanUpFunction function = slot.load(); function != nullptr) function();
+    }
+    pass_on(index, number, info, context);
+  }
+  errno = saved_errno;
+}
+
+void own(std::size_t index) noexcept {
+  struct sigaction current {};
+  if (sigaction(kSignals[index], nullptr, &current) != 0) return;
+  const bool informed = (current.sa_flags & SA_SIGINFO) != 0;
+  if (informed ? current.sa_sigaction == on_signal : current.sa_handler == SIG_IGN) return;
+  before[index] = current;
+  struct sigaction action {};
+  action.sa_sigaction = on_signal;
+  // A file that is being read when a request comes is not cut short.
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_RESTART;
+  sigfillset(&action.sa_mask);
+  sigaction(kSignals[index], &action, nullptr);
+}
+
+}  // namespace
+
+void own_signals() noexcept {
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) own(i);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+void ignore_broken_pipes() noexcept { signal(SIGPIPE, SIG_IGN); }
+
+void set_clean_up(CleanUp kind, CleanUpFunction function) noexcept {
+  clean_ups[static_cast<std::size_t>(kind)].store(function);
+}
+
+StopListener::StopListener() noexcept {
+  requested_by.store(0);
+  listening.store(true);
+  own_signals();
+}
+
+StopListener::~StopListener() { listening.store(false); }
+
+int stop_requested() noexcept { return requested_by.load(); }
+
+}  // namespace palpate

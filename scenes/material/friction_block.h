@@ -1,0 +1,56 @@
+// A soft block that grips the probe: a neo-Hookean contact with weak relaxation,
+// and dry friction of the material around the probe's side. The side is a brush
+// of bristles that bend elastically and then slip (Dahl), as many as the probe
+// is deep, up to 4 mm:
+//   F = E(s) + integral K(t - u) dE(s)/du du + F_c(s) z     never below 0
+//   dz/ds = (1 - z sgn(ds)) / x_p                            presliding, then slip
+//   F_c(s) = F_c min(1, s / d_c)
+// Going in, new bristles arrive unbent, so that F_c z does not change by them;
+// coming out, bristles leave with their share. The friction never exceeds what
+// pushes the other way: the probe is not held down. A surface without a probe has
+// none. F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm,
+// 12 kPa; K a box spectrum, 50 ms to 2 s.
+// Passive: V = F_c(s) x_p z^2 / 2 is stored at most, and
+// F_c z ds - dV >= z^2 F_c |ds| (in) or more (out).
+// Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)
+// (bristles, presliding); Okamura, Simone & O'Leary (2004) (friction of soft
+// tissue along a probe).
+#pragma once
+
+#include "scenes/material/block.h"
+#include "scenes/material/relaxation_spectrum.h"
+#include "scenes/material/sphere_contact.h"
+
+namespace palpate {
+
+class FrictionBlock final : public Block {
+ public:
+  static constexpr SphereContact kContact = {.radius_m = 0.01, .modulus_Pa = 12e3};
+  static constexpr double kFriction_N = 0.35;       // F_c
+  static constexpr double kPresliding_m = 1e-4;     // x_p
+  static constexpr double kGripped_m = 0.004;       // d_c
+  static constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
+
+  FrictionBlock();
+  double held_force_N(double depth_m) const noexcept override;
+  double relaxed_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
+  std::string relaxation_times_text() const override;
+
+  // F_c(depth), newtons: what friction can be at most.
+  static double friction_limit_N(double depth_m) noexcept;
+
+ private:
+  void prepare() noexcept override { spectrum_.prepare(substep_s()); }
+  void begin_substep() noexcept override { spectrum_.relax(); }
+  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
+  double free_force_N(double surface_m, double rate_m_per_s) const noexcept override;
+  void settle(double surface_m, bool touching) noexcept override;
+  void forget(double surface_m) noexcept override;
+  double friction_after_N(double surface_m) const noexcept;
+
+  RelaxationSpectrum spectrum_;
+  double elastic_N_ = 0.0;  // E at the last surface
+  double bend_ = 0.0;       // z, -1 .. 1
+};
+
+}  // namespace palpate

@@ -1,0 +1,127 @@
+// Springs, dashpots and Maxwell branches: the family of materials whose
+// relaxation times are known. With s the indentation of the surface:
+//   F = E(s) + V(s, ds/dt) + sum_b F_b + F_h            never below 0
+//   E(s)    = k1 s + k2 s^2 + k3 s^3                    elasticity
+//   V(s, v) = c s v (w + (1 - w) / (1 + |v| / v0))      viscosity, thinning with speed
+//   dF_b/dt = K_b(s) ds/dt - F_b / tau_b                Maxwell branches,
+//             K_b(s) = K_b0 + K_b1 s
+//   dF_h/dt = K_h ds/dt, held within +-mu E(s)          dry friction of cell walls
+// The trends that are fitted are made of the same elements, so that what a model
+// reaches here says little of foreign materials; it is what tests need that must
+// know the true relaxation times.
+// Passive: each F_b is g_b(s) - y_b with g_b' = K_b > 0 and y_b drawn towards
+// g_b, which can store and lose energy but not make any.
+// Source: Hoever & Harders (2009), section 2.2 and eq. 1 (Maxwell branches);
+// Hunt & Crossley (1975) (damping that grows with depth).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+
+#include "scenes/material/block.h"
+
+namespace palpate {
+
+inline constexpr std::size_t kMaximumBranches = 3;
+
+// One Maxwell branch: a spring that stiffens with depth, in series with a
+// dashpot that lets it relax.
+struct RelaxationBranch {
+  double relaxation_time_s = 1.0;           // tau_b > 0
+  double stiffness_N_per_m = 0.0;           // K_b0 >= 0
+  double stiffness_slope_N_per_m2 = 0.0;    // K_b1 >= 0
+};
+
+struct MaxwellParameters {
+  double elastic_linear_N_per_m = 0.0;      // k1 > 0; E must rise with depth
+  double elastic_quadratic_N_per_m2 = 0.0;  // k2
+  double elastic_cubic_N_per_m3 = 0.0;      // k3
+  double viscosity_Ns_per_m2 = 0.0;         // c: damping per metre of depth
+  double thick_fraction = 1.0;              // w, in 0..1: what is left at high speed
+  double thinning_speed_m_per_s = 1.0;      // v0 > 0
+  double friction_fraction = 0.0;           // mu >= 0, of the elastic force
+  double friction_stiffness_N_per_m = 0.0;  // K_h >= 0
+  std::size_t branch_count = 0;
+  std::array<RelaxationBranch, kMaximumBranches> branches{};
+
+  // E(depth), newtons; depth_m >= 0.
+  double elastic_force_N(double depth_m) const noexcept;
+  // g_b(depth): what branch b would hold had it not relaxed at all, newtons.
+  double unrelaxed_force_N(std::size_t branch, double depth_m) const noexcept;
+  // V(depth, rate), newtons.
+  double viscous_force_N(double depth_m, double rate_m_per_s) const noexcept;
+};
+
+inline constexpr MaxwellParameters kMaxwell = {
+    .elastic_linear_N_per_m = 330.0,
+    .elastic_quadratic_N_per_m2 = 1.2e4,
+    .elastic_cubic_N_per_m3 = 1.2e6,
+    .viscosity_Ns_per_m2 = 800.0,
+    .thick_fraction = 0.5,
+    .thinning_speed_m_per_s = 0.15,
+    .branch_count = 2,
+    .branches = {{{0.17, 70.0, 9.0e3}, {1.27, 50.0, 6.0e3}}}};
+
+inline constexpr MaxwellParameters kFoam = {
+    .elastic_linear_N_per_m = 520.0,
+    .elastic_quadratic_N_per_m2 = -6.5e4,
+    .elastic_cubic_N_per_m3 = 3.6e6,
+    .viscosity_Ns_per_m2 = 260.0,
+    .thick_fraction = 0.6,
+    .thinning_speed_m_per_s = 0.1,
+    .friction_fraction = 0.025,
+    .friction_stiffness_N_per_m = 60.0,
+    .branch_count = 2,
+    .branches = {{{0.08, 60.0, 5.0e3}, {0.9, 45.0, 3.0e3}}}};
+
+inline constexpr MaxwellParameters kElastic = {.elastic_linear_N_per_m = 400.0,
+                                               .elastic_quadratic_N_per_m2 = 1.5e4,
+                                               .elastic_cubic_N_per_m3 = 2.0e6};
+
+inline constexpr MaxwellParameters kStiff = {.elastic_linear_N_per_m = 3000.0,
+                                             .viscosity_Ns_per_m2 = 2000.0};
+
+inline constexpr MaxwellParameters kGel = {
+    .elastic_linear_N_per_m = 170.0,
+    .elastic_quadratic_N_per_m2 = 6.0e3,
+    .elastic_cubic_N_per_m3 = 6.0e5,
+    .viscosity_Ns_per_m2 = 500.0,
+    .thick_fraction = 0.4,
+    .thinning_speed_m_per_s = 0.1,
+    .branch_count = 3,
+    .branches = {{{0.05, 60.0, 5.0e3}, {0.4, 60.0, 5.0e3}, {2.5, 50.0, 4.0e3}}}};
+
+class MaxwellBlock final : public Block {
+ public:
+  explicit MaxwellBlock(const MaxwellParameters& parameters) noexcept : material_(parameters) {}
+
+  const MaxwellParameters& parameters() const noexcept { return material_; }
+  double branch_force_N(std::size_t branch) const noexcept { return branch_force_N_[branch]; }
+
+  double held_force_N(double depth_m) const noexcept override;
+  double relaxed_force_N(double depth_m) const noexcept override {
+    return material_.elastic_force_N(depth_m);
+  }
+  std::string relaxation_times_text() const override;
+
+ private:
+  struct Inner {
+    std::array<double, kMaximumBranches> branch_N{};
+    double friction_N = 0.0;
+    double static_force_N = 0.0;  // all but viscosity
+  };
+  void prepare() noexcept override;
+  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
+  void settle(double surface_m, bool touching) noexcept override;
+  void forget(double surface_m) noexcept override;
+  Inner inner_at(double surface_m) const noexcept;
+
+  MaxwellParameters material_;
+  double friction_N_ = 0.0;
+  std::array<double, kMaximumBranches> branch_force_N_{};
+  std::array<double, kMaximumBranches> decay_{};  // exp(-h / tau)
+  std::array<double, kMaximumBranches> gain_{};   // (1 - exp(-h / tau)) tau / h
+};
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+// Soft silicone rubber under a sphere: a neo-Hookean contact at large strain with
+// a continuous spectrum of relaxation times,
+//   F = E(s) + integral K(t - u) dE(s)/du du,
+//   K(t) = c (E1(t / tau2) - E1(t / tau1)),
+// E the contact's law (sphere_contact.h) and K Fung's box spectrum: the same
+// weight c for every ln tau between tau1 and tau2. It has no relaxation time that
+// a fit could find, and d^1.5 at the surface, which no polynomial is.
+// Sphere of 10 mm radius; Young's modulus 25 kPa relaxed, as the softest
+// platinum-cured silicones; the force at once is 1.6 times the relaxed one.
+// Passive: see relaxation_spectrum.h.
+// Source: Fung (1993), Biomechanics, section 7.6.
+#pragma once
+
+#include "scenes/material/block.h"
+#include "scenes/material/relaxation_spectrum.h"
+#include "scenes/material/sphere_contact.h"
+
+namespace palpate {
+
+class SiliconeBlock final : public Block {
+ public:
+  static constexpr SphereContact kContact = {.radius_m = 0.01, .modulus_Pa = 25e3};
+  static constexpr double kShortest_s = 0.001;  // tau1
+  static constexpr double kLongest_s = 30.0;    // tau2
+  static constexpr double kWeight = 0.06;       // c
+
+  SiliconeBlock();
+  double held_force_N(double depth_m) const noexcept override;
+  double relaxed_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
+  std::string relaxation_times_text() const override;
+
+ private:
+  void prepare() noexcept override { spectrum_.prepare(substep_s()); }
+  void begin_substep() noexcept override { spectrum_.relax(); }
+  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
+  void settle(double surface_m, bool touching) noexcept override;
+  void forget(double surface_m) noexcept override;
+
+  RelaxationSpectrum spectrum_;
+  double elastic_N_ = 0.0;  // E at the last surface
+};
+
+}  // namespace palpate

@@ -1,0 +1,88 @@
+#include "engine/json/json_fields.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace palpate {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kPath = "x.json";
+const JsonAdvice kAdvice = {"; mend it", "; copy it again"};
+
+std::string fault_of(const std::string& text, int nesting = 4) {
+  const Result<Json> document = parse_json(text, kPath, nesting, kAdvice);
+  return document ? "none" : document.error().message;
+}
+
+TEST(JsonFields, SaysWhatWasFoundInFewCharacters) {
+  EXPECT_EQ(found(Json("red")), "found \"red\"");
+  EXPECT_EQ(found(Json::array({1, 2})), "found a list of 2");
+  EXPECT_EQ(found(Json::object()), "found an object");
+  EXPECT_LT(found(Json(std::string(1000, 'x'))).size(), 60u);
+}
+
+TEST(JsonFields, ARangeKnowsItsEnds) {
+  const NumberRange closed{0.05, 10.0};
+  EXPECT_TRUE(closed.holds(0.05) && closed.holds(10.0));
+  EXPECT_FALSE(closed.holds(0.049) || closed.holds(10.1) || closed.holds(std::nan("")));
+  EXPECT_EQ(closed.words(), "a number from 0.05 up to 10");
+  const NumberRange open{0.0, 1e9, true};
+  EXPECT_FALSE(open.holds(0.0));
+  EXPECT_EQ(open.words(), "a number above 0 up to 1e+09");
+}
+
+TEST(JsonFields, SaysWhereAndWhyATextIsNoJson) {
+  EXPECT_EQ(fault_of("[1]"), "none");
+  const std::string cut = fault_of("{\n  \"a\": ]");
+  EXPECT_EQ(cut.rfind("x.json:2:8: syntax error", 0), 0u) << cut;
+  EXPECT_EQ(cut.substr(cut.size() - 15), "; copy it again");
+  EXPECT_EQ(fault_of("{\"a\": 1e999}"), "x.json:1:7: found 1e999, expected a finite number; mend it");
+  EXPECT_EQ(fault_of("[[[[[1]]]]]"),
+            "x.json:1:5: found more than 4 lists inside each other, expected fewer; copy it again");
+}
+
+TEST(JsonFields, CollectsAllErrorsEachOnce) {
+  const std::string text = "{\"a\": 1,\n \"b\": \"x\",\n \"c\": {\"d\": 1, \"f\": 2}, \"g\": 3}";
+  const Result<Json> document = parse_json(text, kPath, 4, kAdvice);
+  ASSERT_TRUE(document.ok());
+  JsonFields fields(text, kPath, "; mend it");
+  const JsonNode top{&*document, ""};
+  EXPECT_EQ(fields.filled_text(top, "a"), "");
+  fields.complain("/a", "found the same again");
+  fields.complain("/a/1", "found what follows from it");
+  EXPECT_EQ(fields.number(top, "b", {2.0, 3.0}), 2.0);
+  const JsonNode inner = fields.member(top, "c", "an object");
+  EXPECT_EQ(fields.number(inner, "d"), 1.0);
+  EXPECT_EQ(fields.boolean(inner, "e"), false);
+  EXPECT_FALSE(fields.choice(fields.member(top, "g", "a name"), {"one", "two"}));
+  fields.refuse_unknown(top);
+  EXPECT_EQ(fields.error_count(), 5u);
+  EXPECT_EQ(fields.error()->message,
+            "x.json:1:7: a: found 1, expected a text that is not empty; mend it\n"
+            "x.json:2:7: b: found \"x\", expected a number from 2 up to 3; mend it\n"
+            "x.json:3:7: c.e: found no such field, expected true or false; mend it\n"
+            "x.json:3:30: g: found 3, expected one of one, two; mend it\n"
+            "x.json:3:21: c.f: found an unknown field, expected one of d, e; mend it");
+}
+
+TEST(JsonFields, TellsOfTwentyErrorsAndCountsTheRest) {
+  Json object = Json::object();
+  for (int i = 0; i < 100; ++i) object[std::to_string(i) + "\x1b"] = i;
+  const std::string text = object.dump();
+  JsonFields fields(text, kPath, "");
+  const JsonNode top{&object, ""};
+  EXPECT_FALSE(fields.error().has_value());
+  fields.optional_member(top, "known");
+  fields.refuse_unknown(top);
+  const std::string message = fields.error()->message;
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20);
+  EXPECT_EQ(message.substr(message.rfind('\n') + 1), "x.json: and 80 more");
+  EXPECT_EQ(message.find('\x1b'), std::string::npos) << "names from the file are made printable";
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,149 @@
+// Closed forms of the springs, dashpots and branches.
+#include "scenes/material/maxwell_block.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/random_stream.h"
+#include "tests/support/wandering.h"
+
+namespace palpate {
+namespace {
+
+constexpr const MaxwellParameters* kAll[] = {&kMaxwell, &kFoam, &kElastic, &kStiff, &kGel};
+
+TEST(MaxwellBlock, StatesItsRelaxationTimes) {
+  EXPECT_EQ(MaxwellBlock(kMaxwell).relaxation_times_text(), "0.17 s, 1.27 s");
+  EXPECT_EQ(MaxwellBlock(kFoam).relaxation_times_text(), "0.08 s, 0.9 s");
+  EXPECT_EQ(MaxwellBlock(kGel).relaxation_times_text(), "0.05 s, 0.4 s, 2.5 s");
+  EXPECT_EQ(MaxwellBlock(kElastic).relaxation_times_text(), "none");
+}
+
+TEST(MaxwellBlock, StiffIsThreeKilonewtonsPerMetre) {
+  EXPECT_DOUBLE_EQ(kStiff.elastic_force_N(1e-3), 3.0);
+}
+
+TEST(MaxwellBlock, StepHoldRelaxesAsTheSumOfExponentials) {
+  for (const MaxwellParameters* material : kAll) {
+    MaxwellBlock block(*material);
+    const double depth_m = test::depth_of_5_N(block);
+    // So short a step that no branch relaxes: h / tau < 2e-8.
+    block.step(depth_m, 0.0, 1e-9);
+    double start_N[kMaximumBranches] = {};
+    for (std::size_t b = 0; b < material->branch_count; ++b) {
+      start_N[b] = block.branch_force_N(b);
+      EXPECT_NEAR(start_N[b], material->unrelaxed_force_N(b, depth_m), 1e-7);
+    }
+    const double peak_N = block.force_N();
+    for (int tick = 1; tick <= 3000; ++tick) {
+      const double force_N = block.step(depth_m, 0.0, 1e-3);
+      double expected_N = peak_N;
+      for (std::size_t b = 0; b < material->branch_count; ++b) {
+        const double tau = material->branches[b].relaxation_time_s;
+        expected_N += start_N[b] * std::expm1(-tick * 1e-3 / tau);
+      }
+      // Rounding of 30,000 multiplications by exp(-h / tau).
+      ASSERT_NEAR(force_N, expected_N, 1e-10) << block.relaxation_times_text() << " tick " << tick;
+    }
+  }
+}
+
+// dF/dt = K v - F / tau from rest: F = K v tau (1 - exp(-t / tau)).
+TEST(MaxwellBlock, BranchFollowsTheClosedFormOfARamp) {
+  MaxwellParameters material;
+  material.elastic_linear_N_per_m = 100.0;
+  material.branch_count = 1;
+  material.branches[0] = {0.2, 300.0, 0.0};
+  MaxwellBlock block(material);
+  const double v = 0.01;
+  block.step(0.0, v, 1e-3);
+  for (int tick = 1; tick <= 500; ++tick) {
+    const double t = tick * 1e-3;
+    block.step(v * t, v, 1e-3);
+    ASSERT_NEAR(block.branch_force_N(0), -300.0 * v * 0.2 * std::expm1(-t / 0.2), 1e-10);
+  }
+}
+
+TEST(MaxwellBlock, ElasticHasNoMemory) {
+  MaxwellBlock block(kElastic);
+  RandomStream random(3, 0);
+  for (int tick = 0; tick < 2000; ++tick) {
+    const double position_m = random.uniform(-0.005, 0.01);
+    const double velocity_m_per_s = random.uniform(-0.3, 0.3);
+    EXPECT_DOUBLE_EQ(block.step(position_m, velocity_m_per_s, 1e-3),
+                     kElastic.elastic_force_N(std::max(0.0, position_m)));
+  }
+}
+
+TEST(MaxwellBlock, LetsGoOfAToolThatLeavesFasterThanItFollows) {
+  for (const MaxwellParameters* material : {&kMaxwell, &kFoam, &kGel}) {
+    MaxwellBlock block(*material);
+    const double deep_m = test::depth_of_5_N(block);
+    for (int i = 0; i < 3000; ++i) block.step(deep_m, 0.0, 1e-3);
+    const double speed = 0.4;
+    int apart = 0;
+    for (double position_m = deep_m - speed * 1e-3; position_m > 0.0; position_m -= speed * 1e-3) {
+      if (block.step(position_m, -speed, 1e-3) == 0.0) {
+        ++apart;
+        EXPECT_GT(block.surface_depth_m(), position_m);
+        EXPECT_FALSE(block.touching());
+      }
+    }
+    EXPECT_GT(apart, 0) << block.relaxation_times_text();
+    double last_m = block.surface_depth_m();
+    for (int i = 0; i < 1000; ++i) {
+      block.step(-1e-3, 0.0, 1e-3);
+      ASSERT_LE(block.surface_depth_m(), last_m);
+      last_m = block.surface_depth_m();
+    }
+  }
+}
+
+TEST(MaxwellBlock, MeetsTheSurfaceAgainWhereItLags) {
+  MaxwellBlock block(kGel);
+  for (int i = 0; i < 3000; ++i) block.step(0.012, 0.0, 1e-3);
+  block.step(-1e-3, 0.0, 1e-3);
+  const double lag_m = block.surface_depth_m();
+  ASSERT_GT(lag_m, 1e-3);
+  EXPECT_EQ(block.step(0.9 * lag_m, 0.0, 1e-4), 0.0);
+  EXPECT_GT(block.step(1.1 * lag_m, 0.0, 1e-4), 0.0);
+}
+
+TEST(MaxwellBlock, ForgetsInFreeAir) {
+  for (const MaxwellParameters* material : kAll) {
+    MaxwellBlock block(*material);
+    const double deep_m = test::depth_of_5_N(block);
+    for (int i = 0; i < 2000; ++i) block.step(deep_m, 0.0, 1e-3);
+    // The surface comes back with tau (1 + K / k), at most 3 tau here.
+    for (int i = 0; i < 100000; ++i) block.step(-1e-3, 0.0, 1e-3);
+    EXPECT_LT(block.surface_depth_m(), 1e-6);
+    for (std::size_t b = 0; b < material->branch_count; ++b) {
+      EXPECT_LT(std::abs(block.branch_force_N(b)), 1e-3);
+    }
+  }
+}
+
+// Slow enough that no branch matters: what is left is friction.
+TEST(MaxwellBlock, FoamHasHysteresisAtRest) {
+  MaxwellParameters material = kFoam;
+  material.branch_count = 0;
+  MaxwellBlock block(material);
+  const double deep_m = test::depth_of_5_N(block);
+  double in_N = 0.0, out_N = 0.0;
+  for (int i = 0; i <= 1000; ++i) {
+    const double force_N = block.step(deep_m * i / 1000.0, 0.0, 1e-2);
+    if (i == 700) in_N = force_N;
+  }
+  for (int i = 1000; i >= 0; --i) {
+    const double force_N = block.step(deep_m * i / 1000.0, 0.0, 1e-2);
+    if (i == 700) out_N = force_N;
+  }
+  const double elastic_N = material.elastic_force_N(0.7 * deep_m);
+  EXPECT_NEAR(in_N, elastic_N * (1.0 + material.friction_fraction), 1e-9);
+  EXPECT_NEAR(out_N, elastic_N * (1.0 - material.friction_fraction), 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,34 @@
+#include "scenes/material/tissue_block.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+double relaxation(double t) {
+  return 1.0 - TissueBlock::kFractionalShare + TissueBlock::kFractionalShare * std::pow(t, -TissueBlock::kExponent);
+}
+
+// Inside the spectrum's ends, 0.1 ms and 1,000 s, each by a factor of ten or more.
+TEST(TissueBlock, StepRelaxesAsThePowerLaw) {
+  TissueBlock block;
+  const double depth_m = 0.006, elastic_N = TissueBlock::kContact.force_N(depth_m);
+  block.step(depth_m, 0.0, 1e-9);
+  for (int tick = 1; tick <= 30000; ++tick) {
+    block.step(depth_m, 0.0, 1e-3);
+    if (tick == 1 || tick == 10 || tick == 100 || tick == 1000 || tick == 10000 || tick == 30000) {
+      EXPECT_NEAR(block.force_N() / elastic_N / relaxation(tick * 1e-3), 1.0, 2e-3) << tick;
+    }
+  }
+}
+
+TEST(TissueBlock, SlowPressHoldsWhatNeverRelaxes) {
+  TissueBlock block;
+  for (int i = 1; i <= 3000; ++i) block.step(2e-6 * i, 2e-9, 1000.0);
+  EXPECT_NEAR(block.force_N() / block.relaxed_force_N(6e-3), 1.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace palpate
