@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The main job, on a fresh Debian 12 too. With a display: the window program,
-# arguments and all. Without one: fits all five methods on a recording of the
+# arguments and all. Without one: fits every method on a recording of the
 # virtual silicone block, replays another and prints the comparison; or, with a
 # verb as first argument (`bash scenes/run.sh scenes`), runs `palpate` with it.
 set -euo pipefail
@@ -12,7 +12,7 @@ compare_methods() {
   say "two recordings of the virtual silicone block"
   "$palpate" synth --material silicone --seed 1 --seconds 41.499 --out "$out/train.csv" --force
   "$palpate" synth --material silicone --seed 2 --seconds 45.272 --out "$out/test.csv" --force
-  for method in direct voxel random kdtree greedy; do
+  for method in $("$palpate" fit --list-methods); do
     say "fitting $method to the first"
     "$palpate" fit --recording "$out/train.csv" --method "$method" --out "$out/$method.json" --force
     models+=(--model "$out/$method.json")

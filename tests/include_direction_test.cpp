@@ -32,13 +32,15 @@ const std::map<std::string, Names> kRooms = {
     {"models/fit", {"models/training"}},
     {"devices/firmware", {}},
     {"devices/virtual", {"engine/live"}},
-    {"devices/hid", {"devices/virtual", "devices/firmware", "engine/json"}},
+    {"devices/stream", {"engine/live"}},
+    {"devices/hid", {"devices/virtual", "devices/stream", "devices/firmware", "engine/json"}},
     {"devices/registry", {"devices/hid"}},
     {"scenes/scene", {"models/fit"}},
     {"scenes/material", {"scenes/scene", "devices/virtual"}},
-    {"scenes/live", {"scenes/material", "devices/registry"}},
+    {"scenes/worker", {"scenes/material"}},
+    {"scenes/live", {"scenes/worker", "devices/registry"}},
     {"scenes/report", {"scenes/material"}},
-    {"scenes/study", {"scenes/live"}},
+    {"scenes/study", {"scenes/worker", "devices/registry"}},
     {"scenes/cli", {"scenes/report", "scenes/study"}},
     {"rendering/ui", {"scenes/live"}},
     {"rendering/picture", {"rendering/ui"}},
@@ -151,6 +153,8 @@ TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_NE(find_fault("models/model", "models/training/sites.h", true), "");
   EXPECT_NE(find_fault("models/model", "devices/hid/hid_bus.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");
+  EXPECT_NE(find_fault("scenes/study", "scenes/live/live_session.h", true), "");
+  EXPECT_NE(find_fault("devices/stream", "devices/hid/hid_bus.h", true), "");
   EXPECT_NE(find_fault("devices/hid", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("rendering/ui", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("scenes/live", "rendering/ui/plot.h", true), "");

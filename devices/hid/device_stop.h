@@ -2,7 +2,7 @@
 // The device's own watchdog covers what no handler can: SIGKILL, a power cut.
 #pragma once
 
-#include "devices/hid/hid_reports.h"
+#include "devices/hid/hid_driver.h"
 
 namespace palpate {
 

@@ -5,29 +5,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "devices/hid/hid_reports.h"
+#include "devices/hid/hid_driver.h"
 #include "engine/base/result.h"
 
 namespace palpate {
 
-struct HidFound {
-  std::string path;  // of the node; empty: there is none
-  std::string product;
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-  std::uint16_t usage_page = 0;
-  std::uint16_t usage = 0;
-};
-
 // One open device. `read` belongs to one thread and `write` to one, at the same
 // time if need be; the rest is slow side.
-class HidLine {
+class HidConnection {
  public:
-  virtual ~HidLine() = default;
+  virtual ~HidConnection() = default;
   // Blocking, for a while: the bytes of the next report; 0: none yet; below 0:
   // the device is gone.
   virtual int read(std::uint8_t* bytes, std::size_t capacity) noexcept = 0;
@@ -41,28 +31,28 @@ class HidBus {
  public:
   virtual ~HidBus() = default;
   // Slow side. One entry per node.
-  virtual std::vector<HidFound> list() = 0;
+  virtual std::vector<HidDeviceInfo> list() = 0;
   // Slow side. Errors: why not, and what to do.
-  virtual Result<std::unique_ptr<HidLine>> open(const HidFound& found) = 0;
+  virtual Result<std::unique_ptr<HidConnection>> open(const HidDeviceInfo& info) = 0;
 };
 
-// What `found` may be, by its ids; empty: nothing that the program knows.
-std::vector<HidKind> possible_kinds(const HidFound& found);
+// None of them null.
+using HidDrivers = std::vector<const HidDriver*>;
 
-// Slow side: reads reports until they tell which of `kinds` it is. Errors: no
-// report comes, another protocol version, reports of the wrong size.
-Result<HidKind> identify(HidLine& line, const std::vector<HidKind>& kinds);
+// The drivers that `info` may need, by its ids; empty: nothing that the program knows.
+HidDrivers matching_drivers(const HidDeviceInfo& info);
+
+// Slow side: reads reports until they tell which of `drivers`, at least one, fits.
+// Errors: no report comes, another protocol version, reports of the wrong size.
+Result<const HidDriver*> identify(HidConnection& connection, const HidDrivers& drivers);
 
 // For `palpate devices`: every node, what it would be used as, and why not.
 struct HidDiagnosis {
-  HidFound found;
-  std::optional<HidKind> kind;
+  HidDeviceInfo info;
+  const HidDriver* driver = nullptr;  // null: not identified
   std::string use;      // in words
   std::string problem;  // with what to do; empty: it can be used, or is none of ours
 };
 std::vector<HidDiagnosis> diagnose(HidBus& bus);
-
-// In words: "haptic paddle" and so on.
-const char* hid_kind_words(HidKind kind) noexcept;
 
 }  // namespace palpate

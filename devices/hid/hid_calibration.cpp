@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "devices/hid/hid_drivers.h"
 #include "engine/base/whole_file.h"
 #include "engine/json/json_fields.h"
 
@@ -27,7 +28,7 @@ class CalibrationReader : private JsonFields {
     calibration_.rest_position_m = number(top_, "rest_position_m", {-1.0, 1.0});
     // What a kind that is not known may have is not known either.
     if (knows_kind) {
-      if (pushes(calibration_.kind)) read_force();
+      if (calibration_.driver->renders_force) read_force();
       refuse_unknown(top_);
     }
     if (std::optional<Error> wrong = error()) return *wrong;
@@ -42,9 +43,9 @@ class CalibrationReader : private JsonFields {
 
   bool read_kind() {
     std::vector<std::string> names;
-    for (const HidKind kind : kHidKinds) names.emplace_back(hid_kind_name(kind));
+    for (const HidDriver* driver : kHidDrivers) names.emplace_back(driver->name);
     const auto index = choice(member(top_, "kind", "the kind of device"), names);
-    if (index) calibration_.kind = kHidKinds[*index];
+    if (index) calibration_.driver = kHidDrivers[*index];
     return index.has_value();
   }
 
@@ -76,14 +77,14 @@ Result<HidCalibration> parse_hid_calibration(std::string_view text, const std::s
   return CalibrationReader(text, path, *document).read();
 }
 
-Result<HidCalibration> read_hid_calibration(const std::string& folder, HidKind kind) {
-  const std::string path = folder + "/" + hid_kind_name(kind) + ".json";
+Result<HidCalibration> read_hid_calibration(const std::string& folder, const HidDriver& driver) {
+  const std::string path = folder + "/" + driver.name + ".json";
   const std::optional<std::string> text = read_whole_file(path);
   if (!text) return Error{path + ": cannot read the calibration; put the file there, see assets/devices/"};
   Result<HidCalibration> calibration = parse_hid_calibration(*text, path);
-  if (calibration && calibration->kind != kind) {
-    return Error{path + ": found the calibration of \"" + hid_kind_name(calibration->kind) +
-                 "\", expected \"" + hid_kind_name(kind) + "\", as the file's name says"};
+  if (calibration && calibration->driver != &driver) {
+    return Error{path + ": found the calibration of \"" + calibration->driver->name +
+                 "\", expected \"" + std::string(driver.name) + "\", as the file's name says"};
   }
   return calibration;
 }

@@ -1,4 +1,4 @@
-// What one kind of HID device measures and bears: one JSON file per kind, named
+// What one kind of HID device measures and bears: one JSON file per driver, named
 // after it, in assets/devices/.
 //
 // Thread guarantee: slow side only.
@@ -7,14 +7,14 @@
 #include <string>
 #include <string_view>
 
-#include "devices/hid/hid_reports.h"
+#include "devices/hid/hid_driver.h"
 #include "engine/live/force_limiter.h"
 #include "engine/base/result.h"
 
 namespace palpate {
 
 struct HidCalibration {
-  HidKind kind = HidKind::paddle;
+  const HidDriver* driver = nullptr;  // of a calibration that was read: never null
   double counts_per_metre = 0.0;  // > 0
   // 1: counts grow into the block, -1: out of it. The force that pushes out of the
   // block then is a command of the sign -direction: positive commands drive the
@@ -32,7 +32,7 @@ struct HidCalibration {
 // path:line:column, found, expected.
 Result<HidCalibration> parse_hid_calibration(std::string_view text, const std::string& path);
 
-// `folder`/<kind>.json. Errors: as above; the file cannot be read.
-Result<HidCalibration> read_hid_calibration(const std::string& folder, HidKind kind);
+// `folder`/<driver's name>.json. Errors: as above; the file cannot be read.
+Result<HidCalibration> read_hid_calibration(const std::string& folder, const HidDriver& driver);
 
 }  // namespace palpate

@@ -20,9 +20,4 @@ Status HidDevice::open() {
   return link_.start();
 }
 
-std::string HidDevice::note() const {
-  const HidFound& found = link_.found();
-  return std::string(hid_kind_words(link_.kind())) + ": " + found.product + ", " + found.path;
-}
-
 }  // namespace palpate

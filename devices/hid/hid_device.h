@@ -19,7 +19,7 @@ namespace palpate {
 
 class HidDevice final : public Device {
  public:
-  // `bus` outlives this; `opened` is of the calibration's kind, which pushes.
+  // `bus` outlives this; `opened` is of the calibration's driver, which renders force.
   HidDevice(HidBus& bus, const HidCalibration& calibration, HidOpened opened);
   ~HidDevice() override { close(); }
 
@@ -35,7 +35,7 @@ class HidDevice final : public Device {
   DeviceHealth health(double now_s) noexcept override { return endpoint_.health(now_s); }
   void start_zeroing() noexcept override { endpoint_.start_zeroing(); }
   // Which device on which node.
-  std::string note() const override;
+  std::string note() const override { return link_.description(); }
 
  private:
   std::string name_ = "hid";

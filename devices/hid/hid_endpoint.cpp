@@ -8,7 +8,8 @@ namespace {
 
 MonitorSettings monitor_settings(const HidCalibration& calibration) noexcept {
   MonitorSettings settings;
-  settings.kind = calibration.kind;
+  settings.numbered = calibration.driver->numbers_reports;
+  settings.count_bits = calibration.driver->count_bits;
   settings.counts_per_metre = calibration.counts_per_metre;
   settings.fastest_m_per_s = calibration.fastest_m_per_s;
   settings.stale_after_s = calibration.limits.stale_after_s;
@@ -35,10 +36,12 @@ void HidEndpoint::unplugged() noexcept {
   state_.write(link_);
 }
 
-void HidEndpoint::take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
+void HidEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   if (zeroing_asked_.exchange(false, std::memory_order_relaxed)) monitor_.start_zeroing();
   const std::uint32_t confirmed = monitor_.state().confirmed;
-  monitor_.take(bytes, size, now_s, commanded_N_.load(std::memory_order_relaxed));
+  DeviceReading reading;
+  const ReportVerdict verdict = calibration_.driver->decode(bytes, size, reading);
+  monitor_.update(verdict, reading, now_s, commanded_N_.load(std::memory_order_relaxed));
   link_.monitor = monitor_.state();
   if (link_.monitor.confirmed != confirmed) {
     const double sent_s =
@@ -72,7 +75,7 @@ OutReports HidEndpoint::next(double now_s) noexcept {
   const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
   const HidCommand next = command_for(haptics_live ? command.force_N : 0.0);
   sent_at_s_[next.sequence % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
-  return encode_command(calibration_.kind, next);
+  return calibration_.driver->encode_command(next);
 }
 
 void HidEndpoint::written(double now_s) noexcept { last_written_s_.store(now_s, std::memory_order_relaxed); }
@@ -104,7 +107,7 @@ void HidEndpoint::write(double force_N) noexcept {
 
 bool HidEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
-  if (!has_sequence(calibration_.kind)) return false;  // confirms nothing
+  if (!calibration_.driver->numbers_reports) return false;  // confirms nothing
   const double confirmed_s =
       std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;

@@ -13,7 +13,7 @@
 
 #include "devices/hid/hid_calibration.h"
 #include "devices/hid/hid_link.h"
-#include "devices/hid/report_monitor.h"
+#include "devices/stream/stream_monitor.h"
 #include "engine/live/device.h"
 #include "engine/live/triple_buffer.h"
 
@@ -26,7 +26,7 @@ struct LinkState {
   bool connected = false;
 };
 
-class HidEndpoint final : public HidLinkUser {
+class HidEndpoint final : public HidListener {
  public:
   static constexpr double kHapticsSilent_s = 0.02;
   // Without a written or a confirmed command for so long, the device hears nothing.
@@ -38,7 +38,7 @@ class HidEndpoint final : public HidLinkUser {
 
   // Reader thread, wait-free. `now_s`: steady clock, never back.
   void connected(double now_s) noexcept override;
-  void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
   void unplugged() noexcept override;
 
   // Writer thread, wait-free. What to write now; nothing when there is no need.
@@ -75,7 +75,7 @@ class HidEndpoint final : public HidLinkUser {
   TripleBuffer<LinkState> state_;
   TripleBuffer<Command> command_;
   // Reader thread's own.
-  ReportMonitor monitor_;
+  StreamMonitor monitor_;
   LinkState link_;
   // Writer thread's own.
   std::uint32_t sequence_ = 0;

@@ -19,26 +19,26 @@ constexpr auto kPause = std::chrono::milliseconds(10);
 // Below the haptics thread's 80, above everything that is not real-time.
 constexpr int kPriority = 70;
 
-bool contains(const std::vector<HidKind>& kinds, HidKind kind) {
-  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+bool contains(const HidDrivers& drivers, const HidDriver* driver) {
+  return std::find(drivers.begin(), drivers.end(), driver) != drivers.end();
 }
 
 // One look at the bus; what cannot be opened adds to `problems`.
-std::optional<HidOpened> try_open(HidBus& bus, const std::vector<HidKind>& kinds, std::string& problems) {
+std::optional<HidOpened> try_open(HidBus& bus, const HidDrivers& drivers, std::string& problems) {
   problems.clear();
-  for (const HidFound& found : bus.list()) {
-    const std::vector<HidKind> possible = possible_kinds(found);
-    const bool wanted =
-        std::any_of(possible.begin(), possible.end(), [&](HidKind kind) { return contains(kinds, kind); });
-    if (!wanted) continue;
-    Result<std::unique_ptr<HidLine>> line = bus.open(found);
+  for (const HidDeviceInfo& info : bus.list()) {
+    const HidDrivers possible = matching_drivers(info);
+    const bool asked_for = std::any_of(possible.begin(), possible.end(),
+                                       [&](const HidDriver* driver) { return contains(drivers, driver); });
+    if (!asked_for) continue;
+    Result<std::unique_ptr<HidConnection>> connection = bus.open(info);
     std::string problem;
-    if (!line) {
-      problem = line.error().message;
+    if (!connection) {
+      problem = connection.error().message;
     } else {
-      const Result<HidKind> kind = identify(**line, possible);
-      if (kind && contains(kinds, *kind)) return HidOpened{found, *kind, std::move(*line)};
-      problem = kind ? std::string() : found.path + ": " + kind.error().message;
+      const Result<const HidDriver*> driver = identify(**connection, possible);
+      if (driver && contains(drivers, *driver)) return HidOpened{info, *driver, std::move(*connection)};
+      problem = driver ? std::string() : info.path + ": " + driver.error().message;
     }
     if (!problem.empty()) problems += (problems.empty() ? "" : "; ") + problem;
   }
@@ -47,11 +47,11 @@ std::optional<HidOpened> try_open(HidBus& bus, const std::vector<HidKind>& kinds
 
 }  // namespace
 
-Result<HidOpened> open_first(HidBus& bus, const std::vector<HidKind>& kinds, bool* none_found) {
+Result<HidOpened> open_first(HidBus& bus, const HidDrivers& drivers, bool* none_found) {
   std::string problems;
   for (int i = 0; i < kOpenTries; ++i) {
     if (i > 0) std::this_thread::sleep_for(kBetweenTries);
-    if (std::optional<HidOpened> opened = try_open(bus, kinds, problems)) {
+    if (std::optional<HidOpened> opened = try_open(bus, drivers, problems)) {
       return Result<HidOpened>(std::move(*opened));
     }
     if (problems.empty()) break;
@@ -60,33 +60,37 @@ Result<HidOpened> open_first(HidBus& bus, const std::vector<HidKind>& kinds, boo
   return Error{problems.empty() ? "no device that the program knows is plugged in" : problems};
 }
 
-HidLink::HidLink(HidBus& bus, HidLinkUser& user, HidOpened opened)
+HidLink::HidLink(HidBus& bus, HidListener& listener, HidOpened opened)
     : bus_(bus),
-      user_(user),
-      found_(std::move(opened.found)),
-      kind_(opened.kind),
-      line_(std::move(opened.line)) {}
+      listener_(listener),
+      info_(std::move(opened.info)),
+      driver_(*opened.driver),
+      connection_(std::move(opened.connection)) {}
 
 HidLink::~HidLink() { stop(); }
 
-std::shared_ptr<HidLine> HidLink::line() noexcept {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return line_;
+std::string HidLink::description() const {
+  return std::string(driver_.description) + ": " + info_.product + ", " + info_.path;
 }
 
-void HidLink::use(std::shared_ptr<HidLine> line) noexcept {
-  if (line != nullptr) line->stop_with(encode_stop(kind_));
+std::shared_ptr<HidConnection> HidLink::connection() noexcept {
   const std::lock_guard<std::mutex> lock(mutex_);
-  line_.swap(line);
+  return connection_;
+}
+
+void HidLink::use(std::shared_ptr<HidConnection> connection) noexcept {
+  if (connection != nullptr) connection->stop_with(driver_.encode_stop());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  connection_.swap(connection);
 }
 
 Status HidLink::start() {
-  use(line());
-  write(*line(), encode_start(kind_));
-  user_.connected(steady_now_s());
+  use(connection());
+  write(*connection(), driver_.encode_start());
+  listener_.connected(steady_now_s());
   try {
     reader_ = std::thread([this] { read_all(); });
-    if (pushes(kind_)) writer_ = std::thread([this] { write_all(); });
+    if (driver_.renders_force) writer_ = std::thread([this] { write_all(); });
   } catch (const std::system_error& error) {
     stop();
     return Error{std::string("cannot start a thread for the device: ") + error.what() +
@@ -99,7 +103,7 @@ void HidLink::stop() noexcept {
   stop_.store(true, std::memory_order_relaxed);
   if (writer_.joinable()) writer_.join();
   // Before the reader ends: an idle device may keep it waiting.
-  if (const std::shared_ptr<HidLine> last = line()) write(*last, encode_stop(kind_));
+  if (const std::shared_ptr<HidConnection> last = connection()) write(*last, driver_.encode_stop());
   if (reader_.joinable()) reader_.join();
   use(nullptr);
 }
@@ -108,15 +112,15 @@ void HidLink::read_all() noexcept {
   make_this_thread_realtime({kPriority, false});
   std::array<std::uint8_t, kLargestHidReport + 1> bytes{};
   while (!stop_.load(std::memory_order_relaxed)) {
-    const std::shared_ptr<HidLine> current = line();
+    const std::shared_ptr<HidConnection> current = connection();
     if (current == nullptr) {
       look_again();
       continue;
     }
     const int size = current->read(bytes.data(), bytes.size());
-    if (size > 0) user_.take(bytes.data(), static_cast<std::size_t>(size), steady_now_s());
+    if (size > 0) listener_.report_arrived(bytes.data(), static_cast<std::size_t>(size), steady_now_s());
     if (size < 0 && !stop_.load(std::memory_order_relaxed)) {
-      user_.unplugged();
+      listener_.unplugged();
       use(nullptr);
     }
   }
@@ -128,19 +132,19 @@ void HidLink::look_again() noexcept {
     if (stop_.load(std::memory_order_relaxed)) return;
   }
   std::string problems;
-  std::optional<HidOpened> opened = try_open(bus_, {kind_}, problems);
+  std::optional<HidOpened> opened = try_open(bus_, {&driver_}, problems);
   if (!opened) return;
-  write(*opened->line, encode_start(kind_));
-  user_.connected(steady_now_s());
-  use(std::move(opened->line));
+  write(*opened->connection, driver_.encode_start());
+  listener_.connected(steady_now_s());
+  use(std::move(opened->connection));
 }
 
-void HidLink::write(HidLine& line, const OutReports& reports) noexcept {
+void HidLink::write(HidConnection& connection, const OutReports& reports) noexcept {
   bool good = reports.count > 0;
   for (std::size_t i = 0; i < reports.count; ++i) {
-    good = line.write(reports.bytes[i].data(), reports.sizes[i]) && good;
+    good = connection.write(reports.bytes[i].data(), reports.sizes[i]) && good;
   }
-  if (good) user_.written(steady_now_s());
+  if (good) listener_.written(steady_now_s());
 }
 
 void HidLink::write_all() noexcept {
@@ -150,7 +154,7 @@ void HidLink::write_all() noexcept {
   while (!stop_.load(std::memory_order_relaxed)) {
     pacer.wait_until(deadlines.next_ns());
     deadlines.wake(pacer.now_ns());
-    if (const std::shared_ptr<HidLine> current = line()) write(*current, user_.next(steady_now_s()));
+    if (const std::shared_ptr<HidConnection> current = connection()) write(*current, listener_.next(steady_now_s()));
   }
 }
 

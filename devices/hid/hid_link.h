@@ -16,13 +16,13 @@
 
 namespace palpate {
 
-// What a link serves. `now_s`: steady clock.
-class HidLinkUser {
+// Who is told of a link's reports and asked what to write. `now_s`: steady clock.
+class HidListener {
  public:
-  virtual ~HidLinkUser() = default;
+  virtual ~HidListener() = default;
   // Reader thread.
   virtual void connected(double now_s) noexcept = 0;
-  virtual void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept = 0;
+  virtual void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept = 0;
   virtual void unplugged() noexcept = 0;
   // Writer thread.
   virtual OutReports next(double now_s) noexcept = 0;
@@ -31,16 +31,16 @@ class HidLinkUser {
 
 // An open device and how to find it again.
 struct HidOpened {
-  HidFound found;
-  HidKind kind = HidKind::paddle;
-  std::unique_ptr<HidLine> line;
+  HidDeviceInfo info;
+  const HidDriver* driver = nullptr;  // of one that was opened: never null
+  std::unique_ptr<HidConnection> connection;
 };
 
-// The first device of one of `kinds` that can be opened; tries for half a second
+// The first device of one of `drivers` that can be opened; tries for half a second
 // when there is one that cannot, for udev may still be setting its permissions.
 // Slow side. Errors: none is plugged in (`none_found` is then set); those that are
 // cannot be opened, each with why.
-Result<HidOpened> open_first(HidBus& bus, const std::vector<HidKind>& kinds, bool* none_found = nullptr);
+Result<HidOpened> open_first(HidBus& bus, const HidDrivers& drivers, bool* none_found = nullptr);
 
 class HidLink {
  public:
@@ -48,8 +48,8 @@ class HidLink {
   static constexpr std::int64_t kWritePeriod_ns = 500'000;
   static constexpr double kLookAgain_s = 0.25;
 
-  // `bus` and `user` outlive this.
-  HidLink(HidBus& bus, HidLinkUser& user, HidOpened opened);
+  // `bus` and `listener` outlive this.
+  HidLink(HidBus& bus, HidListener& listener, HidOpened opened);
   HidLink(const HidLink&) = delete;
   HidLink& operator=(const HidLink&) = delete;
   ~HidLink();
@@ -59,24 +59,23 @@ class HidLink {
   // Slow side, blocking: ends the threads, then takes the force away.
   void stop() noexcept;
 
-  // Slow side: what was found; the same kind after it was plugged in again.
-  const HidFound& found() const noexcept { return found_; }
-  HidKind kind() const noexcept { return kind_; }
+  // Slow side: "haptic paddle: Teensyduino RawHID, /dev/hidraw7".
+  std::string description() const;
 
  private:
   void read_all() noexcept;
   void write_all() noexcept;
-  void write(HidLine& line, const OutReports& reports) noexcept;
-  void use(std::shared_ptr<HidLine> line) noexcept;
-  std::shared_ptr<HidLine> line() noexcept;
+  void write(HidConnection& connection, const OutReports& reports) noexcept;
+  void use(std::shared_ptr<HidConnection> connection) noexcept;
+  std::shared_ptr<HidConnection> connection() noexcept;
   void look_again() noexcept;
 
   HidBus& bus_;
-  HidLinkUser& user_;
-  HidFound found_;
-  HidKind kind_;
-  std::mutex mutex_;  // of line_; neither thread is the haptics thread
-  std::shared_ptr<HidLine> line_;
+  HidListener& listener_;
+  HidDeviceInfo info_;
+  const HidDriver& driver_;
+  std::mutex mutex_;  // of connection_; neither thread is the haptics thread
+  std::shared_ptr<HidConnection> connection_;
   std::atomic<bool> stop_{false};
   std::thread reader_;
   std::thread writer_;

@@ -29,13 +29,13 @@ std::string narrow(const wchar_t* text) {
   return result;
 }
 
-class HidapiLine final : public HidLine {
+class HidapiConnection final : public HidConnection {
  public:
-  HidapiLine(hid_device* reader, hid_device* writer, int descriptor, int wait_ms) noexcept
+  HidapiConnection(hid_device* reader, hid_device* writer, int descriptor, int wait_ms) noexcept
       : reader_(reader), writer_(writer), descriptor_(descriptor), wait_ms_(wait_ms) {}
-  HidapiLine(const HidapiLine&) = delete;
-  HidapiLine& operator=(const HidapiLine&) = delete;
-  ~HidapiLine() override {
+  HidapiConnection(const HidapiConnection&) = delete;
+  HidapiConnection& operator=(const HidapiConnection&) = delete;
+  ~HidapiConnection() override {
     unregister_device_stop(slot_);
     hid_close(reader_);
     hid_close(writer_);
@@ -66,8 +66,8 @@ class HidapiLine final : public HidLine {
 };
 
 // hidapi lists a node once for each usage of its descriptor.
-bool better(const HidFound& a, const HidFound& b) {
-  return possible_kinds(a).size() > possible_kinds(b).size();
+bool better(const HidDeviceInfo& a, const HidDeviceInfo& b) {
+  return matching_drivers(a).size() > matching_drivers(b).size();
 }
 
 }  // namespace
@@ -93,49 +93,50 @@ std::string open_error_words(const std::string& path, int error_number) {
   }
 }
 
-std::vector<HidFound> HidapiBus::list() {
+std::vector<HidDeviceInfo> HidapiBus::list() {
   const std::lock_guard<std::mutex> lock(hidapi_mutex());
-  std::vector<HidFound> all;
+  std::vector<HidDeviceInfo> all;
   hid_device_info* const first = hid_enumerate(0, 0);
-  for (const hid_device_info* info = first; info != nullptr; info = info->next) {
-    HidFound found;
-    found.path = info->path != nullptr ? info->path : "";
-    found.product = narrow(info->product_string);
-    found.vendor_id = info->vendor_id;
-    found.product_id = info->product_id;
-    found.usage_page = info->usage_page;
-    found.usage = info->usage;
+  for (const hid_device_info* entry = first; entry != nullptr; entry = entry->next) {
+    HidDeviceInfo info;
+    info.path = entry->path != nullptr ? entry->path : "";
+    info.product = narrow(entry->product_string);
+    info.vendor_id = entry->vendor_id;
+    info.product_id = entry->product_id;
+    info.usage_page = entry->usage_page;
+    info.usage = entry->usage;
     const auto same =
-        std::find_if(all.begin(), all.end(), [&](const HidFound& other) { return other.path == found.path; });
+        std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.path == info.path; });
     if (same == all.end()) {
-      all.push_back(found);
-    } else if (better(found, *same)) {
-      *same = found;
+      all.push_back(info);
+    } else if (better(info, *same)) {
+      *same = info;
     }
   }
   hid_free_enumeration(first);
   return all;
 }
 
-Result<std::unique_ptr<HidLine>> HidapiBus::open(const HidFound& found) {
-  if (found.path.empty()) return Error{open_error_words(found.product, ENOENT)};
-  const int descriptor = ::open(found.path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return Error{open_error_words(found.path, errno)};
+Result<std::unique_ptr<HidConnection>> HidapiBus::open(const HidDeviceInfo& info) {
+  if (info.path.empty()) return Error{open_error_words(info.product, ENOENT)};
+  const int descriptor = ::open(info.path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return Error{open_error_words(info.path, errno)};
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     const int error_number = errno;
     ::close(descriptor);
-    return Error{open_error_words(found.path, error_number)};
+    return Error{open_error_words(info.path, error_number)};
   }
   const std::lock_guard<std::mutex> lock(hidapi_mutex());
-  hid_device* const reader = hid_open_path(found.path.c_str());
-  hid_device* const writer = reader != nullptr ? hid_open_path(found.path.c_str()) : nullptr;
+  hid_device* const reader = hid_open_path(info.path.c_str());
+  hid_device* const writer = reader != nullptr ? hid_open_path(info.path.c_str()) : nullptr;
   if (writer == nullptr) {
     const std::string words = narrow(hid_error(nullptr));
     if (reader != nullptr) hid_close(reader);
     ::close(descriptor);
-    return Error{found.path + ": is no HID device that can be opened (" + words + "); plug it in again"};
+    return Error{info.path + ": is no HID device that can be opened (" + words + "); plug it in again"};
   }
-  return Result<std::unique_ptr<HidLine>>(std::make_unique<HidapiLine>(reader, writer, descriptor, wait_ms_));
+  return Result<std::unique_ptr<HidConnection>>(
+      std::make_unique<HidapiConnection>(reader, writer, descriptor, wait_ms_));
 }
 
 HidBus& system_hid_bus() {

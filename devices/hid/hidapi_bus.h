@@ -16,10 +16,10 @@ class HidapiBus final : public HidBus {
   // node of umockdev can only be read so).
   explicit HidapiBus(int wait_ms = 50) noexcept : wait_ms_(wait_ms) {}
 
-  std::vector<HidFound> list() override;
+  std::vector<HidDeviceInfo> list() override;
   // Errors: no node, no permission (with the udev rule), in use by another program,
   // or what the system says.
-  Result<std::unique_ptr<HidLine>> open(const HidFound& found) override;
+  Result<std::unique_ptr<HidConnection>> open(const HidDeviceInfo& info) override;
 
  private:
   int wait_ms_;

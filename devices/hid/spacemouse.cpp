@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kHold_s = 0.1;  // as ReportMonitor
+constexpr double kHold_s = 0.1;  // as StreamMonitor
 
 }  // namespace
 
@@ -25,9 +25,9 @@ void SpaceMouseAxis::unplugged() noexcept {
   newest_.write(deflection_);
 }
 
-void SpaceMouseAxis::take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
-  HidReading reading;
-  switch (decode_report(HidKind::spacemouse, bytes, size, reading)) {
+void SpaceMouseAxis::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
+  DeviceReading reading;
+  switch (calibration_.driver->decode(bytes, size, reading)) {
     case ReportVerdict::position:
       break;
     case ReportVerdict::corrupt:
@@ -81,11 +81,6 @@ SpaceMouse::SpaceMouse(HidBus& bus, const HidCalibration& calibration, HidOpened
 bool SpaceMouseDevice::read(double now_s, DeviceSample& sample) noexcept {
   mouse_->axis().drive(tool_, now_s);
   return tool_.read(now_s, sample);
-}
-
-std::string SpaceMouseDevice::note() const {
-  const HidFound& found = mouse_->found();
-  return std::string(hid_kind_words(HidKind::spacemouse)) + ": " + found.product + ", " + found.path;
 }
 
 }  // namespace palpate

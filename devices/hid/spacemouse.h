@@ -21,7 +21,7 @@
 namespace palpate {
 
 // From reports to a position at any time. No thread of its own.
-class SpaceMouseAxis final : public HidLinkUser {
+class SpaceMouseAxis final : public HidListener {
  public:
   // Between reports; longer is a rest.
   static constexpr double kShortest_s = 0.004;
@@ -33,7 +33,7 @@ class SpaceMouseAxis final : public HidLinkUser {
 
   // Reader thread, wait-free.
   void connected(double) noexcept override;
-  void take(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
   void unplugged() noexcept override;
   // Writer thread: nothing is ever written.
   OutReports next(double) noexcept override { return {}; }
@@ -72,7 +72,7 @@ class SpaceMouse {
   Status start() { return link_.start(); }
   void stop() noexcept { link_.stop(); }
   SpaceMouseAxis& axis() noexcept { return axis_; }
-  const HidFound& found() const noexcept { return link_.found(); }
+  std::string description() const { return link_.description(); }
 
  private:
   SpaceMouseAxis axis_;
@@ -93,7 +93,7 @@ class SpaceMouseDevice final : public Device {
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override { tool_.write(force_N); }
   DeviceHealth health(double now_s) noexcept override { return mouse_->axis().health(now_s); }
-  std::string note() const override;
+  std::string note() const override { return mouse_->description(); }
 
  private:
   std::string name_ = "hid";

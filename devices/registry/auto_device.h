@@ -17,7 +17,7 @@
 
 namespace palpate {
 
-class AutoDevice final : public Device {
+class AutoDevice final : public Device, public ToolInput {
  public:
   explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {}, const MouseSettings& mouse = {})
       : hand_(seed, hand), mouse_(mouse) {}
@@ -38,10 +38,12 @@ class AutoDevice final : public Device {
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
 
-  // Setting its target is taking over.
-  MouseDevice& mouse() noexcept { return mouse_; }
+  ToolInput* mouse() noexcept override { return this; }
+  // Setting a target is taking over.
+  void set_target(double position_m, double now_s) noexcept override { mouse_.set_target(position_m, now_s); }
+  void nudge(double by_m, double now_s) noexcept override { mouse_.nudge(by_m, now_s); }
   // Any thread, wait-free.
-  bool hand_is_exploring() const noexcept { return exploring_.load(std::memory_order_relaxed); }
+  bool hand_is_exploring() const noexcept override { return exploring_.load(std::memory_order_relaxed); }
 
  private:
   std::string name_ = "auto";

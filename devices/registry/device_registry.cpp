@@ -6,6 +6,7 @@
 #include "devices/registry/auto_device.h"
 #include "devices/virtual/hand_device.h"
 #include "devices/hid/hid_device.h"
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/virtual/mouse_device.h"
 #include "devices/virtual/replay_device.h"
@@ -18,30 +19,36 @@ using Made = Result<std::unique_ptr<Device>>;
 
 constexpr std::string_view kReplay = "replay:";
 
-const std::vector<HidKind> kPushing = {HidKind::paddle, HidKind::polhem, HidKind::openffboard};
+HidDrivers drivers_that(bool render_force) {
+  HidDrivers drivers;
+  for (const HidDriver* driver : kHidDrivers) {
+    if (driver->renders_force == render_force) drivers.push_back(driver);
+  }
+  return drivers;
+}
 
 HidBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
 
-Result<HidCalibration> calibration_of(const DeviceRequest& request, HidKind kind) {
+Result<HidCalibration> calibration_of(const DeviceRequest& request, const HidDriver& driver) {
   if (request.calibrations.empty()) {
     return Error{"the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder"};
   }
-  return read_hid_calibration(request.calibrations, kind);
+  return read_hid_calibration(request.calibrations, driver);
 }
 
 // A device that pushes. `none_found`: there is none to open.
 Made make_haptic(const DeviceRequest& request, bool& none_found) {
-  Result<HidOpened> opened = open_first(bus_of(request), kPushing, &none_found);
+  Result<HidOpened> opened = open_first(bus_of(request), drivers_that(true), &none_found);
   if (!opened) return opened.error();
-  const Result<HidCalibration> calibration = calibration_of(request, opened->kind);
+  const Result<HidCalibration> calibration = calibration_of(request, *opened->driver);
   if (!calibration) return calibration.error();
   return Made(std::make_unique<HidDevice>(bus_of(request), *calibration, std::move(*opened)));
 }
 
 Result<std::unique_ptr<SpaceMouse>> make_space_mouse(const DeviceRequest& request, bool& none_found) {
-  Result<HidOpened> opened = open_first(bus_of(request), {HidKind::spacemouse}, &none_found);
+  Result<HidOpened> opened = open_first(bus_of(request), drivers_that(false), &none_found);
   if (!opened) return opened.error();
-  const Result<HidCalibration> calibration = calibration_of(request, HidKind::spacemouse);
+  const Result<HidCalibration> calibration = calibration_of(request, *opened->driver);
   if (!calibration) return calibration.error();
   return Result<std::unique_ptr<SpaceMouse>>(
       std::make_unique<SpaceMouse>(bus_of(request), *calibration, std::move(*opened)));

@@ -23,7 +23,7 @@ struct MouseSettings {
   double idle_time_s = 20.0;
 };
 
-class MouseDevice final : public Device {
+class MouseDevice final : public Device, public ToolInput {
  public:
   explicit MouseDevice(const MouseSettings& settings = {});
 
@@ -33,12 +33,14 @@ class MouseDevice final : public Device {
   ForceLimits limits() const noexcept override;
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override { force_N_ = force_N; }
+  ToolInput* mouse() noexcept override { return this; }
 
   // One thread, the window's; wait-free. `now_s`: steady clock. A target that is
   // not finite is ignored.
-  void set_target(double position_m, double now_s) noexcept;
+  void set_target(double position_m, double now_s) noexcept override;
   // Likewise: moves the target, as a wheel or a key does.
-  void nudge(double by_m, double now_s) noexcept;
+  void nudge(double by_m, double now_s) noexcept override;
+  bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }
   // Any thread, wait-free. Whether nothing was set for idle_time_s, or ever.

@@ -19,7 +19,7 @@ namespace palpate {
 inline constexpr double kSlowestReplay = 0.05;
 inline constexpr double kFastestReplay = 10.0;
 
-class ReplayDevice final : public Device {
+class ReplayDevice final : public Device, public ReplayControl {
  public:
   // `recording`: as the reader accepts it; its sensor is identified here.
   explicit ReplayDevice(Recording recording);
@@ -30,17 +30,18 @@ class ReplayDevice final : public Device {
   ForceLimits limits() const noexcept override;
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double) noexcept override {}
+  ReplayControl* replay() noexcept override { return this; }
 
   // Any thread, wait-free. `speed`: times the recording's own pace, kept between
   // kSlowestReplay and kFastestReplay, ignored when not finite; `at_s`: from the
   // beginning of the recording, kept inside it.
-  void pause(bool paused) noexcept { paused_.store(paused, std::memory_order_relaxed); }
-  void set_speed(double speed) noexcept;
-  void seek(double at_s) noexcept;
-  bool paused() const noexcept { return paused_.load(std::memory_order_relaxed); }
-  double speed() const noexcept { return speed_.load(std::memory_order_relaxed); }
-  double playhead_s() const noexcept { return shown_s_.load(std::memory_order_relaxed); }
-  double duration_s() const noexcept { return duration_s_; }
+  void pause(bool paused) noexcept override { paused_.store(paused, std::memory_order_relaxed); }
+  void set_speed(double speed) noexcept override;
+  void seek(double at_s) noexcept override;
+  bool paused() const noexcept override { return paused_.load(std::memory_order_relaxed); }
+  double speed() const noexcept override { return speed_.load(std::memory_order_relaxed); }
+  double playhead_s() const noexcept override { return shown_s_.load(std::memory_order_relaxed); }
+  double duration_s() const noexcept override { return duration_s_; }
 
  private:
   void move_playhead(double now_s) noexcept;

@@ -31,6 +31,32 @@ struct DeviceSample {
 // at 2 kHz played ten times too fast, and half as much again.
 inline constexpr int kMaxSamplesPerTick = 32;
 
+// A tool that a window's mouse and keys may move. One thread, the window's;
+// wait-free. `now_s`: steady clock.
+class ToolInput {
+ public:
+  virtual ~ToolInput() = default;
+  // A target that is not finite is ignored.
+  virtual void set_target(double position_m, double now_s) noexcept = 0;
+  virtual void nudge(double by_m, double now_s) noexcept = 0;
+  // Whether the tool moves by itself until somebody takes over.
+  virtual bool hand_is_exploring() const noexcept = 0;
+};
+
+// A recording's playback. One thread, the window's; wait-free. Each limits what it
+// is given to what it can do.
+class ReplayControl {
+ public:
+  virtual ~ReplayControl() = default;
+  virtual void pause(bool paused) noexcept = 0;
+  virtual void set_speed(double speed) noexcept = 0;  // times the recording's own pace
+  virtual void seek(double at_s) noexcept = 0;        // from the beginning of the recording
+  virtual bool paused() const noexcept = 0;
+  virtual double speed() const noexcept = 0;
+  virtual double playhead_s() const noexcept = 0;
+  virtual double duration_s() const noexcept = 0;
+};
+
 class Device {
  public:
   virtual ~Device() = default;
@@ -64,6 +90,11 @@ class Device {
   // Slow side: what people should know of the choice of this device, e.g. what
   // "auto" fell back to and why; empty when there is nothing to say.
   virtual std::string note() const { return {}; }
+
+  // Slow side: what else this device can be asked for, as long as it lives; null: it
+  // cannot.
+  virtual ToolInput* mouse() noexcept { return nullptr; }
+  virtual ReplayControl* replay() noexcept { return nullptr; }
 };
 
 }  // namespace palpate

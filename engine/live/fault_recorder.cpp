@@ -49,12 +49,12 @@ Status write_fault_file(const std::string& path, const std::vector<FaultTick>& t
   Result<AtomicFile> file = AtomicFile::create(path, false);
   if (!file) return file.error();
   file->write(
-      "loop_time_s,sample_time_s,position_m,velocity_m_per_s,wanted_N,rendered_N,sample_age_s,"
+      "loop_time_s,sample_time_s,position_m,velocity_m_per_s,commanded_N,rendered_N,sample_age_s,"
       "round_trip_s,samples,faults,device_faults,limiter_flags\n");
   for (const FaultTick& tick : ticks) {
     std::string line;
     for (const double value : {tick.loop_time_s, tick.sample_time_s, tick.position_m, tick.velocity_m_per_s,
-                               tick.wanted_N, tick.rendered_N, tick.sample_age_s, tick.round_trip_s}) {
+                               tick.commanded_N, tick.rendered_N, tick.sample_age_s, tick.round_trip_s}) {
       line += shortest(value) + ",";
     }
     line += std::to_string(tick.samples) + "," + std::to_string(tick.faults) + "," +

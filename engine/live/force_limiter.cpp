@@ -33,20 +33,20 @@ double ForceLimiter::clamp_N() const noexcept {
                    left * (limits_.largest_N * limits_.largest_N - lasting_N * lasting_N));
 }
 
-bool ForceLimiter::stops(double wanted_N, const ForceConditions& conditions) noexcept {
-  if (!std::isfinite(wanted_N)) flags_ |= force_limit::kNotFinite;
+bool ForceLimiter::stops(double commanded_N, const ForceConditions& conditions) noexcept {
+  if (!std::isfinite(commanded_N)) flags_ |= force_limit::kNotFinite;
   // The comparison is false for a NaN, which so counts as stale.
   if (!(conditions.sample_age_s <= limits_.stale_after_s)) flags_ |= force_limit::kStale;
   if (conditions.device_fault) flags_ |= force_limit::kDeviceFault;
-  if (conditions.released) flags_ |= force_limit::kReleased;
+  if (conditions.dead_man_released) flags_ |= force_limit::kReleased;
   const bool stop = flags_ != 0 || stop_asked_;
   stop_asked_ = false;
   return stop;
 }
 
-double ForceLimiter::ramped(double wanted_N, double step_s) noexcept {
+double ForceLimiter::ramped(double commanded_N, double step_s) noexcept {
   if (share_ < 1.0) flags_ |= force_limit::kRamping;
-  const double force_N = wanted_N * share_;
+  const double force_N = commanded_N * share_;
   share_ = limits_.ramp_s > 0.0 ? std::min(1.0, share_ + step_s / limits_.ramp_s) : 1.0;
   return force_N;
 }
@@ -58,12 +58,12 @@ void ForceLimiter::change(double target_N, double most_N) noexcept {
   force_N_ = slewed ? force_N_ + change_N : target_N;
 }
 
-double ForceLimiter::limit(double wanted_N, double step_s, const ForceConditions& conditions) noexcept {
+double ForceLimiter::limit(double commanded_N, double step_s, const ForceConditions& conditions) noexcept {
   // The comparison is false for a NaN, which so counts as no time at all.
   const double step = step_s > 0.0 ? std::min(step_s, kLongestStep_s) : 0.0;
   warm(step_s);
   flags_ = 0;
-  if (stops(wanted_N, conditions)) {
+  if (stops(commanded_N, conditions)) {
     if (!stopping_) {
       stop_N_per_s_ =
           std::max(limits_.fastest_N_per_s, limits_.stop_s > 0.0 ? std::abs(force_N_) / limits_.stop_s
@@ -75,7 +75,7 @@ double ForceLimiter::limit(double wanted_N, double step_s, const ForceConditions
     return force_N_;
   }
   stopping_ = false;
-  const double ramped_N = ramped(wanted_N, step);
+  const double ramped_N = ramped(commanded_N, step);
   const double most_N = clamp_N();
   const double clamped_N = std::clamp(ramped_N, -most_N, most_N);
   if (clamped_N != ramped_N) flags_ |= force_limit::kClamped;

@@ -40,7 +40,7 @@ struct ForceLimits {
 struct ForceConditions {
   double sample_age_s = 0.0;  // NaN counts as stale
   bool device_fault = false;
-  bool released = false;  // a dead-man switch is in use and nobody holds it
+  bool dead_man_released = false;  // a dead-man switch is in use and nobody holds it
 };
 
 // What the limiter did to one force; bits, for TickSnapshot's neighbours.
@@ -64,10 +64,10 @@ class ForceLimiter {
   explicit ForceLimiter(const ForceLimits& limits) noexcept
       : limits_(limits), heat_(kFoldback * limits.continuous_N * limits.continuous_N) {}
 
-  // `wanted_N`: anything; `step_s`: since the last call, counted as between 0
+  // `commanded_N`: anything; `step_s`: since the last call, counted as between 0
   // and 10 ms, so that a stall does not license a jump. Returns the force to
   // render, finite, and sets `flags`.
-  double limit(double wanted_N, double step_s, const ForceConditions& conditions = {}) noexcept;
+  double limit(double commanded_N, double step_s, const ForceConditions& conditions = {}) noexcept;
 
   // No force in the next call and the ramp begins again; for a fault found
   // elsewhere.
@@ -79,10 +79,10 @@ class ForceLimiter {
   double heat_share() const noexcept;
 
  private:
-  bool stops(double wanted_N, const ForceConditions& conditions) noexcept;
+  bool stops(double commanded_N, const ForceConditions& conditions) noexcept;
   void warm(double step_s) noexcept;
   double clamp_N() const noexcept;
-  double ramped(double wanted_N, double step_s) noexcept;
+  double ramped(double commanded_N, double step_s) noexcept;
   void change(double target_N, double most_N) noexcept;
 
   ForceLimits limits_;

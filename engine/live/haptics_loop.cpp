@@ -19,7 +19,7 @@ HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
     : device_(device),
       taken_(std::make_unique<TakenRing>()),
       settings_(settings),
-      live_(device, slot_, {settings.tick.jnd, taken_.get(), settings.tick.source}),
+      live_(device, slot_, {settings.jnd, taken_.get(), settings.source}),
       pacer_(settings.spin_ns),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 

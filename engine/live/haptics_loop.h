@@ -28,7 +28,8 @@ struct LoopSettings {
   std::int64_t spin_ns = 0;  // how long before a deadline to spin instead of sleep
   bool realtime = true;      // ask for it
   RtRequest rt;
-  LiveTickSettings tick;
+  JndLine jnd;
+  ForceSource* source = nullptr;  // outlives the loop; null: the models
 };
 
 struct LoopStatistics {

@@ -177,7 +177,7 @@ void LiveTick::acknowledge(const LoopControls& controls) noexcept {
   snapshot_.device_faults_latched = 0;
 }
 
-bool LiveTick::released(const LoopControls& controls) const noexcept {
+bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
   switch (controls.dead_man) {
     case DeadMan::key: return !(now_s_ - controls.held_s < kDeadManHold_s);
     case DeadMan::grip: return !snapshot_.device.grip_held;
@@ -187,23 +187,23 @@ bool LiveTick::released(const LoopControls& controls) const noexcept {
 }
 
 // A study presents forces of its own, which owe nothing to where the tool is.
-double LiveTick::passive(double mixed_N, double step_s) noexcept {
-  if (!passivity_on_) return mixed_N;
+double LiveTick::passive(double commanded_N, double step_s) noexcept {
+  if (!passivity_on_) return commanded_N;
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
-  return passivity_.apply(mixed_N, {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading},
+  return passivity_.apply(commanded_N, {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading},
                           snapshot_.rendered_N, step_s);
 }
 
-void LiveTick::render(double wanted_N, double passive_N, double step_s, bool released) noexcept {
+void LiveTick::render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept {
   const DeviceHealth& device = snapshot_.device;
   // A sample that cannot be true: no force until there is one that can.
   if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
-  snapshot_.mixed_N = wanted_N;
+  snapshot_.commanded_N = commanded_N;
   snapshot_.passive_N = passive_N;
-  snapshot_.released = released;
-  snapshot_.rendered_N = limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), released});
+  snapshot_.dead_man_released = dead_man_released;
+  snapshot_.rendered_N = limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released});
   snapshot_.faults |= limiter_bits(limiter_.flags());
   snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
@@ -217,7 +217,7 @@ void LiveTick::record_fault() noexcept {
   tick.sample_time_s = snapshot_.tick.time_s;
   tick.position_m = snapshot_.tick.position_m;
   tick.velocity_m_per_s = snapshot_.tick.velocity_m_per_s;
-  tick.wanted_N = snapshot_.mixed_N;
+  tick.commanded_N = snapshot_.commanded_N;
   tick.rendered_N = snapshot_.rendered_N;
   tick.sample_age_s = snapshot_.device.sample_age_s;
   tick.round_trip_s = snapshot_.device.round_trip_s;
@@ -239,9 +239,9 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   take_models();
   take_samples(now_s);
   snapshot_.device = device_.health(now_s);
-  const double wanted_N =
+  const double commanded_N =
       source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
-  render(wanted_N, passive(wanted_N, step_s), step_s, released(controls));
+  render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;
   if (models_ != nullptr) {

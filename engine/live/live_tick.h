@@ -96,7 +96,7 @@ inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 struct LoopSnapshot {
   TickSnapshot tick;
   double loop_time_s = 0.0;  // steady clock; goes on where `tick.time_s` starts over
-  double mixed_N = 0.0;      // what the models ask for
+  double commanded_N = 0.0;      // what the models ask for
   double passive_N = 0.0;    // what the passivity controller left of it, before the limiter
   double rendered_N = 0.0;
   double measured_N = kNoForce;   // of the device's force sensor; NaN: none
@@ -110,7 +110,7 @@ struct LoopSnapshot {
   DeviceHealth device;               // at this tick
   std::uint32_t device_faults_latched = 0;
   float heat_share = 0.0F;  // of the motor's thermal budget
-  bool released = false;    // nobody holds the dead-man switch: no force
+  bool dead_man_released = false;    // nobody holds the dead-man switch: no force
   bool ramping = false;  // the limiter still holds back
   bool fading = false;   // the hand is on its way from one model to another
   bool restarted = false;  // a new stream began in this tick
@@ -176,9 +176,9 @@ class LiveTick {
   void hand_over_sample(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
   void acknowledge(const LoopControls& controls) noexcept;
-  bool released(const LoopControls& controls) const noexcept;
-  double passive(double mixed_N, double step_s) noexcept;
-  void render(double wanted_N, double passive_N, double step_s, bool released) noexcept;
+  bool dead_man_released(const LoopControls& controls) const noexcept;
+  double passive(double commanded_N, double step_s) noexcept;
+  void render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept;
   void record_fault() noexcept;
 
   Device& device_;

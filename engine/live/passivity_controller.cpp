@@ -39,17 +39,17 @@ double PassivityController::energy_when_passed(double depth_m) noexcept {
   return deeper.energy_J;
 }
 
-double PassivityController::apply(double wanted_N, const Tool& tool, double written_N, double step_s) noexcept {
+double PassivityController::apply(double commanded_N, const Tool& tool, double written_N, double step_s) noexcept {
   const double felt_N = felt_N_;
   felt_N_ = under_way_N_;
   under_way_N_ = written_N;
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
-    return less(wanted_N, 0.0);
+    return less(commanded_N, 0.0);
   }
   if (tool.other_material) {
     begin_at(tool.depth_m);
-    return less(wanted_N, less_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
+    return less(commanded_N, less_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
   }
   const double half_play_m = 0.5 * play_m_;
   const double depth_m = std::clamp(depth_m_, tool.depth_m - half_play_m, tool.depth_m + half_play_m);
@@ -69,15 +69,15 @@ double PassivityController::apply(double wanted_N, const Tool& tool, double writ
   }
   depth_m_ = depth_m;
   const double out_m_per_s = -tool.velocity_m_per_s;
-  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return less(wanted_N, 0.0);
+  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return less(commanded_N, 0.0);
   const double damping_Ns_per_m = std::min(kDamping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * step_s));
-  return less(wanted_N, damping_Ns_per_m * out_m_per_s);
+  return less(commanded_N, damping_Ns_per_m * out_m_per_s);
 }
 
-double PassivityController::less(double wanted_N, double less_N) noexcept {
+double PassivityController::less(double commanded_N, double less_N) noexcept {
   less_N_ = less_N;
-  if (less_N == 0.0) return wanted_N;
-  return wanted_N > less_N ? wanted_N - less_N : std::min(wanted_N, 0.0);
+  if (less_N == 0.0) return commanded_N;
+  return commanded_N > less_N ? commanded_N - less_N : std::min(commanded_N, 0.0);
 }
 
 }  // namespace palpate

@@ -43,9 +43,9 @@ class PassivityController {
   };
 
   // Once a tick, before the limiter. `written_N`: what the device was given in the
-  // tick before; `step_s` > 0 since then. Returns `wanted_N` or less, not below 0
-  // unless it is; not finite where `wanted_N` is not.
-  double apply(double wanted_N, const Tool& tool, double written_N, double step_s) noexcept;
+  // tick before; `step_s` > 0 since then. Returns `commanded_N` or less, not below 0
+  // unless it is; not finite where `commanded_N` is not.
+  double apply(double commanded_N, const Tool& tool, double written_N, double step_s) noexcept;
 
   double debt_J() const noexcept { return debt_J_; }
 
@@ -58,7 +58,7 @@ class PassivityController {
   static constexpr double kSpacing_m = 20e-6;
 
   void begin_at(double depth_m) noexcept;
-  double less(double wanted_N, double less_N) noexcept;
+  double less(double commanded_N, double less_N) noexcept;
   void pass_inwards(double depth_m, double energy_J) noexcept;
   double energy_when_passed(double depth_m) noexcept;
 

@@ -3,7 +3,7 @@
 //
 //   prepare_training   greatest depth, relaxation times, trend, features,
 //                      normalisation, reduction, one-sided contact, domain cover
-//   fit_method         one of the five methods on the prepared sites
+//   fit_method         one of the methods of models/fit/methods.h on the prepared sites
 //
 // The paper's own recipe (reduction by force and weighting 1/f, together) is
 // run as the paper has it: low-pass features and the force itself as target,
@@ -13,17 +13,14 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
-#include "models/fit/fit_report.h"
+#include "models/fit/methods.h"
 #include "models/training/fit_trend.h"
 #include "models/model/fitted_model.h"
 #include "models/training/motion_source.h"
@@ -33,15 +30,9 @@
 
 namespace palpate {
 
-enum class Method { direct, voxel, random, kdtree, greedy };
-inline constexpr std::array<Method, 5> kMethods{Method::direct, Method::voxel, Method::random, Method::kdtree,
-                                                Method::greedy};
-std::string_view method_name(Method method);
-// Nothing for a name that is none of them.
-std::optional<Method> method_from_name(std::string_view name);
-
 enum class Relaxation { scene, automatic, given };
-enum class DirectSolverChoice { cholesky, tsvd };
+// In model files, in the order of the values.
+inline constexpr std::array<const char*, 3> kRelaxationNames{"scene", "auto", "given"};
 
 struct TrainingRequest {
   std::string scene;
@@ -52,16 +43,6 @@ struct TrainingRequest {
   Relaxation relaxation = Relaxation::scene;
   std::vector<double> relaxation_times_s;  // when given
   BranchDrive drive = BranchDrive::elastic_rate;
-};
-
-struct MethodRequest {
-  Method method = Method::greedy;
-  int centres = 100;
-  int candidates = 100;  // per greedy step; 0: every site
-  KernelKind kernel = KernelKind::cubic;
-  DirectSolverChoice solver = DirectSolverChoice::cholesky;
-  std::vector<int> grid;  // nodes per feature; empty: 25 for depth, 11 for the others (in 4-D)
-  std::uint64_t seed = 1;
 };
 
 struct PreparedTraining {
@@ -84,10 +65,10 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
                                           const FitControl& control = {});
 
 // Errors: the method cannot be fitted to these sites (says why); interrupted.
-// The same prepared training and request give the same bits. `direct`: the fit
-// by Method::direct of the same prepared training, kernel and solver, when there is
-// one already; voxel then fills its grid from it instead of fitting it again.
+// The same prepared training and request give the same bits. `base`: the fit of the
+// same prepared training, kernel and solver by the method's base (methods.h), when
+// there is one already, which then is not fitted again.
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
-                             const FitControl& control = {}, const MethodFit* direct = nullptr);
+                             const FitControl& control = {}, const MethodFit* base = nullptr);
 
 }  // namespace palpate

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "models/model/rbf/rbf_correction.h"
+#include "models/fit/methods.h"
 #include "models/fit/choose_smoothing.h"
 #include "models/fit/lapack.h"
 #include "engine/base/parallel.h"
@@ -140,5 +142,28 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   report.criterion = solution->criterion;
   return fitted;
 }
+
+namespace {
+
+Result<FittedCorrection> direct_correction(const MethodTask& task, const FitControl& control) {
+  DirectOptions options;
+  options.kernel = task.request.kernel;
+  options.solver = task.request.solver;
+  auto fitted = fit_direct(task.sites, options, control);
+  if (!fitted) return fitted.error();
+  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
+                          ""};
+}
+
+}  // namespace
+
+const Method kDirectMethod{
+    .name = "direct",
+    .label = "direct",
+    .colour = kNeutralColour,
+    .takes = kTakesKernel | kTakesSolver,
+    .expected_seconds = [](const MethodRequest&) { return 3.0; },
+    .fit = direct_correction,
+};
 
 }  // namespace palpate

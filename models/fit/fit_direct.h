@@ -14,11 +14,10 @@
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
 #include "models/fit/fit_report.h"
+#include "models/fit/methods.h"
 #include "models/training/sites.h"
 
 namespace palpate {
-
-enum class DirectSolver { cholesky, truncated_svd };
 
 struct DirectOptions {
   KernelKind kernel = KernelKind::cubic;

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "models/model/rbf/rbf_correction.h"
+#include "models/fit/methods.h"
 #include "models/fit/candidate_gains.h"
 #include "models/fit/lapack.h"
 #include "models/fit/orthogonal_basis.h"
@@ -163,5 +165,31 @@ Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, c
   if (!control.go_on(1.0)) return interrupted();
   return fitted;
 }
+
+namespace {
+
+Result<FittedCorrection> greedy_correction(const MethodTask& task, const FitControl& control) {
+  const MethodRequest& request = task.request;
+  auto fitted =
+      fit_greedy(task.sites, {request.kernel, request.centres, request.candidates, request.seed}, control);
+  if (!fitted) return fitted.error();
+  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
+                          std::to_string(request.centres)};
+}
+
+}  // namespace
+
+const Method kGreedyMethod{
+    .name = "greedy",
+    .label = "greedy",
+    .colour = 0xD55E00,
+    .takes = kTakesCentres | kTakesCandidates | kTakesKernel | kTakesSeed,
+    .expected_seconds =
+        [](const MethodRequest& request) {
+          const double hundreds = 0.01 * request.centres;
+          return 0.1 + (0.05 + 0.001 * request.candidates) * hundreds * hundreds;
+        },
+    .fit = greedy_correction,
+};
 
 }  // namespace palpate

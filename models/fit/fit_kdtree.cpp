@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "models/model/rbf/rbf_correction.h"
+#include "models/fit/methods.h"
 #include "models/fit/lapack.h"
 #include "models/fit/orthogonal_basis.h"
 #include "engine/base/parallel.h"
@@ -189,5 +191,30 @@ Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, c
   if (!control.go_on(1.0)) return interrupted();
   return fitted;
 }
+
+namespace {
+
+Result<FittedCorrection> kdtree_correction(const MethodTask& task, const FitControl& control) {
+  const MethodRequest& request = task.request;
+  auto fitted = fit_kdtree(task.sites, task.jnd_N, {request.kernel, request.centres}, control);
+  if (!fitted) return fitted.error();
+  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
+                          std::to_string(request.centres)};
+}
+
+}  // namespace
+
+const Method kKdTreeMethod{
+    .name = "kdtree",
+    .label = "kD-tree",
+    .colour = 0x0072B2,
+    .takes = kTakesCentres | kTakesKernel,
+    .expected_seconds =
+        [](const MethodRequest& request) {
+          const double hundreds = 0.01 * request.centres;
+          return 0.1 + 0.01 * hundreds * hundreds * hundreds;
+        },
+    .fit = kdtree_correction,
+};
 
 }  // namespace palpate

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "models/model/rbf/rbf_correction.h"
+#include "models/fit/methods.h"
 #include "models/fit/seeded_random.h"
 #include "models/fit/solve_weights.h"
 
@@ -30,5 +32,27 @@ Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, c
     fitted->report.notes.push_back("only " + std::to_string(count) + " centres: there are no more distinct sites");
   return fitted;
 }
+
+namespace {
+
+Result<FittedCorrection> random_correction(const MethodTask& task, const FitControl& control) {
+  const MethodRequest& request = task.request;
+  auto fitted = fit_random(task.sites, {request.kernel, request.centres, request.seed}, control);
+  if (!fitted) return fitted.error();
+  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
+                          std::to_string(request.centres)};
+}
+
+}  // namespace
+
+const Method kRandomMethod{
+    .name = "random",
+    .label = "random",
+    .colour = 0xE69F00,
+    .takes = kTakesCentres | kTakesKernel | kTakesSeed,
+    .expected_seconds =
+        [](const MethodRequest& request) { return 0.08 + 0.02 * (0.01 * request.centres) * (0.01 * request.centres); },
+    .fit = random_correction,
+};
 
 }  // namespace palpate

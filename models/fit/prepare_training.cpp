@@ -228,6 +228,9 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   provenance.samples = source.rows();
   provenance.contact_samples = prepared.set.contact_samples;
   provenance.samples_after_reduction = prepared.set.sites.size();
+  provenance.weighting = weighting_name(request.weighting);
+  provenance.reduction = reduction_name(request.reduction);
+  provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(request.relaxation)];
   if (!control.go_on(0.3)) return interrupted();
   return prepared;
 }

@@ -94,29 +94,18 @@ Status validate_model(const ModelData& data) {
                                      std::pair{data.jnd.weber_fraction, "jnd.weber_fraction"}}) {
     if (!(value >= 0.0) || !std::isfinite(value)) return wrong(field, std::to_string(value), "0 or more");
   }
-  if (data.rbf.has_value() == data.grid.has_value()) {
-    return wrong("model", data.rbf ? "both centres and a grid" : "neither centres nor a grid", "one of them");
-  }
-  if (data.rbf) {
-    if (data.rbf->dimension() != n) {
-      return wrong("centres", std::to_string(data.rbf->dimension()) + " values each", std::to_string(n));
-    }
-    return validate_rbf_function(*data.rbf);
-  }
-  return validate_voxel_grid(*data.grid, static_cast<int>(n));
+  if (data.correction == nullptr) return wrong("model", "no correction", "centres, a grid, or the trend alone");
+  return data.correction->validate(static_cast<int>(n));
 }
 
 FittedModel::FittedModel(ModelData data) : data_(std::move(data)), guard_(data_.cover) {
-  if (data_.rbf) rbf_.emplace(*data_.rbf);
-  if (data_.grid) grid_.emplace(*data_.grid);
+  if (!data_.correction->is_none()) correction_ = data_.correction.get();
   for (std::size_t i = 0; i < data_.features.size(); ++i) {
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
 }
 
-int FittedModel::centre_count() const noexcept {
-  return data_.rbf ? static_cast<int>(data_.rbf->centre_count()) : static_cast<int>(data_.grid->node_count());
-}
+int FittedModel::centre_count() const noexcept { return data_.correction->size(); }
 
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   std::array<double, kMaxFeatures> u{};
@@ -126,9 +115,8 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   const double trend_N = data_.trend.at(features, data_.features);
   const double trust = guard_.trust(u.data());
   double force_N = trend_N;
-  if (trust > 0.0) {
-    const double correction_N = (rbf_ ? rbf_->evaluate(u.data()) : grid_->evaluate(u.data())) -
-                                (data_.corrects_trend ? 0.0 : trend_N);
+  if (trust > 0.0 && correction_ != nullptr) {
+    const double correction_N = correction_->evaluate(u.data()) - (data_.corrects_trend ? 0.0 : trend_N);
     force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
   }
   // A comparison that fails for NaN, so that nothing but a force leaves.

@@ -4,8 +4,8 @@
 //   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), 0, largest )
 //   u = (x - offset) / scale                                    normalised features
 //
-// T: the trend (models/model/trend.h). h: eq. 2 of Hoever & Harders (2009), or its
-// grid. g: trust, 1 near the data, 0 away from it (models/model/domain_guard.h). b: 0
+// T: the trend (models/model/trend.h). h: the correction (models/model/correction.h):
+// eq. 2 of Hoever & Harders (2009), its grid, or none at all. g: trust, 1 near the data, 0 away from it (models/model/domain_guard.h). b: 0
 // when h was fitted to what the trend leaves over (default), T(x) when h was
 // fitted to the force itself (the paper's own recipe). limit: the largest
 // correction that the training data called for. largest: 1.2 x the largest
@@ -16,20 +16,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/tick/force_model.h"
 #include "engine/tick/jnd.h"
+#include "models/model/correction.h"
 #include "models/model/domain_guard.h"
-#include "models/model/rbf/rbf_evaluate.h"
-#include "models/model/rbf/rbf_function.h"
 #include "models/model/trend.h"
-#include "models/model/grid/voxel_grid.h"
-#include "models/model/grid/voxel_lookup.h"
 
 namespace palpate {
 
@@ -46,7 +42,6 @@ struct Provenance {
   std::uint64_t contact_samples = 0;
   std::uint64_t samples_after_reduction = 0;
   std::uint64_t seed = 0;
-  double fit_seconds = 0.0;
   std::string weighting;   // jnd, relative, none
   std::string reduction;   // coverage, force, none
   std::string relaxation;  // scene, auto, given
@@ -56,7 +51,7 @@ struct Provenance {
 
 struct ModelData {
   std::string name;    // e.g. "greedy-100"
-  std::string method;  // direct, voxel, random, kdtree, greedy
+  std::string method;  // a row's name in models/fit/methods.h, e.g. "greedy"
   std::vector<FeatureSpec> features;
   Eigen::VectorXd offset;  // per feature, SI
   Eigen::VectorXd scale;   // per feature, SI, > 0
@@ -68,8 +63,7 @@ struct ModelData {
   double largest_force_N = 0.0;  // of the training data; output stays below 1.2 times it
   DomainCover cover;
   JndLine jnd;
-  std::optional<RbfFunction> rbf;   // every method but voxel
-  std::optional<VoxelGrid> grid;    // voxel
+  CorrectionPtr correction;  // h; shared by copies
   Provenance provenance;
 };
 
@@ -95,8 +89,7 @@ class FittedModel final : public ForceModel {
  private:
   ModelData data_;
   DomainGuard guard_;
-  std::optional<RbfEvaluator> rbf_;
-  std::optional<VoxelLookup> grid_;
+  const Correction* correction_ = nullptr;  // of data_; null when the trend stands alone
   std::array<double, kMaxFeatures> inverse_scale_{};
 };
 

@@ -25,6 +25,7 @@
 // Thread guarantee: slow side.
 #pragma once
 
+#include <array>
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
@@ -36,6 +37,9 @@
 namespace palpate {
 
 enum class Reduction { coverage, force, none };
+// In commands and model files, in the order of the values.
+inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force", "none"};
+inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
 inline constexpr double kReductionForce_N = 0.05;   // the paper's 50 mN

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "engine/tick/jnd.h"
 
@@ -13,6 +15,10 @@ enum class Weighting {
   relative,  // 1 / |f|, the paper's eq. (8), floored where it would explode
   none,      // 1
 };
+
+// In commands and model files, in the order of the values.
+inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
+inline const char* weighting_name(Weighting weighting) { return kWeightingNames[static_cast<std::size_t>(weighting)]; }
 
 // Below this force the paper's 1/|f| is held constant: 50 mN, the step of its
 // own reduction, under which it has no distinct samples.

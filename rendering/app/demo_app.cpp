@@ -65,7 +65,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!session) return session.error();
   session_ = std::move(*session);
   use_settings(request);
-  yield_to_haptics(session_->scheduling());
+  yield_to_haptics(session_->loop().scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
   auto window = Window::open(request.window);
   if (!window) return window.error();
@@ -204,14 +204,15 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   const LoopSnapshot& newest = session_->newest();
   BlockPose pose;
   pose.tool_m = static_cast<float>(newest.tick.position_m);
+  const ModelsView models = models_view(*session_);
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
-    const SlotView& model = session_->slot(slot);
+    const SlotView& model = session_->models().view(slot);
     pose.dent_m = static_cast<float>(model.dent_m);
-    pose.error_over_jnd = static_cast<float>(model.dent_error_over_jnd);
+    pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
     pose.force_N = static_cast<float>(model.force_N);
-    pose.arrow = slot_colour(*session_, slot, view_.theme);
-    pose.chosen = slot == session_->selected();
+    pose.arrow = slot_colour(models, slot, view_.theme);
+    pose.chosen = slot == session_->models().selected();
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
     pose.judged = view_.hidden_choice == 0;
     poses.push_back(pose);
@@ -334,9 +335,9 @@ void DemoApp::notify(std::string text, bool problem) {
 
 CurveSource DemoApp::curve_source() const {
   CurveSource source{session_->scene().title, session_->device_name(), session_->reference_words(), view_.time.zero_s, {}};
-  for (std::size_t i = 0; i < session_->slot_count(); ++i) {
-    if (session_->slot(i).state == SlotState::ready)
-      source.models.push_back({i, session_->slot(i).name, slot_colour(*session_, i, Theme::light)});
+  for (std::size_t i = 0; i < session_->models().size(); ++i) {
+    if (session_->models().view(i).state == SlotState::ready)
+      source.models.push_back({i, session_->models().view(i).name, slot_colour(models_view(*session_), i, Theme::light)});
   }
   return source;
 }
@@ -353,12 +354,12 @@ void DemoApp::save_curves() {
   const double from_s = to_s - view_.time.shown_s;
   const CurveSource source = curve_source();
   Status status = write_file_atomically(path + ".svg", curve_svg(panel_.columns(), source, from_s, to_s), false);
-  if (status) status = write_file_atomically(path + ".csv", curve_csv(session_->history(), source, from_s, to_s), false);
+  if (status) status = write_file_atomically(path + ".csv", curve_csv(session_->comparison().history(), source, from_s, to_s), false);
   notify(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
 }
 
 void DemoApp::next_dead_man() {
-  if (!session_->device_pushes()) {
+  if (!session_->renders_force()) {
     notify("there is no device that pushes: nothing to hold a switch for", false);
     return;
   }
@@ -376,7 +377,7 @@ void DemoApp::next_dead_man() {
 }
 
 void DemoApp::next_reference() {
-  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->reference());
+  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->comparison().reference());
   const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
   for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
     const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];

@@ -46,8 +46,12 @@ constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_KP_SUBTRACT, Command::smaller_text},
                                                     {GLFW_KEY_F11, Command::fullscreen}};
 
+void nudge_tool(const LiveSession& session, double by_m) {
+  if (ToolInput* tool = session.mouse()) tool->nudge(by_m, steady_now_s());
+}
+
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
-  if (session.history().size() > 0) view.time.scroll_back(by_s, session.history()[0].loop_time_s);
+  if (session.comparison().history().size() > 0) view.time.scroll_back(by_s, session.comparison().history()[0].loop_time_s);
 }
 
 }  // namespace
@@ -55,8 +59,8 @@ void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
 void DemoApp::press_key(int key, int modifiers) { keys_.push_back({key, modifiers}); }
 
 void DemoApp::handle_keys() {
-  if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) session_->nudge_tool(kKeyStep_m);
-  if (ImGui::IsKeyDown(GLFW_KEY_UP)) session_->nudge_tool(-kKeyStep_m);
+  if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) nudge_tool(*session_, kKeyStep_m);
+  if (ImGui::IsKeyDown(GLFW_KEY_UP)) nudge_tool(*session_, -kKeyStep_m);
   if (ImGui::IsKeyDown(GLFW_KEY_G) && session_->dead_man() == DeadMan::key) session_->hold();
   if (ImGui::IsKeyDown(GLFW_KEY_LEFT)) scroll_back(*session_, view_, kScrollStep_s);
   if (ImGui::IsKeyDown(GLFW_KEY_RIGHT)) scroll_back(*session_, view_, -kScrollStep_s);
@@ -78,29 +82,29 @@ void DemoApp::handle_key(const KeyPress& press) {
     if (press.key == key) run(command);
   }
   const auto slot = static_cast<std::size_t>(press.key - GLFW_KEY_1);
-  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && slot < session_->slot_count())
+  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && slot < session_->models().size())
     session_->select(slot);
   if (press.key == GLFW_KEY_ESCAPE) view_.help = view_.file_list = view_.details = false;
-  if (session_->replay().present) replay_key(press.key);
+  if (session_->replay() != nullptr) replay_key(press.key);
 }
 
 void DemoApp::replay_key(int key) {
-  const ReplayStatus replay = session_->replay();
+  ReplayControl& replay = *session_->replay();
   switch (key) {
     case GLFW_KEY_P:
-      session_->pause_replay(!replay.paused);
+      replay.pause(!replay.paused());
       break;
     case GLFW_KEY_LEFT_BRACKET:
-      session_->seek_replay(std::max(0.0, replay.at_s - kSeekStep_s));
+      replay.seek(std::max(0.0, replay.playhead_s() - kSeekStep_s));
       break;
     case GLFW_KEY_RIGHT_BRACKET:
-      session_->seek_replay(replay.at_s + kSeekStep_s);
+      replay.seek(replay.playhead_s() + kSeekStep_s);
       break;
     case GLFW_KEY_COMMA:
-      session_->set_replay_speed(replay.speed / kSpeedStep);
+      replay.set_speed(replay.speed() / kSpeedStep);
       break;
     case GLFW_KEY_PERIOD:
-      session_->set_replay_speed(replay.speed * kSpeedStep);
+      replay.set_speed(replay.speed() * kSpeedStep);
       break;
     default:
       break;
@@ -122,7 +126,7 @@ void DemoApp::handle_mouse() {
     if (io.KeyCtrl) {
       blocks_->camera().zoom(std::pow(kZoom_per_step, wheel_));
     } else {
-      session_->nudge_tool(-kWheelStep_m * static_cast<double>(wheel_));
+      nudge_tool(*session_, -kWheelStep_m * static_cast<double>(wheel_));
     }
   }
   if (!view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
@@ -134,6 +138,8 @@ void DemoApp::handle_mouse() {
 }
 
 void DemoApp::move_tool_to_mouse() {
+  ToolInput* tool = session_->mouse();
+  if (tool == nullptr) return;
   const SceneArea area = scene_area();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const glm::vec2 size(area.size.x, area.size.y);
@@ -145,8 +151,9 @@ void DemoApp::move_tool_to_mouse() {
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);
   const float below_px = mouse.y - area.at.y - surface.y;
-  session_->set_tool_target(
-      static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size)));
+  tool->set_target(
+      static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size)),
+                   steady_now_s());
 }
 
 }  // namespace palpate

@@ -48,7 +48,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")
       ->capture_default_str();
   app.add_option("--model", session.models,
-                 "Models: files, or direct, voxel, random, kdtree, greedy [the scene's]")
+                 "Models: files, or methods (palpate fit --list-methods names them) [the scene's]")
       ->type_name("FILE_OR_METHOD");
   app.add_option_function<std::string>(
          "--discriminate",

@@ -14,8 +14,8 @@ Json times_json(const TimePercentiles& times) {
 }
 
 Json haptics_json(const LiveSession& session) {
-  const LoopStatistics statistics = session.statistics();
-  const RtStatus& granted = session.scheduling();
+  const LoopStatistics statistics = session.loop().statistics();
+  const RtStatus& granted = session.loop().scheduling();
   return {{"ticks", statistics.ticks},
           {"missed_deadlines", statistics.missed_deadlines},
           {"late_by_a_period", statistics.late_by_a_period},
@@ -52,11 +52,11 @@ Json model_json(const SlotView& slot) {
 
 std::string stats_text(const LiveSession& session, const FrameFigures& frames) {
   Json models = Json::array();
-  for (std::size_t i = 0; i < session.slot_count(); ++i) {
-    if (session.slot(i).state == SlotState::ready) models.push_back(model_json(session.slot(i)));
+  for (std::size_t i = 0; i < session.models().size(); ++i) {
+    if (session.models().view(i).state == SlotState::ready) models.push_back(model_json(session.models().view(i)));
   }
   Json faults = Json::array();
-  for (const FaultEvent& fault : session.faults()) {
+  for (const FaultEvent& fault : session.faults().events()) {
     faults.push_back({{"loop_time_s", fault.loop_time_s}, {"text", fault.text}, {"count", fault.count}});
   }
   const Json all = {{"haptics", haptics_json(session)},

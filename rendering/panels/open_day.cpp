@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 
+#include "rendering/panels/panel_health.h"
 #include "rendering/ui/plot.h"
 
 namespace palpate {
@@ -17,8 +18,8 @@ constexpr auto kVisitorWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags
 
 std::vector<TrialModel> ready_models(const LiveSession& session) {
   std::vector<TrialModel> ready;
-  for (std::size_t i = 0; i < session.slot_count(); ++i) {
-    const SlotView& slot = session.slot(i);
+  for (std::size_t i = 0; i < session.models().size(); ++i) {
+    const SlotView& slot = session.models().view(i);
     if (slot.state == SlotState::ready) ready.push_back({i, slot.name, slot.method});
   }
   return ready;
@@ -28,19 +29,19 @@ std::vector<TrialModel> ready_models(const LiveSession& session) {
 
 void OpenDay::update(LiveSession& session, ViewState& view) {
   const bool visitor =
-      session.takes_mouse() ? !session.hand_is_exploring() : trial_.state() != AbTrial::State::idle;
+      session.mouse() != nullptr ? !session.mouse()->hand_is_exploring() : trial_.state() != AbTrial::State::idle;
   if (visitor && !visitor_) begin(session, view);
   if (!visitor && visitor_) forget(session, view);
   visitor_ = visitor;
   if (trial_.state() == AbTrial::State::exploring) {
-    trial_.see(session.slot(trial_.slot_under(1)).force_N, session.slot(trial_.slot_under(2)).force_N,
+    trial_.see(session.models().view(trial_.slot_under(1)).force_N, session.models().view(trial_.slot_under(2)).force_N,
                session.newest().tick.in_contact, session.jnd());
   }
   view.hidden_choice = trial_.state() == AbTrial::State::exploring ? trial_.pressed() : 0;
 }
 
 void OpenDay::begin(LiveSession& session, ViewState& view) {
-  if (trial_.state() == AbTrial::State::idle) home_ = session.selected();
+  if (trial_.state() == AbTrial::State::idle) home_ = session.models().selected();
   view.block_count = 1;
   if (trial_.begin(ready_models(session))) session.select(trial_.slot_under(1));
 }
@@ -81,11 +82,11 @@ void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, 
   const float width = ImGui::GetContentRegionAvail().x;
   ImGui::TextWrapped("A computer learned this block from one recording and pushes back as the block did.");
   ImGui::Spacing();
-  curves_.draw_for_visitors(session, view, style, std::max(6.0F * line, 0.36F * size.y));
+  curves_.draw_for_visitors(force_view(session), view, style, std::max(6.0F * line, 0.36F * size.y));
   ImGui::TextDisabled("Inside the grey band a hand cannot tell.");
   ImGui::Dummy({0.0F, 0.4F * line});
   draw_trial(style, width);
-  const HealthWords health = health_words(session, FrameFigures{});
+  const HealthWords health = health_words(health_view(session), 0.0);
   if (health.problem) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().fault));
     ImGui::TextWrapped("%s", health.text.c_str());

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_force.h"
 #include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
 #include "scenes/live/ab_trial.h"
@@ -40,7 +40,7 @@ class OpenDay {
   AbTrial trial_;
   ForceCurves curves_;
   bool visitor_ = false;
-  std::size_t home_ = 0;  // the slot in the hand when nobody is there
+  std::size_t home_ = 0;  // the active slot when nobody is there
 };
 
 }  // namespace palpate

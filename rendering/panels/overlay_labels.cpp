@@ -4,7 +4,7 @@
 
 #include "rendering/panels/overlay_parts.h"
 #include "engine/base/text.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
 namespace palpate::overlay {
@@ -35,7 +35,7 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
 }
 
 std::string label_text(const LiveSession& session, std::size_t slot) {
-  return std::to_string(slot + 1) + "  " + session.slot(slot).name;
+  return std::to_string(slot + 1) + "  " + session.models().view(slot).name;
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
         secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
-    const bool chosen = slots[i] == session.selected();
-    const Rgb colour = secret ? style.colours().text : slot_colour(session, slots[i], style.theme());
+    const bool chosen = slots[i] == session.models().selected();
+    const Rgb colour = secret ? style.colours().text : slot_colour(models_view(session), slots[i], style.theme());
     const float pad = 0.25F * height_of(font);
     ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
                          {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
@@ -60,10 +60,10 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
                          {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
     text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
     if (slots.size() < 2 || !chosen) continue;
-    const std::string hand = "in the hand";
-    const ImVec2 below = text_size(style.fonts().body, hand);
+    const std::string active = "active model";
+    const ImVec2 below = text_size(style.fonts().body, active);
     text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad},
-            ink(style.colours().text), hand);
+            ink(style.colours().text), active);
   }
 }
 
@@ -74,20 +74,19 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   ImFont* body = style.fonts().body;
   const float line = height_of(body);
   const ImVec2 corner(area.at.x + 1.1F * line, area.at.y + area.size.y - lift);
-  const bool known = session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready &&
-                     !std::isnan(session.reference_N());
-  const double error = known ? session.slot(session.selected()).dent_error_over_jnd : 0.0;
-  // Two decimals are more than anyone can see change.
-  const std::string number = !known           ? "–"
-                             : error < 0.9995 ? at_most_three_decimals(error).substr(0, 4)
-                                              : at_most_three_decimals(error);
+  const ModelsView models = models_view(session);
+  const SlotView* active = models.active();
+  const double error = active != nullptr && !std::isnan(session.comparison().reference_N())
+                           ? active->recent_peak_error_over_jnd
+                           : 0.0;
+  const std::string number = peak_error_words(models, session.comparison().reference_N());
   const ImVec2 size = text_size(big, "0.00");
   const float y = corner.y - size.y - 1.9F * line;
   text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);
   const float beside = corner.x + size.x + 0.7F * line;
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), "of what a hand can notice:");
   text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet),
-          "the error of the model in the hand");
+          "the error of the active model");
   const float width = 11.0F * line;
   const float top = y + size.y + 0.35F * line;
   const float high = 0.55F * line;

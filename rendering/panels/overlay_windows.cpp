@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "rendering/panels/overlay_parts.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_parts.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate::overlay {
@@ -29,7 +29,7 @@ std::vector<HelpLine> help_lines() {
   std::vector<HelpLine> lines = {{"mouse", "moves the probe, over the block; down is deeper"},
                                  {"wheel, Up, Down", "move the probe step by step"},
                                  {"right button", "turns the view; Ctrl + wheel comes nearer"},
-                                 {"1 ... 9", "take a model into the hand; a click on its block too"}};
+                                 {"1 ... 9", "make a model the active one; a click on its block too"}};
   for (const CommandEntry& entry : commands()) lines.push_back({entry.key, entry.help});
   lines.push_back({"on the curves", "drag zooms, the wheel goes back, double click goes on"});
   lines.push_back({"Left, Right", "scroll back and forth while the curves stand still"});
@@ -72,9 +72,8 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
 }
 
 void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (!away_from_data(session)) return;
-  const std::string text = "Nothing like this was recorded: here " + session.slot(session.selected()).name +
-                           " only follows the trend";
+  const std::string text = data_warning(models_view(session));
+  if (text.empty()) return;
   const float wrap = 0.8F * area.size.x;
   const ImVec2 size = text_size(style.fonts().body, text, wrap);
   const float pad = 0.4F * height_of(style.fonts().body);

@@ -4,7 +4,8 @@
 #include "engine/live/pacer.h"
 #include "rendering/panels/curve_drawing.h"
 #include "engine/base/text.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_force.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/panels/time_plot.h"
 
 namespace palpate {
@@ -34,23 +35,23 @@ std::string short_name(const SlotView& slot) {
 }  // namespace
 
 struct ForceCurves::Scene {
-  const LiveSession& session;
+  const ForceView& force;
   ViewState& view;
   const UiStyle& style;
   double end_s = 0.0;
 
   Rgb colour(std::size_t slot) const {
-    return view.hidden_choice > 0 ? style.colours().text : slot_colour(session, slot, style.theme());
+    return view.hidden_choice > 0 ? style.colours().text : slot_colour(force.models, slot, style.theme());
   }
   bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 20.0F * ImGui::GetFontSize(); }
   // The models in the order of drawing: the one in the hand on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
-    for (std::size_t i = 0; i < session.slot_count() && !view.kiosk; ++i) {
-      if (i != session.selected() && session.slot(i).state == SlotState::ready) draw(i);
+    const ModelsView& models = force.models;
+    for (std::size_t i = 0; i < models.slots.size() && !view.kiosk; ++i) {
+      if (i != models.selected && models.slots[i]->state == SlotState::ready) draw(i);
     }
-    if (session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready)
-      draw(session.selected());
+    if (models.active() != nullptr) draw(models.selected);
   }
   PlotAxes axes(const Range& y, const char* unit, bool x_numbers) const {
     return {{end_s - view.time.shown_s - view.time.zero_s, end_s - view.time.zero_s}, y, "s", unit, x_numbers,
@@ -58,9 +59,9 @@ struct ForceCurves::Scene {
   }
 };
 
-void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& style, float force_height,
+void ForceCurves::draw(const ForceView& force, ViewState& view, const UiStyle& style, float force_height,
                        float error_height) {
-  const Scene scene = begin(session, view, style);
+  const Scene scene = begin(force, view, style);
   draw_titles_of_force(scene);
   draw_force(scene, force_height);
   draw_titles_of_error(scene);
@@ -72,18 +73,18 @@ void ForceCurves::draw(LiveSession& session, ViewState& view, const UiStyle& sty
   if (!hovered_) view.time.hover_s = std::nan("");
 }
 
-void ForceCurves::draw_for_visitors(LiveSession& session, ViewState& view, const UiStyle& style,
+void ForceCurves::draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style,
                                     float height) {
-  draw_force(begin(session, view, style), height);
+  draw_force(begin(force, view, style), height);
   view.time.hover_s = std::nan("");
 }
 
-ForceCurves::Scene ForceCurves::begin(const LiveSession& session, ViewState& view, const UiStyle& style) {
+ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, const UiStyle& style) {
   hovered_ = false;
-  const Scene scene{session, view, style, view.time.end_s(steady_now_s())};
+  const Scene scene{force, view, style, view.time.end_s(steady_now_s())};
   const auto columns =
       static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
-  curves_.gather(session.history(), session.jnd(), session.slot_count(), scene.end_s - view.time.shown_s, scene.end_s,
+  curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
                  columns);
   view.force_scale_N =
       eased_scale(view.force_scale_N, std::max(1.0, 1.05 * static_cast<double>(curves_.highest_force_N())));
@@ -97,14 +98,14 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
   const CurveTime& time = scene.view.time;
   // What stands still is read where it stands.
   const CurveColumn* last = time.paused ? curves_.last() : nullptr;
-  const double reference_N = !time.paused ? scene.session.reference_N()
+  const double reference_N = !time.paused ? scene.force.reference_N
                              : last != nullptr && last->reference ? static_cast<double>(last->reference_N)
                                                                   : std::nan("");
   section_title(scene.style, "FORCE");
   ImGui::SameLine();
   ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", scene.session.reference_words().c_str());
+  ImGui::TextDisabled("%s", scene.force.reference_words.c_str());
   tip("Force of every model, and in green what they are compared with (F chooses another).\n"
       "The grey band is one just noticeable difference (JND) either way.\n"
       "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
@@ -115,7 +116,7 @@ void ForceCurves::draw_titles_of_error(const Scene& scene) const {
   const bool difference = scene.view.difference;
   section_title(scene.style, difference ? "DIFFERENCE / JND" : "FELT ERROR / JND");
   ImGui::SameLine();
-  if (away_from_data(scene.session)) {
+  if (scene.force.models.out_of_domain()) {
     ImGui::TextColored(paint(scene.style.colours().fault), "away from the recorded data");
   } else if (scene.view.time.paused) {
     ImGui::TextDisabled("stopped, Space goes on");
@@ -133,19 +134,19 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
                               const char* unit) {
   if (scene.view.kiosk) return;
   CurveTime& time = scene.view.time;
-  if (handle_time_plot(plot, scene.style, scene.session.history(), time, scene.end_s)) hovered_ = true;
+  if (handle_time_plot(plot, scene.style, *scene.force.history, time, scene.end_s)) hovered_ = true;
   std::vector<CurveLabel> labels;
   std::vector<Reading> readings;
   const CurveColumn* under = curves_.at(time.hover_s);
   const CurveColumn* last = curves_.last();
   if (under != nullptr && under->reference)
     readings.push_back({"reference  " + at_most_three_decimals(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
-  for (std::size_t i = 0; i < scene.session.slot_count(); ++i) {
-    if (scene.session.slot(i).state != SlotState::ready) continue;
+  for (std::size_t i = 0; i < scene.force.models.slots.size(); ++i) {
+    if (scene.force.models.slots[i]->state != SlotState::ready) continue;
     if (last != nullptr && !std::isnan(value(*last, i)))
-      labels.push_back({short_name(scene.session.slot(i)), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
+      labels.push_back({short_name(*scene.force.models.slots[i]), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
     if (under != nullptr && !std::isnan(value(*under, i)))
-      readings.push_back({scene.session.slot(i).name + "  " + at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
+      readings.push_back({scene.force.models.slots[i]->name + "  " + at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
                           scene.colour(i)});
   }
   if (scene.names()) draw_labels(plot, labels);
@@ -163,7 +164,7 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
   paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
                  [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
   scene.for_each_slot([&](std::size_t slot) {
-    const bool selected = slot == scene.session.selected();
+    const bool selected = slot == scene.force.models.selected;
     paint_on.curve(
         ink(scene.colour(slot), selected ? 1.0F : 0.75F), (selected ? kSelectedLine_px : kModelLine_px) * thin,
         [slot](const CurveColumn& c) { return c.low_N[slot]; },
@@ -182,7 +183,7 @@ void ForceCurves::draw_difference(const Scene& scene, float height) {
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
   plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
   scene.for_each_slot([&](std::size_t slot) {
-    const bool selected = slot == scene.session.selected();
+    const bool selected = slot == scene.force.models.selected;
     const ImU32 colour = ink(scene.colour(slot), selected ? 1.0F : 0.75F);
     paint_on.curve(
         colour, (selected ? kSelectedLine_px : kModelLine_px) * thin,
@@ -204,7 +205,7 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
   plot.level(1.0, ink(p.text), 1.5F * thin);
   scene.for_each_slot([&](std::size_t slot) {
-    const bool selected = slot == scene.session.selected();
+    const bool selected = slot == scene.force.models.selected;
     for (const CurveColumn& column : curves_.columns()) {
       if (!(column.error_over_jnd[slot] > 1.0F)) continue;
       const ImVec2 at(plot.x_px(column.time_s - scene.view.time.zero_s),

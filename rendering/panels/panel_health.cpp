@@ -1,8 +1,12 @@
+#include "rendering/panels/panel_health.h"
+
+#include <imgui.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_parts.h"
 
 namespace palpate {
 namespace {
@@ -42,13 +46,13 @@ void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
   ImGui::EndTable();
 }
 
-void draw_faults(const LiveSession& session, const UiStyle& style) {
-  const std::vector<FaultEvent>& faults = session.faults();
+void draw_faults(const HealthView& health, const UiStyle& style) {
+  const std::vector<FaultEvent>& faults = health.faults;
   if (faults.empty()) {
     ImGui::TextDisabled("no fault so far");
     return;
   }
-  const double now_s = session.newest().loop_time_s;
+  const double now_s = health.now_s;
   const std::size_t first = faults.size() > kFaultsShown ? faults.size() - kFaultsShown : 0;
   for (std::size_t i = faults.size(); i-- > first;) {
     ImGui::TextColored(paint(style.colours().fault), "%.0f s ago",
@@ -62,62 +66,61 @@ void draw_faults(const LiveSession& session, const UiStyle& style) {
 
 }  // namespace
 
-// Age of the sample, round trip and heat, of a device that has them.
-std::string device_line(const LiveSession& session) {
-  const DeviceHealth& device = session.newest().device;
+std::string device_line(const HealthView& health) {
+  const DeviceHealth& device = health.device;
   if (device.zeroing == Zeroing::not_needed && device.faults == 0) return {};
-  std::string line = session.device_name() + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
+  std::string line = health.device_name + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
-  line += text_of(", motor heat %.0f %%", 100.0 * static_cast<double>(session.newest().heat_share));
+  line += text_of(", motor heat %.0f %%", 100.0 * health.heat_share);
   return line;
 }
 
-int health_lines(const LiveSession& session, const ViewState& view) {
-  const int quiet = device_line(session).empty() ? 3 : 4;
+int health_lines(const HealthView& health, const ViewState& view) {
+  const int quiet = device_line(health).empty() ? 3 : 4;
   if (!view.details) return quiet;
-  const int fix = session.scheduling().fix.empty() ? 0 : 8;
+  const int fix = health.scheduling.fix.empty() ? 0 : 8;
   return quiet + fix + 6 +
-         static_cast<int>(std::clamp<std::size_t>(session.faults().size(), 1, kFaultsShown));
+         static_cast<int>(std::clamp<std::size_t>(health.faults.size(), 1, kFaultsShown));
 }
 
-HealthWords health_words(const LiveSession& session, const FrameFigures& frames) {
-  const LoopStatistics statistics = session.statistics();
+HealthWords health_words(const HealthView& health, double recent_fps) {
+  const LoopStatistics& statistics = health.loop;
   if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
     return {
         text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s),
         true};
   }
-  if (const auto words = device_fault_words(session.newest().device.faults); !words.empty()) {
+  if (const auto words = device_fault_words(health.device.faults); !words.empty()) {
     return {"Device: " + words.front(), true};
   }
-  if (const auto words = session.alarms(); !words.empty()) {
+  if (const std::vector<std::string>& words = health.alarms; !words.empty()) {
     const std::string more =
         words.size() > 1 ? " (and " + std::to_string(words.size() - 1) + " more)" : std::string();
     return {"Earlier: " + words.front() + more, true, true};
   }
-  const double missed = session.missed_of_late();
+  const double missed = health.missed_of_late;
   if (missed > kManyMissed) {
     return {text_of("%.1f %% of the deadlines missed of late: close other programs", 100.0 * missed) +
-                (session.scheduling().realtime ? "" : ", or allow real-time priority"),
+                (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
   }
-  if (frames.recent_fps > 0.0 && frames.recent_fps < kFewFrames_per_s) {
+  if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
     // No fault: nothing that is felt is late.
     return {
-        text_of("%.0f frames a second: the picture is slow, the force is not affected", frames.recent_fps),
+        text_of("%.0f frames a second: the picture is slow, the force is not affected", recent_fps),
         false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) +
-              text_of(", %.0f fps", frames.recent_fps),
+              text_of(", %.0f fps", recent_fps),
           false};
 }
 
-void draw_health(const LiveSession& session, ViewState& view, const UiStyle& style,
+void draw_health(const HealthView& health, ViewState& view, const UiStyle& style,
                  const FrameFigures& frames) {
   section_title(style, "LOOP");
   ImGui::SameLine();
-  const HealthWords words = health_words(session, frames);
+  const HealthWords words = health_words(health, frames.recent_fps);
   if (words.problem) {
     ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().fault));
     ImGui::TextWrapped("%s%s", words.text.c_str(), words.past ? ". C clears this." : "");
@@ -129,22 +132,22 @@ void draw_health(const LiveSession& session, ViewState& view, const UiStyle& sty
   }
   if (ImGui::IsItemClicked()) view.details = !view.details;
   tip("How well the 1000 Hz loop keeps its time. L shows all figures and faults.");
-  const RtStatus& scheduling = session.scheduling();
+  const RtStatus& scheduling = health.scheduling;
   ImGui::TextDisabled("scheduling: %s", scheduling.scheduling.c_str());
   if (!scheduling.fix.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled(view.details ? "" : "(L: how to get better)");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scheduling.fix.c_str());
   }
-  if (const std::string line = device_line(session); !line.empty()) {
+  if (const std::string line = device_line(health); !line.empty()) {
     ImGui::TextDisabled("%s", line.c_str());
     tip("The device: age of its newest sample, time from a force to the report that confirms it, and how much of "
         "the motor's thermal budget is used.");
   }
   if (!view.details) return;
   if (!scheduling.fix.empty()) ImGui::TextWrapped("%s", scheduling.fix.c_str());
-  draw_times(session.statistics(), frames);
-  draw_faults(session, style);
+  draw_times(health.loop, frames);
+  draw_faults(health, style);
 }
 
 }  // namespace palpate

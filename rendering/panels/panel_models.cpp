@@ -4,7 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_models.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
 namespace palpate {
@@ -19,7 +20,7 @@ struct Heading {
   int dropped;         // where there is no room: 1 goes first; 0 stays
 };
 constexpr Heading kHeadings[kColumns] = {
-    {"model", "Click, or press its number, to take a model into the hand.", "      greedy-100", 0},
+    {"model", "Click, or press its number, to make a model the active one.", "      greedy-100", 0},
     {"N", "Force now, newtons", "12.34", 4},
     {"mN off", "Error now: model minus reference, millinewtons", "+1234", 1},
     {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", "12.34", 5},
@@ -47,14 +48,14 @@ double sort_value(const SlotView& slot, int column) {
   }
 }
 
-std::vector<std::size_t> sorted_slots(const LiveSession& session, const TableSort& sort) {
-  std::vector<std::size_t> order(session.slot_count());
+std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableSort& sort) {
+  std::vector<std::size_t> order(models.slots.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   if (sort.column < 0) return order;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!sort.rising) std::swap(a, b);
-    if (sort.column == kName) return session.slot(a).name < session.slot(b).name;
-    return sort_value(session.slot(a), sort.column) < sort_value(session.slot(b), sort.column);
+    if (sort.column == kName) return models.slots[a]->name < models.slots[b]->name;
+    return sort_value(*models.slots[a], sort.column) < sort_value(*models.slots[b], sort.column);
   });
   return order;
 }
@@ -120,12 +121,13 @@ std::string grouped(int count) {
   return text;
 }
 
-void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
-  const SlotView& slot = session.slot(index);
+// Whether it was clicked.
+bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style) {
+  const SlotView& slot = *models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
   const ImU32 colour =
-      ink(slot_colour(session, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
+      ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
   // Too long for the column: without the numbers, which the last one and the tip have.
   std::string name = slot.name;
   if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
@@ -133,19 +135,17 @@ void draw_name(LiveSession& session, std::size_t index, const UiStyle& style) {
   const std::string label = "      " + name + "##slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
-  if (ImGui::Selectable(label.c_str(), index == session.selected(), flags)) session.select(index);
-  const std::string words = index == session.selected() ? slot.name + " is in the hand"
-                                                        : "Click, or press " + std::to_string(index + 1) +
-                                                              ", to take " + slot.name + " into the hand";
-  tip(words.c_str());
+  const bool clicked = ImGui::Selectable(label.c_str(), index == models.selected, flags);
+  tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
-  if (index == session.selected()) {
+  if (index == models.selected) {
     list.AddCircleFilled(middle, 0.40F * line, colour);
     list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
   } else {
     list.AddCircleFilled(middle, 0.27F * line, colour);
   }
+  return clicked;
 }
 
 // Over the columns of the figures that are not there yet.
@@ -153,17 +153,8 @@ void draw_waiting(const SlotView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
-  switch (slot.state) {
-    case SlotState::waiting:
-      ImGui::TextDisabled("waits");
-      break;
-    case SlotState::fitting:
-      ImGui::TextDisabled("fits %.0f %%", 100.0 * slot.progress);
-      break;
-    default:
-      ImGui::TextDisabled("failed");
-      tip(slot.problem.c_str());
-  }
+  ImGui::TextDisabled("%s", waiting_words(slot).c_str());
+  if (slot.state == SlotState::failed) tip(slot.problem.c_str());
   ImGui::PopClipRect();
 }
 
@@ -189,6 +180,17 @@ float column_width(int column) {
 
 }  // namespace
 
+std::string waiting_words(const SlotView& slot) {
+  if (slot.state == SlotState::waiting) return "waits";
+  return slot.state == SlotState::fitting ? format("fits %.0f %%", 100.0 * slot.progress) : "failed";
+}
+
+std::string name_tip(const ModelsView& models, std::size_t slot) {
+  const std::string& name = models.slots[slot]->name;
+  if (slot == models.selected) return name + " is the active model";
+  return "Click, or press " + std::to_string(slot + 1) + ", to make " + name + " the active model";
+}
+
 std::vector<int> shown_columns(float room, float (*width)(int)) {
   std::vector<int> columns;
   float needed = 0.0F;
@@ -206,11 +208,12 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
   return columns;
 }
 
-void draw_model_table(LiveSession& session, ViewState& view, const UiStyle& style, float height) {
+std::optional<std::size_t> draw_model_table(const ModelsView& models, TableSort& sort, const UiStyle& style, float height) {
+  std::optional<std::size_t> clicked;
   const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
   const std::vector<int> shown =
       shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
-  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return;
+  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return clicked;
   ImGui::TableSetupScrollFreeze(0, 1);
   for (int column = 0; column < kColumns; ++column) {
     const bool hidden = std::find(shown.begin(), shown.end(), column) == shown.end();
@@ -219,19 +222,20 @@ void draw_model_table(LiveSession& session, ViewState& view, const UiStyle& styl
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const int column : shown) {
-    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, view.table_sort);
+    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, sort);
   }
-  for (const std::size_t index : sorted_slots(session, view.table_sort)) {
+  for (const std::size_t index : sorted_slots(models, sort)) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);
-    draw_name(session, index, style);
-    if (session.slot(index).state == SlotState::ready) {
-      draw_figures(session.slot(index), style);
+    if (draw_name(models, index, style)) clicked = index;
+    if (models.slots[index]->state == SlotState::ready) {
+      draw_figures(*models.slots[index], style);
     } else {
-      draw_waiting(session.slot(index));
+      draw_waiting(*models.slots[index]);
     }
   }
   ImGui::EndTable();
+  return clicked;
 }
 
 }  // namespace palpate

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "rendering/panels/overlay_parts.h"
-#include "rendering/panels/panel.h"
+#include "engine/base/text.h"
+#include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
 namespace palpate {
@@ -40,7 +41,7 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
 }
 
 void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (!session.takes_mouse() || !session.hand_is_exploring()) return;
+  if (session.mouse() == nullptr || !session.mouse()->hand_is_exploring()) return;
   const std::string hint = "The hand moves by itself. Move the mouse over the block to press it.";
   const float line = height_of(style.fonts().body);
   text_at(style.fonts().body,
@@ -73,42 +74,39 @@ float draw_buttons(const LiveSession& session, const ViewState& view, const Scen
 }
 
 void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift) {
-  const ReplayStatus replay = session.replay();
-  if (!replay.present) return;
+  if (session.replay() == nullptr) return;
+  ReplayControl& replay = *session.replay();
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
   ImGui::Begin("replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
-  if (ImGui::Button(replay.paused ? "Play" : "Pause")) session.pause_replay(!replay.paused);
+  if (ImGui::Button(replay.paused() ? "Play" : "Pause")) replay.pause(!replay.paused());
   tip("The recording (P)");
   ImGui::SameLine();
   // Figures beside the sliders: on them the grip hides what it is dragged over.
   ImGui::SetNextItemWidth(0.50F * area.size.x);
-  auto at_s = static_cast<float>(replay.at_s);
-  if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s), "")) {
-    session.seek_replay(static_cast<double>(at_s));
+  auto at_s = static_cast<float>(replay.playhead_s());
+  if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) {
+    replay.seek(static_cast<double>(at_s));
   }
   tip("Where in the recording ([ and ] by 2 s)");
   ImGui::SameLine();
-  ImGui::Text("%5.1f of %.1f s", replay.at_s, replay.duration_s);
+  ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-4.5F * ImGui::GetFontSize());
-  auto speed = static_cast<float>(replay.speed);
+  auto speed = static_cast<float>(replay.speed());
   if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) {
-    session.set_replay_speed(static_cast<double>(speed));
+    replay.set_speed(static_cast<double>(speed));
   }
   tip("Its speed (, and .)");
   ImGui::SameLine();
-  ImGui::Text("%.2f x", replay.speed);
+  ImGui::Text("%.2f x", replay.speed());
   ImGui::End();
 }
 
 void draw_recording(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
   const RecordingStatus recording = session.recording();
   if (!recording.active && !recording.saving) return;
-  char text[256];
-  std::snprintf(text, sizeof text, recording.saving ? "saving %s" : "recording %s: %.1f s, %llu samples",
-                std::filesystem::path(recording.path).filename().c_str(), recording.seconds,
-                static_cast<unsigned long long>(recording.rows));
+  const std::string text = recording_words(recording);
   const ImVec2 size = text_size(style.fonts().body, text);
   const ImVec2 at(area.at.x + area.size.x - size.x - size.y, area.at.y + 0.9F * size.y);
   ImGui::GetBackgroundDrawList()->AddCircleFilled({at.x - 0.7F * size.y, at.y + 0.55F * size.y}, 0.35F * size.y,
@@ -142,16 +140,39 @@ const std::vector<CommandEntry>& commands() {
   return all;
 }
 
+std::string data_warning(const ModelsView& models) {
+  if (!models.out_of_domain()) return {};
+  return "Nothing like this was recorded: here " + models.active()->name + " only follows the trend";
+}
+
+std::string recording_words(const RecordingStatus& recording) {
+  if (!recording.active && !recording.saving) return {};
+  const std::string name = std::filesystem::path(recording.path).filename().string();
+  if (recording.saving) return "saving " + name;
+  char length[64];
+  std::snprintf(length, sizeof length, ": %.1f s, %llu samples", recording.seconds,
+                static_cast<unsigned long long>(recording.rows));
+  return "recording " + name + length;
+}
+
+std::string peak_error_words(const ModelsView& models, double reference_N) {
+  const SlotView* active = models.active();
+  if (active == nullptr || std::isnan(reference_N)) return "–";
+  const double error = active->recent_peak_error_over_jnd;
+  // Two decimals are more than anyone can see change.
+  return error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+}
+
 std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count) {
   std::vector<std::size_t> slots;
-  for (std::size_t i = 0; i < session.slot_count() && slots.size() < block_count; ++i) {
-    if (session.slot(i).state == SlotState::ready) slots.push_back(i);
+  for (std::size_t i = 0; i < session.models().size() && slots.size() < block_count; ++i) {
+    if (session.models().view(i).state == SlotState::ready) slots.push_back(i);
   }
   const bool selectable =
-      session.slot_count() > 0 && session.slot(session.selected()).state == SlotState::ready;
-  if (selectable && std::find(slots.begin(), slots.end(), session.selected()) == slots.end() &&
+      session.models().size() > 0 && session.models().view(session.models().selected()).state == SlotState::ready;
+  if (selectable && std::find(slots.begin(), slots.end(), session.models().selected()) == slots.end() &&
       !slots.empty()) {
-    slots.back() = session.selected();
+    slots.back() = session.models().selected();
   }
   return slots;
 }
@@ -182,9 +203,9 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
                         const std::function<void(Command)>& run) {
   const float line = height_of(style.fonts().body);
   const float buttons = view.kiosk ? 0.0F : std::max(buttons_height_, 2.4F * line);
-  const float bars = buttons + (session.replay().present ? 2.4F * line : 0.0F);
+  const float bars = buttons + (session.replay() != nullptr ? 2.4F * line : 0.0F);
   // Who only passes by needs no model's name.
-  const bool passing = view.kiosk && session.takes_mouse() && session.hand_is_exploring();
+  const bool passing = view.kiosk && (session.mouse() != nullptr) && session.mouse()->hand_is_exploring();
   if (!passing) draw_labels(session, blocks, view, style, area);
   if (view.hidden_choice == 0) draw_big_number(session, style, area, bars);
   draw_data_warning(session, style, area);

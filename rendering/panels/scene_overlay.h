@@ -7,10 +7,12 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "rendering/panels/layout.h"
 #include "rendering/picture/block_view.h"
+#include "rendering/panels/panel_views.h"
 #include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
 #include "scenes/live/live_session.h"
@@ -44,6 +46,16 @@ struct CommandEntry {
   const char* help;   // one line
 };
 const std::vector<CommandEntry>& commands();
+
+// The overlay's sentences; empty when there is nothing to tell.
+std::string data_warning(const ModelsView& models);
+std::string recording_words(const RecordingStatus& recording);
+// The big number: the recent peak error of the active model over the JND.
+std::string peak_error_words(const ModelsView& models, double reference_N);
+
+// The slots that the blocks show: all there is room for, in order, the active one
+// always among them.
+std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count);
 
 class SceneOverlay {
  public:

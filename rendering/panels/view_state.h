@@ -10,7 +10,6 @@
 
 #include "engine/live/time_histogram.h"
 #include "rendering/ui/colours.h"
-#include "scenes/live/live_session.h"
 
 namespace palpate {
 
@@ -52,7 +51,7 @@ struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
   float text_size = 1.0F;  // times the usual
-  int hidden_choice = 0;        // above 0: which model is in the hand is a secret, shown as this
+  int hidden_choice = 0;        // above 0: which model is active is a secret, shown as this
   std::size_t block_count = 1;  // 1, 2 or 4
   TableSort table_sort;
   bool help = false;
@@ -77,9 +76,5 @@ struct Toast {
   bool problem = false;
   double until_s = 0.0;  // window time
 };
-
-// The slots that the blocks show: all there is room for, in order, the one in the
-// hand always among them.
-std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count);
 
 }  // namespace palpate

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <glm/common.hpp>
-#include <utility>
+
+#include "scenes/scene/method_look.h"
 
 namespace palpate {
 namespace {
@@ -24,23 +26,17 @@ const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), 
 // green of viridis: nothing is no shadow, and what is large is dark.
 constexpr std::array<Rgb, 5> kScale{hex(0xFAF6D0), hex(0xD3E59C), hex(0x93D285), hex(0x50BA85), hex(0x1FA387)};
 
-constexpr std::array<std::pair<std::string_view, Rgb>, 5> kMethodColours{{{"voxel", hex(0x56B4E9)},
-                                                                          {"random", hex(0xE69F00)},
-                                                                          {"kdtree", hex(0x0072B2)},
-                                                                          {"greedy", hex(0xD55E00)},
-                                                                          {"position", hex(0xCC79A7)}}};
 }  // namespace
 
 const Palette& palette(Theme theme) noexcept { return theme == Theme::light ? kLight : kDark; }
 
-Rgb method_colour(std::string_view method, Theme theme) noexcept {
-  for (const auto& [name, colour] : kMethodColours) {
-    if (name == method) return colour;
-  }
+Rgb method_colour(std::string_view method, Theme theme) {
+  const std::uint32_t colour = method_rgb(method);
+  if (colour != 0) return hex(colour);
   return theme == Theme::light ? Rgb(0.0F) : Rgb(1.0F);
 }
 
-Rgb method_colour(std::string_view method, Theme theme, std::size_t which) noexcept {
+Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
   // Shares of black, where negative, or white.
   constexpr std::array<float, 4> kShades{-0.42F, 0.45F, -0.66F, 0.25F};
   const Rgb colour = method_colour(method, theme);

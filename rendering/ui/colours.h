@@ -27,10 +27,11 @@ struct Palette {
 };
 const Palette& palette(Theme theme) noexcept;
 
-// Of a fitting method; direct is black or white, and so is what is not known.
-Rgb method_colour(std::string_view method, Theme theme) noexcept;
+// Of a fitting method (scenes/scene/method_look.h); one without a hue is black or
+// white, and so is what is not known.
+Rgb method_colour(std::string_view method, Theme theme);
 // Of the `which`-th model of one method, 0 for the first: another shade of it.
-Rgb method_colour(std::string_view method, Theme theme, std::size_t which) noexcept;
+Rgb method_colour(std::string_view method, Theme theme, std::size_t which);
 // The measured or true force.
 inline constexpr Rgb kReferenceColour{0.0F, 0.62F, 0.45F};
 

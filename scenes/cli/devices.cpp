@@ -17,8 +17,8 @@ void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& a
   if (all.empty()) std::printf("  nothing; a haptic device shows up here as soon as it is plugged in\n");
   bool problems = false;
   for (const HidDiagnosis& one : all) {
-    std::printf("  %s  %04x:%04x  %s: %s\n", one.found.path.empty() ? "(no node)" : one.found.path.c_str(),
-                one.found.vendor_id, one.found.product_id, one.found.product.c_str(), one.use.c_str());
+    std::printf("  %s  %04x:%04x  %s: %s\n", one.info.path.empty() ? "(no node)" : one.info.path.c_str(),
+                one.info.vendor_id, one.info.product_id, one.info.product.c_str(), one.use.c_str());
     if (one.problem.empty()) continue;
     problems = true;
     std::printf("    cannot be used: %s\n", one.problem.c_str());

@@ -1,6 +1,7 @@
 // palpate fit: recordings in, a model file out.
-#include <chrono>
+#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -34,7 +35,17 @@ struct FitArguments {
   std::string out;
   bool force = false;
   bool json = false;
+  bool list_methods = false;
 };
+
+// An option that only some methods take.
+struct MethodOnly {
+  const char* option;
+  MethodOption takes;
+};
+constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres}, {"--candidates", kTakesCandidates},
+                                      {"--grid", kTakesGrid},       {"--kernel", kTakesKernel},
+                                      {"--solver", kTakesSolver}};
 
 // "0.17,1.27" as positive numbers; empty when it is anything else.
 std::vector<double> parse_times(const std::string& text) {
@@ -88,14 +99,15 @@ std::string check_grid(const std::string& text) {
   return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
 }
 
+template <typename Names>
+std::size_t index_of(const Names& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
 TrainingRequest training_request(const FitArguments& arguments, const Scene& scene) {
   TrainingRequest request = palpate::training_request(scene);
-  request.weighting = arguments.weighting == "jnd"        ? Weighting::jnd
-                      : arguments.weighting == "relative" ? Weighting::relative
-                                                          : Weighting::none;
-  request.reduction = arguments.reduction == "coverage" ? Reduction::coverage
-                      : arguments.reduction == "force"  ? Reduction::force
-                                                        : Reduction::none;
+  request.weighting = static_cast<Weighting>(index_of(kWeightingNames, arguments.weighting));
+  request.reduction = static_cast<Reduction>(index_of(kReductionNames, arguments.reduction));
   if (arguments.relaxation == "auto") {
     request.relaxation = Relaxation::automatic;
   } else if (arguments.relaxation != "scene") {
@@ -107,11 +119,11 @@ TrainingRequest training_request(const FitArguments& arguments, const Scene& sce
 
 MethodRequest method_request(const FitArguments& arguments) {
   MethodRequest request;
-  request.method = *method_from_name(arguments.method);
+  request.method = find_method(arguments.method);
   request.centres = arguments.centres;
   request.candidates = arguments.candidates == "all" ? 0 : std::stoi(arguments.candidates);
   request.kernel = *kernel_from_name(arguments.kernel);
-  request.solver = arguments.solver == "tsvd" ? DirectSolverChoice::tsvd : DirectSolverChoice::cholesky;
+  request.solver = arguments.solver == "tsvd" ? DirectSolver::truncated_svd : DirectSolver::cholesky;
   request.grid = parse_grid(arguments.grid);
   request.seed = arguments.seed;
   return request;
@@ -152,7 +164,7 @@ void print_json(const MethodFit& fit, const FitArguments& arguments, double seco
     times.push_back({{"time_s", time.time_s}, {"standard_error_s", time.standard_error_s}});
   }
   const nlohmann::ordered_json object = {{"method", fit.data.method},
-                                         {"centres", FittedModel(fit.data).centre_count()},
+                                         {"centres", fit.data.correction->size()},
                                          {"kernel", arguments.kernel},
                                          {"weighting", arguments.weighting},
                                          {"samples", provenance.samples},
@@ -169,7 +181,28 @@ void print_json(const MethodFit& fit, const FitArguments& arguments, double seco
   std::cout << object.dump(2) << "\n";
 }
 
+// Wrong usage that CLI11 cannot see: what is missing unless the methods are only
+// listed, and an option that the method has no use for.
+void check_usage(const CLI::App& verb, const FitArguments& arguments) {
+  if (arguments.list_methods) return;
+  for (const char* needed : {"--recording", "--method", "--out"}) {
+    if (verb.count(needed) == 0) throw CLI::ValidationError(needed, "is required");
+  }
+  const Method& method = *find_method(arguments.method);
+  for (const MethodOnly& only : kMethodOnly) {
+    if (verb.count(only.option) == 0 || method.can_take(only.takes)) continue;
+    throw CLI::ValidationError(only.option, std::string("not taken by method ") + method.name + ", only by " +
+                                                methods_that_take(only.takes) + "; leave it out");
+  }
+}
+
+Status list_methods() {
+  for (const Method* method : methods()) std::cout << method->name << "\n";
+  return {};
+}
+
 Status run_fit(const FitArguments& arguments) {
+  if (arguments.list_methods) return list_methods();
   const auto scene = load_scene(arguments.scene);
   if (!scene) return scene.error();
   // A name that cannot be written is told now and not after the fit.
@@ -186,15 +219,9 @@ Status run_fit(const FitArguments& arguments) {
   MotionSource source(std::move(inputs));
   const auto prepared = prepare_training(source, training_request(arguments, *scene), prepare);
   if (!prepared) return prepared.error();
-  auto fit = fit_method(*prepared, method_request(arguments), method);
+  const auto fit = fit_method(*prepared, method_request(arguments), method);
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fit->data.provenance.fit_seconds = seconds;
-  fit->data.provenance.weighting = arguments.weighting;
-  fit->data.provenance.reduction = arguments.reduction;
-  fit->data.provenance.relaxation = arguments.relaxation == "scene" || arguments.relaxation == "auto"
-                                        ? arguments.relaxation
-                                        : "given";
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;
   if (arguments.json) {
     print_json(*fit, arguments, seconds);
@@ -210,12 +237,15 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* verb = app.add_subcommand("fit", "Fit a force model to recordings");
   verb->add_option("--recording", arguments->recordings, "Training recordings; together one training set")
-      ->required()->type_name("CSV");
-  verb->add_option("--method", arguments->method, "direct, voxel, random, kdtree or greedy")
-      ->required()->check(CLI::IsMember({"direct", "voxel", "random", "kdtree", "greedy"}));
-  verb->add_option("--centres", arguments->centres, "Centres of random, kdtree and greedy")
+      ->type_name("CSV");
+  std::vector<std::string> names;
+  for (const Method* method : methods()) names.emplace_back(method->name);
+  verb->add_option("--method", arguments->method, "One of " + method_names())->check(CLI::IsMember(names));
+  verb->add_flag("--list-methods", arguments->list_methods, "Name the methods, one to a line");
+  verb->add_option("--centres", arguments->centres, "Centres of " + methods_that_take(kTakesCentres))
       ->check(CLI::Range(1, 100000))->capture_default_str();
-  verb->add_option("--candidates", arguments->candidates, "Sites that greedy tries per step, or all")
+  verb->add_option("--candidates", arguments->candidates,
+                   "Sites tried per step, or all, of " + methods_that_take(kTakesCandidates))
       ->check(CLI::Validator(check_candidates, "N|all"))->capture_default_str();
   verb->add_option("--kernel", arguments->kernel, "cubic, linear, thin-plate or quintic")
       ->check(CLI::IsMember({"cubic", "linear", "thin-plate", "quintic"}))->capture_default_str();
@@ -226,15 +256,17 @@ void add_fit(CLI::App& app, Verbs& verbs) {
       ->check(CLI::IsMember({"coverage", "force", "none"}))->capture_default_str();
   verb->add_option("--relaxation", arguments->relaxation, "Relaxation times: the scene's, identified, or given")
       ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"))->capture_default_str();
-  verb->add_option("--grid", arguments->grid, "Nodes of the voxel grid per feature [25x11x11x11]")
+  verb->add_option("--grid", arguments->grid,
+                   "Nodes of the grid per feature [25x11x11x11], of " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene whose features and JND line count")->capture_default_str();
-  verb->add_option("--solver", arguments->solver, "Direct and voxel: cholesky, or the paper's truncated SVD")
+  verb->add_option("--solver", arguments->solver, "Cholesky, or the paper's truncated SVD, of " + methods_that_take(kTakesSolver))
       ->check(CLI::IsMember({"cholesky", "tsvd"}))->capture_default_str();
-  verb->add_option("--seed", arguments->seed, "Of random and greedy")->capture_default_str();
-  verb->add_option("--out", arguments->out, "Model file to write")->required()->type_name("JSON");
+  verb->add_option("--seed", arguments->seed, "Of " + methods_that_take(kTakesSeed))->capture_default_str();
+  verb->add_option("--out", arguments->out, "Model file to write")->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
+  verb->parse_complete_callback([verb, arguments] { check_usage(*verb, *arguments); });
   verbs.emplace_back(verb, [arguments] { return run_fit(*arguments); });
 }
 

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-const TrialModel* find_method(const std::vector<TrialModel>& models, const std::string& method) {
+const TrialModel* find_trial_model(const std::vector<TrialModel>& models, const std::string& method) {
   const auto found =
       std::find_if(models.begin(), models.end(), [&](const TrialModel& model) { return model.method == method; });
   return found != models.end() ? &*found : nullptr;
@@ -24,8 +24,8 @@ std::string times_noticeable(double over_jnd) {
 bool AbTrial::begin(const std::vector<TrialModel>& ready) {
   reset();
   if (ready.size() < 2) return false;
-  const TrialModel* one = find_method(ready, "greedy");
-  if (one == nullptr) one = find_method(ready, "direct");
+  const TrialModel* one = find_trial_model(ready, "greedy");
+  if (one == nullptr) one = find_trial_model(ready, "direct");
   if (one == nullptr) one = &ready.front();
   const TrialModel* other = draw_other(ready, *one);
   const bool swapped = random_.uniform(0.0, 1.0) < 0.5;
@@ -37,8 +37,8 @@ bool AbTrial::begin(const std::vector<TrialModel>& ready) {
 
 const TrialModel* AbTrial::draw_other(const std::vector<TrialModel>& ready, const TrialModel& one) {
   const bool alike = random_.uniform(0.0, 1.0) < 0.5;
-  const TrialModel* wanted = find_method(ready, alike ? "direct" : "position");
-  if (wanted != nullptr && wanted != &one) return wanted;
+  const TrialModel* drawn = find_trial_model(ready, alike ? "direct" : "position");
+  if (drawn != nullptr && drawn != &one) return drawn;
   std::vector<const TrialModel*> rest;
   for (const TrialModel& model : ready) {
     if (&model != &one) rest.push_back(&model);

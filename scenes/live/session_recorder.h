@@ -24,13 +24,9 @@
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording_writer.h"
 #include "engine/base/result.h"
+#include "scenes/live/notices.h"
 
 namespace palpate {
-
-struct Notice {
-  std::string text;
-  bool problem = false;  // else: good news
-};
 
 struct RecordingStatus {
   bool active = false;

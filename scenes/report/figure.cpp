@@ -109,26 +109,16 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
   return "<svg viewBox=\"" + view + "\" role=\"img\" aria-label=\"" + escape_html(title) + "\">" + body;
 }
 
-std::string_view method_colour(Method method) {
-  switch (method) {
-    case Method::direct: return kDirect;
-    case Method::voxel: return "#56B4E9";
-    case Method::random: return "#E69F00";
-    case Method::kdtree: return "#0072B2";
-    case Method::greedy: return "#D55E00";
-  }
-  return kInk;
+std::string method_colour(const Method& method) {
+  if (method.colour == kNeutralColour) return std::string(kDirect);
+  char text[16];
+  std::snprintf(text, sizeof text, "#%06X", static_cast<unsigned>(method.colour));
+  return text;
 }
 
 std::string model_label(const PlannedModel& model) {
-  switch (model.request.method) {
-    case Method::direct: return "direct";
-    case Method::voxel: return "voxel";
-    case Method::random: return "random";
-    case Method::kdtree: return "kD-tree";
-    case Method::greedy: return model.request.candidates < 100 ? "greedy, 20 tried" : "greedy";
-  }
-  return model.name;
+  const bool few = model.request.candidates < MethodRequest{}.candidates;
+  return model.request.method->label + (few ? ", " + std::to_string(model.request.candidates) + " tried" : std::string());
 }
 
 std::string data_block(const std::string& name, const std::vector<std::vector<double>>& rows) {

@@ -42,9 +42,12 @@ inline constexpr std::string_view kBand = "#e3e3e3";
 inline constexpr std::string_view kPaper = "#fefefe";
 inline constexpr std::string_view kDirect = "#000001";
 inline constexpr std::string_view kMeasured = "#009E73";
+// Two kinds of points that are no methods.
+inline constexpr std::string_view kBlue = "#0072B2";
+inline constexpr std::string_view kVermilion = "#D55E00";
 
 // The method's colour, the same as in the window.
-std::string_view method_colour(Method method);
+std::string method_colour(const Method& method);
 std::string model_label(const PlannedModel& model);
 
 // "$NAME << EOD ... EOD" with one line of numbers a row.

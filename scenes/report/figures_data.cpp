@@ -45,14 +45,14 @@ Figure trace_figure(const ReportData& data) {
   const double length_s =
       data.trace.rows.empty() ? 0.0 : data.trace.rows.back().time_s - data.trace.rows.front().time_s;
   figure.title = std::string("The worst ") + (length_s > 0.95 * TraceFinder::kTraceSeconds ? std::string("five") : three_digits(length_s)) + " seconds";
-  figure.caption = "The stretch of " + data.trace.recording + " with the largest errors over all six models: measured "
+  figure.caption = "The stretch of " + data.trace.recording + " with the largest errors over all main models: measured "
                    "force in the JND band, every model's force, and the errors over the JND. Where all models leave "
                    "the band together, the recording asks for more than any of them has seen.";
   figure.height = 560;
   std::vector<std::vector<double>> rows;
   double largest = 1.0;
   std::vector<double> forces;
-  for (const TraceRow& row : fewer(data.trace.rows, kMainModels)) {
+  for (const TraceRow& row : fewer(data.trace.rows, main_models(data))) {
     const double jnd_N = data.jnd.at(row.measured_N);
     std::vector<double> line{row.time_s, row.measured_N, row.measured_N - jnd_N, row.measured_N + jnd_N};
     forces.push_back(line.back());
@@ -71,14 +71,16 @@ Figure trace_figure(const ReportData& data) {
   std::string force_plots;
   std::string error_plots;
   std::string labels;
-  for (std::size_t i = 0; i < kMainModels; ++i) {
+  const std::size_t models = main_models(data);
+  const double label_step = 0.54 / static_cast<double>(std::max<std::size_t>(models, 7) - 1);
+  for (std::size_t i = 0; i < models; ++i) {
     const PlannedModel& plan = data.models[i].plan;
-    const std::string colour(method_colour(plan.request.method));
+    const std::string colour = method_colour(*plan.request.method);
     const std::string paint = " with lines linewidth 1.2 linecolor rgb \"" + colour + "\"" +
                               (plan.request.candidates < 100 ? " dashtype 2" : "");
     force_plots += ", \\\n  $trace using 1:" + std::to_string(5 + i) + paint;
-    error_plots += ", \\\n  $trace using 1:" + std::to_string(5 + kMainModels + i) + paint;
-    labels += coloured(model_label(plan), colour, "graph 1.02, graph " + std::to_string(0.84 - 0.09 * static_cast<double>(i)),
+    error_plots += ", \\\n  $trace using 1:" + std::to_string(5 + models + i) + paint;
+    labels += coloured(model_label(plan), colour, "graph 1.02, graph " + std::to_string(0.84 - label_step * static_cast<double>(i)),
                        static_cast<int>(i) + 3);
   }
   const double from = rows.empty() ? 0.0 : rows.front()[0];
@@ -152,27 +154,28 @@ Figure coverage_figure(const ReportData& data) {
   figure.commands = "set multiplot layout " + std::to_string(panels) +
                     ",1\nset lmargin 11\nset tmargin 0.6\nset bmargin 3.2\nset rmargin 15\nset xlabel " +
                     quoted(feature_axis(coverage.features[0]).label) + "\n" +
-                    coloured("trained on", method_colour(Method::kdtree), "graph 1.02, graph 0.95", 1) +
+                    coloured("trained on", kBlue, "graph 1.02, graph 0.95", 1) +
                     coloured("test, near", kMuted, "graph 1.02, graph 0.84", 2) +
-                    coloured("test, away", method_colour(Method::greedy), "graph 1.02, graph 0.73", 3);
+                    coloured("test, away", kVermilion, "graph 1.02, graph 0.73", 3);
   for (std::size_t p = 0; p < panels; ++p) {
     const std::string y = std::to_string(others[p] + 1);
     const std::string label = others[p] < features ? feature_axis(coverage.features[others[p]]).label : "Force [N]";
     figure.commands += "set ylabel " + quoted(label) + "\nplot $inside using 1:" + y +
                        " with points pointtype 7 pointsize 0.3 linecolor rgb \"" + std::string(kMuted) +
                        "\", $sites using 1:" + y + " with points pointtype 7 pointsize 0.2 linecolor rgb \"" +
-                       std::string(method_colour(Method::kdtree)) + "\", $outside using 1:" + y +
+                       std::string(kBlue) + "\", $outside using 1:" + y +
                        " with points pointtype 7 pointsize 0.35 linecolor rgb \"" +
-                       std::string(method_colour(Method::greedy)) + "\"\nunset label\n";
+                       std::string(kVermilion) + "\"\nunset label\n";
   }
   figure.commands += "unset multiplot\n";
   return figure;
 }
 
 // Quoted; in two lines where one would run into its neighbour.
-std::string method_word(const std::string& model) {
-  if (model.rfind("random", 0) == 0) return "\"random\"";
-  return model.find("-of-") != std::string::npos ? "\"greedy,\\n20 tried\"" : "\"greedy\"";
+std::string method_word(const PlannedModel& plan) {
+  std::string label = model_label(plan);
+  if (const std::size_t comma = label.find(", "); comma != std::string::npos) label.replace(comma, 2, ",\\n");
+  return "\"" + label + "\"";
 }
 
 Figure seeds_figure(const ReportData& data) {
@@ -180,18 +183,20 @@ Figure seeds_figure(const ReportData& data) {
   figure.name = "repeatability";
   figure.title = "Repeatability over seeds";
   figure.height = 320;
-  std::map<std::string, std::vector<std::vector<double>>> by_model;
+  std::map<std::string, std::pair<PlannedModel, std::vector<std::vector<double>>>> by_model;
   std::vector<double> rms;
   std::vector<double> worst;
   for (const SeedResult& seed : data.seeds) {
-    by_model[seed.model].push_back({1e3 * seed.errors.rms_error_N, seed.errors.max_error_over_jnd});
+    by_model.try_emplace(seed.model.name, seed.model, std::vector<std::vector<double>>{})
+        .first->second.second.push_back({1e3 * seed.errors.rms_error_N, seed.errors.max_error_over_jnd});
     rms.push_back(1e3 * seed.errors.rms_error_N);
     worst.push_back(seed.errors.max_error_over_jnd);
   }
   std::size_t count = 0;
   std::string tics;
   std::string plots[2];
-  for (auto& [model, values] : by_model) {
+  for (const auto& [name, seeds] : by_model) {
+    const auto& [model, values] = seeds;
     ++count;
     std::vector<std::vector<double>> rows;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -200,8 +205,7 @@ Figure seeds_figure(const ReportData& data) {
     }
     const std::string block = "seeds" + std::to_string(count);
     figure.data += data_block(block, rows);
-    const bool random = model.rfind("random", 0) == 0;
-    const std::string colour(method_colour(random ? Method::random : Method::greedy));
+    const std::string colour = method_colour(*model.request.method);
     for (std::size_t p = 0; p < 2; ++p) {
       plots[p] += (plots[p].empty() ? "plot $" : ", $") + block + " using 1:" + std::to_string(p + 2) +
                   " with points pointtype 7 pointsize 0.7 linecolor rgb \"" + colour + "\"";

@@ -44,7 +44,7 @@ Figure force_figure(const ReportData& data, const Curve& curve) {
     std::vector<std::vector<double>> rows;
     for (const ErrorBin& bin : model.bins) rows.push_back({middle(bin), value(bin, curve)});
     const std::string block = "model" + std::to_string(labels.size());
-    const std::string colour(method_colour(model.plan.request.method));
+    const std::string colour = method_colour(*model.plan.request.method);
     figure.data += data_block(block, rows);
     plots += ", \\\n  $" + block + " with linespoints pointtype 7 pointsize 0.4 linewidth 1.5 linecolor rgb \"" + colour +
              "\"" + (model.plan.request.candidates < 100 ? " dashtype 2" : "");

@@ -19,10 +19,10 @@ struct Point {
 using Measure = std::function<double(const ModelResult&)>;
 
 // A method's models by size; the paper's greedy with few candidates stays out.
-std::vector<Point> curve(const ReportData& data, Method method, const Measure& x, const Measure& y) {
+std::vector<Point> curve(const ReportData& data, const Method& method, const Measure& x, const Measure& y) {
   std::vector<Point> points;
   for (const ModelResult& model : data.models) {
-    if (model.plan.request.method != method || model.plan.request.candidates < 100 || !model.time.measured) continue;
+    if (model.plan.request.method != &method || model.plan.request.candidates < 100 || !model.time.measured) continue;
     points.push_back({x(model), y(model), model.size, model.pooled.within_jnd >= kGoodShare});
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.size < b.size; });
@@ -42,11 +42,11 @@ std::string short_count(int count) {
 
 Scatter scatter(const ReportData& data, const Measure& x, const Measure& y, const AxisRange& y_axis) {
   Scatter result;
-  for (const Method method : kMethods) {
-    const std::vector<Point> points = curve(data, method, x, y);
+  for (const Method* method : methods()) {
+    const std::vector<Point> points = curve(data, *method, x, y);
     if (points.empty()) continue;
-    const std::string name(method_name(method));
-    const std::string colour(method_colour(method));
+    const std::string name(method->name);
+    const std::string colour = method_colour(*method);
     std::vector<std::vector<double>> all;
     std::vector<std::vector<double>> good;
     for (const Point& point : points) {
@@ -64,7 +64,7 @@ Scatter scatter(const ReportData& data, const Measure& x, const Measure& y, cons
     any.request.method = method;
     std::string label = model_label(any);
     if (points.size() > 1) label += ", " + short_count(points.front().size) + "–" + short_count(points.back().size);
-    if (method == Method::voxel && points.size() > 1) label += " nodes";
+    if (method->can_take(kTakesGrid) && points.size() > 1) label += " nodes";
     result.labels.push_back({y_axis.fraction(points.back().y), label, colour});
   }
   return result;
@@ -228,7 +228,7 @@ Figure sites_figure(const ReportData& data) {
     const PlannedModel& plan = data.models[i].plan;
     const std::string block = "sites" + std::to_string(i);
     figure.data += data_block(block, rows);
-    curves.add(block, plan.request.candidates < 100 ? " dashtype 2" : "", method_colour(plan.request.method),
+    curves.add(block, plan.request.candidates < 100 ? " dashtype 2" : "", method_colour(*plan.request.method),
                rows.back()[1], model_label(plan));
   }
   figure.commands = curves.commands("set logscale xy\nset xrange [400:" + std::to_string(1.25 * most_sites) +
@@ -252,10 +252,10 @@ Figure dimension_figure(const ReportData& data) {
   }
   figure.data = data_block("dimension", rows);
   CostCurves curves{log_range(seconds), {}, {}};
-  const std::pair<const char*, Method> parts[] = {
-      {"direct fit", Method::direct}, {"filling the grid", Method::voxel}, {"greedy fit", Method::greedy}};
+  const std::pair<const char*, const Method*> parts[] = {
+      {"direct fit", &kDirectMethod}, {"filling the grid", &kVoxelMethod}, {"greedy fit", &kGreedyMethod}};
   for (std::size_t i = 0; i < 3 && !rows.empty(); ++i) {
-    curves.add("dimension using 1:" + std::to_string(i + 2), "", method_colour(parts[i].second), rows.back()[i + 1],
+    curves.add("dimension using 1:" + std::to_string(i + 2), "", method_colour(*parts[i].second), rows.back()[i + 1],
                parts[i].first);
   }
   figure.commands = curves.commands("set logscale y\nset xtics 1\nset xlabel \"Features\"\n", "Seconds");

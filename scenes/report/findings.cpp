@@ -19,7 +19,7 @@ std::string figures(const ModelResult& model) {
 }
 
 std::string size_of(const ModelResult& model) {
-  const bool grid = model.plan.request.method == Method::voxel;
+  const bool grid = model.plan.request.method->can_take(kTakesGrid);
   return std::to_string(model.size) + (grid ? " nodes" : " centres");
 }
 
@@ -73,9 +73,9 @@ std::string about_seeds(const ReportData& data) {
   std::map<std::string, std::size_t> counts;
   for (const SeedResult& seed : data.seeds) {
     const double rms = 1e3 * seed.errors.rms_error_N;
-    auto [at, fresh] = ranges.try_emplace(seed.model, rms, rms);
+    auto [at, fresh] = ranges.try_emplace(seed.model.name, rms, rms);
     at->second = {std::min(at->second.first, rms), std::max(at->second.second, rms)};
-    ++counts[seed.model];
+    ++counts[seed.model.name];
   }
   std::string text;
   for (const auto& [model, range] : ranges) {

@@ -91,7 +91,7 @@ Status TraceFinder::look_at(const Recording& recording, const std::vector<ModelP
                                  trace.in_contact = snapshot.in_contact;
                                  double sum = 0.0;
                                  for (std::size_t i = 0; i < models.size(); ++i) {
-                                   trace.force_N[i] = static_cast<float>(snapshot.force_N[i]);
+                                   trace.force_N.push_back(static_cast<float>(snapshot.force_N[i]));
                                    const double ratio = jnd_.error_over_jnd(snapshot.force_N[i], row.force_N);
                                    if (snapshot.in_contact) sum += ratio * ratio;
                                  }

@@ -54,7 +54,7 @@ class TraceFinder {
   static constexpr double kTraceSeconds = 5.0;
 
   explicit TraceFinder(const JndLine& jnd) : jnd_(jnd) {}
-  // `models`: the kMainModels main ones.
+  // `models`: the main ones.
   Status look_at(const Recording& recording, const std::vector<ModelPointer>& models);
   const WorstTrace& worst() const { return worst_; }
 

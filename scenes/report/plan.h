@@ -11,7 +11,7 @@
 namespace palpate {
 
 struct ReportPlan {
-  std::vector<PlannedModel> models;    // the main ones first, direct before voxel
+  std::vector<PlannedModel> models;    // the main ones first, a method's base before it
   std::vector<PlannedModel> repeated;  // once per seed
   std::vector<std::uint64_t> seeds;    // at least ten
   std::vector<std::size_t> site_counts;  // for fit time against sites; those above the data's are left out
@@ -21,9 +21,5 @@ struct ReportPlan {
 
 // `features`: of the scene, 1 to 8.
 ReportPlan make_plan(bool quick, std::size_t features);
-
-// Seconds that a fit takes, about, on one core of 2023 with 7,000 sites: to weigh
-// the steps of the progress line.
-double expected_seconds(const MethodRequest& request);
 
 }  // namespace palpate

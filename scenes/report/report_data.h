@@ -17,9 +17,8 @@
 
 namespace palpate {
 
-inline constexpr std::size_t kMainModels = 6;
-
-// One model of the report. "Main" models are the six of the paper's figures.
+// One model of the report. "Main" models are one a method, and one more
+// of the methods that try candidates, with the paper's other choice of them.
 struct PlannedModel {
   std::string name;  // "greedy-100", "greedy-100-of-20" (20 candidates a step)
   MethodRequest request;
@@ -70,7 +69,7 @@ struct ModelResult {
 };
 
 struct SeedResult {
-  std::string model;
+  PlannedModel model;
   std::uint64_t seed = 0;
   ErrorSummary errors;
 };
@@ -79,7 +78,7 @@ struct SeedResult {
 struct TraceRow {
   double time_s = 0.0;
   double measured_N = 0.0;
-  std::array<float, kMainModels> force_N{};
+  std::vector<float> force_N;
   bool in_contact = false;
 };
 
@@ -145,5 +144,12 @@ struct ReportData {
   // The stability suite's hard cases, when there are any.
   std::optional<Table> hard_cases;
 };
+
+// How many main models there are; they come first in data.models.
+inline std::size_t main_models(const ReportData& data) {
+  std::size_t count = 0;
+  for (const ModelResult& model : data.models) count += model.plan.main ? 1 : 0;
+  return count;
+}
 
 }  // namespace palpate

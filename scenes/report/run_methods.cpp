@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <utility>
 
 #include "engine/tick/replay.h"
@@ -16,6 +17,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A method's base has been fitted before it.
+double own_seconds(const MethodRequest& request) { return request.method->expected_seconds(request); }
+
 constexpr double kPrepareWeight = 1.0;
 constexpr double kJudgeWeight = 0.1;  // a model
 constexpr double kSitesWeight = 8.0;
@@ -27,9 +31,9 @@ double seconds_since(Clock::time_point start) {
 
 double total_weight(const RecordingSet& recordings, const ReportPlan& plan) {
   double fold = kPrepareWeight;
-  for (const PlannedModel& model : plan.models) fold += expected_seconds(model.request) + kJudgeWeight;
+  for (const PlannedModel& model : plan.models) fold += own_seconds(model.request) + kJudgeWeight;
   for (const PlannedModel& model : plan.repeated) {
-    fold += static_cast<double>(plan.seeds.size()) * (expected_seconds(model.request) + kJudgeWeight);
+    fold += static_cast<double>(plan.seeds.size()) * (own_seconds(model.request) + kJudgeWeight);
   }
   return fold * static_cast<double>(recordings.folds.size()) + kSitesWeight + kDimensionWeight;
 }
@@ -128,25 +132,23 @@ class Run {
 
   Result<std::vector<ModelPointer>> fit_models(int fold, const PreparedTraining& prepared) {
     std::vector<ModelPointer> models;
-    MethodFit direct;
-    double direct_seconds = 0.0;
+    std::map<const Method*, std::pair<MethodFit, double>> done;  // the main fit of each method, and its seconds
     for (ModelResult& result : data_.models) {
       const MethodRequest& request = result.plan.request;
-      const bool voxel = request.method == Method::voxel;
+      const auto base = done.find(request.method->base);
+      const bool has_base = base != done.end();
       const auto start = Clock::now();
-      auto fit = fit_method(prepared, request, steps_.next(expected_seconds(request)), voxel ? &direct : nullptr);
+      auto fit = fit_method(prepared, request, steps_.next(own_seconds(request)),
+                            has_base ? &base->second.first : nullptr);
       if (!fit) return fit.error();
-      const double seconds = seconds_since(start) + (voxel ? direct_seconds : 0.0);
+      const double seconds = seconds_since(start) + (has_base ? base->second.second : 0.0);
       result.fit_seconds += seconds / static_cast<double>(recordings_.folds.size());
       result.health.push_back({fold, fit->report, prepared.common.provenance.samples, prepared.set.sites.size(),
                                fit->data.provenance.training_within_jnd});
-      if (request.method == Method::direct) {
-        direct = *fit;
-        direct_seconds = seconds;
-      }
+      done.try_emplace(request.method, *fit, seconds);
       models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       result.size = models.back()->centre_count();
-      if (voxel && result.plan.main) result.plan.name = models.back()->name();
+      if (result.plan.main && request.method->can_take(kTakesGrid)) result.plan.name = models.back()->name();
     }
     return models;
   }
@@ -157,7 +159,7 @@ class Run {
       for (const std::uint64_t seed : plan_.seeds) {
         MethodRequest request = model.request;
         request.seed = seed;
-        auto fit = fit_method(prepared, request, steps_.next(expected_seconds(request)));
+        auto fit = fit_method(prepared, request, steps_.next(own_seconds(request)));
         if (!fit) return fit.error();
         models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       }
@@ -166,7 +168,7 @@ class Run {
   }
 
   Status judge(const Fold& fold, const std::vector<ModelPointer>& models, const std::vector<ModelPointer>& repeated) {
-    const std::vector<ModelPointer> main(models.begin(), models.begin() + kMainModels);
+    const std::vector<ModelPointer> main(models.begin(), models.begin() + static_cast<std::ptrdiff_t>(main_models(data_)));
     for (const std::size_t index : fold.test) {
       const Recording& recording = *recordings_.all[index];
       const double share = kJudgeWeight / static_cast<double>(fold.test.size());
@@ -206,13 +208,15 @@ class Run {
     const std::vector<ErrorSummary> seeds = seed_jury_.pooled();
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       data_.seeds.push_back(
-          {plan_.repeated[i / plan_.seeds.size()].name, plan_.seeds[i % plan_.seeds.size()], seeds[i]});
+          {plan_.repeated[i / plan_.seeds.size()], plan_.seeds[i % plan_.seeds.size()], seeds[i]});
     }
     data_.trace = trace_.worst();
     data_.coverage = coverage_.result();
-    for (std::size_t i = 0; i < kMainModels; ++i) data_.models[i].bins = coverage_.bins(i);
+    for (std::size_t i = 0; i < main_models(data_); ++i) data_.models[i].bins = coverage_.bins(i);
     for (CoverageErrors& errors : data_.coverage.errors) {
-      if (errors.model == plan_.models[1].name) errors.model = data_.models[1].plan.name;
+      for (std::size_t i = 0; i < plan_.models.size(); ++i) {
+        if (errors.model == plan_.models[i].name) errors.model = data_.models[i].plan.name;
+      }
     }
   }
 

@@ -41,7 +41,7 @@ Table with_errors(const std::string& name, const std::string& caption, std::vect
   return {name, caption, false, std::move(columns), {}};
 }
 
-std::string method_of(const ModelResult& model) { return std::string(method_name(model.plan.request.method)); }
+std::string method_of(const ModelResult& model) { return model.plan.request.method->name; }
 
 Table recordings_table(const ReportData& data) {
   Table table{"recordings",
@@ -158,7 +158,7 @@ Table coverage_table(const ReportData& data) {
 Table seeds_table(const ReportData& data) {
   Table table = with_errors("repeatability", "", {{"model", "model"}, {"seed", "seed"}});
   for (const SeedResult& seed : data.seeds) {
-    std::vector<TableCell> row{seed.model, seed.seed};
+    std::vector<TableCell> row{seed.model.name, seed.seed};
     add_errors(row, seed.errors);
     table.rows.push_back(std::move(row));
   }
@@ -191,8 +191,7 @@ Table health_table(const ReportData& data) {
   for (const ModelResult& model : data.models) {
     for (const FitHealth& health : model.health) {
       const FitReport& report = health.report;
-      const Method method = model.plan.request.method;
-      const bool direct = method == Method::direct || method == Method::voxel;
+      const bool direct = model.plan.request.method->can_take(kTakesSolver);
       table.rows.push_back({static_cast<std::uint64_t>(health.fold + 1), model.plan.name, health.training_samples,
                             health.sites, static_cast<std::uint64_t>(report.columns),
                             static_cast<std::uint64_t>(report.rank), report.condition,

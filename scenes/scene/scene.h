@@ -40,7 +40,7 @@ struct Scene {
   BlockGeometry block;
   Colour block_colour;
   Colour tool_colour;
-  std::vector<std::string> default_models;  // methods: direct, voxel, ...
+  std::vector<std::string> default_models;  // names of methods (models/fit/methods.h)
   // A hand that explores by itself aims at most for this force.
   double strongest_press_N = 5.0;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/json/json_fields.h"
+#include "models/fit/methods.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/jnd_file.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<const char*, 5> kMethods = {"direct", "voxel", "random", "kdtree", "greedy"};
 // The format needs three.
 constexpr int kSceneNesting = 8;
 constexpr double kLongestRelaxation_s = 100.0;
@@ -150,13 +150,14 @@ class SceneReader : private JsonFields {
   }
 
   void read_default_models() {
-    const std::vector<std::string> methods(kMethods.begin(), kMethods.end());
-    const std::string expected = "a list of methods out of direct, voxel, random, kdtree, greedy";
+    const std::string expected = "a list of methods out of " + method_names();
+    std::vector<std::string> names;
+    for (const Method* method : methods()) names.emplace_back(method->name);
     const JsonNode node = list(top_, "default_models", expected);
     if (node.value == nullptr) return;
     if (node.value->empty()) complain(node.pointer, found(*node.value) + ", expected " + expected);
     for (std::size_t i = 0; i < node.value->size(); ++i) {
-      if (const auto index = choice(entry(node, i), methods)) scene_.default_models.push_back(methods[*index]);
+      if (const auto index = choice(entry(node, i), names)) scene_.default_models.push_back(names[*index]);
     }
   }
 

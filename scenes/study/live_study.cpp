@@ -25,14 +25,14 @@ Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& reque
   if (!file) return file.error();
   auto session = StudySession::create(request.header, std::move(*file));
   if (!session) return session.error();
-  DeviceRequest wanted;
-  if (const auto assets = find_assets()) wanted.calibrations = *assets + "/devices";
-  auto device = open_device(request.device, wanted);
+  DeviceRequest device_request;
+  if (const auto assets = find_assets()) device_request.calibrations = *assets + "/devices";
+  auto device = open_device(request.device, device_request);
   if (!device) return device.error();
   std::unique_ptr<LiveStudy> study(new LiveStudy(std::move(*device), std::move(*session)));
   LoopSettings settings;
   settings.realtime = request.realtime;
-  settings.tick.source = study->presented_.get();
+  settings.source = study->presented_.get();
   study->loop_ = std::make_unique<HapticsLoop>(*study->device_, settings);
   if (Status status = study->loop_->start(); !status) return status.error();
   return study;

@@ -10,8 +10,8 @@
 
 #include "engine/tick/replay.h"
 #include "engine/tick/error_figures.h"
-#include "scenes/live/model_supply.h"
-#include "scenes/live/slot_plan.h"
+#include "scenes/worker/model_worker.h"
+#include "scenes/worker/slot_plan.h"
 #include "scenes/material/rig.h"
 
 namespace palpate {
@@ -213,15 +213,15 @@ std::string one_line(std::string text) {
 
 // The models of the plans, made by the worker that makes those of the window.
 Result<std::vector<Model>> make_models(const Scene& scene, const std::vector<SlotPlan>& plans) {
-  ModelSupply supply(scene, kTrainingSeed);
-  for (std::size_t i = 0; i < plans.size(); ++i) supply.order(i, plans[i]);
-  if (const Status started = supply.start(); !started) return started.error();
+  ModelWorker worker(scene, kTrainingSeed);
+  for (std::size_t i = 0; i < plans.size(); ++i) worker.add_job(i, plans[i]);
+  if (const Status started = worker.start(); !started) return started.error();
   std::vector<Model> models(plans.size());
   for (std::size_t left = plans.size(); left > 0;) {
     std::this_thread::sleep_for(kLookAgain);
-    for (SuppliedModel& made : supply.take()) {
+    for (FinishedModel& made : worker.take_finished()) {
       if (made.model == nullptr) return Error{made.problem};
-      models[made.ticket] = std::move(made.model);
+      models[made.job_id] = std::move(made.model);
       --left;
     }
   }

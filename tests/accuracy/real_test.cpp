@@ -37,7 +37,7 @@ std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::s
 
 TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
   const PreparedTraining prepared = prepare(skin("train", {"250", "600", "1000"}), scene_request("skin"));
-  const ModelPtr greedy = fit(prepared, Method::greedy);
+  const ModelPtr greedy = fit(prepared, &kGreedyMethod);
   double squares = 0.0;
   double within = 0.0;
   double samples = 0.0;

@@ -170,7 +170,7 @@ const std::vector<Choice>& choices() {
          t.weighting = Weighting::relative;
        }},
       {"candidates_all", [](TrainingRequest&, MethodRequest& m) { m.candidates = 0; }},
-      {"direct", [](TrainingRequest&, MethodRequest& m) { m.method = Method::direct; }},
+      {"direct", [](TrainingRequest&, MethodRequest& m) { m.method = &kDirectMethod; }},
   };
   return all;
 }

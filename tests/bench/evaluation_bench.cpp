@@ -66,7 +66,7 @@ void voxel(benchmark::State& state) {
   run_queries(state, recorded_sites().points, [&](const double* x) { return lookup.evaluate(x); });
 }
 
-void whole_model(benchmark::State& state, Method method) {
+void whole_model(benchmark::State& state, const Method* method) {
   MethodRequest request;
   request.method = method;
   const Result<MethodFit> fit = fit_method(recorded(), request);
@@ -101,8 +101,8 @@ const int registered = [] {
   for (const KernelKind kernel : kKernelKinds)
     prepare(benchmark::RegisterBenchmark(("evaluate/kernel/" + std::string(kernel_name(kernel))).c_str(),
                                          rbf_of_kernel, kernel));
-  for (const Method method : kMethods)
-    prepare(benchmark::RegisterBenchmark(("evaluate/model/" + std::string(method_name(method))).c_str(),
+  for (const Method* method : methods())
+    prepare(benchmark::RegisterBenchmark(("evaluate/model/" + std::string(method->name)).c_str(),
                                          whole_model, method));
   for (const std::string& target : simd::target_names())
     prepare(benchmark::RegisterBenchmark(("evaluate/target/" + target).c_str(), rbf_on_target, target)

@@ -36,7 +36,7 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   const ModelData& common = prepared.common;
   const auto d = static_cast<Eigen::Index>(common.features.size());
   const DomainGuard guard(common.cover);
-  const test::ModelPtr model = test::fit(prepared, Method::random);  // only to see its features
+  const test::ModelPtr model = test::fit(prepared, &kRandomMethod);  // only to see its features
   std::vector<double> points, force_N, trend_N, trust;
   for (const RecordingPtr& recording : test_recordings) {
     must(replay(

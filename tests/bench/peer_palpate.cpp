@@ -8,32 +8,27 @@
 namespace palpate::bench {
 namespace {
 
-Result<Function> fit(const PreparedTraining& prepared, Method method) {
+Result<Function> fit(const PreparedTraining& prepared, const Method* method) {
   MethodRequest request;
   request.method = method;
   Result<MethodFit> fitted = fit_method(prepared, request);
   if (!fitted) return fitted.error();
-  if (fitted->data.grid) {
-    const auto lookup = std::make_shared<const VoxelLookup>(*fitted->data.grid);
-    return Function([lookup](const double* x) { return lookup->evaluate(x); });
-  }
-  const auto evaluator = std::make_shared<const RbfEvaluator>(*fitted->data.rbf);
-  return Function([evaluator](const double* x) { return evaluator->evaluate(x); });
+  return Function([correction = fitted->data.correction](const double* x) { return correction->evaluate(x); });
 }
 
 }  // namespace
 
 std::vector<Peer> palpate_peers() {
   std::vector<Peer> peers;
-  const auto add = [&](Method method, const char* name, const char* text) {
+  const auto add = [&](const Method* method, const char* name, const char* text) {
     peers.push_back(
         {name, {{text, [method](const PreparedTraining& prepared) { return fit(prepared, method); }}}});
   };
-  add(Method::random, "palpate_random-100", "100 centres");
-  add(Method::kdtree, "palpate_kdtree-100", "100 centres");
-  add(Method::greedy, "palpate_greedy-100", "100 centres, 100 candidates a step");
-  add(Method::direct, "palpate_direct", "all sites are centres, smoothing chosen by leaving out strokes");
-  add(Method::voxel, "palpate_voxel", "25x11x11x11 grid (as `palpate fit` chooses it), filled from direct");
+  add(&kRandomMethod, "palpate_random-100", "100 centres");
+  add(&kKdTreeMethod, "palpate_kdtree-100", "100 centres");
+  add(&kGreedyMethod, "palpate_greedy-100", "100 centres, 100 candidates a step");
+  add(&kDirectMethod, "palpate_direct", "all sites are centres, smoothing chosen by leaving out strokes");
+  add(&kVoxelMethod, "palpate_voxel", "25x11x11x11 grid (as `palpate fit` chooses it), filled from direct");
   return peers;
 }
 

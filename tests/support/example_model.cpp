@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/model/no_correction.h"
 #include "tests/support/random_points.h"
 
 namespace palpate::test {
@@ -52,7 +53,6 @@ Provenance example_provenance() {
   from.contact_samples = 30000;
   from.samples_after_reduction = 6850;
   from.seed = 18446744073709551615ULL;
-  from.fit_seconds = 5.0;
   from.weighting = "jnd";
   from.reduction = "coverage";
   from.relaxation = "auto";
@@ -62,6 +62,18 @@ Provenance example_provenance() {
 }
 
 }  // namespace
+
+void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change) {
+  RbfFunction function = *rbf_of(data.correction);
+  change(function);
+  data.correction = std::make_shared<const RbfCorrection>(std::move(function));
+}
+
+void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change) {
+  VoxelGrid grid = *grid_of(data.correction);
+  change(grid);
+  data.correction = std::make_shared<const GridCorrection>(std::move(grid));
+}
 
 std::vector<FeatureSpec> position_features() { return {FeatureSpec{}}; }
 
@@ -105,11 +117,14 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.cover.inner_radius = 0.3;
   data.cover.outer_radius = 1.0 / 1.1;
   if (method == "voxel") {
-    data.grid = random_grid(data.features.size(), seed);
+    data.correction = std::make_shared<const GridCorrection>(random_grid(data.features.size(), seed));
+  } else if (method == "trend") {
+    data.correction = std::make_shared<const NoCorrection>();
   } else {
-    data.rbf = random_function(kernel, static_cast<int>(n), 40, seed);
-    data.rbf->weights *= 0.02;
-    data.rbf->tail *= 0.1;
+    RbfFunction function = random_function(kernel, static_cast<int>(n), 40, seed);
+    function.weights *= 0.02;
+    function.tail *= 0.1;
+    data.correction = std::make_shared<const RbfCorrection>(std::move(function));
   }
   data.provenance = example_provenance();
   return data;
@@ -124,6 +139,7 @@ std::vector<ModelData> example_models() {
       example_model("greedy", KernelKind::quintic, maxwell_features(), 5),
       example_model("greedy", KernelKind::cubic, position_features(), 6),
       example_model("voxel", KernelKind::cubic, position_features(), 7),
+      example_model("trend", KernelKind::cubic, maxwell_features(), 9),
       example_model("greedy", KernelKind::cubic, paper_features(), 8),
   };
   models.back().corrects_trend = false;

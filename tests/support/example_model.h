@@ -2,19 +2,26 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "engine/recording/recording.h"
 #include "models/model/fitted_model.h"
+#include "models/model/grid/grid_correction.h"
+#include "models/model/rbf/rbf_correction.h"
 
 namespace palpate::test {
 
 // A model of a soft block, about 2 N at 6 mm, with a random correction. `method`
-// "voxel" gives a grid, every other one radial basis functions. Passes
-// validate_model; the same arguments give the same model.
+// "voxel" gives a grid, "trend" nothing, every other one radial basis functions.
+// Passes validate_model; the same arguments give the same model.
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed);
+
+// Puts a changed copy in the place of the correction, which must be of that kind.
+void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change);
+void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change);
 
 // Depth; the paper's four features; two Maxwell branches.
 std::vector<FeatureSpec> position_features();

@@ -14,25 +14,25 @@
 
 namespace palpate::test {
 
-inline HidFound found_teensy() {
+inline HidDeviceInfo found_teensy() {
   return {"/dev/hidraw7", "Teensyduino RawHID", 0x16C0, 0x0486, 0xFFAB, 0x0200};
 }
-inline HidFound found_space_mouse() { return {"/dev/hidraw8", "SpaceNavigator", 0x046D, 0xC626, 1, 8}; }
+inline HidDeviceInfo found_space_mouse() { return {"/dev/hidraw8", "SpaceNavigator", 0x046D, 0xC626, 1, 8}; }
 
 class FakeHidBus final : public HidBus {
  public:
-  explicit FakeHidBus(HidFound found = found_teensy()) : found_(std::move(found)) {}
+  explicit FakeHidBus(HidDeviceInfo found = found_teensy()) : found_(std::move(found)) {}
 
-  std::vector<HidFound> list() override {
-    return plugged_in ? std::vector<HidFound>{found_} : std::vector<HidFound>{};
+  std::vector<HidDeviceInfo> list() override {
+    return plugged_in ? std::vector<HidDeviceInfo>{found_} : std::vector<HidDeviceInfo>{};
   }
-  Result<std::unique_ptr<HidLine>> open(const HidFound&) override {
+  Result<std::unique_ptr<HidConnection>> open(const HidDeviceInfo&) override {
     ++opened;
     if (refusals > 0) {
       --refusals;
       return Error{found_.path + ": no permission"};
     }
-    return Result<std::unique_ptr<HidLine>>(std::make_unique<Line>(*this));
+    return Result<std::unique_ptr<HidConnection>>(std::make_unique<Line>(*this));
   }
 
   // Any thread.
@@ -51,7 +51,7 @@ class FakeHidBus final : public HidBus {
   Report report;  // instead of the firmware's; before the threads start
 
  private:
-  class Line final : public HidLine {
+  class Line final : public HidConnection {
    public:
     explicit Line(FakeHidBus& bus) : bus_(bus) {}
     int read(std::uint8_t* bytes, std::size_t) noexcept override {
@@ -88,7 +88,7 @@ class FakeHidBus final : public HidBus {
     return newest;
   }
 
-  HidFound found_;
+  HidDeviceInfo found_;
   std::mutex mutex_;
   PaddleModel paddle_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

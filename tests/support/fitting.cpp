@@ -61,7 +61,7 @@ PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const Trai
   return must(prepare_training(source, request));
 }
 
-ModelPtr fit(const PreparedTraining& prepared, Method method, std::uint64_t seed) {
+ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64_t seed) {
   MethodRequest request;
   request.method = method;
   request.seed = seed;
@@ -70,7 +70,7 @@ ModelPtr fit(const PreparedTraining& prepared, Method method, std::uint64_t seed
 
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
   std::vector<ModelPtr> models;
-  for (const Method method : kMethods) models.push_back(fit(prepared, method));
+  for (const Method* method : methods()) models.push_back(fit(prepared, method));
   return models;
 }
 

@@ -45,8 +45,8 @@ TrainingRequest scene_request(const std::string& scene);
 TrainingRequest position_request();
 
 PreparedTraining prepare(const std::vector<RecordingPtr>& recordings, const TrainingRequest& request);
-ModelPtr fit(const PreparedTraining& prepared, Method method, std::uint64_t seed = 1);
-// One of each method, in the order of kMethods.
+ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64_t seed = 1);
+// One of each method, in the order of methods().
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
 
 // One summary per model, over the samples in contact.

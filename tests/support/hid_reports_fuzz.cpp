@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "devices/firmware/paddle/paddle_protocol.h"
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
 #include "devices/hid/spacemouse.h"
 
@@ -19,9 +20,9 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-HidCalibration calibration_of(HidKind kind) {
+HidCalibration calibration_of(const HidDriver* driver) {
   HidCalibration calibration;
-  calibration.kind = kind;
+  calibration.driver = driver;
   calibration.counts_per_metre = 50000.0;
   calibration.rest_position_m = -0.01;
   calibration.fastest_m_per_s = 5.0;
@@ -31,17 +32,17 @@ HidCalibration calibration_of(HidKind kind) {
   return calibration;
 }
 
-void check_decoder(HidKind kind, const std::uint8_t* bytes, std::size_t size) {
-  HidReading reading;
-  const ReportVerdict verdict = decode_report(kind, bytes, size, reading);
-  HidReading again;
-  require(decode_report(kind, bytes, size, again) == verdict && again.counts == reading.counts,
+void check_decoder(const HidDriver* driver, const std::uint8_t* bytes, std::size_t size) {
+  DeviceReading reading;
+  const ReportVerdict verdict = driver->decode(bytes, size, reading);
+  DeviceReading again;
+  require(driver->decode(bytes, size, again) == verdict && again.counts == reading.counts,
           "not repeatable");
   if (verdict != ReportVerdict::position) return;
-  if (kind == HidKind::spacemouse) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
-  if (kind == HidKind::polhem) require(std::abs(reading.counts) <= 32768, "beyond 16 bits");
-  if (kind == HidKind::openffboard) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
-  if (kind != HidKind::paddle) return;
+  if (driver == &kSpaceMouseDriver) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
+  if (driver == &kPolhemDriver) require(std::abs(reading.counts) <= 32768, "beyond 16 bits");
+  if (driver == &kOpenFfBoardDriver) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
+  if (driver != &kPaddleDriver) return;
   require(size == paddle::kReportBytes, "not 64 bytes");
   require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt),
           "checksum");
@@ -60,11 +61,11 @@ void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_
   require(!std::isnan(health.zeroing_progress) && health.zeroing_progress <= 1.0F, "progress");
 }
 
-void check_sent(HidKind kind, const OutReports& reports) {
+void check_sent(const HidDriver* driver, const OutReports& reports) {
   require(reports.count <= reports.sizes.size(), "too many reports");
   for (std::size_t i = 0; i < reports.count; ++i)
     require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
-  if (kind != HidKind::paddle || reports.count == 0) return;
+  if (driver != &kPaddleDriver || reports.count == 0) return;
   paddle::FromHost out{};
   require(paddle::decode(reports.bytes[0].data() + 1, out) == paddle::kGood, "sent a bad report");
   require(std::abs(out.current_mA) <= 1250, "above the peak");
@@ -73,28 +74,28 @@ void check_sent(HidKind kind, const OutReports& reports) {
 // One stream of reports into everything that reads them.
 class Stream {
  public:
-  explicit Stream(HidKind kind)
-      : kind_(kind), endpoint_(calibration_of(kind)), cap_(calibration_of(HidKind::spacemouse)) {
+  explicit Stream(const HidDriver* driver)
+      : driver_(driver), endpoint_(calibration_of(driver)), cap_(calibration_of(&kSpaceMouseDriver)) {
     endpoint_.connected(now_s_);
     cap_.connected(now_s_);
   }
 
   void take(const std::uint8_t* bytes, std::size_t size, std::uint8_t step) {
     now_s_ += 50e-6 * step;
-    check_decoder(kind_, bytes, size);
+    check_decoder(driver_, bytes, size);
     if (step == 255) endpoint_.start_zeroing();
     if (step == 254) endpoint_.unplugged();
-    endpoint_.take(bytes, size, now_s_);
+    endpoint_.report_arrived(bytes, size, now_s_);
     check_handed_over(endpoint_, now_s_, last_sample_s_);
     endpoint_.write(step * 1e3);
-    check_sent(kind_, endpoint_.next(now_s_));
+    check_sent(driver_, endpoint_.next(now_s_));
     endpoint_.written(now_s_);
-    cap_.take(bytes, size, now_s_);
+    cap_.report_arrived(bytes, size, now_s_);
     require(std::isfinite(cap_.target_m(now_s_)), "target not finite");
   }
 
  private:
-  HidKind kind_;
+  const HidDriver* driver_;
   HidEndpoint endpoint_;
   SpaceMouseAxis cap_;
   double now_s_ = 100.0;
@@ -105,16 +106,16 @@ class Stream {
 
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const HidKind kind = kHidKinds[data[0] % kHidKinds.size()];
+  const HidDriver* driver = kHidDrivers[data[0] % kHidDrivers.size()];
   // The first bit above: paddle reports get the checksum they need to be read.
   const bool mended = (data[0] & 4) != 0;
-  Stream stream(kind);
+  Stream stream(driver);
   std::size_t count = 0;
   for (std::size_t at = 1; at + 2 <= size; ++count) {
     const std::size_t length = std::min<std::size_t>(data[at] % 80u, size - at - 2);
     // A copy of just its length, for the address sanitizer to watch.
     std::vector<std::uint8_t> report(data + at + 2, data + at + 2 + length);
-    if (mended && kind == HidKind::paddle && length == paddle::kReportBytes) {
+    if (mended && driver == &kPaddleDriver && length == paddle::kReportBytes) {
       report[0] = paddle::kMagic;
       report[1] = paddle::kVersion;
       report[2] = paddle::kFromDevice;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "devices/firmware/paddle/paddle_firmware.h"
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
 #include "engine/live/live_tick.h"
 #include "tests/support/live_doubles.h"
@@ -21,13 +22,13 @@ namespace palpate::test {
 
 using Report = std::vector<std::uint8_t>;
 
-inline HidCalibration example_calibration(HidKind kind) {
+inline HidCalibration example_calibration(const HidDriver* driver) {
   HidCalibration calibration;
-  calibration.kind = kind;
+  calibration.driver = driver;
   calibration.counts_per_metre = 50000.0;
   calibration.rest_position_m = -0.01;
   calibration.fastest_m_per_s = 5.0;
-  calibration.force_N_per_unit = kind == HidKind::openffboard ? 0.0003 : 0.004;
+  calibration.force_N_per_unit = driver == &kOpenFfBoardDriver ? 0.0003 : 0.004;
   calibration.stuck_after_s = 0.5;
   calibration.limits = {5.0, 200.0, 0.1};
   calibration.limits.continuous_N = 4.5;
@@ -133,9 +134,9 @@ class OpenFfBoardModel final : public DeviceModel {
   double units_ = 0.0;
 };
 
-inline std::unique_ptr<DeviceModel> device_model(HidKind kind) {
-  if (kind == HidKind::polhem) return std::make_unique<PolhemModel>();
-  if (kind == HidKind::openffboard) return std::make_unique<OpenFfBoardModel>();
+inline std::unique_ptr<DeviceModel> device_model(const HidDriver* driver) {
+  if (driver == &kPolhemDriver) return std::make_unique<PolhemModel>();
+  if (driver == &kOpenFfBoardDriver) return std::make_unique<OpenFfBoardModel>();
   return std::make_unique<PaddleModel>();
 }
 
@@ -163,15 +164,15 @@ class SimulatedDevice {
   static constexpr double kStart_s = 100.0;
   static constexpr int kStep_us = 250;
 
-  explicit SimulatedDevice(HidKind kind)
-      : calibration(example_calibration(kind)),
+  explicit SimulatedDevice(const HidDriver* driver)
+      : calibration(example_calibration(driver)),
         device(calibration),
-        model(device_model(kind)),
+        model(device_model(driver)),
         live(device, slot_) {
     slot_.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(kStiffness_N_per_m)}));
     live.warm_up();
     device.endpoint.connected(kStart_s);
-    hear(encode_start(kind));
+    hear(driver->encode_start());
   }
 
   // The tool, as the hand moves it, m after `time_s`; with tremor unless frozen.
@@ -239,7 +240,7 @@ class SimulatedDevice {
       model->outbox.pop_front();
       if (unplugged) continue;
       for (const Report& one : on_the_way_in ? on_the_way_in(report) : std::vector<Report>{report}) {
-        device.endpoint.take(one.data(), one.size(), now_s);
+        device.endpoint.report_arrived(one.data(), one.size(), now_s);
       }
     }
   }

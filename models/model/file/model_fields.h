@@ -3,32 +3,18 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <string>
-#include <string_view>
 
 #include "engine/tick/features.h"
 #include "models/model/file/model_json.h"
 
 namespace palpate {
 
-inline constexpr std::array<std::string_view, 5> kMethodNames = {"direct", "voxel", "random", "kdtree", "greedy"};
-
-inline bool is_known_method(std::string_view method) {
-  return std::find(kMethodNames.begin(), kMethodNames.end(), method) != kMethodNames.end();
-}
-
-inline std::string known_methods() {
-  std::string names;
-  for (const std::string_view name : kMethodNames) names += (names.empty() ? "" : ", ") + std::string(name);
-  return names;
-}
-
 inline bool is_filter(FeatureKind kind) {
   return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch;
 }
 
-// What is wrong with a model's name, empty if nothing is. It heads a column of a
+// What is wrong with the name of a model or a method, empty if nothing is. It heads a column of a
 // CSV file, so it holds nothing that would break a line into other columns.
 inline std::string model_name_fault(const std::string& name) {
   const std::string expected = "expected 1 to " + std::to_string(kModelNameBytes) +

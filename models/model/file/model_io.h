@@ -15,9 +15,8 @@ namespace palpate {
 // want, a grid of ten million nodes, needs about half of it.
 inline constexpr std::uintmax_t kMaximumModelFileBytes = std::uintmax_t{512} << 20;
 
-// Writes a model file, whole or not at all. `fit_seconds` is rounded up to
-// 1, 2, 5, 10, 20, 50 ... (models/model/file/model_json.h says why). Errors: data that breaks
-// validate_model; the file exists and `overwrite` is false; the disk refuses.
+// Writes a model file, whole or not at all. Errors: data that breaks validate_model;
+// the file exists and `overwrite` is false; the disk refuses.
 Status save_model(const std::string& path, const ModelData& data, bool overwrite);
 
 // Reads a model file and makes it ready to evaluate; its forces are

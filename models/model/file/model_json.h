@@ -4,18 +4,17 @@
 //   name, method, features [{kind, relaxation_time_s, drive}], normalisation
 //   {offset, scale}, domain {lower, upper, inner_radius, outer_radius, points},
 //   trend, corrects_trend, correction_limit_N, largest_force_N, jnd,
-//   either kernel, tail, centres and weights, or grid {nodes, values_N},
-//   provenance.
-// Every field is required, and others are refused.
+//   provenance, and the correction: kernel, tail, centres and weights, or grid
+//   {nodes, values_N}, or trend_alone, or what another kind in the table of
+//   models/model/correction.h writes.
+// Every field is required, and others are refused (but provenance.fit_seconds, which
+// older files have).
 // Centres, weights and cover points stand one to a line, so that two models can
 // be compared line by line. Numbers are the shortest decimals that read back as
 // the same double, so a model read back gives bit-identical forces. "filters" in
 // the file are their constants only: no state is stored.
 //
-// The same fit gives the same bytes but for one honest field: the time that it
-// took. It is stored rounded up to the next of 1, 2, 5, 10, 20, 50 ... seconds,
-// which repeats for every fit that stays clear of such a step; nothing else
-// varies.
+// The same fit gives the same bytes: no time is stored.
 //
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once
@@ -35,7 +34,7 @@ inline constexpr std::size_t kModelNameBytes = 100;
 inline constexpr int kModelNesting = 16;
 
 // The text of a model file. Folders in recording names are left out. Errors:
-// what validate_model refuses, a method or a name that the reader would refuse.
+// what validate_model refuses, a method's or a model's name that the reader would refuse.
 Result<std::string> write_model_text(const ModelData& data);
 
 // Reads what `write_model_text` wrote. `path` names the file in messages:

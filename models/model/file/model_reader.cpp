@@ -5,9 +5,11 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "engine/base/csv_scanner.h"
 #include "engine/json/json_fields.h"
+#include "models/model/file/json_arrays.h"
 #include "models/model/file/model_fields.h"
 #include "models/model/file/model_json.h"
 
@@ -39,28 +41,6 @@ class ModelReader : private JsonFields {
     fill(member(object, key, "a list of numbers"), n, "coefficients", values.data());
   }
 
-  Eigen::VectorXd vector(const JsonNode& object, const char* key, Eigen::Index size, const std::string& words) {
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
-    fill(member(object, key, "a list of numbers"), static_cast<std::size_t>(size), words, values.data());
-    return values;
-  }
-
-  // A list of at least one point, a list of one number per feature each.
-  Eigen::MatrixXd points(const JsonNode& object, const char* key) {
-    const std::string expected = "a list of at least one point";
-    const JsonNode node = list(object, key, expected);
-    if (node.value == nullptr) return {};
-    if (node.value->empty()) complain(node.pointer, "found an empty list, expected " + expected);
-    // Looked at before memory is taken for as many points as there seem to be.
-    Eigen::MatrixXd matrix(dimension(), static_cast<Eigen::Index>(node.value->size()));
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-      const auto index = static_cast<std::size_t>(j);
-      const JsonNode point{&(*node.value)[index], node.pointer + "/" + std::to_string(index)};
-      if (!fill(point, data_.features.size(), "numbers, one per feature", matrix.col(j).data())) break;
-    }
-    return matrix;
-  }
-
   Eigen::Index dimension() const { return static_cast<Eigen::Index>(data_.features.size()); }
 
   void read_document(const JsonNode& top) {
@@ -71,8 +51,8 @@ class ModelReader : private JsonFields {
     if (error_count() > named) return;  // every size below depends on the features
     const std::string per_feature = "numbers, one per feature";
     const JsonNode normalisation = member(top, "normalisation", "an object with offset and scale");
-    data_.offset = vector(normalisation, "offset", dimension(), per_feature);
-    data_.scale = vector(normalisation, "scale", dimension(), per_feature);
+    data_.offset = read_vector(*this, normalisation, "offset", dimension(), per_feature);
+    data_.scale = read_vector(*this, normalisation, "scale", dimension(), per_feature);
     read_trend(member(top, "trend", "an object"));
     data_.corrects_trend = boolean(top, "corrects_trend");
     data_.correction_limit_N = number(top, "correction_limit_N", Sign::kNotNegative);
@@ -82,12 +62,12 @@ class ModelReader : private JsonFields {
     data_.jnd.weber_fraction = number(jnd, "weber_fraction", Sign::kNotNegative);
     read_provenance(member(top, "provenance", "an object"));
     const JsonNode domain = member(top, "domain", "an object");
-    data_.lower = vector(domain, "lower", dimension(), per_feature);
-    data_.upper = vector(domain, "upper", dimension(), per_feature);
+    data_.lower = read_vector(*this, domain, "lower", dimension(), per_feature);
+    data_.upper = read_vector(*this, domain, "upper", dimension(), per_feature);
     data_.cover.inner_radius = number(domain, "inner_radius", Sign::kNotNegative);
     data_.cover.outer_radius = number(domain, "outer_radius", Sign::kPositive);
-    data_.cover.points = points(domain, "points");
-    read_function(top);
+    data_.cover.points = read_points(*this, domain, "points", dimension());
+    read_correction(top);
     // After another error not all that may be there was asked for.
     if (error_count() == 0) refuse_unknown(top);
   }
@@ -113,9 +93,7 @@ class ModelReader : private JsonFields {
     data_.name = text(top, "name");
     if (const std::string fault = model_name_fault(data_.name); !fault.empty()) complain("/name", fault);
     data_.method = text(top, "method");
-    if (!is_known_method(data_.method)) {
-      complain("/method", "found \"" + printable(data_.method) + "\", expected one of " + known_methods());
-    }
+    if (const std::string fault = model_name_fault(data_.method); !fault.empty()) complain("/method", fault);
   }
 
   void read_features(const JsonNode& top) {
@@ -163,80 +141,24 @@ class ModelReader : private JsonFields {
     data_.trend.velocity_limit_m_per_s = number(node, "velocity_limit_m_per_s", Sign::kNotNegative);
   }
 
-  void read_function(const JsonNode& top) {
-    const bool has_grid = top.value->contains("grid");
-    if (has_grid == top.value->contains("centres")) {
-      complain("", has_grid ? "found both \"centres\" and \"grid\", expected one of them"
-                            : "found neither \"centres\" nor \"grid\", expected one of them");
-      return;
+  // Exactly one of the fields that tell the kinds of correction apart.
+  void read_correction(const JsonNode& top) {
+    std::vector<const CorrectionKind*> present;
+    std::string known;
+    for (const CorrectionKind& kind : correction_kinds()) {
+      known += (known.empty() ? "" : ", ") + quoted(kind);
+      if (top.value->contains(kind.key)) present.push_back(&kind);
     }
-    if (has_grid) {
-      read_grid(member(top, "grid", "an object"));
+    if (present.size() > 1) {
+      complain("", "found both " + quoted(*present[0]) + " and " + quoted(*present[1]) + ", expected one of them");
+    } else if (present.empty()) {
+      complain("", "found none of " + known + ", expected one of them");
     } else {
-      read_rbf(top);
+      data_.correction = present[0]->read(*this, top, static_cast<int>(dimension()));
     }
   }
 
-  void read_rbf(const JsonNode& top) {
-    RbfFunction function;
-    const std::string name = text(top, "kernel");
-    const std::optional<KernelKind> kernel = kernel_from_name(name);
-    if (!kernel) {
-      std::string known;
-      for (const KernelKind kind : kKernelKinds) known += (known.empty() ? "" : ", ") + std::string(kernel_name(kind));
-      complain("/kernel", "found \"" + printable(name) + "\", expected one of " + known);
-      return;
-    }
-    function.kernel = *kernel;
-    const int coefficients = tail_size(tail_degree(*kernel), static_cast<int>(dimension()));
-    function.tail = vector(top, "tail", coefficients, "coefficients");
-    function.centres = points(top, "centres");
-    function.weights = vector(top, "weights", function.centre_count(), "numbers, one per centre");
-    data_.rbf = std::move(function);
-  }
-
-  void read_grid(const JsonNode& node) {
-    VoxelGrid grid;
-    const JsonNode axes = list(node, "nodes", "a list of axes");
-    if (axes.value == nullptr) return;
-    if (axes.value->size() != data_.features.size()) {
-      complain(axes.pointer,
-               found(*axes.value) + " axes, expected " + std::to_string(dimension()) + ", one per feature");
-      return;
-    }
-    const JsonNode values = list(node, "values_N", "a list of numbers");
-    if (values.value == nullptr) return;
-    std::size_t product = 1;
-    for (std::size_t k = 0; k < axes.value->size(); ++k) {
-      if (!read_axis({&(*axes.value)[k], axes.pointer + "/" + std::to_string(k)}, grid)) return;
-      product *= grid.nodes.back().size();
-      // Checked at every step, for the product of eight sizes may wrap around.
-      if (product > values.value->size()) break;
-    }
-    if (product != values.value->size()) {
-      complain(values.pointer, found(*values.value) + ", expected as many as the grid has nodes");
-      return;
-    }
-    grid.values_N.resize(product);
-    if (fill(values, product, "numbers", grid.values_N.data())) data_.grid = std::move(grid);
-  }
-
-  bool read_axis(const JsonNode& node, VoxelGrid& grid) {
-    const std::string expected = "at least 2 numbers, each above the last";
-    if (!node.value->is_array() || node.value->size() < 2) {
-      complain(node.pointer, found(*node.value) + ", expected " + expected);
-      return false;
-    }
-    std::vector<double> axis(node.value->size());
-    if (!fill(node, axis.size(), "numbers", axis.data())) return false;
-    for (std::size_t i = 1; i < axis.size(); ++i) {
-      if (axis[i - 1] < axis[i]) continue;
-      complain(node.pointer + "/" + std::to_string(i), found((*node.value)[i]) + ", expected " + expected);
-      return false;
-    }
-    grid.nodes.push_back(std::move(axis));
-    return true;
-  }
+  static std::string quoted(const CorrectionKind& kind) { return std::string("\"").append(kind.key).append("\""); }
 
   void read_provenance(const JsonNode& node) {
     Provenance& from = data_.provenance;
@@ -254,11 +176,11 @@ class ModelReader : private JsonFields {
     from.contact_samples = count(node, "contact_samples");
     from.samples_after_reduction = count(node, "samples_after_reduction");
     from.seed = count(node, "seed");
-    from.fit_seconds = number(node, "fit_seconds", Sign::kNotNegative);
     from.weighting = text(node, "weighting");
     from.reduction = text(node, "reduction");
     from.relaxation = text(node, "relaxation");
     from.training_within_jnd = number(node, "training_within_jnd", Sign::kNotNegative);
+    optional_member(node, "fit_seconds");  // older files
     const JsonNode times = list(node, "relaxation_times", "a list");
     for (std::size_t i = 0; times.value != nullptr && i < times.value->size(); ++i) {
       const JsonNode time{&(*times.value)[i], times.pointer + "/" + std::to_string(i)};

@@ -2,136 +2,75 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "engine/base/csv_scanner.h"
+#include "models/model/file/json_text.h"
 #include "models/model/file/model_fields.h"
 #include "models/model/file/model_json.h"
 
 namespace palpate {
 namespace {
 
-// The shortest decimal, but never "-0": as a JSON integer it would lose its sign.
-std::string number(double value) {
-  std::string text = shortest(value);
-  return text == "-0" ? "-0.0" : text;
-}
-
-std::string quoted(const std::string& text) {
-  using Json = nlohmann::json;
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-template <typename Values>
-std::string list(const Values& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + number(value);
-  return "[" + text + "]";
-}
-
-// `items`, each on its own line.
-std::string lines(const std::vector<std::string>& items) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "\n    " : ",\n    ") + items[i];
-  return text + (items.empty() ? "]" : "\n  ]");
-}
-
-std::string columns(const Eigen::MatrixXd& matrix) {
-  std::vector<std::string> items;
-  for (Eigen::Index j = 0; j < matrix.cols(); ++j) items.push_back(list(Eigen::VectorXd(matrix.col(j))));
-  return lines(items);
-}
-
 std::string features(const std::vector<FeatureSpec>& specs) {
   std::vector<std::string> items;
   for (const FeatureSpec& spec : specs) {
-    std::string text = "{\"kind\": " + quoted(std::string(feature_kind_name(spec.kind)));
-    if (is_filter(spec.kind)) text += ", \"relaxation_time_s\": " + number(spec.relaxation_time_s);
+    std::string text = "{\"kind\": " + json_quoted(std::string(feature_kind_name(spec.kind)));
+    if (is_filter(spec.kind)) text += ", \"relaxation_time_s\": " + json_number(spec.relaxation_time_s);
     if (spec.kind == FeatureKind::maxwell_branch) {
-      text += ", \"drive\": {\"reference_depth_m\": " + number(spec.drive.reference_depth_m) +
-              ", \"coefficient_N\": " + list(spec.drive.coefficient_N) + "}";
+      text += ", \"drive\": {\"reference_depth_m\": " + json_number(spec.drive.reference_depth_m) +
+              ", \"coefficient_N\": " + json_list(spec.drive.coefficient_N) + "}";
     }
     items.push_back(text + "}");
   }
-  return lines(items);
+  return json_lines(items);
 }
 
 std::string domain(const ModelData& data) {
-  return "{\n    \"lower\": " + list(data.lower) + ",\n    \"upper\": " + list(data.upper) +
-         ",\n    \"inner_radius\": " + number(data.cover.inner_radius) +
-         ",\n    \"outer_radius\": " + number(data.cover.outer_radius) +
-         ",\n    \"points\": " + columns(data.cover.points) + "\n  }";
+  return "{\n    \"lower\": " + json_list(data.lower) + ",\n    \"upper\": " + json_list(data.upper) +
+         ",\n    \"inner_radius\": " + json_number(data.cover.inner_radius) +
+         ",\n    \"outer_radius\": " + json_number(data.cover.outer_radius) +
+         ",\n    \"points\": " + json_columns(data.cover.points) + "\n  }";
 }
 
 std::string trend(const Trend& trend) {
-  return "{\n    \"reference_depth_m\": " + number(trend.reference_depth_m) +
-         ",\n    \"elastic_N\": " + list(trend.elastic_N) +
-         ",\n    \"viscosity_Ns_per_m\": " + list(trend.viscosity_Ns_per_m) +
-         ",\n    \"thinning_Ns_per_m\": " + list(trend.thinning_Ns_per_m) +
-         ",\n    \"thinning_velocity_m_per_s\": " + number(trend.thinning_velocity_m_per_s) +
-         ",\n    \"velocity_limit_m_per_s\": " + number(trend.velocity_limit_m_per_s) + "\n  }";
-}
-
-// Axes first, then the values, one line for each run along the last axis.
-std::string grid(const VoxelGrid& grid) {
-  std::string axes;
-  for (const std::vector<double>& axis : grid.nodes) axes += (axes.empty() ? "" : ", ") + list(axis);
-  std::string values;
-  const std::size_t run = grid.nodes.back().size();
-  for (std::size_t i = 0; i < grid.values_N.size(); ++i) {
-    values += i == 0 ? "\n    " : (i % run == 0 ? ",\n    " : ", ");
-    values += number(grid.values_N[i]);
-  }
-  return "{\n    \"nodes\": [" + axes + "],\n    \"values_N\": [" + values + "\n  ]}";
-}
-
-// The time of a fit in the file: the next of 1, 2, 5, 10, 20, 50 ... seconds, so
-// that equal commands write equal bytes unless their times straddle such a step.
-// (`fit --json` prints the time itself.)
-double stored_seconds(double fit_seconds) {
-  for (double decade = 1.0; decade < 1e12; decade *= 10.0) {
-    for (const double step : {1.0, 2.0, 5.0}) {
-      if (fit_seconds <= step * decade) return step * decade;
-    }
-  }
-  return fit_seconds;
+  return "{\n    \"reference_depth_m\": " + json_number(trend.reference_depth_m) +
+         ",\n    \"elastic_N\": " + json_list(trend.elastic_N) +
+         ",\n    \"viscosity_Ns_per_m\": " + json_list(trend.viscosity_Ns_per_m) +
+         ",\n    \"thinning_Ns_per_m\": " + json_list(trend.thinning_Ns_per_m) +
+         ",\n    \"thinning_velocity_m_per_s\": " + json_number(trend.thinning_velocity_m_per_s) +
+         ",\n    \"velocity_limit_m_per_s\": " + json_number(trend.velocity_limit_m_per_s) + "\n  }";
 }
 
 std::string provenance(const Provenance& provenance) {
   std::string recordings;
   for (const std::string& name : provenance.recordings) {
     const std::string stem = name.substr(name.find_last_of("/\\") + 1);
-    recordings += (recordings.empty() ? "" : ", ") + quoted(stem);
+    recordings += (recordings.empty() ? "" : ", ") + json_quoted(stem);
   }
   std::string times;
   for (const RelaxationTime& time : provenance.relaxation_times) {
-    times += (times.empty() ? "{" : ", {") + std::string("\"time_s\": ") + number(time.time_s) +
-             ", \"standard_error_s\": " + number(time.standard_error_s) + "}";
+    times += (times.empty() ? "{" : ", {") + std::string("\"time_s\": ") + json_number(time.time_s) +
+             ", \"standard_error_s\": " + json_number(time.standard_error_s) + "}";
   }
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
-  return "{\n    \"recordings\": [" + recordings + "],\n    \"scene\": " + quoted(provenance.scene) +
+  return "{\n    \"recordings\": [" + recordings + "],\n    \"scene\": " + json_quoted(provenance.scene) +
          ",\n    \"samples\": " + count(provenance.samples) +
          ",\n    \"contact_samples\": " + count(provenance.contact_samples) +
          ",\n    \"samples_after_reduction\": " + count(provenance.samples_after_reduction) +
          ",\n    \"seed\": " + count(provenance.seed) +
-         ",\n    \"fit_seconds\": " + number(stored_seconds(provenance.fit_seconds)) +
-         ",\n    \"weighting\": " + quoted(provenance.weighting) +
-         ",\n    \"reduction\": " + quoted(provenance.reduction) +
-         ",\n    \"relaxation\": " + quoted(provenance.relaxation) +
+         ",\n    \"weighting\": " + json_quoted(provenance.weighting) +
+         ",\n    \"reduction\": " + json_quoted(provenance.reduction) +
+         ",\n    \"relaxation\": " + json_quoted(provenance.relaxation) +
          ",\n    \"relaxation_times\": [" + times + "],\n    \"training_within_jnd\": " +
-         number(provenance.training_within_jnd) + "\n  }";
+         json_number(provenance.training_within_jnd) + "\n  }";
 }
 
 Status check(const ModelData& data) {
   if (Status status = validate_model(data); !status) return status;
   if (const std::string fault = model_name_fault(data.name); !fault.empty()) return Error{"name: " + fault};
-  if (!is_known_method(data.method)) {
-    return Error{"method: found \"" + data.method + "\", expected one of " + known_methods()};
-  }
+  if (const std::string fault = model_name_fault(data.method); !fault.empty()) return Error{"method: " + fault};
   const Provenance& from = data.provenance;
-  bool plausible = from.fit_seconds >= 0.0 && from.training_within_jnd >= 0.0 && from.training_within_jnd <= 1.0 &&
-                   std::isfinite(from.fit_seconds);
+  bool plausible = from.training_within_jnd >= 0.0 && from.training_within_jnd <= 1.0;
   for (const RelaxationTime& time : from.relaxation_times) {
     plausible = plausible && time.time_s > 0.0 && std::isfinite(time.time_s) && time.standard_error_s >= 0.0 &&
                 std::isfinite(time.standard_error_s);
@@ -144,31 +83,22 @@ Status check(const ModelData& data) {
 
 Result<std::string> write_model_text(const ModelData& data) {
   if (const Status status = check(data); !status) return status.error();
-  std::vector<std::pair<std::string, std::string>> fields = {
-      {"format", quoted("palpate-model")},
+  FileFields fields = {
+      {"format", json_quoted("palpate-model")},
       {"version", std::to_string(kModelVersion)},
-      {"name", quoted(data.name)},
-      {"method", quoted(data.method)},
+      {"name", json_quoted(data.name)},
+      {"method", json_quoted(data.method)},
       {"features", features(data.features)},
-      {"normalisation", "{\n    \"offset\": " + list(data.offset) + ",\n    \"scale\": " + list(data.scale) + "\n  }"},
+      {"normalisation", "{\n    \"offset\": " + json_list(data.offset) + ",\n    \"scale\": " + json_list(data.scale) + "\n  }"},
       {"trend", trend(data.trend)},
       {"corrects_trend", data.corrects_trend ? "true" : "false"},
-      {"correction_limit_N", number(data.correction_limit_N)},
-      {"largest_force_N", number(data.largest_force_N)},
-      {"jnd", "{\"offset_N\": " + number(data.jnd.offset_N) +
-                  ", \"weber_fraction\": " + number(data.jnd.weber_fraction) + "}"},
+      {"correction_limit_N", json_number(data.correction_limit_N)},
+      {"largest_force_N", json_number(data.largest_force_N)},
+      {"jnd", "{\"offset_N\": " + json_number(data.jnd.offset_N) +
+                  ", \"weber_fraction\": " + json_number(data.jnd.weber_fraction) + "}"},
       {"provenance", provenance(data.provenance)},
       {"domain", domain(data)}};
-  if (data.rbf) {
-    fields.emplace_back("kernel", quoted(std::string(kernel_name(data.rbf->kernel))));
-    fields.emplace_back("tail", list(data.rbf->tail));
-    fields.emplace_back("centres", columns(data.rbf->centres));
-    std::vector<std::string> weights;
-    for (const double weight : data.rbf->weights) weights.push_back(number(weight));
-    fields.emplace_back("weights", lines(weights));
-  } else {
-    fields.emplace_back("grid", grid(*data.grid));
-  }
+  for (auto& field : data.correction->file_fields()) fields.push_back(std::move(field));
   std::string text = "{";
   for (const auto& [key, value] : fields) text += (text.size() == 1 ? "\n  \"" : ",\n  \"") + key + "\": " + value;
   return text + "\n}\n";

@@ -1,4 +1,4 @@
-// What the five methods do with data that break numerics, and models with
+// What the methods do with data that break numerics, and models with
 // motions far from their data: every method meets every case.
 //
 // Three kinds of case, all made up and always the same:
@@ -24,7 +24,7 @@ namespace palpate {
 
 struct HardCaseResult {
   std::string name;     // of the case
-  std::string method;   // direct, voxel, random, kdtree, greedy
+  std::string method;   // its name
   std::string outcome;  // in words
   double condition = 0.0;   // of the system solved, see FitReport
   double residual = 0.0;    // RMS over the sites, times row_scale: in JNDs
@@ -34,7 +34,7 @@ struct HardCaseResult {
   bool safe = false;
 };
 
-// All of them, case by case, methods in the order of kMethods. Some seconds.
+// All of them, case by case, methods in the order of methods(). Some seconds.
 // Deterministic. Slow side.
 std::vector<HardCaseResult> run_hard_cases();
 

@@ -8,6 +8,8 @@
 #include "engine/base/random_stream.h"
 #include "engine/tick/replay.h"
 #include "models/fit/fit.h"
+#include "models/model/grid/grid_correction.h"
+#include "models/model/rbf/rbf_correction.h"
 #include "scenes/report/hard/hard_cases.h"
 #include "scenes/report/hard/hard_outcome.h"
 #include "scenes/report/hard/hard_presses.h"
@@ -134,16 +136,16 @@ Result<PreparedTraining> prepare(const RecordingCase& one) {
   return prepare_training(source, one.request);
 }
 
-Result<MethodFit> fit(const PreparedTraining& prepared, Method method) {
+Result<MethodFit> fit(const PreparedTraining& prepared, const Method& method) {
   MethodRequest request;
-  request.method = method;
+  request.method = &method;
   return fit_method(prepared, request);
 }
 
-HardCaseResult begin_result(const std::string& name, Method method, const FitReport& report) {
+HardCaseResult begin_result(const std::string& name, const Method& method, const FitReport& report) {
   HardCaseResult result;
   result.name = name;
-  result.method = method_name(method);
+  result.method = method.name;
   result.condition = report.condition;
   result.residual = report.residual_rms;
   result.smoothing = report.smoothing;
@@ -154,19 +156,19 @@ void run_recording_case(const RecordingCase& one, std::vector<HardCaseResult>& r
   const Result<PreparedTraining> prepared = prepare(one);
   std::vector<ModelPtr> models;
   std::vector<std::size_t> at;  // of each model in `results`
-  for (const Method method : kMethods) {
-    HardCaseResult result = begin_result(one.name, method, {});
+  for (const Method* method : methods()) {
+    HardCaseResult result = begin_result(one.name, *method, {});
     if (!prepared) {
       results.push_back(refused(std::move(result), prepared.error().message));
       continue;
     }
-    const Result<MethodFit> fitted = fit(*prepared, method);
+    const Result<MethodFit> fitted = fit(*prepared, *method);
     if (!fitted) {
       results.push_back(refused(std::move(result), fitted.error().message));
       continue;
     }
     at.push_back(results.size());
-    results.push_back(begin_result(one.name, method, fitted->report));
+    results.push_back(begin_result(one.name, *method, fitted->report));
     models.push_back(std::make_shared<const FittedModel>(fitted->data));
   }
   std::vector<OutcomeCounter> counters(models.size());
@@ -216,10 +218,16 @@ OutcomeCounter sweep(const FittedModel& model) {
 
 // Weights (or grid values) that overflow every sum.
 ModelData with_huge_weights(ModelData data) {
-  if (data.rbf)
-    for (Eigen::Index j = 0; j < data.rbf->weights.size(); ++j) data.rbf->weights[j] = j % 2 == 0 ? 1e300 : -1e300;
-  if (data.grid)
-    for (std::size_t i = 0; i < data.grid->values_N.size(); ++i) data.grid->values_N[i] = i % 2 == 0 ? 1e300 : -1e300;
+  if (const RbfFunction* rbf = rbf_of(data.correction)) {
+    RbfFunction huge = *rbf;
+    for (Eigen::Index j = 0; j < huge.weights.size(); ++j) huge.weights[j] = j % 2 == 0 ? 1e300 : -1e300;
+    data.correction = std::make_shared<const RbfCorrection>(std::move(huge));
+  }
+  if (const VoxelGrid* grid = grid_of(data.correction)) {
+    VoxelGrid huge = *grid;
+    for (std::size_t i = 0; i < huge.values_N.size(); ++i) huge.values_N[i] = i % 2 == 0 ? 1e300 : -1e300;
+    data.correction = std::make_shared<const GridCorrection>(std::move(huge));
+  }
   return data;
 }
 
@@ -237,16 +245,16 @@ std::vector<HardCaseResult> run_hard_motions() {
   std::vector<ModelPtr> models;
   std::vector<ModelPtr> huge;
   std::vector<FitReport> reports;
-  for (const Method method : kMethods) {
-    const Result<MethodFit> fitted = prepared ? fit(*prepared, method) : prepared.error();
-    if (!fitted) return {refused(begin_result("clean training", method, {}), fitted.error().message)};
+  for (const Method* method : methods()) {
+    const Result<MethodFit> fitted = prepared ? fit(*prepared, *method) : prepared.error();
+    if (!fitted) return {refused(begin_result("clean training", *method, {}), fitted.error().message)};
     models.push_back(std::make_shared<const FittedModel>(fitted->data));
     huge.push_back(std::make_shared<const FittedModel>(with_huge_weights(fitted->data)));
     reports.push_back(fitted->report);
   }
   const auto finish = [&](const std::string& name, const std::vector<OutcomeCounter>& counters) {
-    for (std::size_t i = 0; i < kMethods.size(); ++i)
-      results.push_back(counters[i].finish(begin_result(name, kMethods[i], reports[i])));
+    for (std::size_t i = 0; i < methods().size(); ++i)
+      results.push_back(counters[i].finish(begin_result(name, *methods()[i], reports[i])));
   };
   for (const MotionCase& one : motion_cases()) {
     std::vector<OutcomeCounter> counters(models.size());

@@ -3,21 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "engine/tick/jnd.h"
 #include "engine/base/random_stream.h"
-#include "models/fit/fit_direct.h"
-#include "models/fit/fit_greedy.h"
-#include "models/fit/fit_kdtree.h"
-#include "models/fit/fit_random.h"
 #include "scenes/report/hard/hard_cases.h"
 #include "scenes/report/hard/hard_outcome.h"
 #include "models/fit/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/fit/fill_grid.h"
-#include "models/model/grid/voxel_lookup.h"
+#include "models/fit/methods.h"
 
 namespace palpate {
 namespace {
@@ -27,6 +21,7 @@ using Points = Eigen::MatrixXd;
 constexpr int kDimension = 3;
 constexpr int kSites = 160;
 constexpr int kHeldOut = 200;
+constexpr int kGridNodes = 15;  // along each feature
 constexpr double kNoise_N = 0.005;
 
 struct SiteCase {
@@ -122,36 +117,19 @@ std::vector<SiteCase> site_cases() {
   return cases;
 }
 
-Result<FittedRbf> fit_site_case(const SiteCase& one, Method method) {
+Result<FittedCorrection> fit_site_case(const SiteCase& one, const Method& method) {
   const Eigen::VectorXd jnd_N = one.sites.row_scale.cwiseInverse();
-  switch (method) {
-    case Method::random: return fit_random(one.sites, {KernelKind::cubic, one.centres, 1});
-    case Method::kdtree: return fit_kdtree(one.sites, jnd_N, {KernelKind::cubic, one.centres});
-    case Method::greedy: return fit_greedy(one.sites, {KernelKind::cubic, one.centres, 100, 1});
-    case Method::direct:
-    case Method::voxel: break;
-  }
-  return fit_direct(one.sites, {});
+  const std::vector<FeatureSpec> unnamed(kDimension);
+  MethodRequest request;
+  request.method = &method;
+  request.centres = static_cast<int>(one.centres);
+  request.grid.assign(kDimension, kGridNodes);
+  return fit_correction({one.sites, unnamed, jnd_N, request});
 }
 
-// The values of the fit at `points`; of its grid for the voxel method.
-Eigen::VectorXd values_at(const Points& points, const Sites& sites, const RbfFunction& function, Method method) {
-  const RbfEvaluator evaluator(function);
-  Eigen::VectorXd values;
-  evaluator.evaluate_many(points, values);
-  if (method != Method::voxel) return values;
-  VoxelGrid grid;
-  for (Eigen::Index k = 0; k < sites.points.rows(); ++k) {
-    const double low = sites.points.row(k).minCoeff();
-    const double extent = std::max(sites.points.row(k).maxCoeff() - low, 1e-3);
-    std::vector<double>& axis = grid.nodes.emplace_back();
-    for (int i = 0; i < 15; ++i) axis.push_back(low + extent * i / 14.0);
-  }
-  const Status filled = fill_grid(
-      grid, [&](const Eigen::MatrixXd& p, Eigen::VectorXd& out) { evaluator.evaluate_many(p, out); });
-  if (!filled) return Eigen::VectorXd::Constant(points.cols(), std::numeric_limits<double>::quiet_NaN());
-  const VoxelLookup lookup(grid);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) values[i] = lookup.evaluate(points.col(i).data());
+Eigen::VectorXd values_at(const Points& points, const Correction& correction) {
+  Eigen::VectorXd values(points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) values[i] = correction.evaluate(points.col(i).data());
   return values;
 }
 
@@ -209,16 +187,21 @@ std::string compare_with_reference(const SiteCase& one, double smoothing, const 
   return text + ", " + short_number(worst) + " JND from its solution in long double";
 }
 
-HardCaseResult judge_site_case(const SiteCase& one, Method method) {
+HardCaseResult judge_site_case(const SiteCase& one, const Method& method) {
   HardCaseResult result;
   result.name = one.name;
-  result.method = method_name(method);
-  const Result<FittedRbf> fitted = fit_site_case(one, method);
+  result.method = method.name;
+  const Result<FittedCorrection> fitted = fit_site_case(one, method);
   if (!fitted) return refused(std::move(result), fitted.error().message);
   result.condition = fitted->report.condition;
   result.residual = fitted->report.residual_rms;
   result.smoothing = fitted->report.smoothing;
-  const Eigen::VectorXd values = values_at(one.held_out, one.sites, fitted->function, method);
+  if (fitted->correction->is_none()) {
+    result.outcome = "the trend alone, which is not fitted to sites";
+    result.safe = true;
+    return result;
+  }
+  const Eigen::VectorXd values = values_at(one.held_out, *fitted->correction);
   const bool zero = one.sites.target_N.isZero();
   const double low_N = one.sites.target_N.minCoeff();
   const double high_N = one.sites.target_N.maxCoeff();
@@ -232,8 +215,9 @@ HardCaseResult judge_site_case(const SiteCase& one, Method method) {
     counter.add(values[i], truth_N, low_N - margin_N, high_N + margin_N);
   }
   result = counter.finish(std::move(result));
-  if (method == Method::direct && !fitted->report.notes.empty()) result.outcome += "; " + fitted->report.notes[0];
-  if (method == Method::direct) result.outcome += compare_with_reference(one, fitted->report.smoothing, values);
+  const bool direct = &method == &kDirectMethod;
+  if (direct && !fitted->report.notes.empty()) result.outcome += "; " + fitted->report.notes[0];
+  if (direct) result.outcome += compare_with_reference(one, fitted->report.smoothing, values);
   return result;
 }
 
@@ -242,7 +226,7 @@ HardCaseResult judge_site_case(const SiteCase& one, Method method) {
 std::vector<HardCaseResult> run_hard_sites() {
   std::vector<HardCaseResult> results;
   for (const SiteCase& one : site_cases())
-    for (const Method method : kMethods) results.push_back(judge_site_case(one, method));
+    for (const Method* method : methods()) results.push_back(judge_site_case(one, *method));
   return results;
 }
 

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_device.h"
 #include "devices/hid/hidapi_bus.h"
 #include "engine/base/signals.h"
@@ -35,7 +36,7 @@ class HidEmulated : public ::testing::Test {
 
 TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EmulatedPaddle paddle;
-  const std::vector<HidFound> found = bus.list();
+  const std::vector<HidDeviceInfo> found = bus.list();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].path, "/dev/hidraw0");
   EXPECT_EQ(found[0].product, "Teensyduino RawHID");
@@ -45,7 +46,7 @@ TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EXPECT_EQ(found[0].usage, 0x0200);
   const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
   ASSERT_EQ(diagnosis.size(), 1u);
-  EXPECT_EQ(diagnosis[0].kind, HidKind::paddle);
+  EXPECT_EQ(diagnosis[0].driver, &kPaddleDriver);
   EXPECT_EQ(diagnosis[0].problem, "");
 }
 
@@ -59,32 +60,32 @@ TEST_F(HidEmulated, SaysThatTheFirmwareIsOfAnotherVersion) {
 
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
   EmulatedPaddle paddle;
-  Result<HidOpened> first = open_first(bus, {HidKind::paddle});
+  Result<HidOpened> first = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(first.ok());
   EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: in use by another program; close it");
 }
 
 TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
   EmulatedPaddle paddle;
-  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   std::uint8_t bytes[65] = {};
-  ASSERT_EQ(opened->line->read(bytes, sizeof bytes), 64);
-  HidReading reading;
-  ASSERT_EQ(decode_report(HidKind::paddle, bytes, 64, reading), ReportVerdict::position);
+  ASSERT_EQ(opened->connection->read(bytes, sizeof bytes), 64);
+  DeviceReading reading;
+  ASSERT_EQ(kPaddleDriver.decode(bytes, 64, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, 1000);
-  const OutReports stop = encode_stop(HidKind::paddle);
-  ASSERT_TRUE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  const OutReports stop = kPaddleDriver.encode_stop();
+  ASSERT_TRUE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
   EXPECT_EQ(paddle.last_write_size, 65u) << "the report id comes first";
   paddle.gone = true;
-  EXPECT_LT(opened->line->read(bytes, sizeof bytes), 0);
-  EXPECT_FALSE(opened->line->write(stop.bytes[0].data(), stop.sizes[0]));
+  EXPECT_LT(opened->connection->read(bytes, sizeof bytes), 0);
+  EXPECT_FALSE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
 }
 
 TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EmulatedPaddle paddle;
-  const HidCalibration calibration = test::patient(test::example_calibration(HidKind::paddle));
-  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  const HidCalibration calibration = test::patient(test::example_calibration(&kPaddleDriver));
+  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   HidDevice device(bus, calibration, std::move(*opened));
   ASSERT_TRUE(device.open().ok());

@@ -1,4 +1,5 @@
 // Which device is what, and why one cannot be used.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_bus.h"
 
 #include <gtest/gtest.h>
@@ -13,17 +14,17 @@ using test::found_space_mouse;
 using test::found_teensy;
 using test::Report;
 
-using Kinds = std::vector<HidKind>;
+using Kinds = std::vector<const HidDriver*>;
 
 TEST(HidBus, KnowsDevicesByTheirIds) {
-  EXPECT_EQ(possible_kinds(found_teensy()), (Kinds{HidKind::paddle, HidKind::polhem}));
-  HidFound console = found_teensy();
+  EXPECT_EQ(matching_drivers(found_teensy()), (Kinds{&kPaddleDriver, &kPolhemDriver}));
+  HidDeviceInfo console = found_teensy();
   console.usage_page = 0xFFC9;
-  EXPECT_EQ(possible_kinds(console), Kinds{});
-  EXPECT_EQ(possible_kinds({"/dev/hidraw0", "", 0x1209, 0xFFB0, 0xFF00, 1}), Kinds{HidKind::openffboard});
-  EXPECT_EQ(possible_kinds(found_space_mouse()), Kinds{HidKind::spacemouse});
-  EXPECT_EQ(possible_kinds({"/dev/hidraw0", "", 0x256F, 0xC635, 1, 8}), Kinds{HidKind::spacemouse});
-  EXPECT_EQ(possible_kinds({"/dev/hidraw0", "Mouse", 0x046D, 0xC077, 1, 2}), Kinds{});
+  EXPECT_EQ(matching_drivers(console), Kinds{});
+  EXPECT_EQ(matching_drivers({"/dev/hidraw0", "", 0x1209, 0xFFB0, 0xFF00, 1}), Kinds{&kOpenFfBoardDriver});
+  EXPECT_EQ(matching_drivers(found_space_mouse()), Kinds{&kSpaceMouseDriver});
+  EXPECT_EQ(matching_drivers({"/dev/hidraw0", "", 0x256F, 0xC635, 1, 8}), Kinds{&kSpaceMouseDriver});
+  EXPECT_EQ(matching_drivers({"/dev/hidraw0", "Mouse", 0x046D, 0xC077, 1, 2}), Kinds{});
 }
 
 std::string problem_of(const Report& report) {
@@ -35,15 +36,15 @@ std::string problem_of(const Report& report) {
 TEST(HidBus, SaysWhatAPluggedInDeviceIs) {
   FakeHidBus bus;
   HidDiagnosis diagnosis = diagnose(bus).at(0);
-  EXPECT_EQ(diagnosis.kind, HidKind::paddle);
+  EXPECT_EQ(diagnosis.driver, &kPaddleDriver);
   EXPECT_EQ(diagnosis.use, "haptic paddle");
   EXPECT_EQ(diagnosis.problem, "");
   bus.report = Report(64, 0);
-  EXPECT_EQ(diagnose(bus).at(0).kind, HidKind::polhem);
+  EXPECT_EQ(diagnose(bus).at(0).driver, &kPolhemDriver);
   FakeHidBus mouse(found_space_mouse());
   mouse.silent = true;
-  EXPECT_EQ(diagnose(mouse).at(0).kind, HidKind::spacemouse) << "it is silent at rest";
-  FakeHidBus keyboard(HidFound{"/dev/hidraw0", "Keyboard", 1, 2, 1, 6});
+  EXPECT_EQ(diagnose(mouse).at(0).driver, &kSpaceMouseDriver) << "it is silent at rest";
+  FakeHidBus keyboard(HidDeviceInfo{"/dev/hidraw0", "Keyboard", 1, 2, 1, 6});
   diagnosis = diagnose(keyboard).at(0);
   EXPECT_EQ(diagnosis.use, "none that this program uses");
   EXPECT_EQ(diagnosis.problem, "");

@@ -1,4 +1,5 @@
 // Calibration files, good and broken.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_calibration.h"
 
 #include <gtest/gtest.h>
@@ -23,13 +24,13 @@ std::string complaint(const std::string& text) {
 }
 
 TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
-  for (const HidKind kind : kHidKinds) {
-    const Result<HidCalibration> calibration = read_hid_calibration(kAssets, kind);
+  for (const HidDriver* driver : kHidDrivers) {
+    const Result<HidCalibration> calibration = read_hid_calibration(kAssets, *driver);
     ASSERT_TRUE(calibration.ok()) << calibration.error().message;
-    EXPECT_EQ(calibration->kind, kind);
+    EXPECT_EQ(calibration->driver, driver);
     EXPECT_GT(calibration->counts_per_metre, 0.0);
   }
-  const Result<HidCalibration> paddle = read_hid_calibration(kAssets, HidKind::paddle);
+  const Result<HidCalibration> paddle = read_hid_calibration(kAssets, kPaddleDriver);
   EXPECT_EQ(paddle->limits.largest_N, 5.0);
   EXPECT_EQ(paddle->limits.continuous_N, 2.0);
   EXPECT_EQ(paddle->limits.stale_after_s, 0.008);
@@ -59,10 +60,10 @@ TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
 TEST(HidCalibration, SaysWhenTheFileIsNotThereOrOfAnotherKind) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(
-      read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+      read_hid_calibration(folder.path(), kPolhemDriver).error().message,
       folder.file("polhem.json") + ": cannot read the calibration; put the file there, see assets/devices/");
   folder.with_file("polhem.json", good());
-  EXPECT_EQ(read_hid_calibration(folder.path(), HidKind::polhem).error().message,
+  EXPECT_EQ(read_hid_calibration(folder.path(), kPolhemDriver).error().message,
             folder.file("polhem.json") +
                 ": found the calibration of \"paddle\", expected \"polhem\", as the file's name says");
 }

@@ -1,4 +1,5 @@
 // A device with its threads, in real time, on a bus made up.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_device.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +17,8 @@ using test::FakeHidBus;
 using test::tick_until;
 
 std::unique_ptr<HidDevice> open_paddle(FakeHidBus& bus) {
-  const HidCalibration calibration = test::patient(test::example_calibration(HidKind::paddle));
-  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  const HidCalibration calibration = test::patient(test::example_calibration(&kPaddleDriver));
+  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   EXPECT_TRUE(opened.ok());
   auto device = std::make_unique<HidDevice>(bus, calibration, std::move(*opened));
   EXPECT_TRUE(device->open().ok());
@@ -42,8 +43,8 @@ TEST(HidDevice, PushesAfterZeroingAndLetsGoWhenClosed) {
   bus.counts = 0;
   EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth&) { return true; }));
   std::uint8_t bytes[65];
-  HidOpened again = std::move(*open_first(bus, {HidKind::paddle}));
-  again.line->read(bytes, sizeof bytes);  // lets the firmware hear the last report
+  HidOpened again = std::move(*open_first(bus, {&kPaddleDriver}));
+  again.connection->read(bytes, sizeof bytes);  // lets the firmware hear the last report
   EXPECT_EQ(bus.motor_mA(), 0.0);
 }
 

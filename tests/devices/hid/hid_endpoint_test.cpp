@@ -1,5 +1,6 @@
 // Host and device against each other, in simulated time: every fault takes the
 // force away, and what it takes to come back.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
 
 #include <gtest/gtest.h>
@@ -19,11 +20,11 @@ using test::SimulatedDevice;
 
 // Of an encoder step and a tick of tremor.
 constexpr double kResolution_N = 0.1;
-constexpr HidKind kPushing[] = {HidKind::paddle, HidKind::polhem, HidKind::openffboard};
+constexpr const HidDriver* kPushing[] = {&kPaddleDriver, &kPolhemDriver, &kOpenFfBoardDriver};
 
 TEST(HidEndpoint, PushesOnceItIsZeroed) {
-  for (const HidKind kind : kPushing) {
-    SimulatedDevice simulated(kind);
+  for (const HidDriver* driver : kPushing) {
+    SimulatedDevice simulated(driver);
     simulated.rest = false;
     simulated.run_s(1.0);
     EXPECT_EQ(simulated.motor_N(), 0.0) << "not zeroed";
@@ -31,7 +32,7 @@ TEST(HidEndpoint, PushesOnceItIsZeroed) {
     EXPECT_EQ(simulated.snapshot.samples, 0u) << "nobody knows where the tool is";
     simulated.press();
     EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
-    EXPECT_EQ(simulated.snapshot.device.faults, 0u) << hid_kind_name(kind);
+    EXPECT_EQ(simulated.snapshot.device.faults, 0u) << driver->name;
     EXPECT_NEAR(simulated.snapshot.tick.position_m, simulated.position_m(), 30e-6);
     EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
                 kResolution_N);
@@ -41,17 +42,17 @@ TEST(HidEndpoint, PushesOnceItIsZeroed) {
 }
 
 TEST(HidEndpoint, MeasuresTheRoundTripWhereTheDeviceConfirms) {
-  SimulatedDevice paddle(HidKind::paddle);
+  SimulatedDevice paddle(&kPaddleDriver);
   paddle.press();
   EXPECT_GT(paddle.snapshot.device.round_trip_s, 0.0);
   EXPECT_LE(paddle.snapshot.device.round_trip_s, 2.1e-3);
-  SimulatedDevice polhem(HidKind::polhem);
+  SimulatedDevice polhem(&kPolhemDriver);
   polhem.press();
   EXPECT_TRUE(std::isnan(polhem.snapshot.device.round_trip_s));
 }
 
 TEST(HidEndpoint, ZeroingWaitsForRest) {
-  SimulatedDevice simulated(HidKind::paddle);
+  SimulatedDevice simulated(&kPaddleDriver);
   simulated.device.start_zeroing();
   for (int i = 0; i < 600; ++i) {
     simulated.counts_offset = i;  // 1 m/s / 50
@@ -64,16 +65,16 @@ TEST(HidEndpoint, ZeroingWaitsForRest) {
 }
 
 TEST(HidEndpoint, DirectionTurnsPositionAndForce) {
-  HidCalibration calibration = test::example_calibration(HidKind::polhem);
+  HidCalibration calibration = test::example_calibration(&kPolhemDriver);
   calibration.direction = -1.0;
   HidEndpoint endpoint(calibration);
   endpoint.connected(0.0);
   Report report(14, 0);
   endpoint.start_zeroing();
   double now_s = 0.0;
-  for (; now_s < 0.3; now_s += 1e-3) endpoint.take(report.data(), report.size(), now_s);
+  for (; now_s < 0.3; now_s += 1e-3) endpoint.report_arrived(report.data(), report.size(), now_s);
   report[0] = 100;
-  endpoint.take(report.data(), report.size(), now_s);
+  endpoint.report_arrived(report.data(), report.size(), now_s);
   DeviceSample sample;
   ASSERT_TRUE(endpoint.read(sample));
   EXPECT_TRUE(sample.restart);
@@ -233,20 +234,20 @@ TEST(HidEndpoint, EveryFaultTakesTheForceAway) {
   for (const Injection& injection : injections()) {
     for (std::size_t k = 0; k < std::size(kPushing); ++k) {
       SimulatedDevice simulated(kPushing[k]);
-      const char* kind = hid_kind_name(kPushing[k]);
+      const char* driver = kPushing[k]->name;
       if (injection.fault[k] == 0) {
-        std::printf("%-32s %-12s %9s  %s\n", injection.name, kind, "-", "its reports cannot tell");
+        std::printf("%-32s %-12s %9s  %s\n", injection.name, driver, "-", "its reports cannot tell");
         continue;
       }
       const Outcome outcome = run(injection, simulated);
       const auto words = device_fault_words(outcome.first_faults);
-      std::printf("%-32s %-12s %9.1f  %s\n", injection.name, kind, 1e3 * outcome.to_zero_s,
+      std::printf("%-32s %-12s %9.1f  %s\n", injection.name, driver, 1e3 * outcome.to_zero_s,
                   words.empty() ? "" : words.front().c_str());
       const bool stuck = injection.fault[k] == device_fault::kStuck;
-      EXPECT_NE(outcome.faults & injection.fault[k], 0u) << injection.name << ", " << kind;
-      EXPECT_GT(outcome.to_zero_s, 0.0) << injection.name << ", " << kind;
+      EXPECT_NE(outcome.faults & injection.fault[k], 0u) << injection.name << ", " << driver;
+      EXPECT_GT(outcome.to_zero_s, 0.0) << injection.name << ", " << driver;
       EXPECT_LE(outcome.to_zero_s, 0.0205 + (stuck ? 0.5 : injection.found_after_s))
-          << injection.name << ", " << kind;
+          << injection.name << ", " << driver;
       EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
       EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault[k], 0u);
       EXPECT_TRUE(simulated.live.fault_recorder().take().has_value());
@@ -257,7 +258,7 @@ TEST(HidEndpoint, EveryFaultTakesTheForceAway) {
 TEST(HidEndpoint, WhatLosesThePositionAsksForZeroing) {
   for (const Injection& injection : injections()) {
     if ((injection.fault[0] & device_fault::kLosesPosition) == 0) continue;
-    SimulatedDevice simulated(HidKind::paddle);
+    SimulatedDevice simulated(&kPaddleDriver);
     run(injection, simulated);
     simulated.encoder_frozen = simulated.unplugged = false;
     simulated.device.endpoint.connected(simulated.now_s);
@@ -277,7 +278,7 @@ TEST(HidEndpoint, WhatLosesThePositionAsksForZeroing) {
 TEST(HidEndpoint, WhatKeepsThePositionComesBackByItself) {
   for (const Injection& injection : injections()) {
     if ((injection.fault[0] & (device_fault::kLosesPosition | device_fault::kOwn)) != 0) continue;
-    SimulatedDevice simulated(HidKind::paddle);
+    SimulatedDevice simulated(&kPaddleDriver);
     run(injection, simulated);
     simulated.on_the_way_in = nullptr;
     simulated.writer_hangs = false;
@@ -296,8 +297,8 @@ TEST(HidEndpoint, WhatKeepsThePositionComesBackByItself) {
 }
 
 TEST(HidEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
-  for (const HidKind kind : kPushing) {
-    SimulatedDevice simulated(kind);
+  for (const HidDriver* driver : kPushing) {
+    SimulatedDevice simulated(driver);
     simulated.press();
     EXPECT_GT(simulated.motor_N(), 3.5);
     HidEndpoint& endpoint = simulated.device.endpoint;
@@ -311,17 +312,17 @@ TEST(HidEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
       }
       simulated.model->step(static_cast<std::uint32_t>(1e6 * (now_s - SimulatedDevice::kStart_s)), 0);
     }
-    EXPECT_EQ(simulated.motor_N(), 0.0) << hid_kind_name(kind);
+    EXPECT_EQ(simulated.motor_N(), 0.0) << driver->name;
   }
 }
 
 TEST(HidEndpoint, TheGripIsADeadManSwitch) {
-  SimulatedDevice simulated(HidKind::paddle);
+  SimulatedDevice simulated(&kPaddleDriver);
   auto& paddle = dynamic_cast<test::PaddleModel&>(*simulated.model);
   simulated.controls.dead_man = DeadMan::grip;
   simulated.press();
   EXPECT_EQ(simulated.motor_N(), 0.0);
-  EXPECT_TRUE(simulated.snapshot.released);
+  EXPECT_TRUE(simulated.snapshot.dead_man_released);
   paddle.grip_now = true;
   simulated.run_s(1.0);
   EXPECT_GT(simulated.motor_N(), 3.5);
@@ -332,7 +333,7 @@ TEST(HidEndpoint, TheGripIsADeadManSwitch) {
 
 TEST(HidEndpoint, DoesNothingForbiddenInTheTick) {
   if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
-  SimulatedDevice simulated(HidKind::paddle);
+  SimulatedDevice simulated(&kPaddleDriver);
   simulated.press();
   int offences = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -1,4 +1,5 @@
 // The cap of a SpaceMouse as a tool.
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/spacemouse.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@ namespace {
 
 HidCalibration calibration() {
   HidCalibration result;
-  result.kind = HidKind::spacemouse;
+  result.driver = &kSpaceMouseDriver;
   result.counts_per_metre = 17500.0;
   result.rest_position_m = -0.006;
   return result;
@@ -23,7 +24,7 @@ void report(SpaceMouseAxis& axis, int counts, double now_s) {
   std::uint8_t bytes[7] = {1, 0, 0, 0, 0, 0, 0};
   bytes[5] = static_cast<std::uint8_t>(counts & 0xFF);
   bytes[6] = static_cast<std::uint8_t>((counts >> 8) & 0xFF);
-  axis.take(bytes, sizeof bytes, now_s);
+  axis.report_arrived(bytes, sizeof bytes, now_s);
 }
 
 // A steady push, reported every 16 ms: at 1 kHz the tool has no steps.
@@ -75,7 +76,7 @@ TEST(SpaceMouse, SaysWhenItIsUnplugged) {
   EXPECT_NEAR(axis.target_m(1.2), -0.006, 1e-12) << "lets go";
   const std::uint8_t bad[7] = {1, 0, 0, 0, 0, 0, 0x7F};
   axis.connected(2.0);
-  axis.take(bad, sizeof bad, 2.0);
+  axis.report_arrived(bad, sizeof bad, 2.0);
   EXPECT_EQ(axis.health(2.05).faults, device_fault::kCorrupt);
   EXPECT_EQ(axis.health(2.2).faults, 0u);
 }
@@ -85,7 +86,7 @@ TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
   AutoDevice device;
   device.use(
-      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {HidKind::spacemouse}))));
+      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
   DeviceSample sample;
   for (int ms = 0; ms < 5; ++ms) device.read(1e-3 * ms, sample);
   EXPECT_TRUE(device.hand_is_exploring());
@@ -102,7 +103,7 @@ TEST(SpaceMouse, IsADeviceWithoutForce) {
   test::FakeHidBus bus(test::found_space_mouse());
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
   SpaceMouseDevice device(
-      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {HidKind::spacemouse}))));
+      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
   EXPECT_FALSE(device.renders_force());
   EXPECT_EQ(device.note(), "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8");
   ASSERT_TRUE(device.open().ok());

@@ -83,14 +83,14 @@ TEST(FaultRecorder, WritesATable) {
   FaultTick tick;
   tick.loop_time_s = 1.5;
   tick.position_m = 2.5e-3;
-  tick.wanted_N = 3.0;
+  tick.commanded_N = 3.0;
   tick.faults = 256;
   tick.device_faults = 1;
   tick.samples = 1;
   ASSERT_TRUE(write_fault_file(folder.file("fault.csv"), {tick, tick}).ok());
   const std::string line = "1.5,0,0.0025,0,3,0,0,0,1,256,1,0\n";
   EXPECT_EQ(test::read_text(folder.file("fault.csv")),
-            "loop_time_s,sample_time_s,position_m,velocity_m_per_s,wanted_N,rendered_N,sample_age_s,"
+            "loop_time_s,sample_time_s,position_m,velocity_m_per_s,commanded_N,rendered_N,sample_age_s,"
             "round_trip_s,samples,faults,device_faults,limiter_flags\n" +
                 line + line);
   EXPECT_FALSE(write_fault_file(folder.file("fault.csv"), {}).ok()) << "never writes over";

@@ -53,17 +53,17 @@ TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
   LoopControls controls;
   controls.dead_man = DeadMan::key;
   EXPECT_EQ(run(500, controls).rendered_N, 0.0);
-  EXPECT_TRUE(run(1, controls).released);
+  EXPECT_TRUE(run(1, controls).dead_man_released);
   // Seen held in each frame of a window at 60 Hz.
   for (int frame = 0; frame < 60; ++frame) {
     controls.held_s = kTick_s * tick;
     run(16, controls);
   }
   EXPECT_NEAR(device.force_N(), 1.5, 1e-9);
-  EXPECT_FALSE(run(1, controls).released);
+  EXPECT_FALSE(run(1, controls).dead_man_released);
   // The window hangs with the key down.
   EXPECT_EQ(run(250, controls).rendered_N, 0.0);
-  EXPECT_TRUE(run(1, controls).released);
+  EXPECT_TRUE(run(1, controls).dead_man_released);
 }
 
 TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {

@@ -117,7 +117,7 @@ TEST(LiveTick, DoesNothingForbiddenWithAnyDevice) {
   mouse.set_target(4e-3, 0.0);
   EXPECT_EQ(offences(mouse), 0) << "mouse";
   AutoDevice automatic;
-  automatic.mouse().set_target(4e-3, -15.0);
+  automatic.mouse()->set_target(4e-3, -15.0);
   EXPECT_EQ(offences(automatic), 0) << "auto, taken over by the hand after 5 s";
   ReplayDevice recording(test::example_recording(4000, 2000.0, 30e-6));
   EXPECT_EQ(offences(recording), 0) << "replay";
@@ -345,7 +345,7 @@ TEST(LiveTick, AForceSourceTakesThePlaceOfTheModels) {
   tick.run(1.000, {});
   tick.run(1.001, {});
   const LoopSnapshot& snapshot = tick.run(1.002, {});
-  EXPECT_EQ(snapshot.mixed_N, 1.5);
+  EXPECT_EQ(snapshot.commanded_N, 1.5);
   EXPECT_EQ(snapshot.rendered_N, 1.0) << "clamped to what the device may be given";
   EXPECT_EQ(device.force_N(), 1.0);
   EXPECT_EQ(source.seen_N, 1.0) << "what was rendered in the tick before";

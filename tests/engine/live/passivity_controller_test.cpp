@@ -25,11 +25,11 @@ struct Stroke {
 
   explicit Stroke(double encoder_step_m = 0.0) : controller(encoder_step_m) {}
   // `steps` above 0: inwards. The last force.
-  double move(int steps, double wanted_N) {
+  double move(int steps, double commanded_N) {
     const double direction = steps < 0 ? -1.0 : 1.0;
     for (int i = 0; i < std::abs(steps); ++i) {
       depth_m += direction * kStep_m;
-      written_N = controller.apply(wanted_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N, kTick_s);
+      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N, kTick_s);
     }
     return written_N;
   }
@@ -112,10 +112,10 @@ TEST(PassivityController, NeverAddsNeverPullsNeverBreaks) {
   double written_N = 0.0;
   for (int tick = 0; tick < 200000; ++tick) {
     const double depth_m = 5e-3 * random.uniform(-0.2, 1.8) * (tick % 7 == 0 ? 10.0 : 1.0);
-    const double wanted_N = std::max(0.0, random.uniform(-1.0, 7.0));
+    const double commanded_N = std::max(0.0, random.uniform(-1.0, 7.0));
     const double speed_m_per_s = random.uniform(-2.0, 2.0);
-    written_N = controller.apply(wanted_N, {depth_m, speed_m_per_s, depth_m > 0.0, false}, written_N, kTick_s);
-    ASSERT_LE(written_N, wanted_N);
+    written_N = controller.apply(commanded_N, {depth_m, speed_m_per_s, depth_m > 0.0, false}, written_N, kTick_s);
+    ASSERT_LE(written_N, commanded_N);
     ASSERT_GE(written_N, 0.0);
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();

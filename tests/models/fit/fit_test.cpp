@@ -55,17 +55,17 @@ void expect_safe(const ModelData& data) {
 void expect_all_methods(const Recordings& recordings, const TrainingRequest& request, double least_within) {
   const auto prepared = prepare(recordings, request);
   ASSERT_TRUE(prepared.ok()) << prepared.error().message;
-  for (const Method method : kMethods) {
+  for (const Method* method : methods()) {
     MethodRequest asked;
     asked.method = method;
     asked.centres = 40;
     asked.grid.assign(prepared->common.features.size(), 5);
     const auto fit = fit_method(*prepared, asked);
-    ASSERT_TRUE(fit.ok()) << method_name(method) << ": " << fit.error().message;
+    ASSERT_TRUE(fit.ok()) << method->name << ": " << fit.error().message;
     expect_safe(fit->data);
-    EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << method_name(method);
-    EXPECT_TRUE(std::isfinite(fit->report.condition)) << method_name(method);
-    EXPECT_TRUE(std::isfinite(fit->report.residual_rms)) << method_name(method);
+    EXPECT_GE(fit->data.provenance.training_within_jnd, least_within) << method->name;
+    EXPECT_TRUE(std::isfinite(fit->report.condition)) << method->name;
+    EXPECT_TRUE(std::isfinite(fit->report.residual_rms)) << method->name;
   }
 }
 
@@ -158,15 +158,15 @@ TEST(Fit, MoreCentresThanSites) {
   const auto prepared = prepare({test::example_recording(60, 1000.0), test::example_recording(900, 1000.0)},
                                 request_for(test::position_features()));
   ASSERT_TRUE(prepared.ok());
-  for (const Method method : kMethods) {
+  for (const Method* method : methods()) {
     MethodRequest asked;
     asked.method = method;
     asked.centres = 100000;
     const auto fit = fit_method(*prepared, asked);
-    ASSERT_TRUE(fit.ok()) << method_name(method) << ": " << fit.error().message;
+    ASSERT_TRUE(fit.ok()) << method->name << ": " << fit.error().message;
     expect_safe(fit->data);
-    if (fit->data.rbf) {
-      EXPECT_LE(fit->data.rbf->centre_count(), prepared->sites.count()) << method_name(method);
+    if (const RbfFunction* rbf = rbf_of(fit->data.correction)) {
+      EXPECT_LE(rbf->centre_count(), prepared->sites.count()) << method->name;
     }
   }
 }
@@ -186,7 +186,7 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
         asked.centres = 30;
         const auto fit = fit_method(*prepared, asked);
         ASSERT_TRUE(fit.ok()) << fit.error().message;
-        EXPECT_EQ(fit->data.rbf->kernel, kernel);
+        EXPECT_EQ(rbf_of(fit->data.correction)->kernel, kernel);
         expect_safe(fit->data);
       }
     }
@@ -204,9 +204,9 @@ TEST(Fit, TruncatedSvdAgreesWithCholeskyWithinTheNoise) {
   const auto prepared = prepare({recording}, request_for(test::paper_features()));
   ASSERT_TRUE(prepared.ok());
   MethodRequest asked;
-  asked.method = Method::direct;
+  asked.method = &kDirectMethod;
   const auto cholesky = fit_method(*prepared, asked);
-  asked.solver = DirectSolverChoice::tsvd;
+  asked.solver = DirectSolver::truncated_svd;
   const auto tsvd = fit_method(*prepared, asked);
   ASSERT_TRUE(cholesky.ok() && tsvd.ok());
   const FittedModel a(cholesky->data);
@@ -232,7 +232,7 @@ TEST(Fit, EachRefusalSaysWhy) {
   const auto prepared = prepare({recording}, request_for(test::paper_features()));
   ASSERT_TRUE(prepared.ok());
   MethodRequest voxel;
-  voxel.method = Method::voxel;
+  voxel.method = &kVoxelMethod;
   voxel.grid = {5, 5};
   EXPECT_EQ(fit_method(*prepared, voxel).error().message,
             "the grid has 2 sizes, the scene has 4 features; give one size per feature, e.g. --grid 25x11x11x11 for "
@@ -270,34 +270,29 @@ TEST(Fit, StopsWhereverItIsAsked) {
     ASSERT_FALSE(stopped.ok());
     EXPECT_EQ(stopped.error().message, "interrupted");
   }
-  for (const Method method : kMethods) {
+  for (const Method* method : methods()) {
     MethodRequest asked;
     asked.method = method;
     const auto stopped = fit_method(*prepared, asked, {[](double) { return false; }});
-    ASSERT_FALSE(stopped.ok()) << method_name(method);
+    ASSERT_FALSE(stopped.ok()) << method->name;
     EXPECT_EQ(stopped.error().message, "interrupted");
   }
-}
-
-TEST(Fit, KnowsItsMethodsByName) {
-  for (const Method method : kMethods) EXPECT_EQ(method_from_name(method_name(method)), method);
-  EXPECT_EQ(method_from_name("position"), std::nullopt);
 }
 
 TEST(Fit, AVoxelGridFromADirectFitIsTheSame) {
   const auto prepared = prepare({test::example_recording(1500, 500.0)}, request_for(test::paper_features()));
   ASSERT_TRUE(prepared.ok()) << prepared.error().message;
   MethodRequest request;
-  request.method = Method::direct;
+  request.method = &kDirectMethod;
   const auto direct = fit_method(*prepared, request);
   ASSERT_TRUE(direct.ok()) << direct.error().message;
-  request.method = Method::voxel;
+  request.method = &kVoxelMethod;
   request.grid.assign(4, 5);
   const auto alone = fit_method(*prepared, request);
   const auto shared = fit_method(*prepared, request, {}, &*direct);
   ASSERT_TRUE(alone.ok() && shared.ok());
-  EXPECT_EQ(shared->data.grid->nodes, alone->data.grid->nodes);
-  EXPECT_EQ(shared->data.grid->values_N, alone->data.grid->values_N);
+  EXPECT_EQ(grid_of(shared->data.correction)->nodes, grid_of(alone->data.correction)->nodes);
+  EXPECT_EQ(grid_of(shared->data.correction)->values_N, grid_of(alone->data.correction)->values_N);
   EXPECT_EQ(shared->report.smoothing, alone->report.smoothing);
 }
 

@@ -57,13 +57,15 @@ TEST(FittedModel, EveryFaultIsNamed) {
       {[](ModelData& d) { d.correction_limit_N = -0.5; }, "correction_limit_N: found -0.500000, expected 0 or more"},
       {[](ModelData& d) { d.largest_force_N = kInfinity; }, "largest_force_N: found inf, expected 0 or more"},
       {[](ModelData& d) { d.jnd.offset_N = -1.0; }, "jnd.offset_N: found -1.000000, expected 0 or more"},
-      {[](ModelData& d) { d.rbf.reset(); }, "model: found neither centres nor a grid, expected one of them"},
-      {[](ModelData& d) { d.grid.emplace(); }, "model: found both centres and a grid, expected one of them"},
-      {[](ModelData& d) { d.rbf->centres.conservativeResize(3, Eigen::NoChange); },
+      {[](ModelData& d) { d.correction.reset(); },
+       "model: found no correction, expected centres, a grid, or the trend alone"},
+      {[](ModelData& d) {
+         test::change_rbf(d, [](RbfFunction& f) { f.centres.conservativeResize(3, Eigen::NoChange); });
+       },
        "centres: found 3 values each, expected 4"},
   };
   for (const Case& one : cases) EXPECT_EQ(message_after(one.spoil), one.message);
-  EXPECT_EQ(message_after([](ModelData& d) { d.grid->values_N.pop_back(); }, "voxel"),
+  EXPECT_EQ(message_after([](ModelData& d) { test::change_grid(d, [](VoxelGrid& g) { g.values_N.pop_back(); }); }, "voxel"),
             "grid.values_N: found 359 values, expected 360");
 }
 
@@ -77,7 +79,9 @@ TEST(FittedModel, IsItsEquation) {
       const Eigen::VectorXd u = 1.3 * points.col(i);
       const Eigen::VectorXd x = data.offset + data.scale.cwiseProduct(u);
       const double trend_N = data.trend.at(x.data(), data.features);
-      const double h_N = data.rbf ? RbfEvaluator(*data.rbf).evaluate(u.data()) : data.grid->evaluate(u.data());
+      const RbfFunction* rbf = rbf_of(data.correction);
+      const VoxelGrid* grid = grid_of(data.correction);
+      const double h_N = rbf ? RbfEvaluator(*rbf).evaluate(u.data()) : grid ? grid->evaluate(u.data()) : 0.0;
       const double correction_N = std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N,
                                              data.correction_limit_N);
       const double expected_N =
@@ -92,7 +96,7 @@ TEST(FittedModel, IsItsEquation) {
 
 TEST(FittedModel, NeverPullsNorExceedsItsLargestForce) {
   for (ModelData data : test::example_models()) {
-    if (data.rbf) data.rbf->weights *= 1e6;  // a fit gone wild
+    if (rbf_of(data.correction)) test::change_rbf(data, [](RbfFunction& f) { f.weights *= 1e6; });  // a fit gone wild
     const FittedModel model(data);
     test::Numbers numbers(8);
     bool floor = false;

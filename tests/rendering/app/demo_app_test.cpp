@@ -60,7 +60,7 @@ class DemoAppTest : public ::testing::Test {
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
-    ASSERT_TRUE(until([&] { return app_->session().all_settled(); }));
+    ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 
   // Frames until `done`; whether it came to that.
@@ -136,7 +136,7 @@ TEST_F(DemoAppTest, ABadModelFileIsANoticeAndNotTheEnd) {
   drop(path);
   ASSERT_TRUE(until([&] { return told("bad.json"); }));
   EXPECT_TRUE(app_->toasts().back().problem);
-  EXPECT_EQ(app_->session().slot_count(), 2u);
+  EXPECT_EQ(app_->session().models().size(), 2u);
   drop(folder_.file("no such file.json"));
   ASSERT_TRUE(until([&] { return told("no such file.json"); }));
   EXPECT_FALSE(app_->closing());
@@ -146,29 +146,29 @@ TEST_F(DemoAppTest, ADroppedModelTakesPart) {
   open("hand");
   save("third.json", 3, 1.2);
   drop(folder_.file("third.json"));
-  ASSERT_TRUE(until([&] { return app_->session().slot_count() == 3 && app_->session().all_settled(); }));
-  EXPECT_EQ(app_->session().slot(2).name, "third");
+  ASSERT_TRUE(until([&] { return app_->session().models().size() == 3 && app_->session().models().all_settled(); }));
+  EXPECT_EQ(app_->session().models().view(2).name, "third");
   press(GLFW_KEY_3);
-  EXPECT_EQ(app_->session().selected(), 2u);
+  EXPECT_EQ(app_->session().models().selected(), 2u);
 }
 
 // Never more than one JND in 10 ms, whatever the models differ by.
 TEST_F(DemoAppTest, SwitchingWhilePressingFadesTheForce) {
   open("mouse");
   LiveSession& session = app_->session();
-  session.set_tool_target(0.004);
+  session.mouse()->set_target(0.004, steady_now_s());
   ASSERT_TRUE(until([&] { return session.newest().tick.depth_m > 0.002; }));
   frames(60);  // at rest
   const double before_s = session.newest().loop_time_s;
-  const double soft_N = session.slot(0).force_N;
-  const double firm_N = session.slot(1).force_N;
+  const double soft_N = session.models().view(0).force_N;
+  const double firm_N = session.models().view(1).force_N;
   ASSERT_GT(firm_N, soft_N + session.jnd().at(soft_N)) << "a difference to fade over";
   press(GLFW_KEY_2);
-  EXPECT_EQ(session.selected(), 1u);
+  EXPECT_EQ(session.models().selected(), 1u);
   frames(40);
   press(GLFW_KEY_1);
   frames(40);
-  const ForceHistory& history = session.history();
+  const ForceHistory& history = session.comparison().history();
   const std::size_t first = history.first_at(before_s);
   double worst = 0.0;
   for (std::size_t i = first + 1; i < history.size(); ++i) {
@@ -317,7 +317,7 @@ TEST_F(DemoAppTest, AVisitorsChoiceStaysASecretUntilTheAnswer) {
 TEST_F(DemoAppTest, SaysWhenTheProbeIsAwayFromTheData) {
   open("mouse");
   EXPECT_FALSE(away_from_data(app_->session()));
-  app_->session().set_tool_target(0.03);  // example models know 6 mm
+  app_->session().mouse()->set_target(0.03, steady_now_s());  // example models know 6 mm
   EXPECT_TRUE(until([&] { return away_from_data(app_->session()); }));
 }
 
@@ -326,13 +326,13 @@ TEST_F(DemoAppTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   GLFWwindow* window = app_->window().handle();
   glfwFocusWindow(window);
   frames(3);
-  EXPECT_TRUE(app_->session().hand_is_exploring());
+  EXPECT_TRUE(app_->session().mouse()->hand_is_exploring());
   // Beside the block nothing happens; over it, lower is deeper.
   glfwSetCursorPos(window, 20.0, 300.0);
   frames(5);
-  EXPECT_TRUE(app_->session().hand_is_exploring());
+  EXPECT_TRUE(app_->session().mouse()->hand_is_exploring());
   glfwSetCursorPos(window, 384.0, 380.0);
-  ASSERT_TRUE(until([&] { return !app_->session().hand_is_exploring(); }));
+  ASSERT_TRUE(until([&] { return !app_->session().mouse()->hand_is_exploring(); }));
   frames(30);
   const double high_m = app_->session().newest().tick.position_m;
   glfwSetCursorPos(window, 384.0, 430.0);

@@ -4,7 +4,8 @@
 #include <filesystem>
 
 #include "models/model/file/model_io.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_health.h"
+#include "scenes/live/live_session.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fake_hid_bus.h"
 #include "tests/support/session_frames.h"
@@ -36,7 +37,7 @@ TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   bus.plugged_in = false;
   ASSERT_TRUE(frames_until(session, unplugged));
   const std::string words = device_fault_words(device_fault::kUnplugged).front();
-  const HealthWords now = health_words(session, FrameFigures{});
+  const HealthWords now = health_words(health_view(session), 0.0);
   EXPECT_EQ(now.text, "Device: " + words);
   EXPECT_TRUE(now.problem && !now.past);
   bus.plugged_in = true;
@@ -44,12 +45,12 @@ TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   ASSERT_TRUE(frames_until(session, [&] { return bus.opened == 2; }));
   session.start_zeroing();
   ASSERT_TRUE(frames_until(session, [&] { return session.newest().device.faults == 0; }));
-  const HealthWords later = health_words(session, FrameFigures{});
+  const HealthWords later = health_words(health_view(session), 0.0);
   EXPECT_EQ(later.text.rfind("Earlier: " + words, 0), 0u) << later.text;
   EXPECT_TRUE(later.problem && later.past);
   // A slow machine may make another alarm at once.
   EXPECT_TRUE(frames_until(session, [&] { return session.alarms().empty(); }, [&] { session.reset_figures(); }));
-  EXPECT_FALSE(health_words(session, FrameFigures{}).past);
+  EXPECT_FALSE(health_words(health_view(session), 0.0).past);
   opened->reset();
   std::filesystem::current_path(before);
 }

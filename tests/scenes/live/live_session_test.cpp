@@ -87,7 +87,7 @@ TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
     expected[row.time_s] = tick;
   }));
   const Session session = files.replaying();
-  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   // Models join in the middle of a round: from the next one on they have seen all of it.
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().tick.model_count == 2; }));
   double last_s = session->newest().tick.time_s;
@@ -103,7 +103,7 @@ TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
       ASSERT_NE(tick, expected.end()) << "time " << newest.tick.time_s;
       ASSERT_EQ(newest.tick.force_N[0], tick->second.force_N[0]) << newest.tick.time_s;
       ASSERT_EQ(newest.tick.force_N[1], tick->second.force_N[1]) << newest.tick.time_s;
-      EXPECT_EQ(session->slot(0).force_N, newest.tick.force_N[0]);
+      EXPECT_EQ(session->models().view(0).force_N, newest.tick.force_N[0]);
       ++compared;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -114,41 +114,40 @@ TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
 TEST(LiveSession, ComparesWithTheForceInTheRecording) {
   const Files files;
   const Session session = files.replaying();
-  EXPECT_EQ(session->reference(), ReferenceKind::measured);
+  EXPECT_EQ(session->comparison().reference(), ReferenceKind::measured);
   EXPECT_EQ(session->reference_words(), "force in the recording");
   EXPECT_FALSE(session->has_reference(ReferenceKind::truth));
   EXPECT_FALSE(session->has_reference(ReferenceKind::direct)) << "not read yet";
-  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
-  EXPECT_EQ(session->slot(0).name, "first");
-  EXPECT_EQ(session->slot(1).method, "direct");
-  ASSERT_TRUE(frames_until(*session, [&] { return session->slot(1).errors.samples() > 300; }));
-  EXPECT_GT(session->slot(0).errors.rms_error_N(), 0.0);
-  EXPECT_GT(session->slot(0).evaluation_ns, 0.0);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_EQ(session->models().view(0).name, "first");
+  EXPECT_EQ(session->models().view(1).method, "direct");
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(1).errors.samples() > 300; }));
+  EXPECT_GT(session->models().view(0).errors.rms_error_N(), 0.0);
+  EXPECT_GT(session->models().view(0).evaluation_ns, 0.0);
   session->use_reference(ReferenceKind::truth);
-  EXPECT_EQ(session->reference(), ReferenceKind::measured) << "there is none";
+  EXPECT_EQ(session->comparison().reference(), ReferenceKind::measured) << "there is none";
   session->use_reference(ReferenceKind::direct);
-  EXPECT_EQ(session->slot(0).errors.samples(), 0u) << "figures begin anew";
-  ASSERT_TRUE(frames_until(*session, [&] { return session->slot(1).errors.samples() > 100; }));
-  EXPECT_EQ(session->slot(1).errors.max_error_N(), 0.0) << "its own reference";
-  EXPECT_GT(session->slot(0).errors.max_error_N(), 0.0);
-  EXPECT_TRUE(session->newest().restarted || session->history().size() > 300);
+  EXPECT_EQ(session->models().view(0).errors.samples(), 0u) << "figures begin anew";
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(1).errors.samples() > 100; }));
+  EXPECT_EQ(session->models().view(1).errors.max_error_N(), 0.0) << "its own reference";
+  EXPECT_GT(session->models().view(0).errors.max_error_N(), 0.0);
+  EXPECT_TRUE(session->newest().restarted || session->comparison().history().size() > 300);
 }
 
 TEST(LiveSession, ReplaysAsTold) {
   const Files files;
   const Session session = files.replaying();
-  EXPECT_FALSE(session->takes_mouse());
-  EXPECT_FALSE(session->hand_is_exploring());
-  session->pause_replay(true);
-  session->seek_replay(0.25);
-  session->set_replay_speed(2.0);
+  EXPECT_EQ(session->mouse(), nullptr);
+  ASSERT_NE(session->replay(), nullptr);
+  session->replay()->pause(true);
+  session->replay()->seek(0.25);
+  session->replay()->set_speed(2.0);
   frames(*session, 0.05);
-  const ReplayStatus status = session->replay();
-  EXPECT_TRUE(status.present);
-  EXPECT_TRUE(status.paused);
-  EXPECT_EQ(status.speed, 2.0);
-  EXPECT_NEAR(status.at_s, 0.25, 1.1e-3);
-  EXPECT_NEAR(status.duration_s, 0.699, 1e-9);
+  const ReplayControl& replay = *session->replay();
+  EXPECT_TRUE(replay.paused());
+  EXPECT_EQ(replay.speed(), 2.0);
+  EXPECT_NEAR(replay.playhead_s(), 0.25, 1.1e-3);
+  EXPECT_NEAR(replay.duration_s(), 0.699, 1e-9);
 }
 
 TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
@@ -157,19 +156,19 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   request.models = {files.folder.file("a.json")};
   const Session session = must(LiveSession::open(request));
   session->select(0);
-  EXPECT_EQ(session->slot(0).state, SlotState::waiting);
-  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
-  EXPECT_EQ(session->reference(), ReferenceKind::direct);
+  EXPECT_EQ(session->models().view(0).state, SlotState::waiting);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_EQ(session->comparison().reference(), ReferenceKind::direct);
   EXPECT_EQ(session->reference_words(), "no reference");
-  EXPECT_TRUE(std::isnan(session->reference_N()));
+  EXPECT_TRUE(std::isnan(session->comparison().reference_N()));
   session->load_file(files.folder.file("b.json"));
   session->load_file(files.folder.file("a.json"));
   session->load_file(files.folder.with_file("bad.json", "{\"format\": 3}"));
-  EXPECT_FALSE(session->all_settled());
-  ASSERT_TRUE(frames_until(*session, [&] { return session->all_settled(); }));
-  ASSERT_EQ(session->slot_count(), 3u);
-  EXPECT_EQ(session->slot(2).name, "first-2") << "names are distinct";
-  EXPECT_EQ(session->selected(), 0u);
+  EXPECT_FALSE(session->models().all_settled());
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  ASSERT_EQ(session->models().size(), 3u);
+  EXPECT_EQ(session->models().view(2).name, "first-2") << "names are distinct";
+  EXPECT_EQ(session->models().selected(), 0u);
   const std::vector<Notice> notices = session->take_notices();
   ASSERT_EQ(notices.size(), 3u);
   EXPECT_FALSE(notices[0].problem);
@@ -178,12 +177,12 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   EXPECT_TRUE(session->take_notices().empty());
   session->select(2);
   session->select(9);
-  EXPECT_EQ(session->selected(), 2u);
-  ASSERT_TRUE(frames_until(*session, [&] { return session->newest().selected == 2 && !session->fading(); }));
+  EXPECT_EQ(session->models().selected(), 2u);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->newest().selected == 2 && !session->newest().fading; }));
   EXPECT_EQ(session->reference_words(), "direct interpolant") << "there is one now";
   // In the first points the later models were not there.
-  EXPECT_TRUE(std::isnan(session->history()[0].force_N[2]));
-  EXPECT_FALSE(std::isnan(session->history()[session->history().size() - 1].force_N[2]));
+  EXPECT_TRUE(std::isnan(session->comparison().history()[0].force_N[2]));
+  EXPECT_FALSE(std::isnan(session->comparison().history()[session->comparison().history().size() - 1].force_N[2]));
 }
 
 TEST(LiveSession, RefusesMoreModelsThanTheLoopTakes) {
@@ -200,11 +199,12 @@ TEST(LiveSession, RefusesMoreModelsThanTheLoopTakes) {
 TEST(LiveSession, TakesTheMouse) {
   const Files files;
   const Session session = must(LiveSession::open(files.request("auto")));
-  EXPECT_TRUE(session->takes_mouse());
-  EXPECT_TRUE(session->hand_is_exploring());
-  session->set_tool_target(-0.01);
-  ASSERT_TRUE(frames_until(*session, [&] { return !session->hand_is_exploring(); }));
-  session->nudge_tool(1e-3);
+  ASSERT_NE(session->mouse(), nullptr);
+  EXPECT_EQ(session->replay(), nullptr);
+  EXPECT_TRUE(session->mouse()->hand_is_exploring());
+  session->mouse()->set_target(-0.01, steady_now_s());
+  ASSERT_TRUE(frames_until(*session, [&] { return !session->mouse()->hand_is_exploring(); }));
+  session->mouse()->nudge(1e-3, steady_now_s());
   ASSERT_TRUE(frames_until(*session, [&] { return std::abs(session->newest().tick.position_m + 9e-3) < 1e-4; }));
 }
 
@@ -233,20 +233,20 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   request.models = {"greedy", "random"};
   request.realtime = false;
   const Session session = must(LiveSession::open(request));
-  ASSERT_EQ(session->slot_count(), 3u);
-  EXPECT_EQ(session->slot(2).name, "direct") << "the reference, always";
+  ASSERT_EQ(session->models().size(), 3u);
+  EXPECT_EQ(session->models().view(2).name, "direct") << "the reference, always";
   EXPECT_EQ(session->reference_words(), "true force of the virtual elastic");
-  ASSERT_TRUE(frames_until(*session, [&] { return session->slot(0).state == SlotState::ready; }));
-  EXPECT_EQ(session->slot(1).state, SlotState::ready) << "the quickest first";
-  EXPECT_EQ(session->selected(), 0u) << "the first asked for";
-  EXPECT_EQ(session->slot(0).name, "greedy-100");
-  EXPECT_EQ(session->slot(0).centres, 100);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).state == SlotState::ready; }));
+  EXPECT_EQ(session->models().view(1).state, SlotState::ready) << "the quickest first";
+  EXPECT_EQ(session->models().selected(), 0u) << "the first asked for";
+  EXPECT_EQ(session->models().view(0).name, "greedy-100");
+  EXPECT_EQ(session->models().view(0).centres, 100);
   ASSERT_TRUE(session->start_recording(folder.file("live.csv")).ok());
   ASSERT_TRUE(frames_until(*session, [&] {
-    return session->slot(0).errors.samples() > 500 && session->recording().seconds > 2.0;
+    return session->models().view(0).errors.samples() > 500 && session->recording().seconds > 2.0;
   }));
-  EXPECT_GT(session->slot(0).errors.within_jnd(), 0.9);
-  EXPECT_GT(session->slot(1).errors.samples(), 500u);
+  EXPECT_GT(session->models().view(0).errors.within_jnd(), 0.9);
+  EXPECT_GT(session->models().view(1).errors.samples(), 500u);
   session->stop_recording();
   ASSERT_TRUE(frames_until(*session, [&] { return !session->recording().saving && !session->recording().active; }));
   const std::vector<Notice> notices = session->take_notices();
@@ -255,7 +255,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   const auto recording = std::make_shared<const Recording>(must(read_recording(folder.file("live.csv"))));
   EXPECT_TRUE(recording->columns.velocity);
   const PreparedTraining prepared = test::prepare({recording}, test::scene_request("elastic_block"));
-  EXPECT_GT(test::judge(*recording, test::fit(prepared, Method::random)).within_jnd, 0.95);
+  EXPECT_GT(test::judge(*recording, test::fit(prepared, &kRandomMethod)).within_jnd, 0.95);
 }
 
 }  // namespace

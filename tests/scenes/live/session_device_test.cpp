@@ -58,7 +58,7 @@ class SessionDevice : public ::testing::Test {
     auto session = LiveSession::open(request);
     ASSERT_TRUE(session.ok()) << session.error().message;
     session_ = std::move(*session);
-    ASSERT_TRUE(frames_until([&] { return session_->all_settled(); }));
+    ASSERT_TRUE(frames_until([&] { return session_->models().all_settled(); }));
   }
   void TearDown() override {
     session_.reset();
@@ -128,7 +128,7 @@ TEST_F(SessionDevice, UnpluggedInMidPressItLetsGoSaysSoAndKeepsTheRecording) {
   ASSERT_TRUE(frames_until([&] { return session_->device_words() == unplugged; })) << session_->device_words();
   const auto alarms = session_->alarms();
   EXPECT_NE(std::find(alarms.begin(), alarms.end(), unplugged), alarms.end());
-  EXPECT_TRUE(std::any_of(session_->faults().begin(), session_->faults().end(),
+  EXPECT_TRUE(std::any_of(session_->faults().events().begin(), session_->faults().events().end(),
                           [&](const FaultEvent& fault) { return fault.text == unplugged && fault.alarm; }));
 
   // The second before it is on the disk, and a notice says where.

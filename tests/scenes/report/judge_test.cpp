@@ -49,7 +49,7 @@ TEST(Jury, PoolsWhatItSawRecordingByRecording) {
 TEST(TraceFinder, KeepsTheWorstSeconds) {
   const std::vector<ModelPointer> six = [] {
     std::vector<ModelPointer> models = example_pointers();
-    models.resize(kMainModels, models.front());
+    models.resize(6, models.front());
     return models;
   }();
   Recording recording = test::example_recording(20000, 1000.0);

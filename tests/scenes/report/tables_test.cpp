@@ -29,18 +29,22 @@ ReportData example() {
   for (std::size_t i = 0; i < plan.models.size(); ++i) {
     ModelResult model;
     model.plan = plan.models[i];
-    model.size = model.plan.request.method == Method::direct ? 6830 : std::max(10, model.plan.request.centres);
+    model.size = model.plan.request.method == &kDirectMethod ? 6830 : std::max(10, model.plan.request.centres);
     // Only kdtree-30 and what is larger is good; direct is best and slow.
-    const bool good = model.size >= 30 && model.plan.request.method == Method::kdtree;
-    model.pooled = errors(0.01 + 0.001 * static_cast<double>(i), good ? 0.9995 : 0.99, 2.0);
+    const bool good = model.size >= 30 && model.plan.request.method == &kKdTreeMethod;
+    const bool trend = model.plan.request.method == &kTrendMethod;  // the first
+    model.pooled = errors(trend ? 0.1 : 0.009 + 0.001 * static_cast<double>(i), good ? 0.9995 : 0.99, 2.0);
     model.per_recording = {model.pooled};
-    model.time = {model.plan.request.method == Method::direct ? 5000.0 : 200.0, 300.0, true};
+    model.time = {model.plan.request.method == &kDirectMethod ? 5000.0 : 200.0, 300.0, true};
     model.fit_seconds = 1.5;
     model.health.push_back({0, {}, 100, 50, 0.9});
     data.models.push_back(std::move(model));
   }
   data.coverage.errors.push_back({"greedy-100", errors(0.01, 1.0, 0.5), errors(0.1, 0.5, 3.0)});
-  data.seeds = {{"random-100", 1, errors(0.010, 1.0, 1.0)}, {"random-100", 2, errors(0.012, 1.0, 1.0)}};
+  PlannedModel random;
+  random.name = "random-100";
+  random.request.method = &kRandomMethod;
+  data.seeds = {{random, 1, errors(0.010, 1.0, 1.0)}, {random, 2, errors(0.012, 1.0, 1.0)}};
   return data;
 }
 
@@ -98,7 +102,7 @@ TEST(Findings, NameTheSmallestGoodAndTheQuickest) {
 TEST(Findings, SayWhenNoModelIsGoodEnough) {
   ReportData data = example();
   for (ModelResult& model : data.models) model.pooled.within_jnd = 0.5;
-  data.models[2].pooled.within_jnd = 0.8;
+  data.models[3].pooled.within_jnd = 0.8;
   EXPECT_EQ(findings(data, false)[0].rfind("No model keeps 99.9 % of the samples within the JND; random-100 comes "
                                            "nearest: 80.00 %", 0), 0u);
 }
@@ -107,9 +111,9 @@ TEST(Plan, MainModelsComeFirstAndDirectBeforeTheGridsItFills) {
   for (const bool quick : {true, false}) {
     for (const std::size_t features : {std::size_t{1}, std::size_t{4}, std::size_t{8}}) {
       const ReportPlan plan = make_plan(quick, features);
-      for (std::size_t i = 0; i < plan.models.size(); ++i) EXPECT_EQ(plan.models[i].main, i < kMainModels);
-      EXPECT_EQ(plan.models[0].request.method, Method::direct);
-      EXPECT_EQ(plan.models[5].name, "greedy-100");
+      for (std::size_t i = 0; i < plan.models.size(); ++i) EXPECT_EQ(plan.models[i].main, i < methods().size() + 1);
+      EXPECT_EQ(plan.models[1].request.method, &kDirectMethod);
+      EXPECT_EQ(plan.models[methods().size()].name, "greedy-100");
       EXPECT_GE(plan.seeds.size(), 10u);
     }
   }

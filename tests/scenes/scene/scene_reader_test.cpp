@@ -105,7 +105,7 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   EXPECT_EQ(complaint_after("#56B4E9", "red"),
             "x.json:12:24: colours.block: found \"red\", expected a colour such as \"#56B4E9\"");
   EXPECT_EQ(complaint_after("\"greedy\"", "\"best\""),
-            "x.json:13:22: default_models[0]: found \"best\", expected one of direct, voxel, random, kdtree, greedy");
+            "x.json:13:22: default_models[0]: found \"best\", expected one of trend, direct, voxel, random, kdtree, greedy");
 }
 
 TEST(SceneReader, LimitsTheNumberOfFeatures) {

@@ -85,25 +85,30 @@ TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
   const std::vector<double> awkward = {-0.0, 0.1, 1.0 / 3.0, 5e-324, -2.2250738585072014e-308,
                                        1.7976931348623157e308, 9007199254740993.0, 1e22, 123456789012345678.0,
                                        -1e-7, 3.0, std::nextafter(1.0, 2.0)};
-  for (std::size_t i = 0; i < awkward.size(); ++i) data.rbf->weights(static_cast<Eigen::Index>(i)) = awkward[i];
+  test::change_rbf(data, [&](RbfFunction& function) {
+    for (std::size_t i = 0; i < awkward.size(); ++i) function.weights(static_cast<Eigen::Index>(i)) = awkward[i];
+  });
   const ModelData back = read_back(data);
   for (std::size_t i = 0; i < awkward.size(); ++i) {
-    EXPECT_EQ(bits(back.rbf->weights(static_cast<Eigen::Index>(i))), bits(awkward[i])) << awkward[i];
+    EXPECT_EQ(bits(rbf_of(back.correction)->weights(static_cast<Eigen::Index>(i))), bits(awkward[i])) << awkward[i];
   }
 }
 
 TEST(ModelIo, RandomBitPatternsRoundTrip) {
   ModelData data = example_model("voxel", KernelKind::cubic, test::paper_features(), 1);
   std::uint64_t state = 2026;
-  for (double& value : data.grid->values_N) {
-    do {
-      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-      value = std::bit_cast<double>(state ^ (state >> 29));
-    } while (!std::isfinite(value));
-  }
+  test::change_grid(data, [&](VoxelGrid& grid) {
+    for (double& value : grid.values_N) {
+      do {
+        state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+        value = std::bit_cast<double>(state ^ (state >> 29));
+      } while (!std::isfinite(value));
+    }
+  });
   const ModelData back = read_back(data);
-  for (std::size_t i = 0; i < data.grid->values_N.size(); ++i) {
-    ASSERT_EQ(bits(back.grid->values_N[i]), bits(data.grid->values_N[i])) << i;
+  const std::vector<double>& values_N = grid_of(data.correction)->values_N;
+  for (std::size_t i = 0; i < values_N.size(); ++i) {
+    ASSERT_EQ(bits(grid_of(back.correction)->values_N[i]), bits(values_N[i])) << i;
   }
 }
 
@@ -115,19 +120,16 @@ TEST(ModelIo, CentresStandOneToALine) {
   EXPECT_EQ(std::count(centres.begin(), centres.end(), '\n'), 40);
 }
 
-TEST(ModelIo, TheTimeOfAFitIsStoredInCoarseStepsOnly) {
-  ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
-  data.provenance.fit_seconds = 0.21;
+// Files of before had the seconds that the fit took.
+TEST(ModelIo, NoTimeIsStoredAndThatOfAnOlderFileIsIgnored) {
+  const ModelData data = example_model("greedy", KernelKind::cubic, test::position_features(), 1);
   const std::string text = text_of(data);
-  data.provenance.fit_seconds = 0.97;
-  EXPECT_EQ(text_of(data), text);
-  EXPECT_NE(text.find("\"fit_seconds\": 1,"), std::string::npos);
-  for (const auto& [seconds, stored] : {std::pair{0.0, 1.0}, std::pair{1.0, 1.0}, std::pair{1.01, 2.0},
-                                        std::pair{2.5, 5.0}, std::pair{5.1, 10.0}, std::pair{19.0, 20.0},
-                                        std::pair{301.0, 500.0}, std::pair{86400.0, 100000.0}}) {
-    data.provenance.fit_seconds = seconds;
-    EXPECT_EQ(read_back(data).provenance.fit_seconds, stored) << seconds;
-  }
+  EXPECT_EQ(text.find("seconds"), std::string::npos);
+  std::string older = text;
+  older.insert(older.find("\"weighting\""), "\"fit_seconds\": 5,\n    ");
+  const Result<ModelData> back = read_model_text(older, "m.json");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(text_of(*back), text);
 }
 
 TEST(ModelIo, RecordingNamesLoseTheirFolders) {
@@ -147,11 +149,14 @@ TEST(ModelIo, WhatCannotBeReadIsNotWritten) {
   EXPECT_EQ(message([](ModelData& data) { data.name = "a,b"; }),
             "cannot write m.json: name: found a control character, comma or quote, expected 1 to 100 bytes without "
             "control characters, commas and quotes");
-  EXPECT_EQ(message([](ModelData& data) { data.method = "guess"; }),
-            "cannot write m.json: method: found \"guess\", expected one of direct, voxel, random, kdtree, greedy");
-  EXPECT_EQ(message([](ModelData& data) { data.rbf->weights(3) = std::numeric_limits<double>::quiet_NaN(); }),
+  EXPECT_EQ(message([](ModelData& data) { data.method = ""; }),
+            "cannot write m.json: method: found an empty text, expected 1 to 100 bytes without control characters, "
+            "commas and quotes");
+  EXPECT_EQ(message([](ModelData& data) {
+              test::change_rbf(data, [](RbfFunction& f) { f.weights(3) = std::numeric_limits<double>::quiet_NaN(); });
+            }),
             "cannot write m.json: centres, weights and tail must be finite numbers");
-  EXPECT_EQ(message([](ModelData& data) { data.provenance.fit_seconds = -1.0; }),
+  EXPECT_EQ(message([](ModelData& data) { data.provenance.training_within_jnd = -1.0; }),
             "cannot write m.json: provenance: found a number that is negative or not finite, expected finite ones");
 }
 

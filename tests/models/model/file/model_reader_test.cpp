@@ -29,9 +29,11 @@ std::string small_text() {
     *values = Eigen::VectorXd(values->head(3));
   }
   data.cover.points = Eigen::MatrixXd::Constant(3, 1, 0.25);
-  data.rbf->centres = Eigen::MatrixXd::Constant(3, 2, 0.5);
-  data.rbf->weights = Eigen::VectorXd::Constant(2, 0.125);
-  data.rbf->tail = Eigen::VectorXd::Constant(1, 1.5);
+  test::change_rbf(data, [](RbfFunction& function) {
+    function.centres = Eigen::MatrixXd::Constant(3, 2, 0.5);
+    function.weights = Eigen::VectorXd::Constant(2, 0.125);
+    function.tail = Eigen::VectorXd::Constant(1, 1.5);
+  });
   data.name = "small";
   return text_of(data);
 }
@@ -39,7 +41,7 @@ std::string small_text() {
 std::string small_grid_text() {
   ModelData data = example_model("voxel", KernelKind::cubic, test::position_features(), 1);
   data.cover.points = Eigen::MatrixXd::Constant(1, 1, 0.25);
-  data.grid->values_N = {1.5, 2.5, 3.5};
+  test::change_grid(data, [](VoxelGrid& grid) { grid.values_N = {1.5, 2.5, 3.5}; });
   return text_of(data);
 }
 
@@ -96,9 +98,9 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
        "control characters, commas and quotes; fit the model again"},
       {"\"small\"", "7",
        "m.json:4:11: name: found 7, expected a text; fit the model again"},
-      {"\"greedy\"", "\"guess\"",
-       "m.json:5:13: method: found \"guess\", expected one of direct, voxel, random, kdtree, greedy; fit "
-       "the model again"},
+      {"\"greedy\"", "\"\"",
+       "m.json:5:13: method: found an empty text, expected 1 to 100 bytes without control characters, "
+       "commas and quotes; fit the model again"},
       {"\"kind\": \"velocity\"", "\"kind\": \"speed\"",
        "m.json:8:14: features[1].kind: found \"speed\", expected one of depth, velocity, "
        "lowpass_velocity, maxwell_branch; fit the model again"},
@@ -171,7 +173,7 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
       {"0.125,", "",
        "m.json:56:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
       {"\"centres\"", "\"centers\"",
-       "m.json:1:1: found neither \"centres\" nor \"grid\", expected one of them; fit the model again"},
+       "m.json:1:1: found none of \"centres\", \"grid\", \"trend_alone\", expected one of them; fit the model again"},
       {"\"centres\"", "\"grid\": {}, \"centres\"",
        "m.json:1:1: found both \"centres\" and \"grid\", expected one of them; fit the model again"},
   });

@@ -1,0 +1,77 @@
+// What the program knows of one HID protocol, as data and pure functions: bytes
+// in, a reading out; a command in, bytes out. Each protocol is one file below
+// devices/hid/protocol/ and one line of the table in hid_drivers.h; everything else
+// iterates over that table. A driver is known by its address.
+//
+// Thread guarantee: pure functions, any thread; wait-free, never throw, read
+// nothing beyond `size`.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "devices/stream/device_reading.h"
+
+namespace palpate {
+
+inline constexpr std::size_t kLargestHidReport = 64;
+
+// One node of the bus.
+struct HidDeviceInfo {
+  std::string path;  // of the node; empty: there is none
+  std::string product;
+  std::uint16_t vendor_id = 0;
+  std::uint16_t product_id = 0;
+  std::uint16_t usage_page = 0;
+  std::uint16_t usage = 0;
+};
+
+struct HidCommand {
+  std::uint32_t sequence = 0;
+  std::uint16_t heartbeat = 0;
+  bool drive = false;
+  double units = 0.0;  // what one is, the driver says; clamped to what 16 bits hold
+};
+
+// Reports to write one after the other, as hid_write wants them: the report id
+// first, 0 for none.
+struct OutReports {
+  std::array<std::array<std::uint8_t, kLargestHidReport + 1>, 4> bytes{};
+  std::array<std::size_t, 4> sizes{};
+  std::size_t count = 0;
+};
+
+struct HidDriver {
+  const char* name;         // of its calibration file and in messages
+  const char* description;  // in words
+  // What this repository has to install on the device when its reports are not
+  // understood; empty: nothing.
+  const char* firmware;
+  std::uint8_t version;  // of the protocol; 0: it has none
+  bool renders_force;
+  bool reports_unasked;    // also at rest; else its ids alone must identify it
+  bool numbers_reports;    // sequence, time, boot and confirmation; else arrival is all there is
+  int count_bits;          // width of the counter behind DeviceReading::counts; it wraps
+
+  bool (*matches)(const HidDeviceInfo& info) noexcept;
+  // `bytes` as read from hidraw, a report id included where there is one; `reading`
+  // comes in its default state.
+  ReportVerdict (*decode)(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept;
+  // Once after opening.
+  OutReports (*encode_start)() noexcept;
+  // In every cycle; also asks for the position where the device does not send it
+  // by itself.
+  OutReports (*encode_command)(const HidCommand& command) noexcept;
+  // Takes the force away, whatever was sent before.
+  OutReports (*encode_stop)() noexcept;
+};
+
+// For drivers: the units of a command as 16 bits, 0 when not finite or not driven.
+std::int16_t int16_units(const HidCommand& command) noexcept;
+// For drivers: appends a report of `size` bytes behind its id and returns where
+// they begin.
+std::uint8_t* append_report(OutReports& reports, std::uint8_t id, std::size_t size) noexcept;
+
+}  // namespace palpate

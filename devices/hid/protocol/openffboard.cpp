@@ -1,0 +1,114 @@
+#include "devices/hid/protocol/openffboard.h"
+
+#include "devices/firmware/paddle/paddle_protocol.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::uint16_t kFfbVendor = 0x1209, kFfbProduct = 0xFFB0;
+constexpr std::size_t kFfbBytes = 25;
+constexpr std::uint8_t kFfbReport = 0xA1;
+constexpr std::uint16_t kFfbAxis = 0xA01;
+constexpr std::uint32_t kFfbPosition = 0x9;
+constexpr std::uint16_t kFfbEffects = 0xA03;
+constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4,
+                        kFfbState = 0x5;
+constexpr std::uint64_t kFfbConstantForce = 1;
+enum FfbType : std::uint8_t {
+  kWrite = 0,
+  kRequest = 1,
+  kWriteTo = 3,
+  kAck = 10,
+  kNotFound = 13,
+  kNotify = 14,
+  kErr = 15
+};
+
+bool is_openffboard(const HidDeviceInfo& info) noexcept {
+  return info.vendor_id == kFfbVendor && info.product_id == kFfbProduct;
+}
+
+ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept {
+  using paddle::read16;
+  using paddle::read32;
+  if (size == 0 || bytes[0] != kFfbReport) return size == 0 ? ReportVerdict::corrupt : ReportVerdict::nothing;
+  if (size != kFfbBytes) return ReportVerdict::corrupt;
+  const std::uint8_t type = bytes[1];
+  const bool known = type <= 4 || type == kAck || type == kNotFound || type == kNotify || type == kErr;
+  if (!known) return ReportVerdict::corrupt;
+  if (type == kNotFound || type == kErr) {
+    reading.own_fault = true;
+    return ReportVerdict::nothing;
+  }
+  const bool answer = type == kRequest || type == kAck;
+  if (!answer || read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || read32(bytes + 5) != kFfbPosition) {
+    return ReportVerdict::nothing;
+  }
+  // A 64-bit field for a 32-bit position: the upper half only repeats the sign.
+  const auto low = static_cast<std::int32_t>(read32(bytes + 9));
+  const std::uint32_t high = read32(bytes + 13);
+  if (high != 0 && high != 0xFFFFFFFFu) return ReportVerdict::corrupt;
+  reading.counts = low;
+  return ReportVerdict::position;
+}
+
+void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::uint32_t command,
+                std::uint64_t data) noexcept {
+  std::uint8_t* at = append_report(reports, kFfbReport, kFfbBytes - 1);
+  at[0] = type;
+  paddle::write16(at + 1, object);
+  at[3] = 0;
+  paddle::write32(at + 4, command);
+  paddle::write32(at + 8, static_cast<std::uint32_t>(data));
+  paddle::write32(at + 12, static_cast<std::uint32_t>(data >> 32));
+  // The address, of axis or effect 0.
+  paddle::write32(at + 16, 0);
+  paddle::write32(at + 20, 0);
+}
+
+void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
+  const auto data = static_cast<std::uint64_t>(static_cast<std::int64_t>(magnitude));
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, data);
+}
+
+OutReports start_openffboard() noexcept {
+  OutReports reports;
+  append_ffb(reports, kRequest, kFfbEffects, kFfbReset, 0);
+  append_ffb(reports, kWrite, kFfbEffects, kFfbNew, kFfbConstantForce);
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbState, 1);
+  append_ffb(reports, kWrite, kFfbEffects, kFfbActive, 1);
+  return reports;
+}
+
+OutReports encode_openffboard(const HidCommand& command) noexcept {
+  OutReports reports;
+  append_ffb(reports, kRequest, kFfbAxis, kFfbPosition, 0);
+  append_ffb_force(reports, int16_units(command));
+  return reports;
+}
+
+OutReports stop_openffboard() noexcept {
+  OutReports reports;
+  append_ffb_force(reports, 0);
+  return reports;
+}
+
+}  // namespace
+
+const HidDriver kOpenFfBoardDriver = {
+    .name = "openffboard",
+    .description = "OpenFFBoard, one axis",
+    .firmware = "",
+    .version = 0,
+    .renders_force = true,
+    .reports_unasked = false,
+    .numbers_reports = false,
+    .count_bits = 32,
+    .matches = is_openffboard,
+    .decode = decode_openffboard,
+    .encode_start = start_openffboard,
+    .encode_command = encode_openffboard,
+    .encode_stop = stop_openffboard,
+};
+
+}  // namespace palpate

@@ -1,0 +1,138 @@
+#include "devices/stream/stream_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+// Beyond the fastest motion: a few counts of noise.
+constexpr double kNoiseCounts = 4.0;
+// Time steps between samples are at least this, else a report on the heels of
+// another would look fast.
+constexpr double kShortestStep_s = 1e-3;
+// Two samples must not have the same time.
+constexpr double kLeastStep_s = 1e-6;
+
+// Of sequence numbers that wrap at 32 bits.
+bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::int32_t>(a - b) > 0; }
+
+}  // namespace
+
+StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {}
+
+void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
+  if (now_s >= state_.transient_until_s) state_.transient = 0;
+  state_.transient |= bit;
+  state_.transient_until_s = now_s + kHold_s;
+}
+
+void StreamMonitor::lose(std::uint32_t bit) noexcept {
+  state_.lost |= bit;
+  state_.zeroing = Zeroing::needed;
+  state_.zeroing_progress = 0.0F;
+}
+
+void StreamMonitor::unplugged() noexcept {
+  connected_ = false;
+  lose(device_fault::kUnplugged);
+}
+
+void StreamMonitor::start_zeroing() noexcept {
+  if (state_.zeroing == Zeroing::not_needed) return;
+  state_.zeroing = Zeroing::hold_still;
+  state_.zeroing_progress = 0.0F;
+  zeroing_since_s_ = -1.0;
+}
+
+bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.numbered || !connected_) return true;
+  if (reading.boot != last_.boot) {
+    lose(device_fault::kReset);
+    connected_ = false;
+    return true;
+  }
+  if (later(reading.sequence, last_.sequence)) return true;
+  // The same report again says nothing new; its age will tell.
+  if (reading.sequence != last_.sequence) fault(device_fault::kOutOfOrder, now_s);
+  return false;
+}
+
+bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept {
+  const bool together = now_s - arrivals_s_[2] < kTogether_s;
+  std::copy_backward(arrivals_s_, arrivals_s_ + 2, arrivals_s_ + 3);
+  arrivals_s_[0] = now_s;
+  if (!settings_.numbered) {
+    read_time_s_ = now_s;
+    if (together) fault(device_fault::kBurst, now_s);
+    return !together;
+  }
+  if (!connected_) clock_.restart();
+  read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
+  if (now_s - read_time_s_ <= settings_.stale_after_s) return true;
+  fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
+  return false;
+}
+
+// Unwraps the counter and judges the step.
+void StreamMonitor::move(const DeviceReading& reading) noexcept {
+  if (!connected_) {
+    state_.counts = reading.counts;
+    return;
+  }
+  std::int64_t step = static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) -
+                                                static_cast<std::uint32_t>(last_.counts));
+  if (settings_.count_bits == 16) step = static_cast<std::int16_t>(step & 0xFFFF);
+  const double step_s = std::max(kShortestStep_s, read_time_s_ - state_.sample_time_s);
+  const double most = settings_.counts_per_metre * settings_.fastest_m_per_s * step_s + kNoiseCounts;
+  if (std::abs(static_cast<double>(step)) > most) lose(device_fault::kJump);
+  state_.counts += step;
+}
+
+void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
+  if (!(std::abs(force_N) >= kPushing_N)) still_since_s_ = now_s;
+  if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck);
+}
+
+void StreamMonitor::watch_zeroing(double now_s) noexcept {
+  if (state_.zeroing != Zeroing::hold_still) return;
+  zeroing_from_ = std::min(zeroing_from_, state_.counts);
+  zeroing_to_ = std::max(zeroing_to_, state_.counts);
+  const double most = std::max(2.0, kRest_m * settings_.counts_per_metre);
+  if (zeroing_since_s_ < 0.0 || static_cast<double>(zeroing_to_ - zeroing_from_) > most) {
+    zeroing_since_s_ = now_s;
+    zeroing_from_ = zeroing_to_ = state_.counts;
+  }
+  const double share = (now_s - zeroing_since_s_) / kZeroing_s;
+  state_.zeroing_progress = static_cast<float>(std::min(1.0, share));
+  if (share < 1.0) return;
+  state_.zero_counts = 0.5 * static_cast<double>(zeroing_from_ + zeroing_to_);
+  state_.zeroing = Zeroing::done;
+  state_.lost = 0;
+  ++state_.zeroings;
+}
+
+void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, double now_s,
+                           double force_N) noexcept {
+  if (verdict == ReportVerdict::corrupt) fault(device_fault::kCorrupt, now_s);
+  if (verdict == ReportVerdict::wrong_version) fault(device_fault::kWrongFirmware, now_s);
+  if (reading.own_fault) fault(device_fault::kOwn, now_s);
+  if (verdict != ReportVerdict::position) return;
+  if (!in_order(reading, now_s) || !recent(reading, now_s)) return;
+  const std::int64_t before = state_.counts;
+  move(reading);
+  if (!connected_ || state_.counts != before) still_since_s_ = now_s;
+  if (!connected_ || reading.confirmed != last_.confirmed) {
+    state_.confirmed = reading.confirmed;
+    state_.confirmed_at_s = now_s;
+  }
+  state_.sample_time_s = std::max(read_time_s_, state_.sample_time_s + kLeastStep_s);
+  state_.grip = reading.grip;
+  ++state_.samples;
+  last_ = reading;
+  connected_ = true;
+  watch_stuck(now_s, force_N);
+  watch_zeroing(now_s);
+}
+
+}  // namespace palpate

@@ -1,0 +1,115 @@
+// The voxel method: the direct fit's values on a rectilinear grid, in constant time
+// per evaluation.
+// Source: Hoever & Harders (2009), section 3.
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+#include <utility>
+
+#include "models/fit/fill_grid.h"
+#include "models/fit/methods.h"
+#include "models/model/grid/grid_correction.h"
+#include "models/model/rbf/rbf_correction.h"
+
+namespace palpate {
+namespace {
+
+// The paper's grid: 25 nodes along the depth, 11 along every other feature; with
+// more features fewer each, so that a grid never has more nodes than this.
+constexpr int kDepthNodes = 25;
+constexpr int kOtherNodes = 11;
+constexpr double kMostNodes = 2e5;
+constexpr int kPositionOnlyNodes = 200;
+// Of a grid that was asked for; a model file holds no more.
+constexpr double kMaximumGridNodes = 1e7;
+
+std::vector<int> default_grid(std::size_t features) {
+  if (features == 1) return {kPositionOnlyNodes};
+  std::vector<int> grid(features, kOtherNodes);
+  grid[0] = kDepthNodes;
+  const auto nodes = [&] {
+    return std::accumulate(grid.begin(), grid.end(), 1.0, [](double product, int n) { return product * n; });
+  };
+  while (nodes() > kMostNodes && grid.back() > 2) {
+    for (std::size_t i = 1; i < features; ++i) --grid[i];
+  }
+  return grid;
+}
+
+// Node coordinates of one axis: half evenly spread, half where the data are.
+// A fast poke makes most of an even axis empty and slow motion too coarse.
+std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count) {
+  std::vector<double> sorted(values.data(), values.data() + values.size());
+  std::sort(sorted.begin(), sorted.end());
+  const double low = sorted.front();
+  const double high = sorted.back();
+  if (!(high > low)) {
+    std::vector<double> flat(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) flat[static_cast<std::size_t>(i)] = low + 0.1 * (i - 0.5 * (count - 1));
+    return flat;
+  }
+  std::vector<double> nodes;
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    const double at = share * static_cast<double>(sorted.size() - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, sorted.size() - 1);
+    const double quantile = sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+    nodes.push_back(0.5 * (low + share * (high - low)) + 0.5 * quantile);
+  }
+  return nodes;
+}
+
+Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std::vector<int> sizes,
+                            const FitControl& control) {
+  const auto d = static_cast<std::size_t>(sites.dimension());
+  if (sizes.empty()) sizes = default_grid(d);
+  if (sizes.size() != d) {
+    return Error{"the grid has " + std::to_string(sizes.size()) + " sizes, the scene has " + std::to_string(d) +
+                 " features; give one size per feature, e.g. --grid 25x11x11x11 for four"};
+  }
+  VoxelGrid grid;
+  const double nodes = std::accumulate(sizes.begin(), sizes.end(), 1.0, [](double product, int n) { return product * n; });
+  if (nodes > kMaximumGridNodes) {
+    char asked[32];
+    std::snprintf(asked, sizeof asked, "%.3g", nodes);
+    return Error{"the grid would have " + std::string(asked) + " nodes, at most 1e7 can be saved; give smaller sizes"};
+  }
+  for (std::size_t k = 0; k < d; ++k) {
+    if (sizes[k] < 2) return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
+    grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k]));
+  }
+  const RbfEvaluator evaluator(function);
+  const Status filled = fill_grid(
+      grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) { evaluator.evaluate_many(points, out); },
+      control);
+  if (!filled) return filled.error();
+  return grid;
+}
+
+std::string grid_size_text(const VoxelGrid& grid) {
+  std::string text;
+  for (const std::vector<double>& axis : grid.nodes) text.append(text.empty() ? "" : "x").append(std::to_string(axis.size()));
+  return text;
+}
+
+Result<FittedCorrection> fit_voxel(const MethodTask& task, const FitControl& control) {
+  auto grid = make_grid(task.sites, *rbf_of(task.base->correction), task.request.grid, control);
+  if (!grid) return grid.error();
+  std::string size = grid_size_text(*grid);
+  return FittedCorrection{std::make_shared<const GridCorrection>(std::move(*grid)), task.base->report, std::move(size)};
+}
+
+}  // namespace
+
+const Method kVoxelMethod{
+    .name = "voxel",
+    .label = "voxel",
+    .colour = 0x56B4E9,
+    .takes = kTakesGrid | kTakesKernel | kTakesSolver,
+    .base = &kDirectMethod,
+    .expected_seconds = [](const MethodRequest&) { return 0.2; },
+    .fit = fit_voxel,
+};
+
+}  // namespace palpate

@@ -1,0 +1,30 @@
+// The trend method: the viscoelastic trend that prepare_training fitted, with nothing
+// added. The smallest model there is, and what every other method must better.
+#include <cmath>
+
+#include "models/fit/methods.h"
+#include "models/model/no_correction.h"
+
+namespace palpate {
+namespace {
+
+Result<FittedCorrection> fit_nothing(const MethodTask& task, const FitControl& control) {
+  if (const Status status = validate_sites(task.sites); !status) return status.error();
+  if (!control.go_on(0.0)) return interrupted();
+  FitReport report;
+  const double squares = task.sites.row_scale.cwiseProduct(task.sites.target_N).squaredNorm();
+  report.residual_rms = std::sqrt(squares / static_cast<double>(task.sites.count()));
+  return FittedCorrection{std::make_shared<const NoCorrection>(), report, ""};
+}
+
+}  // namespace
+
+const Method kTrendMethod{
+    .name = "trend",
+    .label = "trend",
+    .colour = 0xCC79A7,
+    .expected_seconds = [](const MethodRequest&) { return 0.01; },
+    .fit = fit_nothing,
+};
+
+}  // namespace palpate

@@ -1,0 +1,31 @@
+#include "models/model/file/json_arrays.h"
+
+#include <nlohmann/json.hpp>
+
+namespace palpate {
+
+Eigen::VectorXd read_vector(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index size,
+                            const std::string& words) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
+  fields.fill(fields.member(object, key, "a list of numbers"), static_cast<std::size_t>(size), words, values.data());
+  return values;
+}
+
+Eigen::MatrixXd read_points(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index dimension) {
+  const std::string expected = "a list of at least one point";
+  const JsonNode node = fields.list(object, key, expected);
+  if (node.value == nullptr) return {};
+  if (node.value->empty()) fields.complain(node.pointer, "found an empty list, expected " + expected);
+  // The list has been parsed, so there is memory for as many points as it has.
+  Eigen::MatrixXd matrix(dimension, static_cast<Eigen::Index>(node.value->size()));
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    const auto index = static_cast<std::size_t>(j);
+    const JsonNode point{&(*node.value)[index], node.pointer + "/" + std::to_string(index)};
+    if (!fields.fill(point, static_cast<std::size_t>(dimension), "numbers, one per feature", matrix.col(j).data())) {
+      break;
+    }
+  }
+  return matrix;
+}
+
+}  // namespace palpate

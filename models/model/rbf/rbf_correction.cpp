@@ -1,0 +1,63 @@
+#include "models/model/rbf/rbf_correction.h"
+
+#include "engine/base/csv_scanner.h"
+#include "models/model/file/json_arrays.h"
+#include "engine/json/json_fields.h"
+#include "models/model/file/json_text.h"
+
+namespace palpate {
+namespace {
+
+std::string kernel_names() {
+  std::string names;
+  for (const KernelKind kind : kKernelKinds) names += (names.empty() ? "" : ", ") + std::string(kernel_name(kind));
+  return names;
+}
+
+CorrectionPtr read_rbf(JsonFields& fields, const JsonNode& top, int dimension) {
+  const std::string name = fields.text(top, "kernel");
+  const std::optional<KernelKind> kernel = kernel_from_name(name);
+  if (!kernel) {
+    fields.complain("/kernel", "found \"" + printable(name) + "\", expected one of " + kernel_names());
+    return nullptr;
+  }
+  RbfFunction function;
+  function.kernel = *kernel;
+  function.tail = read_vector(fields, top, "tail", tail_size(tail_degree(*kernel), dimension), "coefficients");
+  function.centres = read_points(fields, top, "centres", dimension);
+  function.weights = read_vector(fields, top, "weights", function.centre_count(), "numbers, one per centre");
+  return std::make_shared<const RbfCorrection>(std::move(function));
+}
+
+}  // namespace
+
+extern const CorrectionKind kRbfCorrectionKind;
+const CorrectionKind kRbfCorrectionKind{"centres", read_rbf};
+
+RbfCorrection::RbfCorrection(RbfFunction function) : function_(std::move(function)) {
+  if (validate_rbf_function(function_)) evaluator_.emplace(function_);
+}
+
+Status RbfCorrection::validate(int dimension) const {
+  if (function_.dimension() != dimension) {
+    return Error{"centres: found " + std::to_string(function_.dimension()) + " values each, expected " +
+                 std::to_string(dimension)};
+  }
+  return validate_rbf_function(function_);
+}
+
+FileFields RbfCorrection::file_fields() const {
+  std::vector<std::string> weights;
+  for (const double weight : function_.weights) weights.push_back(json_number(weight));
+  return {{"kernel", json_quoted(std::string(kernel_name(function_.kernel)))},
+          {"tail", json_list(function_.tail)},
+          {"centres", json_columns(function_.centres)},
+          {"weights", json_lines(weights)}};
+}
+
+const RbfFunction* rbf_of(const CorrectionPtr& correction) {
+  const auto* rbf = dynamic_cast<const RbfCorrection*>(correction.get());
+  return rbf == nullptr ? nullptr : &rbf->function();
+}
+
+}  // namespace palpate

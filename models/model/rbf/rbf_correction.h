@@ -1,0 +1,34 @@
+// A radial basis function as a model's correction: the data, for files and fits,
+// and the evaluator made from it, for the tick.
+// Thread guarantee: immutable.
+#pragma once
+
+#include <optional>
+
+#include "models/model/correction.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/rbf/rbf_function.h"
+
+namespace palpate {
+
+class RbfCorrection final : public Correction {
+ public:
+  explicit RbfCorrection(RbfFunction function);
+
+  double evaluate(const double* u) const noexcept override { return evaluator_->evaluate(u); }
+  int size() const noexcept override { return static_cast<int>(function_.centre_count()); }
+  Status validate(int dimension) const override;
+  // kernel, tail, centres and weights; centres and weights one to a line.
+  FileFields file_fields() const override;
+
+  const RbfFunction& function() const noexcept { return function_; }
+
+ private:
+  RbfFunction function_;
+  std::optional<RbfEvaluator> evaluator_;  // none when the function is not valid
+};
+
+// The function of a correction of this kind; null for another kind, or none at all.
+const RbfFunction* rbf_of(const CorrectionPtr& correction);
+
+}  // namespace palpate

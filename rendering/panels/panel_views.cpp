@@ -1,0 +1,46 @@
+#include "rendering/panels/panel_views.h"
+
+#include "scenes/live/live_session.h"
+
+namespace palpate {
+
+const SlotView* ModelsView::active() const noexcept {
+  if (selected >= slots.size() || slots[selected]->state != SlotState::ready) return nullptr;
+  return slots[selected];
+}
+
+bool ModelsView::out_of_domain() const noexcept {
+  const SlotView* model = active();
+  return in_contact && model != nullptr && model->out_of_domain;
+}
+
+ModelsView models_view(const LiveSession& session) {
+  ModelsView view;
+  for (std::size_t i = 0; i < session.models().size(); ++i) view.slots.push_back(&session.models().view(i));
+  view.selected = session.models().selected();
+  view.in_contact = session.newest().tick.in_contact;
+  return view;
+}
+
+ForceView force_view(const LiveSession& session) {
+  return {models_view(session), session.jnd(), &session.comparison().history(), session.comparison().reference_N(),
+          session.reference_words()};
+}
+
+ErrorsView errors_view(const LiveSession& session) { return {models_view(session), session.jnd()}; }
+
+HealthView health_view(const LiveSession& session) {
+  HealthView view;
+  view.loop = session.loop().statistics();
+  view.scheduling = session.loop().scheduling();
+  view.missed_of_late = session.faults().missed_of_late();
+  view.now_s = session.newest().loop_time_s;
+  view.faults = session.faults().events();
+  view.alarms = session.alarms();
+  view.device_name = session.device_name();
+  view.device = session.newest().device;
+  view.heat_share = static_cast<double>(session.newest().heat_share);
+  return view;
+}
+
+}  // namespace palpate

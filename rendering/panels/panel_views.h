@@ -1,0 +1,64 @@
+// What each panel draws, as plain data, so that a panel's sentences are tested
+// without a session, a thread or a device. The functions below fill the views from
+// a session, once a frame.
+// Thread guarantee: values of the window's thread.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "engine/live/device_health.h"
+#include "engine/live/haptics_loop.h"
+#include "engine/tick/jnd.h"
+#include "scenes/live/fault_log.h"
+#include "scenes/live/force_history.h"
+#include "scenes/live/slot_view.h"
+
+namespace palpate {
+
+class LiveSession;
+
+// The models in the order of their slots; the pointers live as long as the session.
+struct ModelsView {
+  std::vector<const SlotView*> slots;
+  std::size_t selected = 0;
+  bool in_contact = false;
+
+  // The active model; null: none is ready.
+  const SlotView* active() const noexcept;
+  // Whether the active model is used where nothing was recorded.
+  bool out_of_domain() const noexcept;
+};
+
+struct ForceView {
+  ModelsView models;
+  JndLine jnd;
+  const ForceHistory* history = nullptr;  // never null when filled from a session
+  double reference_N = kNoForce;
+  std::string reference_words;
+};
+
+struct ErrorsView {
+  ModelsView models;
+  JndLine jnd;
+};
+
+struct HealthView {
+  LoopStatistics loop;
+  RtStatus scheduling;
+  double missed_of_late = 0.0;  // share of deadlines, over some ten seconds
+  double now_s = 0.0;           // loop time
+  std::vector<FaultEvent> faults;
+  std::vector<std::string> alarms;  // not yet seen by the user
+  std::string device_name;
+  DeviceHealth device;
+  double heat_share = 0.0;  // of the motor's thermal budget
+};
+
+ModelsView models_view(const LiveSession& session);
+ForceView force_view(const LiveSession& session);
+ErrorsView errors_view(const LiveSession& session);
+HealthView health_view(const LiveSession& session);
+
+}  // namespace palpate

@@ -1,0 +1,74 @@
+// How well the models of a session agree with their reference: the errors, the
+// curves and the dents, from the loop's snapshots.
+//
+// Errors count only after the filters have seen one sample out of contact: filters
+// that begin in the middle of a press have not the state of its beginning.
+// Thread guarantee: one thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/live/live_tick.h"
+#include "engine/tick/jnd.h"
+#include "scenes/live/dent.h"
+#include "scenes/live/evaluation_time.h"
+#include "scenes/live/fault_log.h"
+#include "scenes/live/force_history.h"
+#include "scenes/live/model_slots.h"
+
+namespace palpate {
+
+// What the models are compared with.
+enum class ReferenceKind : std::uint8_t {
+  measured,  // the force in the recording that is replayed
+  truth,     // of the scene's virtual material under the same tool
+  direct,    // the direct interpolant, all sites
+};
+inline constexpr std::array<ReferenceKind, 3> kReferenceKinds{ReferenceKind::measured, ReferenceKind::truth,
+                                                              ReferenceKind::direct};
+
+class Comparison {
+ public:
+  // `slots` outlive this; their views get the figures.
+  Comparison(ModelSlots& slots, const JndLine& jnd) : slots_(slots), jnd_(jnd) {}
+
+  ReferenceKind reference() const noexcept { return reference_; }
+  void use_reference(ReferenceKind kind);  // forgets the errors
+  double reference_N() const noexcept { return reference_N_; }  // in the newest tick; NaN: none
+  // One point a tick of the last minutes.
+  const ForceHistory& history() const noexcept { return history_; }
+
+  // A slot's model became ready.
+  void begin_slot(std::size_t slot);
+  // Every snapshot in order, with what the fault log says of it.
+  void add(const LoopSnapshot& snapshot, TickTrouble trouble);
+  // After them, once a frame: what the views say of the newest one.
+  void show(const LoopSnapshot& newest);
+  // Forgets the errors so far; curves stay.
+  void forget_errors();
+
+ private:
+  struct Figures {
+    EvaluationTime time;
+    Dent dent;
+    double error_over_jnd = 0.0;  // in the last snapshot; 0 without a comparison
+  };
+  // `index`: the slot's model in the set that made the snapshot.
+  void add_to_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot, double reference_N);
+  double reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept;
+  void fit_slots();
+
+  ModelSlots& slots_;
+  JndLine jnd_;
+  ReferenceKind reference_ = ReferenceKind::direct;
+  double reference_N_ = kNoForce;
+  std::vector<Figures> figures_;  // by slot
+  bool seen_out_of_contact_ = false;  // since the filters started
+  double last_loop_time_s_ = 0.0;
+  ForceHistory history_;
+};
+
+}  // namespace palpate

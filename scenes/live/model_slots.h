@@ -1,0 +1,100 @@
+// The models of a session and the sets of them that the haptics loop holds.
+//
+// Slots are numbered in the order in which models were asked for and keep their
+// numbers. A slot's model is fitted or read by the worker, the quickest first, and
+// joins the next set when it is ready, so that a session is alive at once.
+//
+// Thread guarantee: one thread; it never waits for the worker but in the destructor.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/live/live_tick.h"
+#include "scenes/live/notices.h"
+#include "scenes/live/slot_view.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate {
+
+class ModelWorker;
+struct FinishedModel;
+struct SlotPlan;
+
+// Which slots' models a set in the loop holds, so that its snapshots are read
+// rightly also after the next one was published.
+struct PublishedSet {
+  std::uint32_t id = 0;
+  std::vector<std::size_t> slots;
+
+  // The slot's place in the set; nothing when it is not in it.
+  std::optional<std::size_t> place_of(std::size_t slot) const noexcept;
+};
+
+class ModelSlots {
+ public:
+  // `scene` and `notices` outlive this. `seed`: of the training recording and the fits.
+  ModelSlots(const Scene& scene, std::uint64_t seed, Notices& notices);
+  ModelSlots(const ModelSlots&) = delete;
+  ModelSlots& operator=(const ModelSlots&) = delete;
+  // Interrupts fits.
+  ~ModelSlots();
+
+  // A slot for each plan. Errors: no thread.
+  Status start(const std::vector<SlotPlan>& plans);
+  // Interrupts fits; does not wait.
+  void cancel() noexcept;
+  // Once a frame: what the worker has finished. Returns the slots whose models
+  // became ready; when there are any, publish a new set.
+  std::vector<std::size_t> update();
+
+  // All ready models; `reference` may be null. The newest set is this one now.
+  std::unique_ptr<LiveModels> make_set(const SensorSpec& sensor, std::shared_ptr<ReferenceForce> reference);
+  // The set that made `snapshot`; null: none, or one of long ago.
+  const PublishedSet* set_of(const LoopSnapshot& snapshot) const noexcept;
+  // Which model of the newest set is active.
+  void write_selection(LoopControls& controls) const;
+
+  std::size_t size() const noexcept;
+  const SlotView& view(std::size_t slot) const noexcept;
+  SlotView& view(std::size_t slot) noexcept;
+  // Of a slot that is ready.
+  const std::vector<FeatureSpec>& features(std::size_t slot) const noexcept;
+
+  // The slot of the active model, as asked for; the force fades to it.
+  std::size_t selected() const noexcept { return selected_; }
+  bool select(std::size_t slot);  // false, and ignored: not ready
+  // The first slot of the direct interpolant that is ready.
+  std::optional<std::size_t> direct() const noexcept { return direct_; }
+
+  // Reads a model file in the background into a new slot. Trouble becomes a
+  // notice, and no slot.
+  void load_file(const std::string& path);
+  // Whether all that was asked for is ready or has failed.
+  bool all_settled() const noexcept { return outstanding_ == 0; }
+
+ private:
+  struct Slot;
+
+  void show_progress();
+  bool add_file(FinishedModel& finished);
+  bool join(std::size_t index, FinishedModel& finished);
+  std::string distinct_name(const std::string& name, const Slot* but) const;
+
+  const Scene& scene_;
+  Notices& notices_;
+  std::unique_ptr<ModelWorker> worker_;
+  std::vector<std::unique_ptr<Slot>> slots_;
+  std::vector<PublishedSet> sets_;  // newest last
+  std::optional<std::size_t> direct_;
+  std::size_t selected_ = 0;
+  bool user_chose_ = false;
+  std::size_t outstanding_ = 0;        // jobs of which nothing was heard
+  std::size_t outstanding_files_ = 0;  // of these, files without a slot
+};
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+// One model of a session as a window shows it: plain data.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/tick/error_figures.h"
+
+namespace palpate {
+
+enum class SlotState : std::uint8_t { waiting, fitting, ready, failed };
+
+struct SlotView {
+  std::string name;    // distinct among the slots
+  std::string method;  // direct, voxel, random, kdtree, greedy; "position" for depth alone
+  int centres = 0;     // nodes for a grid; 0 until ready
+  SlotState state = SlotState::waiting;
+  double progress = 0.0;  // of the fit, 0..1
+  std::string problem;    // when failed
+  // In the newest tick; 0 until ready.
+  double force_N = 0.0;
+  double error_N = 0.0;  // signed, model - reference; 0 out of contact or without reference
+  double error_over_jnd = 0.0;
+  bool out_of_domain = false;
+  double evaluation_ns = 0.0;  // median over about the last second in contact
+  // Since the last reset, over samples in contact.
+  ErrorFigures errors;
+  // For drawing. Depth of the dent: the tool's while it presses, behind it the
+  // surface's slow return, which follows the model's own relaxation times.
+  double dent_m = 0.0;
+  // Colours the dent: the largest recent error over the JND, fading within 0.3 s.
+  double recent_peak_error_over_jnd = 0.0;
+};
+
+}  // namespace palpate

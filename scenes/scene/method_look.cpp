@@ -1,0 +1,18 @@
+#include "scenes/scene/method_look.h"
+
+#include "models/fit/methods.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::uint32_t kPositionColour = 0x8C8C8C;
+
+}  // namespace
+
+std::uint32_t method_rgb(std::string_view method) {
+  if (method == "position") return kPositionColour;
+  const Method* row = find_method(method);
+  return row == nullptr ? kNeutralColour : row->colour;
+}
+
+}  // namespace palpate

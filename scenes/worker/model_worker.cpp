@@ -1,0 +1,179 @@
+#include "scenes/worker/model_worker.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "models/model/file/model_io.h"
+#include "scenes/material/rig.h"
+#include "scenes/scene/training.h"
+
+namespace palpate {
+namespace {
+
+// Graphics and haptics win on two cores; a fit takes a little longer.
+constexpr int kNice = 10;
+// Shares of the first fit's time, as far as the bar is concerned.
+constexpr double kRecorded = 0.3;
+constexpr double kPrepared = 0.7;
+
+// Reading a file is quicker than any fit; a model of position alone needs a
+// preparation of its own.
+constexpr double kOwnPreparation_s = 1.0;
+
+// How long a model takes to make, in words of order only. A method's base comes
+// before the method, which then starts from it.
+double expected_cost_s(const SlotPlan& plan) {
+  if (plan.origin == ModelOrigin::file) return 0.0;
+  MethodRequest request;
+  request.method = plan.method;
+  return expected_seconds(request) + (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
+}
+
+// Of this thread and those that it will start: Linux counts threads one by one.
+void lower_priority() { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
+
+}  // namespace
+
+ModelWorker::ModelWorker(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
+
+ModelWorker::~ModelWorker() {
+  cancel();
+  {
+    const std::lock_guard lock(mutex_);
+    wake_.notify_one();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+Status ModelWorker::start() {
+  try {
+    thread_ = std::thread([this] {
+      lower_priority();
+      work();
+    });
+  } catch (const std::system_error& error) {
+    return Error{std::string("cannot start the thread that fits models: ") + error.what() + "; close other programs"};
+  }
+  return {};
+}
+
+void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan) {
+  const std::lock_guard lock(mutex_);
+  const auto slower = std::find_if(jobs_.begin(), jobs_.end(),
+                                   [&](const Job& other) { return expected_cost_s(other.plan) > expected_cost_s(plan); });
+  jobs_.insert(slower, {job_id, plan});
+  wake_.notify_one();
+}
+
+std::vector<FinishedModel> ModelWorker::take_finished() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(finished_, {});
+}
+
+ModelWorker::Progress ModelWorker::progress() const {
+  const std::lock_guard lock(mutex_);
+  if (!working_on_) return {};
+  return {true, *working_on_, share_.load(std::memory_order_relaxed)};
+}
+
+std::optional<ModelWorker::Job> ModelWorker::next_job() {
+  std::unique_lock lock(mutex_);
+  working_on_.reset();
+  wake_.wait(lock, [this] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
+  if (cancelled_.load(std::memory_order_relaxed)) return std::nullopt;
+  Job job = std::move(jobs_.front());
+  jobs_.pop_front();
+  working_on_ = job.job_id;
+  share_.store(0.0, std::memory_order_relaxed);
+  return job;
+}
+
+void ModelWorker::work() {
+  while (const std::optional<Job> job = next_job()) {
+    FinishedModel model = make(*job);
+    const std::lock_guard lock(mutex_);
+    finished_.push_back(std::move(model));
+  }
+}
+
+FinishedModel ModelWorker::make(const Job& job) {
+  FinishedModel made{job.job_id, job.plan, nullptr, ""};
+  if (job.plan.loaded != nullptr) {
+    made.model = job.plan.loaded;
+    return made;
+  }
+  if (job.plan.origin == ModelOrigin::file) {
+    auto model = load_model(job.plan.path);
+    if (model) {
+      made.model = std::move(*model);
+    } else {
+      made.problem = model.error().message;
+    }
+    return made;
+  }
+  Result<ModelData> data = fit(job.plan);
+  if (data) {
+    made.model = std::make_shared<const FittedModel>(std::move(*data));
+  } else {
+    made.problem = data.error().message;
+  }
+  return made;
+}
+
+FitControl ModelWorker::control(double from, double to) {
+  FitControl result;
+  result.progress = [this, from, to](double fraction) {
+    share_.store(from + (to - from) * fraction, std::memory_order_relaxed);
+    return !cancelled_.load(std::memory_order_relaxed);
+  };
+  return result;
+}
+
+Status ModelWorker::prepare_recording() {
+  if (recording_ != nullptr) return {};
+  if (!scene_.material) return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
+  RigSettings settings;
+  settings.material = *scene_.material;
+  settings.seed = seed_;
+  Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
+  if (!recording) return recording.error();
+  recording_ = std::make_shared<const Recording>(std::move(*recording));
+  return {};
+}
+
+Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
+  if (prepared) return {};
+  if (Status status = prepare_recording(); !status) return status;
+  MotionSource source({{"", recording_}});
+  Result<PreparedTraining> made = prepare_training(source, request, control(kRecorded, kPrepared));
+  if (!made) return made.error();
+  prepared.emplace(std::move(*made));
+  return {};
+}
+
+Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
+  const bool prepared_before = plan.origin == ModelOrigin::method && prepared_.has_value();
+  std::optional<PreparedTraining> of_position;
+  const bool position = plan.origin == ModelOrigin::position;
+  std::optional<PreparedTraining>& prepared = position ? of_position : prepared_;
+  if (const Status status = prepare(prepared, position ? position_request(scene_) : training_request(scene_));
+      !status) {
+    return status.error();
+  }
+  MethodRequest request;
+  request.method = plan.method;
+  request.seed = seed_;
+  const auto base = position ? bases_.end() : bases_.find(plan.method->base);
+  Result<MethodFit> fitted = fit_method(*prepared, request, control(prepared_before ? 0.0 : kPrepared, 1.0),
+                                        base == bases_.end() ? nullptr : &base->second);
+  if (!fitted) return fitted.error();
+  if (!position) bases_.insert_or_assign(plan.method, *fitted);
+  return std::move(fitted->data);
+}
+
+}  // namespace palpate

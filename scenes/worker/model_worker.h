@@ -1,0 +1,95 @@
+// A worker thread that makes the models of a session ready, the quickest first:
+// files are read, methods are fitted to a virtual recording of the scene's
+// material, the one that `palpate synth` with the same seed writes, with the
+// code of `palpate fit`: the same bits.
+//
+// The worker runs at a lower priority than everything else in the program. A
+// fit is interrupted within some 20 ms, but for the factorisation of the direct
+// fit, which is one call into LAPACK.
+// Thread guarantee: one thread, slow side, for all functions; they never wait
+// for the worker but in the destructor.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "models/fit/fit.h"
+#include "models/model/fitted_model.h"
+#include "scenes/worker/slot_plan.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate {
+
+struct FinishedModel {
+  std::size_t job_id = 0;  // as asked for
+  SlotPlan plan;
+  std::shared_ptr<const FittedModel> model;  // null: `problem` says why
+  std::string problem;
+};
+
+class ModelWorker {
+ public:
+  ModelWorker(Scene scene, std::uint64_t seed);
+  ModelWorker(const ModelWorker&) = delete;
+  ModelWorker& operator=(const ModelWorker&) = delete;
+  // Interrupts what is being made and waits for the worker.
+  ~ModelWorker();
+
+  // What is asked for before this is made the quickest first. Errors: no thread.
+  Status start();
+  // `job_id`: comes back with the model.
+  void add_job(std::size_t job_id, const SlotPlan& plan);
+  // What was finished since the last call.
+  std::vector<FinishedModel> take_finished();
+
+  struct Progress {
+    bool working = false;
+    std::size_t job_id = 0;
+    double share = 0.0;  // of this one
+  };
+  Progress progress() const;
+
+  // Interrupts the fit that runs; no other is begun. Does not wait.
+  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+
+ private:
+  struct Job {
+    std::size_t job_id = 0;
+    SlotPlan plan;
+  };
+  void work();
+  std::optional<Job> next_job();
+  FinishedModel make(const Job& job);
+  Result<ModelData> fit(const SlotPlan& plan);
+  Status prepare_recording();
+  Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
+  FitControl control(double from, double to);
+
+  Scene scene_;
+  std::uint64_t seed_;
+  // The worker's own.
+  std::shared_ptr<const Recording> recording_;
+  std::optional<PreparedTraining> prepared_;
+  std::map<const Method*, MethodFit> bases_;  // fitted already, for methods that start from one
+
+  std::thread thread_;
+  std::atomic<bool> cancelled_{false};
+  std::atomic<double> share_{0.0};
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  // By mutex_.
+  std::deque<Job> jobs_;
+  std::vector<FinishedModel> finished_;
+  std::optional<std::size_t> working_on_;
+};
+
+}  // namespace palpate

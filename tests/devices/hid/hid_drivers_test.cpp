@@ -1,0 +1,161 @@
+// Every report, there and back; what is not one is refused.
+#include "devices/hid/hid_drivers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "devices/firmware/paddle/paddle_protocol.h"
+
+namespace palpate {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+ReportVerdict decode(const HidDriver* driver, const Bytes& bytes, DeviceReading& reading) {
+  reading = {};
+  return driver->decode(bytes.data(), bytes.size(), reading);
+}
+
+Bytes paddle_report(std::uint8_t status) {
+  Bytes bytes(64);
+  paddle::encode(paddle::FromDevice{status, 7, 1000, -55, 0, 3, 6, 0}, bytes.data());
+  return bytes;
+}
+
+Bytes ffb_answer(std::uint8_t type, std::int64_t position) {
+  Bytes bytes(25, 0);
+  bytes[0] = 0xA1;
+  bytes[1] = type;
+  bytes[2] = 0x01;
+  bytes[3] = 0x0A;
+  bytes[5] = 0x09;
+  for (std::size_t i = 0; i < 8; ++i) bytes[9 + i] = static_cast<std::uint8_t>(position >> (8 * i));
+  return bytes;
+}
+
+TEST(HidReports, ReadsThePaddle) {
+  DeviceReading reading;
+  ASSERT_EQ(decode(&kPaddleDriver, paddle_report(paddle::kGrip), reading), ReportVerdict::position);
+  EXPECT_EQ(reading.counts, -55);
+  EXPECT_EQ(reading.sequence, 7u);
+  EXPECT_EQ(reading.time_us, 1000u);
+  EXPECT_EQ(reading.boot, 3);
+  EXPECT_EQ(reading.confirmed, 6u);
+  EXPECT_TRUE(reading.grip);
+  EXPECT_FALSE(reading.own_fault);
+  ASSERT_EQ(decode(&kPaddleDriver, paddle_report(paddle::kMotorFault), reading), ReportVerdict::position);
+  EXPECT_TRUE(reading.own_fault);
+  Bytes other = paddle_report(0);
+  other[1] = 2;
+  EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::wrong_version);
+  other = paddle_report(0);
+  other[30] = 1;
+  EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::corrupt);
+}
+
+TEST(HidReports, ReadsPolhem) {
+  DeviceReading reading;
+  Bytes bytes(14, 0);
+  bytes[0] = 0x18;
+  bytes[1] = 0xFC;
+  bytes[2] = 0x7F;  // axis b is not used
+  ASSERT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::position);
+  EXPECT_EQ(reading.counts, -1000);
+  bytes.resize(64, 0);
+  ASSERT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::position);
+  bytes[14] = 1;
+  EXPECT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::corrupt);
+}
+
+TEST(HidReports, ReadsOpenFfBoard) {
+  DeviceReading reading;
+  for (const std::uint8_t type : {std::uint8_t{1}, std::uint8_t{10}}) {
+    ASSERT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(type, -70000), reading), ReportVerdict::position);
+    EXPECT_EQ(reading.counts, -70000);
+  }
+  // Older firmware leaves the upper half empty.
+  ASSERT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(10, 0xFFFFFFFF), reading), ReportVerdict::position);
+  EXPECT_EQ(reading.counts, -1);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(10, 1LL << 40), reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(77, 0), reading), ReportVerdict::corrupt);
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, ffb_answer(15, 0), reading), ReportVerdict::nothing);
+  EXPECT_TRUE(reading.own_fault);
+  Bytes joystick(20, 0);
+  joystick[0] = 1;
+  EXPECT_EQ(decode(&kOpenFfBoardDriver, joystick, reading), ReportVerdict::nothing);
+}
+
+TEST(HidReports, ReadsTheSpaceMouse) {
+  DeviceReading reading;
+  ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 0xA2, 0xFE}, reading), ReportVerdict::position);
+  EXPECT_EQ(reading.counts, -350);
+  ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading),
+            ReportVerdict::position)
+      << "the wireless ones send six axes";
+  EXPECT_EQ(reading.counts, 5);
+  EXPECT_EQ(decode(&kSpaceMouseDriver, {2, 0, 0, 0, 0, 5, 0}, reading), ReportVerdict::nothing);
+  EXPECT_EQ(decode(&kSpaceMouseDriver, {3, 1}, reading), ReportVerdict::nothing);
+  EXPECT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 0, 0x20}, reading), ReportVerdict::corrupt);
+}
+
+TEST(HidReports, RefusesEveryOtherLength) {
+  DeviceReading reading;
+  const Bytes zeros(64, 0);
+  for (const HidDriver* driver : kHidDrivers) {
+    EXPECT_EQ(driver->decode(zeros.data(), 0, reading), ReportVerdict::corrupt);
+    EXPECT_NE(driver->decode(zeros.data(), 13, reading), ReportVerdict::position) << driver->name;
+  }
+}
+
+TEST(HidReports, WritesThePaddle) {
+  HidCommand command{9, 4, true, -250.4};
+  OutReports reports = kPaddleDriver.encode_command(command);
+  ASSERT_EQ(reports.count, 1u);
+  ASSERT_EQ(reports.sizes[0], 65u);
+  EXPECT_EQ(reports.bytes[0][0], 0) << "no report id";
+  paddle::FromHost out{};
+  ASSERT_EQ(paddle::decode(reports.bytes[0].data() + 1, out), paddle::kGood);
+  EXPECT_EQ(out.flags, paddle::kDrive);
+  EXPECT_EQ(out.sequence, 9u);
+  EXPECT_EQ(out.current_mA, -250);
+  EXPECT_EQ(out.heartbeat, 4);
+  command.drive = false;
+  reports = kPaddleDriver.encode_command(command);
+  ASSERT_EQ(paddle::decode(reports.bytes[0].data() + 1, out), paddle::kGood);
+  EXPECT_EQ(out.flags, 0);
+  EXPECT_EQ(out.current_mA, 0);
+}
+
+TEST(HidReports, WritesPolhemAndOpenFfBoard) {
+  const OutReports polhem = kPolhemDriver.encode_command({1, 1, true, 1e9});
+  ASSERT_EQ(polhem.count, 1u);
+  EXPECT_EQ(polhem.sizes[0], 65u);
+  EXPECT_EQ(paddle::read16(polhem.bytes[0].data() + 1), 32767) << "clamped";
+  const OutReports ffb = kOpenFfBoardDriver.encode_command({1, 1, true, -2.0});
+  ASSERT_EQ(ffb.count, 2u) << "asks for the position, sets the force";
+  EXPECT_EQ(ffb.sizes[1], 25u);
+  EXPECT_EQ(ffb.bytes[1][0], 0xA1);
+  EXPECT_EQ(ffb.bytes[1][1], 3) << "write to an address";
+  EXPECT_EQ(paddle::read16(ffb.bytes[1].data() + 2), 0xA03);
+  EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 5), 4u);
+  EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 9), 0xFFFFFFFEu);
+  EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 13), 0xFFFFFFFFu);
+  EXPECT_EQ(kOpenFfBoardDriver.encode_start().count, 4u);
+}
+
+TEST(HidReports, NoNumberIsNoForce) {
+  for (const HidDriver* driver : {&kPaddleDriver, &kPolhemDriver, &kOpenFfBoardDriver}) {
+    const OutReports nan = driver->encode_command({1, 1, true, std::nan("")});
+    const OutReports zero = driver->encode_command({1, 1, true, 0.0});
+    EXPECT_EQ(nan.bytes, zero.bytes);
+    EXPECT_EQ(driver->encode_stop().count, 1u);
+  }
+  EXPECT_EQ(kSpaceMouseDriver.encode_command({1, 1, true, 1.0}).count, 0u);
+  EXPECT_EQ(kSpaceMouseDriver.encode_stop().count, 0u);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,160 @@
+// One stream of readings at a time, without a transport; hid_endpoint_test has them
+// with reports, force and time.
+#include "devices/stream/stream_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace palpate {
+namespace {
+
+MonitorSettings settings_for(bool numbered, int count_bits) {
+  MonitorSettings settings;
+  settings.numbered = numbered;
+  settings.count_bits = count_bits;
+  settings.counts_per_metre = 50000.0;
+  settings.fastest_m_per_s = 5.0;
+  return settings;
+}
+
+// Numbered readings, 1 ms apart.
+struct Stream {
+  StreamMonitor monitor{settings_for(true, 32)};
+  DeviceReading next = first_of_boot(1);
+  double now_s = 10.0;
+
+  static DeviceReading first_of_boot(std::uint16_t boot) {
+    DeviceReading reading;
+    reading.boot = boot;
+    return reading;
+  }
+  void send(const DeviceReading& reading, double force_N = 0.0) {
+    monitor.update(ReportVerdict::position, reading, now_s, force_N);
+  }
+  void step(std::int32_t counts = 0, double force_N = 0.0) {
+    now_s += 1e-3;
+    ++next.sequence;
+    next.time_us += 1000;
+    next.counts = counts;
+    send(next, force_N);
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) step(next.counts);
+  }
+  void zero() {
+    monitor.start_zeroing();
+    steps(210);
+    EXPECT_EQ(monitor.state().zeroing, Zeroing::done);
+  }
+};
+
+TEST(StreamMonitor, CountsAndTimesWhatItAccepts) {
+  Stream stream;
+  for (int i = 0; i < 50; ++i) stream.step(i);
+  const MonitorState& state = stream.monitor.state();
+  EXPECT_EQ(state.samples, 50u);
+  EXPECT_EQ(state.counts, 49);
+  EXPECT_NEAR(state.sample_time_s, stream.now_s, 1e-6);
+  EXPECT_EQ(state.transient, 0u);
+  EXPECT_EQ(state.lost, 0u);
+}
+
+TEST(StreamMonitor, LostReportsAreNoFault) {
+  Stream stream;
+  stream.steps(10);
+  stream.next.sequence += 5;
+  stream.next.time_us += 5000;
+  stream.now_s += 5e-3;
+  stream.step(3);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+  EXPECT_EQ(stream.monitor.state().counts, 3);
+}
+
+TEST(StreamMonitor, AnOlderReportIsNotUsed) {
+  Stream stream;
+  stream.steps(10);
+  DeviceReading older = stream.next;
+  older.sequence -= 3;
+  older.counts = 99;
+  stream.send(older);
+  EXPECT_EQ(stream.monitor.state().counts, 0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kOutOfOrder);
+  EXPECT_NEAR(stream.monitor.state().transient_until_s, stream.now_s + 0.1, 1e-9);
+}
+
+TEST(StreamMonitor, SequenceMayWrap) {
+  Stream stream;
+  stream.next.sequence = 0xFFFFFFF0u;
+  stream.steps(64);
+  EXPECT_EQ(stream.monitor.state().samples, 64u);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+}
+
+TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
+  Stream stream;
+  stream.zero();
+  for (int i = 1; i <= 100; ++i) stream.step(250 * i);  // 5 m/s
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  stream.step(250 * 100 + 300);
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kJump);
+  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::needed);
+  stream.zero();
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  EXPECT_EQ(stream.monitor.state().zeroings, 2u);
+}
+
+TEST(StreamMonitor, ASixteenBitCounterMayWrap) {
+  StreamMonitor monitor(settings_for(false, 16));
+  double now_s = 1.0;
+  for (int i = 0; i < 1000; ++i) {
+    DeviceReading reading;
+    reading.counts = static_cast<std::int16_t>(100 * i);
+    monitor.update(ReportVerdict::position, reading, now_s += 1e-3, 0.0);
+  }
+  EXPECT_EQ(monitor.state().counts, 99'900);
+  EXPECT_EQ(monitor.state().lost, 0u);
+}
+
+TEST(StreamMonitor, StandingStillIsStuckOnlyUnderForce) {
+  Stream stream;
+  stream.zero();
+  for (int i = 0; i < 2000; ++i) stream.step(0, 0.1);
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  for (int i = 0; i < 2000; ++i) stream.step(i / 400, 3.0);
+  EXPECT_EQ(stream.monitor.state().lost, 0u) << "a count now and then";
+  for (int i = 0; i < 510; ++i) stream.step(4, 3.0);
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck);
+}
+
+TEST(StreamMonitor, AnotherBootIsAReset) {
+  Stream stream;
+  stream.zero();
+  stream.next = Stream::first_of_boot(2);
+  stream.step();
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kReset);
+}
+
+TEST(StreamMonitor, FaultsAddUpWhileTheyLast) {
+  Stream stream;
+  stream.steps(10);
+  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
+  DeviceReading older = stream.next;
+  older.sequence -= 3;
+  stream.send(older);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt | device_fault::kOutOfOrder);
+  stream.now_s += 1.0;
+  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt);
+}
+
+TEST(StreamMonitor, ZeroingTakesTheMiddleOfWhereItRested) {
+  Stream stream;
+  stream.monitor.start_zeroing();
+  for (int i = 0; i < 210; ++i) stream.step(100 + i % 2 * 10);
+  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::done);
+  EXPECT_EQ(stream.monitor.state().zero_counts, 105.0);
+}
+
+}  // namespace
+}  // namespace palpate

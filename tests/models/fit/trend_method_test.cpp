@@ -1,0 +1,68 @@
+// The smallest model: the trend, first class in fit, file and evaluation.
+#include <gtest/gtest.h>
+
+#include "models/fit/fit.h"
+#include "models/model/file/model_json.h"
+#include "tests/support/example_model.h"
+
+namespace palpate {
+namespace {
+
+Result<MethodFit> fit_trend_alone(Weighting weighting, Reduction reduction) {
+  MotionSource source({{"", std::make_shared<const Recording>(test::example_recording(1500, 250.0))}});
+  TrainingRequest request;
+  request.scene = "test";
+  request.features = test::paper_features();
+  request.weighting = weighting;
+  request.reduction = reduction;
+  const auto prepared = prepare_training(source, request);
+  if (!prepared) return prepared.error();
+  MethodRequest asked;
+  asked.method = &kTrendMethod;
+  return fit_method(*prepared, asked);
+}
+
+TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
+  // With the paper's recipe the correction of other methods replaces the trend.
+  for (const auto& [weighting, reduction] : {std::pair{Weighting::jnd, Reduction::coverage},
+                                             std::pair{Weighting::relative, Reduction::force}}) {
+    const auto fit = fit_trend_alone(weighting, reduction);
+    ASSERT_TRUE(fit.ok()) << fit.error().message;
+    const ModelData& data = fit->data;
+    EXPECT_EQ(data.name, "trend");
+    EXPECT_EQ(data.method, "trend");
+    EXPECT_EQ(data.correction->size(), 0);
+    EXPECT_GT(fit->report.residual_rms, 0.0);
+    const FittedModel model(data);
+    EXPECT_EQ(model.centre_count(), 0);
+    for (double depth_m = 0.0; depth_m < 0.01; depth_m += 1e-4) {
+      const std::array<double, kMaxFeatures> x{depth_m, 0.01};
+      const double trend_N = data.trend.at(x.data(), data.features);
+      EXPECT_EQ(model.evaluate(x.data()).force_N, std::clamp(trend_N, 0.0, kForceMargin * data.largest_force_N));
+    }
+  }
+}
+
+TEST(TrendMethod, ComesBackFromItsFile) {
+  const auto fit = fit_trend_alone(Weighting::jnd, Reduction::coverage);
+  ASSERT_TRUE(fit.ok()) << fit.error().message;
+  const auto text = write_model_text(fit->data);
+  ASSERT_TRUE(text.ok());
+  EXPECT_NE(text->find("\"trend_alone\": true"), std::string::npos);
+  const auto back = read_model_text(*text, "m.json");
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_TRUE(back->correction->is_none());
+  EXPECT_EQ(*write_model_text(*back), *text);
+}
+
+// The command line fills none of it in, so live fits have it too.
+TEST(TrendMethod, ProvenanceSaysHowTheDataWerePrepared) {
+  const auto fit = fit_trend_alone(Weighting::relative, Reduction::force);
+  ASSERT_TRUE(fit.ok()) << fit.error().message;
+  EXPECT_EQ(fit->data.provenance.weighting, "relative");
+  EXPECT_EQ(fit->data.provenance.reduction, "force");
+  EXPECT_EQ(fit->data.provenance.relaxation, "scene");
+}
+
+}  // namespace
+}  // namespace palpate

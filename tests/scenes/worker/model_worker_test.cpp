@@ -1,0 +1,75 @@
+// The same models as palpate fit makes, the quickest first, and gone when told.
+#include "scenes/worker/model_worker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "models/model/file/model_io.h"
+#include "tests/support/example_model.h"
+#include "tests/support/fitting.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+std::vector<FinishedModel> wait_for(ModelWorker& worker, std::size_t count) {
+  std::vector<FinishedModel> all;
+  while (all.size() < count) {
+    for (FinishedModel& one : worker.take_finished()) all.push_back(std::move(one));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return all;
+}
+
+TEST(ModelWorker, FitsWhatPalpateFitDoesTheQuickestFirst) {
+  ModelWorker worker(test::must(load_scene("elastic_block")), 1);
+  worker.add_job(7, {ModelOrigin::position, &kGreedyMethod, ""});
+  worker.add_job(3, {ModelOrigin::method, &kKdTreeMethod, ""});
+  worker.add_job(5, {ModelOrigin::method, &kRandomMethod, ""});
+  ASSERT_TRUE(worker.start().ok());
+  const std::vector<FinishedModel> made = wait_for(worker, 3);
+  EXPECT_EQ(made[0].job_id, 5u);
+  EXPECT_EQ(made[1].job_id, 3u);
+  EXPECT_EQ(made[2].job_id, 7u);
+  const PreparedTraining prepared =
+      test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::scene_request("elastic_block"));
+  const std::vector<test::ModelPtr> expected{test::fit(prepared, &kRandomMethod), test::fit(prepared, &kKdTreeMethod),
+                                             test::fit(prepared, &kGreedyMethod)};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_NE(made[i].model, nullptr) << made[i].problem;
+    for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
+      ASSERT_EQ(made[i].model->evaluate(&depth_m).force_N, expected[i]->evaluate(&depth_m).force_N) << i;
+    }
+  }
+}
+
+TEST(ModelWorker, ReadsFilesAndSaysWhatIsWrong) {
+  const test::TemporaryFolder folder;
+  const ModelData data = test::example_model("greedy", KernelKind::cubic, test::position_features(), 1);
+  ASSERT_TRUE(save_model(folder.file("good.json"), data, false).ok());
+  const std::string bad = folder.with_file("bad.json", "{}");
+  ModelWorker worker(test::must(load_scene("skin")), 1);
+  ASSERT_TRUE(worker.start().ok());
+  worker.add_job(0, {ModelOrigin::file, &kGreedyMethod, folder.file("good.json")});
+  worker.add_job(1, {ModelOrigin::file, &kGreedyMethod, bad});
+  worker.add_job(2, {ModelOrigin::method, &kGreedyMethod, ""});
+  const std::vector<FinishedModel> made = wait_for(worker, 3);
+  ASSERT_NE(made[0].model, nullptr) << made[0].problem;
+  EXPECT_EQ(made[0].model->name(), data.name);
+  EXPECT_EQ(made[1].model, nullptr);
+  EXPECT_NE(made[1].problem.find("bad.json"), std::string::npos) << made[1].problem;
+  EXPECT_EQ(made[2].problem, "the scene \"skin\" has no virtual material to fit a model to");
+}
+
+TEST(ModelWorker, EndsInTheMiddleOfAFit) {
+  ModelWorker worker(test::must(load_scene("silicone_block")), 1);
+  for (std::size_t i = 0; i < 8; ++i) worker.add_job(i, {ModelOrigin::method, &kGreedyMethod, ""});
+  ASSERT_TRUE(worker.start().ok());
+  while (worker.progress().share <= 0.0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(worker.progress().working);
+}
+
+}  // namespace
+}  // namespace palpate
