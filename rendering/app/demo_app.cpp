@@ -10,12 +10,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
 #include "rendering/app/screenshot.h"
+#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel_views.h"
 #include "scenes/scene/local_time.h"
 #include "scenes/scene/user_folders.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -25,6 +30,7 @@ constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
 constexpr float kTextStep = 0.1F;
+constexpr double kExaggeration = 10.0;
 
 // Where real-time priority was refused, the picture steps back for the force:
 // that needs no privilege.
@@ -61,10 +67,13 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
   wanted.position_only = wanted.position_only || request.kiosk;  // something that can be told apart
+  if (const auto folder = data_folder()) wanted.data_folder = *folder;
+  use_settings(request);
+  if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = settings_.line_up;
+  request_ = wanted;
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
-  use_settings(request);
   yield_to_haptics(session_->loop().scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
   auto window = Window::open(request.window);
@@ -84,7 +93,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
 
 void DemoApp::use_settings(const DemoRequest& request) {
   settings_file_ = request.settings_file;
-  view_.block_count = 1;
+  if (view_.kiosk) view_.block_count = 1;
   if (settings_file_.empty() || view_.kiosk) return;
   auto settings = read_settings(settings_file_);
   if (!settings) {
@@ -104,9 +113,69 @@ void DemoApp::save_settings() {
   settings_.block_count = view_.block_count;
   settings_.difference = view_.difference;
   settings_.text_size = view_.text_size;
+  settings_.line_up = session_->line_up();
   settings_.camera = blocks_->camera().turned();
   // Nobody is there to read of it any more.
   (void)write_settings(settings_file_, settings_);
+}
+
+void DemoApp::reopen(const SessionRequest& request) {
+  SessionRequest wanted = request;
+  // A device belongs to one session at a time.
+  session_.reset();
+  auto session = LiveSession::open(wanted);
+  if (!session) {
+    notify(session.error().message, true);
+    wanted = request_;
+    session = LiveSession::open(wanted);
+  }
+  if (!session) {  // not even what was there: the device has gone
+    wanted.device = "mouse";
+    session = LiveSession::open(wanted);
+  }
+  request_ = wanted;
+  session_ = std::move(*session);
+  auto blocks = BlockView::create(session_->scene());
+  if (blocks) blocks_ = std::move(*blocks);
+  blocks_->camera().turn(settings_.camera);
+  blocks_framed_ = 0;
+  view_.time = CurveTime{};
+  view_.time.zero_s = steady_now_s();
+}
+
+// Recorded and on the disk: what now?
+void DemoApp::offer_finished_recording() {
+  const RecordingStatus status = session_->recording();
+  if (status.active || status.saving) {
+    recording_ = status.path;
+  } else if (!recording_.empty()) {
+    std::error_code missing;
+    if (!view_.kiosk && std::filesystem::exists(recording_, missing)) view_.offered_recording = recording_;
+    recording_.clear();
+  }
+}
+
+void DemoApp::next_line_up() {
+  if (!session_->scene().material) {
+    notify("this scene has no virtual material to fit models to", false);
+    return;
+  }
+  const std::vector<LineUp>& all = line_ups();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
+  const LineUp& next = at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1);
+  session_->use_line_up(next.name);
+  request_.line_up = next.name;
+  request_.models.clear();
+  notify(std::string(next.name) + ": " + next.help, false);
+}
+
+// As deep as there are data, and softly a little beyond.
+double DemoApp::limited_depth_m(double wanted_m) const {
+  constexpr double kMargin = 0.08;  // of that depth
+  const double known_m = session_->models().trained_depth_m();
+  if (wanted_m <= known_m) return wanted_m;
+  const double margin_m = kMargin * known_m;
+  return known_m + margin_m * (1.0 - std::exp((known_m - wanted_m) / margin_m));
 }
 
 void DemoApp::listen() {
@@ -141,7 +210,13 @@ void DemoApp::close() {
 }
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) session_->load_file(path);
+  for (const std::string& path : paths) {
+    if (path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0 && !view_.kiosk) {
+      view_.offered_recording = path;
+    } else {
+      session_->load_file(path);
+    }
+  }
 }
 
 SceneArea DemoApp::scene_area() const {
@@ -153,11 +228,14 @@ void DemoApp::frame() {
   const double now_s = steady_now_s();
   session_->update();
   take_notices(now_s);
+  offer_finished_recording();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
   draw();
   handle_keys();
   handle_mouse();
+  // Between two frames: what is drawn lives as long as its session.
+  if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
 }
@@ -170,7 +248,10 @@ void DemoApp::draw() {
   clear_panel();
   const SceneArea area = scene_area();
   const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
-  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_, [this](Command command) { run(command); });
+  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
+                {[this](Command command) { run(command); },
+                 [this](const std::string& scene) { next_ = request_, next_->scene = scene, next_->device = "auto"; },
+                 [this](const std::string& path) { next_ = request_, next_->device = "replay:" + path; }});
   if (view_.kiosk) {
     open_day_.draw(*session_, view_, style_, panel.at, panel.size);
   } else {
@@ -205,14 +286,21 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   BlockPose pose;
   pose.tool_m = static_cast<float>(newest.tick.position_m);
   const ModelsView models = models_view(*session_);
+  const double reference_N = session_->comparison().reference_N();
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
-    const SlotView& model = session_->models().view(slot);
+    if (slot == kReferenceBlock) {
+      poses.push_back(reference_pose(pose));
+      continue;
+    }
+    const SlotView& model = *models.slots[slot];
     pose.dent_m = static_cast<float>(model.dent_m);
     pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
-    pose.force_N = static_cast<float>(model.force_N);
+    const bool exaggerated = view_.exaggerated && !view_.kiosk && std::isfinite(reference_N);
+    const double shown_N = exaggerated ? reference_N + kExaggeration * (model.force_N - reference_N) : model.force_N;
+    pose.force_N = static_cast<float>(std::max(0.0, shown_N));
     pose.arrow = slot_colour(models, slot, view_.theme);
-    pose.chosen = slot == session_->models().selected();
+    pose.chosen = slot == models.selected;
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
     pose.judged = view_.hidden_choice == 0;
     poses.push_back(pose);
@@ -224,6 +312,17 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     poses.push_back(pose);
   }
   return poses;
+}
+
+// What the others are compared with; it gives way as the active model does.
+BlockPose DemoApp::reference_pose(BlockPose pose) const {
+  const SlotView* active = models_view(*session_).active();
+  const double reference_N = session_->comparison().reference_N();
+  pose.dent_m = active != nullptr ? static_cast<float>(active->dent_m) : std::max(0.0F, pose.tool_m);
+  pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
+  pose.arrow = kReferenceColour;
+  pose.chosen = pose.judged = false;
+  return pose;
 }
 
 void DemoApp::count_frame(double now_s) {
@@ -258,6 +357,15 @@ void DemoApp::run(Command command) {
       } else {
         view_.time.pause(steady_now_s());
       }
+      break;
+    case Command::next_line_up:
+      next_line_up();
+      break;
+    case Command::exaggerate:
+      view_.exaggerated = !view_.exaggerated;
+      break;
+    case Command::scene_list:
+      view_.scene_list = !view_.scene_list;
       break;
     case Command::difference:
       view_.difference = !view_.difference;

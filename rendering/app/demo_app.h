@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,7 @@ class DemoApp {
 
   // What events do; GLFW's callbacks call them. A key counts even when it was
   // pressed and let go within a frame.
+  // A recording (.csv) is offered to be fitted or replayed; all else is taken for a model.
   void drop_files(const std::vector<std::string>& paths);
   void press_key(int key, int modifiers);
   void run(Command command);
@@ -67,6 +69,8 @@ class DemoApp {
   };
   void handle_keys();
   void handle_key(const KeyPress& press);
+  void close_windows();
+  void nudge_tool(double by_m);
   void replay_key(int key);
   void handle_mouse();
   void move_tool_to_mouse();
@@ -76,11 +80,17 @@ class DemoApp {
   void clear_panel();
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
+  BlockPose reference_pose(BlockPose pose) const;
   SceneArea scene_area() const;
   void use_settings(const DemoRequest& request);
   void save_settings();
   void notify(std::string text, bool problem);
   void record();
+  // Another session in place of this one: a scene, a recording.
+  void reopen(const SessionRequest& request);
+  void offer_finished_recording();
+  void next_line_up();
+  double limited_depth_m(double wanted_m) const;
   void save_curves();
   CurveSource curve_source() const;
   void next_reference();
@@ -99,6 +109,9 @@ class DemoApp {
   ViewState view_;
   Settings settings_;
   std::string settings_file_;
+  SessionRequest request_;
+  std::optional<SessionRequest> next_;  // what to go on with after this frame
+  std::string recording_;  // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;
   std::vector<KeyPress> keys_;  // since the last frame

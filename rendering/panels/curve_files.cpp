@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr double kWidth_px = 900.0, kLeft_px = 60.0, kRight_px = 130.0;
-constexpr double kDifference_jnd = 3.0;
+constexpr double kFigure_jnd = 3.0;
 
 __attribute__((format(printf, 1, 2))) std::string print(const char* pattern, ...) {
   char text[256];
@@ -128,7 +128,7 @@ std::string curve_svg(const CurveColumns& columns, const CurveSource& source, do
   const Range time{from_s - source.zero_s, to_s - source.zero_s};
   const double highest_N = round_up(std::max(1.0, static_cast<double>(columns.highest_force_N())));
   const Frame force{50.0, 230.0, time, {0.0, highest_N}};
-  const Frame difference{340.0, 200.0, time, {-kDifference_jnd, kDifference_jnd}};
+  const Frame difference{340.0, 200.0, time, {-kFigure_jnd, kFigure_jnd}};
   std::string svg = print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f 580' width='%.0f' height='580' "
                           "font-family='DejaVu Sans, sans-serif' font-size='12' fill='#222'>\n", kWidth_px, kWidth_px) +
                     std::string("<rect width='100%' height='100%' fill='white'/>\n<text x='60' y='20'>") + escaped(source.scene) + ", " +

@@ -16,7 +16,7 @@ namespace {
 ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area,
                    const ImVec2& size) {
   if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
-  const bool behind = count == 4 && index < 2;
+  const bool behind = count > 2 && index < 2;
   if (behind) {
     // The tool's length and a little more, for it is lifted between presses.
     const auto above = 16.0F * static_cast<float>(blocks.geometry().tool_radius_m);
@@ -35,7 +35,9 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
 }
 
 std::string label_text(const LiveSession& session, std::size_t slot) {
-  return std::to_string(slot + 1) + "  " + session.models().view(slot).name;
+  if (slot == kReferenceBlock)
+    return session.comparison().reference() == ReferenceKind::truth ? "the true material" : "as recorded";
+  return std::to_string(models_view(session).number_of(slot)) + "  " + session.models().view(slot).name;
 }
 
 }  // namespace
@@ -51,7 +53,7 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
     const bool chosen = slots[i] == session.models().selected();
-    const Rgb colour = secret ? style.colours().text : slot_colour(models_view(session), slots[i], style.theme());
+    const Rgb colour = secret ? style.colours().text : (slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme()));
     const float pad = 0.25F * height_of(font);
     ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
                          {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},

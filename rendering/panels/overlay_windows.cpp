@@ -5,6 +5,7 @@
 #include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/scene/assets.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate::overlay {
 namespace {
@@ -31,10 +32,11 @@ std::vector<HelpLine> help_lines() {
                                  {"right button", "turns the view; Ctrl + wheel comes nearer"},
                                  {"1 ... 9", "make a model the active one; a click on its block too"}};
   for (const CommandEntry& entry : commands()) lines.push_back({entry.key, entry.help});
+  lines.push_back({"a row, right button", "renames a model, takes it out"});
   lines.push_back({"on the curves", "drag zooms, the wheel goes back, double click goes on"});
   lines.push_back({"Left, Right", "scroll back and forth while the curves stand still"});
   lines.push_back({"P [ ] , .", "pause, seek, speed of a replayed recording"});
-  lines.push_back({"drop a file", "loads a model"});
+  lines.push_back({"drop a file", "loads a model; of a recording: fits or replays it"});
   lines.push_back({"Ctrl+Q", "ends the program"});
   return lines;
 }
@@ -54,7 +56,7 @@ std::vector<std::string> model_files(const std::vector<std::string>& folders) {
 }
 
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 4.6F * height_of(style.fonts().heading);
+  float y = area.at.y + 6.2F * height_of(style.fonts().heading);
   ImFont* font = style.fonts().body;
   const float pad = 0.6F * height_of(font);
   const float wrap = 0.86F * area.size.x;
@@ -77,7 +79,7 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
   const float wrap = 0.8F * area.size.x;
   const ImVec2 size = text_size(style.fonts().body, text, wrap);
   const float pad = 0.4F * height_of(style.fonts().body);
-  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 10.5F * pad);
+  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.3F * height_of(style.fonts().heading));
   ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - pad},
                                                 {at.x + size.x + 2.0F * pad, at.y + size.y + pad},
                                                 ink(style.colours().raised), 6.0F);
@@ -86,7 +88,8 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
 
 // What the device wants of whoever holds it, large and in the middle.
 void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  std::string words = session.device_words();
+  std::string words = empty_scene_words(session);
+  if (words.empty()) words = session.device_words();
   if (words.empty()) return;
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
   ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.32F * area.size.y}, ImGuiCond_Always,
@@ -120,6 +123,46 @@ void draw_help(ViewState& view, const UiStyle& style) {
     ImGui::PopTextWrapPos();
   }
   ImGui::End();
+}
+
+void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
+  if (!view.scene_list) return;
+  begin_in_the_middle();
+  ImGui::Begin("Scenes", &view.scene_list, kDialog);
+  const auto names = scene_names();
+  for (const std::string& name : names ? *names : std::vector<std::string>{}) {
+    const auto scene = load_scene(name);
+    // A study is no scene to press.
+    if (!scene || name == "jnd_study") continue;
+    if (ImGui::Selectable((scene->title + "###" + name).c_str(), name == session.scene().name)) {
+      view.scene_list = false;
+      actions.use_scene(name);
+    }
+    tip(scene->description.c_str());
+  }
+  ImGui::End();
+}
+
+void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions) {
+  if (view.offered_recording.empty()) return;
+  const std::string path = view.offered_recording;
+  bool open = true;
+  begin_in_the_middle();
+  ImGui::Begin("Recording", &open, kDialog);
+  ImGui::TextUnformatted(std::filesystem::path(path).filename().c_str());
+  if (ImGui::Button("Fit it, and put it in my hand")) {
+    session.fit_recording(path);
+    open = false;
+  }
+  tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
+  if (ImGui::Button("Replay it")) {
+    open = false;
+    actions.replay(path);
+  }
+  tip("Moves the probe as it was recorded; the models are compared with the recorded force");
+  ImGui::TextDisabled("%s", path.c_str());
+  ImGui::End();
+  if (!open) view.offered_recording.clear();
 }
 
 void draw_file_list(LiveSession& session, ViewState& view) {

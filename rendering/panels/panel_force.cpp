@@ -18,7 +18,7 @@ constexpr float kSelectedLine_px = 2.0F;
 constexpr float kColumn_px = 2.0F;
 // JNDs to either side of 0 in the difference view: three times the band's own height.
 constexpr double kDifference_jnd = 3.0;
-constexpr float kLabelRoom = 6.0F;  // for names beside the curves, in heights of a line
+constexpr float kLabelRoom = 7.4F;  // for names beside the curves, in heights of a line
 
 // Towards a nice number above what is shown, quickly up, slowly down.
 double eased_scale(double scale, double wanted) {
@@ -28,7 +28,7 @@ double eased_scale(double scale, double wanted) {
 
 // "voxel" of "voxel-25x11x11x11": what there is room for beside a curve.
 std::string short_name(const SlotView& slot) {
-  constexpr std::size_t kMost = 11;
+  constexpr std::size_t kMost = 14;
   return slot.name.size() <= kMost ? slot.name : slot.name.substr(0, std::min(kMost, slot.name.find('-')));
 }
 
@@ -43,7 +43,7 @@ struct ForceCurves::Scene {
   Rgb colour(std::size_t slot) const {
     return view.hidden_choice > 0 ? style.colours().text : slot_colour(force.models, slot, style.theme());
   }
-  bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 20.0F * ImGui::GetFontSize(); }
+  bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
   // The models in the order of drawing: the one in the hand on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
@@ -87,7 +87,7 @@ ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, c
   curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
                  columns);
   view.force_scale_N =
-      eased_scale(view.force_scale_N, std::max(1.0, 1.05 * static_cast<double>(curves_.highest_force_N())));
+      eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, 1.05 * static_cast<double>(curves_.highest_force_N())}));
   // Beyond 8 JND the line would only hide what is near 1.
   view.error_scale = eased_scale(
       view.error_scale, std::clamp(1.2 * static_cast<double>(curves_.highest_felt_over_jnd()), 1.5, 8.0));

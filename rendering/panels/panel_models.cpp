@@ -20,12 +20,12 @@ struct Heading {
   int dropped;         // where there is no room: 1 goes first; 0 stays
 };
 constexpr Heading kHeadings[kColumns] = {
-    {"model", "Click, or press its number, to make a model the active one.", "      greedy-100", 0},
+    {"model", "Click, or press its number, to make a model the active one.", "      greedy-10 '09", 0},
     {"N", "Force now, newtons", "12.34", 4},
     {"mN off", "Error now: model minus reference, millinewtons", "+1234", 1},
     {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", "12.34", 5},
-    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset",
-     "100.00", 0},
+    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
+     "The same samples for all models: those inside the data of each.", "100.00", 0},
     {"ns", "Time of one evaluation, nanoseconds, median of the last second in contact", "12,345", 3},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2}};
 
@@ -48,9 +48,8 @@ double sort_value(const SlotView& slot, int column) {
   }
 }
 
-std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableSort& sort) {
-  std::vector<std::size_t> order(models.slots.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState& sort) {
+  std::vector<std::size_t> order = models.listed();
   if (sort.column < 0) return order;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!sort.rising) std::swap(a, b);
@@ -81,7 +80,7 @@ void draw_sort_sign(float middle_px, float top_px, bool rising, ImU32 colour) {
 }
 
 // Over its numbers, which stand right. A click sorts: falling, rising, as they were.
-void draw_heading(int column, TableSort& sort) {
+void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float room = ImGui::GetContentRegionAvail().x;
   const float sign = 0.28F * ImGui::GetFontSize();
@@ -89,11 +88,12 @@ void draw_heading(int column, TableSort& sort) {
   ImGui::PushID(column);
   if (ImGui::InvisibleButton("sort", {std::max(room, 1.0F), ImGui::GetTextLineHeight() + sign})) {
     if (sort.column != column) {
-      sort = {column, column == kName};
+      sort.column = column;
+      sort.rising = column == kName;
     } else if (sort.rising == (column == kName)) {
       sort.rising = !sort.rising;
     } else {
-      sort = {};
+      sort.column = -1;
     }
   }
   ImGui::PopID();
@@ -121,8 +121,25 @@ std::string grouped(int count) {
   return text;
 }
 
-// Whether it was clicked.
-bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style) {
+// A menu behind the right button.
+TableAction draw_menu(const ModelsView& models, std::size_t index, TableState& table) {
+  TableAction action;
+  if (!ImGui::BeginPopupContextItem()) return action;
+  if (ImGui::IsWindowAppearing()) {
+    table.name.fill('\0');
+    models.slots[index]->name.copy(table.name.data(), table.name.size() - 1);
+  }
+  ImGui::TextUnformatted("Name, then Enter:");
+  if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
+    action = {TableAction::Kind::rename, index, table.name.data()};
+    ImGui::CloseCurrentPopup();
+  }
+  if (ImGui::Selectable("Take it out of the comparison")) action = {TableAction::Kind::remove, index, {}};
+  ImGui::EndPopup();
+  return action;
+}
+
+TableAction draw_name(const ModelsView& models, std::size_t index, TableState& table, const UiStyle& style) {
   const SlotView& slot = *models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
@@ -132,10 +149,12 @@ bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style
   std::string name = slot.name;
   if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
     name.erase(std::min(name.find('-'), name.size()));
-  const std::string label = "      " + name + "##slot" + std::to_string(index);
+  const std::string label = "      " + name + "###slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
   const bool clicked = ImGui::Selectable(label.c_str(), index == models.selected, flags);
+  TableAction action = draw_menu(models, index, table);
+  if (clicked) action = {TableAction::Kind::select, index, {}};
   tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
@@ -145,7 +164,7 @@ bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style
   } else {
     list.AddCircleFilled(middle, 0.27F * line, colour);
   }
-  return clicked;
+  return action;
 }
 
 // Over the columns of the figures that are not there yet.
@@ -188,7 +207,7 @@ std::string waiting_words(const SlotView& slot) {
 std::string name_tip(const ModelsView& models, std::size_t slot) {
   const std::string& name = models.slots[slot]->name;
   if (slot == models.selected) return name + " is the active model";
-  return "Click, or press " + std::to_string(slot + 1) + ", to make " + name + " the active model";
+  return "Click, or press " + std::to_string(models.number_of(slot)) + ", to make " + name + " the active model";
 }
 
 std::vector<int> shown_columns(float room, float (*width)(int)) {
@@ -208,12 +227,12 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
   return columns;
 }
 
-std::optional<std::size_t> draw_model_table(const ModelsView& models, TableSort& sort, const UiStyle& style, float height) {
-  std::optional<std::size_t> clicked;
+TableAction draw_model_table(const ModelsView& models, TableState& table, const UiStyle& style, float height) {
+  TableAction action;
   const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
   const std::vector<int> shown =
       shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
-  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return clicked;
+  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return action;
   ImGui::TableSetupScrollFreeze(0, 1);
   for (int column = 0; column < kColumns; ++column) {
     const bool hidden = std::find(shown.begin(), shown.end(), column) == shown.end();
@@ -222,12 +241,13 @@ std::optional<std::size_t> draw_model_table(const ModelsView& models, TableSort&
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const int column : shown) {
-    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, sort);
+    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, table);
   }
-  for (const std::size_t index : sorted_slots(models, sort)) {
+  for (const std::size_t index : sorted_slots(models, table)) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);
-    if (draw_name(models, index, style)) clicked = index;
+    const TableAction done = draw_name(models, index, table, style);
+    if (done.kind != TableAction::Kind::none) action = done;
     if (models.slots[index]->state == SlotState::ready) {
       draw_figures(*models.slots[index], style);
     } else {
@@ -235,7 +255,7 @@ std::optional<std::size_t> draw_model_table(const ModelsView& models, TableSort&
     }
   }
   ImGui::EndTable();
-  return clicked;
+  return action;
 }
 
 }  // namespace palpate

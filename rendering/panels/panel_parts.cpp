@@ -12,9 +12,11 @@ void section_title(const UiStyle& style, const char* title) {
 
 Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
   const std::string& method = models.slots[slot]->method;
+  const Rgb hue = method_colour(method, theme);
   std::size_t which = 0;
-  for (std::size_t i = 0; i < slot; ++i) {
-    if (models.slots[i]->method == method) ++which;
+  for (const std::size_t i : models.listed()) {
+    if (i == slot) break;
+    if (method_colour(models.slots[i]->method, theme) == hue) ++which;
   }
   return method_colour(method, theme, which);
 }

@@ -37,6 +37,10 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
   ImGui::PopFont();
   tip(session.scene().description.c_str());
   if (!view.kiosk) draw_block_buttons(view);
+  if (view.exaggerated && !view.kiosk) {
+    ImGui::SameLine(0.0F, ImGui::GetFontSize());
+    ImGui::TextColored(paint(kAboveJndColour), "arrows: difference x 10");
+  }
   ImGui::End();
 }
 
@@ -122,6 +126,9 @@ const std::vector<CommandEntry>& commands() {
       {Command::record, "R", "Record", "record this session to a file that `palpate fit` reads"},
       {Command::pause_curves, "Space", "Stop", "stop the curves to look back, and go on"},
       {Command::reset_figures, "C", "Clear", "forget the errors so far, and alarms that were seen"},
+      {Command::next_line_up, "N", "Models", "the next set of models: Ladder, 2009, Palpate"},
+      {Command::exaggerate, "X", "x 10", "arrows that show ten times the difference, and back"},
+      {Command::scene_list, "O", "Scene", "choose another material"},
       {Command::difference, "V", "View", "the difference in its band, or what a hand feels of it"},
       {Command::next_reference, "F", "Reference", "choose what the models are compared with"},
       {Command::file_list, "M", "Load", "load a model file"},
@@ -163,17 +170,25 @@ std::string peak_error_words(const ModelsView& models, double reference_N) {
   return error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
 }
 
+std::string empty_scene_words(const LiveSession& session) {
+  if (session.models().size() > 0) return {};
+  return "No model yet, and no virtual material stands in for \"" + session.scene().title +
+         "\".\nDrop a recording (CSV) here to fit it or to replay it, or a model file (M lists them).\n"
+         "O chooses a scene with a material.";
+}
+
 std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count) {
+  const ReferenceKind kind = session.comparison().reference();
+  const bool reference = block_count > 1 && kind != ReferenceKind::direct && session.has_reference(kind);
+  const std::size_t room = reference ? block_count - 1 : block_count;
+  const ModelsView models = models_view(session);
   std::vector<std::size_t> slots;
-  for (std::size_t i = 0; i < session.models().size() && slots.size() < block_count; ++i) {
-    if (session.models().view(i).state == SlotState::ready) slots.push_back(i);
+  for (std::size_t i = 0; i < models.slots.size() && slots.size() < room; ++i) {
+    if (models.slots[i]->state == SlotState::ready) slots.push_back(i);
   }
-  const bool selectable =
-      session.models().size() > 0 && session.models().view(session.models().selected()).state == SlotState::ready;
-  if (selectable && std::find(slots.begin(), slots.end(), session.models().selected()) == slots.end() &&
-      !slots.empty()) {
-    slots.back() = session.models().selected();
-  }
+  const bool missing = models.active() != nullptr && std::find(slots.begin(), slots.end(), models.selected) == slots.end();
+  if (missing && !slots.empty()) slots.back() = models.selected;
+  if (reference) slots.push_back(kReferenceBlock);
   return slots;
 }
 
@@ -200,7 +215,7 @@ std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, con
 
 void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
                         const SceneArea& area, const std::vector<Toast>& toasts,
-                        const std::function<void(Command)>& run) {
+                        const OverlayActions& actions) {
   const float line = height_of(style.fonts().body);
   const float buttons = view.kiosk ? 0.0F : std::max(buttons_height_, 2.4F * line);
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line : 0.0F);
@@ -213,10 +228,12 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   if (!view.kiosk) draw_hint(session, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons);
-  if (!view.kiosk) buttons_height_ = draw_buttons(session, view, area, run);
+  if (!view.kiosk) buttons_height_ = draw_buttons(session, view, area, actions.run);
   draw_device_words(session, style, area);
   draw_toasts(toasts, style, area);
   draw_file_list(session, view);
+  draw_scene_list(session, view, actions);
+  draw_offered_recording(session, view, actions);
   draw_help(view, style);
 }
 

@@ -2,6 +2,7 @@
 // Thread guarantee: values of the window's thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -41,10 +42,11 @@ struct CurveTime {
   void scroll_back(double by_s, double oldest_s) noexcept;
 };
 
-// What the table of models is sorted by.
-struct TableSort {
+// The table of models: what it is sorted by, and the name that is being typed.
+struct TableState {
   int column = -1;  // none: in the order in which they were asked for
   bool rising = false;
+  std::array<char, 64> name{};
 };
 
 struct ViewState {
@@ -52,8 +54,13 @@ struct ViewState {
   bool kiosk = false;
   float text_size = 1.0F;  // times the usual
   int hidden_choice = 0;        // above 0: which model is active is a secret, shown as this
-  std::size_t block_count = 1;  // 1, 2 or 4
-  TableSort table_sort;
+  std::size_t block_count = 4;  // 1, 2 or 4
+  TableState table;
+  bool exaggerated = false;       // arrows show ten times the difference
+  bool centres_together = true;   // the slider moves all models that have centres
+  int wanted_centres = 0;         // of the slider, as long as it is held
+  bool scene_list = false;        // scenes to choose from
+  std::string offered_recording;  // to fit or to replay; empty: none
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load
