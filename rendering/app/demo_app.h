@@ -29,6 +29,7 @@ struct DemoRequest {
   WindowRequest window;
   bool kiosk = false;
   std::string settings_file;  // empty: nothing is remembered
+  std::string recording;      // offered to be fitted or replayed; empty: none
 };
 
 class DemoApp {
@@ -84,6 +85,8 @@ class DemoApp {
   SceneArea scene_area() const;
   void use_settings(const DemoRequest& request);
   void save_settings();
+  Status set_up_exhibit();
+  void write_to_log(const std::string& text) const;
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.

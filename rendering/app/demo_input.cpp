@@ -74,7 +74,8 @@ void DemoApp::handle_keys() {
   if (ImGui::IsKeyDown(GLFW_KEY_LEFT)) scroll_back(*session_, view_, kScrollStep_s);
   if (ImGui::IsKeyDown(GLFW_KEY_RIGHT)) scroll_back(*session_, view_, -kScrollStep_s);
   for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);
-  if (view_.kiosk) open_day_.update(*session_, view_);
+  // The next visitor finds it as new.
+  if (view_.kiosk && open_day_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
 void DemoApp::handle_key(const KeyPress& press) {

@@ -16,6 +16,10 @@
 namespace palpate {
 namespace {
 
+constexpr const char* kRehearsal =
+    "No force device: nobody can feel anything. This is a rehearsal; its answers are marked so and left out of the "
+    "analysis.";
+
 constexpr float kColumnShare = 0.62F;  // of the window's width
 constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
 constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
@@ -35,6 +39,7 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) 
   if (!window) return window.error();
   std::unique_ptr<StudyApp> app(new StudyApp(request));
   app->window_ = std::move(*window);
+  app->can_be_felt_ = study_can_be_felt(request.device);
   GLFWwindow* handle = app->window_->handle();
   glfwSetWindowUserPointer(handle, app.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
@@ -190,6 +195,7 @@ void StudyApp::draw_entry() {
   button("Begin (Enter)", GLFW_KEY_ENTER);
   ImGui::PopFont();
   ImGui::TextDisabled("A code that has begun goes on after its last answer.");
+  if (!can_be_felt_) draw_trouble(kRehearsal);
   if (!problem_.empty()) draw_trouble(problem_);
 }
 
@@ -238,7 +244,7 @@ void StudyApp::draw_session() {
   if (const std::string words = study_->device_words(); !words.empty())
     ImGui::TextWrapped("%s", words.c_str());
   if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
-  if (!study_->device_pushes()) draw_trouble("No haptic device: nobody can feel this, it is a rehearsal.");
+  if (!study_->device_pushes()) draw_trouble(kRehearsal);
 }
 
 // Of strokes, beside what was predicted.

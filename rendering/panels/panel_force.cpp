@@ -51,6 +51,9 @@ struct ForceCurves::Scene {
     for (std::size_t i = 0; i < models.slots.size() && !view.kiosk; ++i) {
       if (i != models.selected && models.slots[i]->state == SlotState::ready) draw(i);
     }
+    for (const std::size_t i : view.revealed) {
+      if (i < models.slots.size() && i != models.selected) draw(i);
+    }
     if (models.active() != nullptr) draw(models.selected);
   }
   PlotAxes axes(const Range& y, const char* unit, bool x_numbers) const {

@@ -64,6 +64,7 @@ struct ViewState {
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load
+  std::vector<std::size_t> revealed;  // slots whose curves a visitor sees after the answer
   CurveTime time;
   bool difference = true;  // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases

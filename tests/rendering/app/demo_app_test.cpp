@@ -1,5 +1,6 @@
 // The real window on a display in memory: what people do to it, and what it does.
 #include "rendering/app/demo_app.h"
+#include "rendering/panels/panel_views.h"
 
 #include <epoxy/gl.h>
 // After epoxy, which brings OpenGL's functions.
@@ -60,6 +61,7 @@ class DemoAppTest : public ::testing::Test {
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
+    app_->view().block_count = 1;
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 
@@ -290,6 +292,45 @@ TEST_F(DemoAppTest, SaysWhatThereIsNotForAKey) {
   EXPECT_TRUE(told("2 of 4 blocks"));
 }
 
+TEST_F(DemoAppTest, ADroppedRecordingIsOfferedAndReplayed) {
+  open("hand");
+  const std::string strokes = folder_.file("strokes.csv");
+  ASSERT_TRUE(write_recording(strokes, test::example_recording(2000, 1000.0), {}, false).ok());
+  drop(strokes);
+  EXPECT_EQ(app_->view().offered_recording, strokes);
+  frames(3);
+  press(GLFW_KEY_ESCAPE);
+  EXPECT_EQ(app_->view().offered_recording, "");
+}
+
+TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
+  open("hand");
+  LiveSession& session = app_->session();
+  session.rename(1, "mine");
+  EXPECT_EQ(session.models().view(1).name, "mine");
+  session.rename(0, "mine");
+  EXPECT_EQ(session.models().view(0).name, "mine-2") << "names stay distinct";
+  session.remove(0);
+  EXPECT_EQ(session.models().view(0).state, SlotState::hidden);
+  EXPECT_EQ(session.models().selected(), 1u) << "the active model is one that is there";
+  frames(10);
+  press(GLFW_KEY_1);
+  EXPECT_EQ(session.models().selected(), 1u) << "keys count what is listed";
+}
+
+TEST_F(DemoAppTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
+  open("mouse");
+  const double known_m = app_->session().models().trained_depth_m();
+  ASSERT_LT(known_m, 0.1);
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 360.0);
+  frames(5);
+  glfwSetCursorPos(window, 384.0, 560.0);
+  frames(60);
+  EXPECT_LT(app_->session().newest().tick.position_m, 1.1 * known_m);
+}
+
 TEST_F(DemoAppTest, AKioskHasOneWayOut) {
   open("hand", true);
   EXPECT_EQ(app_->view().theme, Theme::dark);
@@ -308,17 +349,21 @@ TEST_F(DemoAppTest, AVisitorsChoiceStaysASecretUntilTheAnswer) {
   open("hand", true);
   press(GLFW_KEY_1);
   EXPECT_EQ(app_->view().hidden_choice, 1);
+  EXPECT_TRUE(app_->view().revealed.empty()) << "no curve gives it away";
+  press(GLFW_KEY_D);
+  EXPECT_EQ(app_->view().hidden_choice, 1) << "both have to be tried";
   press(GLFW_KEY_2);
   EXPECT_EQ(app_->view().hidden_choice, 2);
   press(GLFW_KEY_D);
   EXPECT_EQ(app_->view().hidden_choice, 0);
+  EXPECT_EQ(app_->view().revealed.size(), 2u);
 }
 
 TEST_F(DemoAppTest, SaysWhenTheProbeIsAwayFromTheData) {
   open("mouse");
-  EXPECT_FALSE(away_from_data(app_->session()));
+  EXPECT_FALSE(models_view(app_->session()).out_of_domain());
   app_->session().mouse()->set_target(0.03, steady_now_s());  // example models know 6 mm
-  EXPECT_TRUE(until([&] { return away_from_data(app_->session()); }));
+  EXPECT_TRUE(until([&] { return models_view(app_->session()).out_of_domain(); }));
 }
 
 TEST_F(DemoAppTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
