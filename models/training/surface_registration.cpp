@@ -314,13 +314,13 @@ std::size_t unmoved(const Consistent& consistent, double shift_m) {
   return count;
 }
 
-// Of the shifts that the onsets allow, the one that leaves most recordings as they
-// are, and of those the nearest to what the onsets say.
-double simplest_shift_m(const Consistent& consistent, double onset_m, double error_m) {
+// Of the shifts within `tolerance_m` of what the onsets say, the one that leaves most
+// recordings as they are, and of those the nearest.
+double simplest_shift_m(const Consistent& consistent, double onset_m, double tolerance_m) {
   double best_m = onset_m;
   std::size_t most = unmoved(consistent, onset_m);
   for (const double offset_m : consistent.offset_m) {
-    if (std::abs(-offset_m - onset_m) > kSignificantErrors * error_m) continue;
+    if (std::abs(-offset_m - onset_m) > tolerance_m) continue;
     const std::size_t count = unmoved(consistent, -offset_m);
     const bool nearer = count == most && std::abs(-offset_m - onset_m) < std::abs(best_m - onset_m);
     if (count > most || nearer) {
@@ -346,11 +346,8 @@ double anchor(Consistent& consistent, const std::vector<Member>& members) {
   }
   const double onset_m = weights > 0.0 ? sum / weights : -median_of(consistent.offset_m);
   const double error_m = weights > 0.0 ? std::sqrt(1.0 / weights) : kUnknownError;
-  double shift_m = simplest_shift_m(consistent, onset_m, error_m);
-  const double as_recorded_m = -median_of(consistent.offset_m);
-  if (std::abs(shift_m - as_recorded_m) < kLeastCommonShift_m) {
-    shift_m = simplest_shift_m(consistent, as_recorded_m, kLeastCommonShift_m / kSignificantErrors);
-  }
+  const double shift_m =
+      simplest_shift_m(consistent, onset_m, std::max(kSignificantErrors * error_m, kLeastCommonShift_m));
   for (double& offset_m : consistent.offset_m) offset_m += shift_m;
   return error_m;
 }

@@ -69,6 +69,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   use_settings(request);
   if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = settings_.line_up;
   request_ = wanted;
+  first_device_ = wanted.device;
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
@@ -164,8 +165,8 @@ void DemoApp::draw() {
   const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
                 {[this](Command command) { run(command); },
-                 [this](const std::string& scene) { next_ = request_, next_->scene = scene, next_->device = "auto"; },
-                 [this](const std::string& path) { next_ = request_, next_->device = "replay:" + path; }});
+                 [this](const std::string& scene) { go_on_with(scene, first_device_); },
+                 [this](const std::string& path) { go_on_with(request_.scene, "replay:" + path); }});
   if (view_.kiosk) {
     open_day_.draw(*session_, view_, style_, panel.at, panel.size);
   } else {

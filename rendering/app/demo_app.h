@@ -90,6 +90,7 @@ class DemoApp {
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.
+  void go_on_with(const std::string& scene, const std::string& device);
   void reopen(const SessionRequest& request);
   void offer_finished_recording();
   void next_line_up();
@@ -113,6 +114,7 @@ class DemoApp {
   Settings settings_;
   std::string settings_file_;
   SessionRequest request_;
+  std::string first_device_;  // as the program was asked for it
   std::optional<SessionRequest> next_;  // what to go on with after this frame
   std::string recording_;  // the file that is being recorded; empty: none
   FrameFigures frames_;

@@ -39,10 +39,16 @@ void DemoApp::save_settings() {
   settings_.block_count = view_.block_count;
   settings_.difference = view_.difference;
   settings_.text_size = view_.text_size;
-  settings_.line_up = session_->line_up();
+  if (!session_->line_up().empty()) settings_.line_up = session_->line_up();
   settings_.camera = blocks_->camera().turned();
   // Nobody is there to read of it any more.
   (void)write_settings(settings_file_, settings_);
+}
+
+void DemoApp::go_on_with(const std::string& scene, const std::string& device) {
+  next_ = request_;
+  next_->scene = scene;
+  next_->device = device;
 }
 
 void DemoApp::reopen(const SessionRequest& request) {

@@ -177,6 +177,12 @@ void ModelSlots::select_what_is_there() {
 void ModelSlots::remove(std::size_t index) {
   if (index >= slots_.size()) return;
   Slot& slot = *slots_[index];
+  const auto others = std::count_if(slots_.begin(), slots_.end(),
+                                    [&](const auto& other) { return other.get() != &slot && other->takes_part(); });
+  if (others == 0) {
+    notices_.add("the last model stays: there must be one to press", false);
+    return;
+  }
   slot.removed = slot.hidden = true;
   slot.view.state = SlotState::hidden;
   select_what_is_there();

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "rendering/panels/layout.h"
-#include "rendering/panels/panel.h"
+#include "rendering/panels/panel_models.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {

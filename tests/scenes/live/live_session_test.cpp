@@ -291,5 +291,60 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   EXPECT_GT(test::judge(*recording, test::fit(prepared, &kRandomMethod)).within_jnd, 0.95);
 }
 
+// One after the other, as somebody drags: the last one counts.
+TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.models = {"random-10"};
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_EQ(session->models().view(0).centres, 10);
+  for (const int centres : {12, 14, 20}) session->refit(0, centres);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).centres == 20; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_FALSE(session->models().view(0).refitting);
+  EXPECT_EQ(session->models().view(0).name, "random-20");
+}
+
+TEST(LiveSession, ARecordingIsFittedAndBecomesTheActiveModel) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("mine.csv");
+  ASSERT_TRUE(write_recording(path, test::rig_recording(test::train_settings("elastic")), {}, false).ok());
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.models = {"trend"};
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  session->fit_recording(path);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  const std::size_t newest = session->models().size() - 1;
+  EXPECT_EQ(session->models().view(newest).name, "mine");
+  EXPECT_EQ(session->models().selected(), newest);
+}
+
+TEST(LiveSession, LineUpsShareTheModelsThatBothHave) {
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.line_up = "Palpate";
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  EXPECT_EQ(session->line_up(), "Palpate");
+  const std::size_t before = session->models().size();
+  session->use_line_up("Ladder");
+  // Three by the paper's recipe are new; direct, voxel, greedy and trend are there.
+  EXPECT_EQ(session->models().size(), before + 3);
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < session->models().size(); ++i)
+    hidden += session->models().view(i).state == SlotState::hidden ? 1 : 0;
+  EXPECT_EQ(hidden, 2u) << "random and kdtree";
+  session->use_line_up("no such");
+  EXPECT_EQ(session->line_up(), "Ladder");
+}
+
 }  // namespace
 }  // namespace palpate
