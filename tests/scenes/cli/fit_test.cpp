@@ -138,19 +138,19 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
     expect_model(fit(option));
   }
   expect_model(fit({"--solver", "tsvd", "--reduction", "force", "--force"}, "direct"));
-  expect_model(fit({"--grid", "4x3x3x3", "--force"}, "voxel"));
+  expect_model(fit({"--grid", "4x3x3x3", "--features", "scene", "--force"}, "voxel"));
   EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
 }
 
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
-  Recording other = example_recording(1000, 1000.0);
+  Recording other = example_recording(4000, 1000.0);
   for (RecordingRow& row : other.rows) row.force_N *= 1.001;
   const std::string second = recording() + ".second.csv";
   ASSERT_TRUE(write_recording(second, other, {}, false).ok());
   const ProgramRun run = run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out",
                                       out(), "--json"});
   expect_model(run);
-  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 2000);
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 5000);
 }
 
 TEST_F(FitVerb, TheSameRecordingTwiceIsTold) {
@@ -180,8 +180,8 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
 
 TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
   expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
-  expect_refused(fit({"--grid", "25"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
-  expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, "at most 1e7");
+  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
+  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--features", "scene"}, "voxel"), 1, "at most 1e7");
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
 }

@@ -69,7 +69,7 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   for (const Json& model : object["models"]) {
     EXPECT_EQ(keys(model), (std::vector<std::string>{"name", "method", "centres", "rms_error_N", "max_error_N",
                                                      "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
-                                                     "out_of_domain_samples", "evaluation_ns", "surface_moved", "bins"}));
+                                                     "out_of_domain_samples", "evaluation_ns", "surface_moved", "predicted_error", "bins"}));
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
     EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));
