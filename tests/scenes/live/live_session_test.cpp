@@ -311,7 +311,7 @@ TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
 TEST(LiveSession, ARecordingIsFittedAndBecomesTheActiveModel) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("mine.csv");
-  ASSERT_TRUE(write_recording(path, test::rig_recording(test::train_settings("elastic")), {}, false).ok());
+  ASSERT_TRUE(write_recording(path, *test::rig_recording(test::train_settings("elastic")), {}, false).ok());
   SessionRequest request;
   request.scene = "elastic_block";
   request.device = "hand";
