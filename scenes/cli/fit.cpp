@@ -304,6 +304,17 @@ Status list_methods() {
   return {};
 }
 
+// A grid is asked for before anybody knows how many features the recording supports:
+// the first size is the depth's, sizes beyond the features are left out, and the last
+// one serves every feature that has none.
+void fit_grid_to(std::vector<int>& grid, std::size_t features, std::vector<std::string>& notes) {
+  if (grid.empty() || grid.size() == features) return;
+  grid.resize(features, grid.back());
+  std::string sizes;
+  for (const int size : grid) sizes += (sizes.empty() ? "" : "x") + std::to_string(size);
+  notes.push_back("the recording supports " + std::to_string(features) + " features; the grid is " + sizes);
+}
+
 Status run_fit(const FitArguments& arguments) {
   if (arguments.list_methods) return list_methods();
   const auto scene = load_scene(arguments.scene);
@@ -325,9 +336,14 @@ Status run_fit(const FitArguments& arguments) {
     inputs.push_back({file.path, file.whole ? std::make_shared<const Recording>(std::move(file.recording)) : nullptr});
   }
   MotionSource source(std::move(inputs));
-  const auto prepared = prepare_training(source, training_request(arguments, *scene), prepare);
+  const TrainingRequest training = training_request(arguments, *scene);
+  const auto prepared = prepare_training(source, training, prepare);
   if (!prepared) return prepared.error();
-  const auto fit = fit_method(*prepared, method_request(arguments), method);
+  MethodRequest asked = method_request(arguments);
+  std::vector<std::string> notes;
+  if (training.choice == FeatureChoice::automatic) fit_grid_to(asked.grid, prepared->common.features.size(), notes);
+  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
+  const auto fit = fit_method(*prepared, asked, method);
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;

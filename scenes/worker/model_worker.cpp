@@ -190,12 +190,13 @@ TrainingRequest paper_request(const Scene& scene) {
   TrainingRequest request = training_request(scene);
   request.reduction = Reduction::force;
   request.weighting = Weighting::relative;
+  request.choice = FeatureChoice::scene;
   return request;
 }
 
 }  // namespace
 
-// All as `palpate fit` does it by itself, with the scene's features.
+// All as `palpate fit` does it by itself.
 Result<ModelData> ModelWorker::fit_recording(const SlotPlan& plan) {
   Result<Recording> recording = read_recording(plan.path);
   if (!recording) return recording.error();

@@ -111,7 +111,7 @@ TEST(Tables, EveryErrorStandsBesideTheOneWithTheSurfaceMoved) {
   const auto tables = make_tables(data);
   const auto moved = std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.name == "surface_moved"; });
   ASSERT_NE(moved, tables.end());
-  EXPECT_EQ(moved->rows.size(), data.models.size() + 2 * kMainModels);
+  EXPECT_EQ(moved->rows.size(), data.models.size() + 2 * main_models(data));
   const std::string csv = table_csv(*moved);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "recording,surface_offset_m,model,rms_error_N_as_recorded,max_error_N_as_recorded,within_jnd_as_recorded,"
