@@ -22,6 +22,7 @@ using Verbs = std::vector<std::pair<CLI::App*, std::function<Status()>>>;
 void add_synth(CLI::App& app, Verbs& verbs);
 void add_fit(CLI::App& app, Verbs& verbs);
 void add_replay(CLI::App& app, Verbs& verbs);
+void add_export(CLI::App& app, Verbs& verbs);
 void add_scenes(CLI::App& app, Verbs& verbs);
 void add_devices(CLI::App& app, Verbs& verbs);
 void add_report(CLI::App& app, Verbs& verbs);
