@@ -12,7 +12,7 @@ enum class SlotState : std::uint8_t { waiting, fitting, ready, failed };
 
 struct SlotView {
   std::string name;    // distinct among the slots
-  std::string method;  // direct, voxel, random, kdtree, greedy; "position" for depth alone
+  std::string method;  // a method's name; "position" for depth alone
   int centres = 0;     // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
   double progress = 0.0;  // of the fit, 0..1

@@ -114,6 +114,9 @@ FeatureAxis feature_axis(const FeatureSpec& spec) {
     case FeatureKind::velocity: return {"Velocity [mm/s]", 1e3};
     case FeatureKind::lowpass_velocity: return {"Low-pass " + time + " [mm/s]", 1e3};
     case FeatureKind::maxwell_branch: return {"Branch " + time + " [N]", 1.0};
+    case FeatureKind::maxwell_spectrum: return {"Relaxing force [N]", 1.0};
+    case FeatureKind::stops: return {"Friction [N]", 1.0};
+    case FeatureKind::fading_peak: return {"Deepest depth, fading in " + time + " [mm]", 1e3};
   }
   return {"", 1.0};
 }

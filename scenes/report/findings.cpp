@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/text.h"
 #include "scenes/report/tables.h"
 
 namespace palpate {
@@ -68,6 +69,30 @@ std::string about_coverage(const ReportData& data) {
   return text + ".";
 }
 
+// Where the surface of a test recording decides the figures of the best model.
+std::string about_surface(const ReportData& data) {
+  double farthest_m = 0.0;
+  std::size_t which = 0;
+  for (std::size_t r = 0; r < data.surface_offset_m.size(); ++r) {
+    if (std::abs(data.surface_offset_m[r]) <= std::abs(farthest_m)) continue;
+    farthest_m = data.surface_offset_m[r];
+    which = r;
+  }
+  if (farthest_m == 0.0) return {};
+  const ModelResult* best = nullptr;
+  for (const ModelResult& model : data.models) {
+    if (best == nullptr || model.pooled_moved.within_jnd > best->pooled_moved.within_jnd) best = &model;
+  }
+  const auto moved = std::count_if(data.surface_offset_m.begin(), data.surface_offset_m.end(),
+                                   [](double offset_m) { return offset_m != 0.0; });
+  return std::to_string(moved) + " of " + std::to_string(data.surface_offset_m.size()) +
+         " test recordings have their surface elsewhere than the models (" + data.test_names[which] + " farthest, by " +
+         fixed(1e3 * farthest_m, 3) + " mm). With the surface moved " + best->plan.name + " has " +
+         percent(best->pooled_moved.within_jnd) + " within the JND and RMS " +
+         three_digits(1e3 * best->pooled_moved.rms_error_N) + " mN, as recorded " + percent(best->pooled.within_jnd) +
+         " and " + three_digits(1e3 * best->pooled.rms_error_N) + " mN.";
+}
+
 std::string about_seeds(const ReportData& data) {
   std::map<std::string, std::pair<double, double>> ranges;  // smallest and largest RMS
   std::map<std::string, std::size_t> counts;
@@ -108,7 +133,7 @@ std::vector<std::string> findings(const ReportData& data, bool with_times) {
     return sentences;
   }
   sentences.push_back(about_smallest(data));
-  for (std::string sentence : {about_coverage(data), about_seeds(data)}) {
+  for (std::string sentence : {about_coverage(data), about_surface(data), about_seeds(data)}) {
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
   }
   return sentences;

@@ -14,7 +14,7 @@ constexpr std::size_t kMostCoveragePoints = 20000;  // each kind, before the fig
 }  // namespace
 
 Result<std::vector<ErrorSummary>> Jury::judge(const Recording& recording, const std::vector<ModelPointer>& models,
-                                              const FitControl& control) {
+                                              const FitControl& control, double surface_offset_m) {
   std::vector<ErrorSummary> summaries;
   for (std::size_t first = 0; first < models.size(); first += kMaxModels) {
     if (!control.go_on(static_cast<double>(first) / static_cast<double>(models.size()))) return interrupted();
@@ -30,7 +30,8 @@ Result<std::vector<ErrorSummary>> Jury::judge(const Recording& recording, const 
             here[i].add(snapshot.force_N[i], row.force_N, outside);
             pooled_[first + i].add(snapshot.force_N[i], row.force_N, outside);
           }
-        });
+        },
+        surface_offset_m);
     if (!replayed) return replayed.error();
     for (const ErrorStatistics& one : here) summaries.push_back(one.summary());
   }

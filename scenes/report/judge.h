@@ -22,10 +22,10 @@ class Jury {
  public:
   Jury(std::size_t models, const JndLine& jnd) : jnd_(jnd), pooled_(models, ErrorStatistics(jnd)) {}
 
-  // One summary per model for this recording, which also counts in `pooled`. Errors:
-  // interrupted.
+  // One summary per model for this recording, which also counts in `pooled`;
+  // `surface_offset_m` as in engine/tick/replay.h. Errors: interrupted.
   Result<std::vector<ErrorSummary>> judge(const Recording& recording, const std::vector<ModelPointer>& models,
-                                          const FitControl& control = {});
+                                          const FitControl& control = {}, double surface_offset_m = 0.0);
 
   std::vector<ErrorSummary> pooled() const;
 

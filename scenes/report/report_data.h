@@ -62,6 +62,9 @@ struct ModelResult {
   int size = 0;  // centres, or nodes of the grid
   ErrorSummary pooled;
   std::vector<ErrorSummary> per_recording;  // as ReportData::test_names
+  // The same with the surface of every test recording moved to the models'.
+  ErrorSummary pooled_moved;
+  std::vector<ErrorSummary> per_recording_moved;
   std::vector<ErrorBin> bins;  // main models
   std::vector<FitHealth> health;
   double fit_seconds = 0.0;  // mean over the folds, preparation left out
@@ -133,6 +136,8 @@ struct ReportData {
   int folds = 0;  // 0: trained and tested on different recordings
   std::vector<RecordingFacts> recordings;
   std::vector<std::string> test_names;
+  // What to subtract from the positions of each to move its surface.
+  std::vector<double> surface_offset_m;
   std::vector<std::string> relaxation_times;
   std::vector<ModelResult> models;
   std::vector<SeedResult> seeds;

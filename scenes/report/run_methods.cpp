@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/tick/replay.h"
+#include "models/training/surface_search.h"
 #include "scenes/report/judge.h"
 #include "scenes/report/scaling.h"
 #include "scenes/report/steps.h"
@@ -65,6 +66,7 @@ class Run {
         plan_(plan),
         steps_(control, total_weight(recordings, plan)),
         jury_(plan.models.size(), scene.jnd),
+        moved_jury_(plan.models.size(), scene.jnd),
         seed_jury_(plan.repeated.size() * plan.seeds.size(), scene.jnd),
         trace_(scene.jnd),
         coverage_(scene.jnd, main_names(plan), largest_force_N(recordings)) {}
@@ -176,12 +178,25 @@ class Run {
       if (!errors) return errors.error();
       data_.test_names.push_back(recording.name);
       for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording.push_back((*errors)[i]);
+      if (const Status status = judge_moved(recording, models, main); !status) return status;
       const auto again =
           seed_jury_.judge(recording, repeated, steps_.next(share * static_cast<double>(repeated.size())));
       if (!again) return again.error();
       if (const Status status = trace_.look_at(recording, main); !status) return status;
       if (const Status status = coverage_.look_at(recording, main); !status) return status;
     }
+    return {};
+  }
+
+  // The main models say together where the surface is.
+  Status judge_moved(const Recording& recording, const std::vector<ModelPointer>& models,
+                     const std::vector<ModelPointer>& main) {
+    const SurfaceLocation surface =
+        locate_surface(thinned_rows(recording, kSearchRows), {main.begin(), main.end()}, scene_.jnd);
+    data_.surface_offset_m.push_back(surface.offset_m);
+    const auto errors = moved_jury_.judge(recording, models, {}, surface.offset_m);
+    if (!errors) return errors.error();
+    for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording_moved.push_back((*errors)[i]);
     return {};
   }
 
@@ -205,6 +220,8 @@ class Run {
   void finish_models() {
     const std::vector<ErrorSummary> pooled = jury_.pooled();
     for (std::size_t i = 0; i < pooled.size(); ++i) data_.models[i].pooled = pooled[i];
+    const std::vector<ErrorSummary> moved = moved_jury_.pooled();
+    for (std::size_t i = 0; i < moved.size(); ++i) data_.models[i].pooled_moved = moved[i];
     const std::vector<ErrorSummary> seeds = seed_jury_.pooled();
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       data_.seeds.push_back(
@@ -225,6 +242,7 @@ class Run {
   const ReportPlan& plan_;
   Steps steps_;
   Jury jury_;
+  Jury moved_jury_;
   Jury seed_jury_;
   TraceFinder trace_;
   CoverageFinder coverage_;

@@ -103,17 +103,17 @@ Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepar
     const PreparedTraining some = with_sites(prepared, asked);
     FitControl quiet;
     quiet.progress = [&](double) { return control.go_on((done - 1.0) / static_cast<double>(site_counts.size())); };
-    std::map<const Method*, std::pair<MethodFit, double>> done;
+    std::map<const Method*, std::pair<MethodFit, double>> fitted;
     for (const PlannedModel& model : make_plan(true, prepared.set.features.size()).models) {
       if (!model.main) continue;
-      const auto base = done.find(model.request.method->base);
-      const bool has_base = base != done.end();
+      const auto base = fitted.find(model.request.method->base);
+      const bool has_base = base != fitted.end();
       const auto start = Clock::now();
       auto fit = fit_method(some, model.request, quiet, has_base ? &base->second.first : nullptr);
       if (!fit) return fit.error();
       const double seconds = seconds_since(start);
       times.push_back({model.name, asked, seconds + (has_base ? base->second.second : 0.0)});
-      done.try_emplace(model.request.method, std::move(*fit), seconds);
+      fitted.try_emplace(model.request.method, std::move(*fit), seconds);
     }
   }
   return times;

@@ -114,6 +114,51 @@ Table per_recording_table(const ReportData& data) {
   return table;
 }
 
+// Every model over all test recordings, then the main ones recording by recording.
+Table surface_table(const ReportData& data) {
+  Table table{"surface_moved",
+              "The figures above take positions as recorded. Where a recording has its surface elsewhere than the "
+              "models, that alone can decide them; here each stands beside the same with the surface moved to where "
+              "the main models fit best.",
+              false,
+              {{"recording", "recording"},
+               {"surface_offset_m", "surface at [mm]", kMilli, 3},
+               {"model", "model"}},
+              {}};
+  for (const bool moved : {false, true}) {
+    const std::string key = moved ? "_surface_moved" : "_as_recorded";
+    const std::string words = moved ? "moved: " : "";
+    table.columns.push_back({"rms_error_N" + key, words + "RMS [mN]", kMilli});
+    table.columns.push_back({"max_error_N" + key, words + "max [mN]", kMilli});
+    table.columns.push_back({"within_jnd" + key, words + "within the JND [%]", kPercent, 3});
+    table.columns.push_back({"p99_error_over_jnd" + key, words + "99 % of errors up to [JND]", 1.0, 2});
+    table.columns.push_back({"max_error_over_jnd" + key, words + "worst [JND]", 1.0, 2});
+  }
+  const auto add = [&](const std::string& recording, double offset_m, const std::string& model,
+                       const ErrorSummary& plain, const ErrorSummary& moved) {
+    std::vector<TableCell> row{recording, offset_m, model};
+    for (const ErrorSummary* errors : {&plain, &moved}) {
+      for (const double value : {errors->rms_error_N, errors->max_error_N, errors->within_jnd,
+                                 errors->p99_error_over_jnd, errors->max_error_over_jnd}) {
+        row.emplace_back(errors->samples > 0 ? value : kNone);
+      }
+    }
+    table.rows.push_back(std::move(row));
+  };
+  for (const ModelResult& model : data.models) {
+    add("all", data.surface_offset_m.size() == 1 ? data.surface_offset_m.front() : kNone, model.plan.name, model.pooled,
+        model.pooled_moved);
+  }
+  for (std::size_t r = 0; data.test_names.size() > 1 && r < data.surface_offset_m.size(); ++r) {
+    for (const ModelResult& model : data.models) {
+      if (!model.plan.main) continue;
+      add(data.test_names[r], data.surface_offset_m[r], model.plan.name, model.per_recording[r],
+          model.per_recording_moved[r]);
+    }
+  }
+  return table;
+}
+
 Table bins_table(const ReportData& data) {
   Table table{"force_bins",
               "",
@@ -226,7 +271,7 @@ Table dimension_table(const ReportData& data) {
 
 std::vector<Table> make_tables(const ReportData& data) {
   std::vector<Table> tables{recordings_table(data), errors_table(data),   times_table(data),
-                            per_recording_table(data), bins_table(data),  coverage_table(data),
+                            per_recording_table(data), surface_table(data), bins_table(data),  coverage_table(data),
                             seeds_table(data),      health_table(data),   sites_time_table(data),
                             dimension_table(data)};
   if (data.hard_cases) tables.push_back(*data.hard_cases);

@@ -36,7 +36,7 @@ TEST(Colours, TextCanBeReadInBothThemes) {
 }
 
 TEST(Colours, MethodsDifferFromEachOtherAndFromTheReference) {
-  const char* methods[] = {"direct", "voxel", "random", "kdtree", "greedy", "position"};
+  const char* methods[] = {"trend", "direct", "voxel", "random", "kdtree", "greedy", "position"};
   for (const Theme theme : {Theme::light, Theme::dark}) {
     for (const char* a : methods) {
       EXPECT_GT(glm::distance(method_colour(a, theme), kReferenceColour), 0.3F) << a;

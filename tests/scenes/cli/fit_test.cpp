@@ -38,7 +38,8 @@ class FitVerb : public ::testing::Test {
     Arguments arguments = {"fit"};
     std::vector<std::pair<std::string, std::string>> defaults = {
         {"--recording", recording()}, {"--method", method}, {"--out", out()}};
-    if (find_method(method)->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
+    const Method* row = find_method(method);
+    if (row != nullptr && row->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
     for (const auto& [option, value] : defaults) {
       if (std::find(more.begin(), more.end(), option) == more.end()) arguments.insert(arguments.end(), {option, value});
     }
@@ -83,6 +84,10 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
   ASSERT_TRUE(object.at("training_within_jnd").is_number());
   EXPECT_GT(object.at("training_within_jnd").get<double>(), 0.9);
   EXPECT_LE(object.at("training_within_jnd").get<double>(), 1.0);
+  ASSERT_EQ(object.at("recordings").size(), 1u);
+  EXPECT_EQ(object.at("recordings")[0].at("name"), "press");
+  EXPECT_TRUE(object.at("recordings")[0].at("surface_offset_m").is_number());
+  EXPECT_TRUE(object.at("recordings")[0].at("force_zero_N").is_number());
 }
 
 TEST_F(FitVerb, TheSameCommandTwiceGivesTheSameBytes) {
