@@ -34,6 +34,7 @@ const std::map<std::string, Names> kRooms = {
     {"models/training", {"models/model"}},
     {"models/check", {"models/training"}},
     {"models/fit", {"models/training"}},
+    {"models/fit_library", {"models/fit", "models/check", "models/library", "engine/import"}},
     {"devices/firmware", {}},
     {"devices/virtual", {"engine/live"}},
     {"devices/stream", {"engine/live"}},

@@ -46,9 +46,11 @@ static real filtered(real state, real change, real step_s, real time_s, real gai
 }
 )C";
 
-std::string coefficients(CText& out, const std::string& name, const DriveCurve& curve) {
+// Writes the table; returns the curve's value at `depth`, a C expression.
+std::string coefficients(CText& out, const std::string& name, const DriveCurve& curve,
+                         const std::string& depth = "depth_m") {
   out.list(name, Eigen::Map<const Eigen::VectorXd>(curve.coefficient_N.data(), kDriveCoefficients));
-  return "rising_curve(" + name + ", " + std::to_string(kDriveCoefficients) + ", depth_m / " +
+  return "rising_curve(" + name + ", " + std::to_string(kDriveCoefficients) + ", " + depth + " / " +
          out.number(curve.reference_depth_m) + ")";
 }
 
@@ -87,6 +89,49 @@ std::string emit_maxwell(CText& out, const FeatureSpec& spec, std::size_t index)
                      spec.relaxation_time_s);
 }
 
+// Of every part of a spectrum a branch, summed.
+std::string emit_spectrum(CText& out, const FeatureSpec& spec, std::size_t index) {
+  const std::string state = "part_" + std::to_string(index);
+  out.add("static real " + state + index_text(spec.part_count) + ";\n");
+  std::string text;
+  std::string sum;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const std::string part = state + index_text(p);
+    text += emit_branch(out, part, "drive_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive,
+                        spec.parts[p].relaxation_time_s);
+    sum += (p == 0 ? "" : " + ") + part;
+  }
+  return text + "  value" + index_text(index) + " = " + sum + ";\n";
+}
+
+// Stop operators: bristles that bend by at most their threshold and then slip.
+std::string emit_stops(CText& out, const FeatureSpec& spec, std::size_t index) {
+  const std::string state = "part_" + std::to_string(index);
+  out.add("static real " + state + index_text(spec.part_count) + ";\n");
+  const std::string target = "value" + index_text(index);
+  std::string text = "  " + target + " = R(0.0);\n";
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    out.count({.arithmetic = 27, .divisions = 2});
+    const std::string part = state + index_text(p);
+    const std::string threshold = out.number(spec.parts[p].threshold_m);
+    const std::string curve =
+        coefficients(out, "stop_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive);
+    text += "  " + part + " = first || !(depth_m > R(0.0)) ? R(0.0) : clamped(" + part +
+            " + depth_m - last_depth_m, -" + threshold + ", " + threshold + ");\n";
+    text += "  " + target + " += " + curve + " * " + part + " / " + threshold + ";\n";
+  }
+  return text;
+}
+
+std::string emit_fading_peak(CText& out, const FeatureSpec& spec, std::size_t index) {
+  out.count({.arithmetic = 6, .divisions = 1, .exponentials = 1});
+  const std::string target = "value" + index_text(index);
+  return "  if (first) {\n    " + target + " = depth_m;\n  } else {\n    " + target +
+         " = larger(depth_m, last_depth_m + (" + target + " - last_depth_m) * EXP(-step_s / " +
+         out.number(spec.relaxation_time_s) + "));\n    if (" + target + " < R(1e-15)) " + target +
+         " = R(0.0);\n  }\n";
+}
+
 struct FeatureRow {
   FeatureKind kind;
   FeatureEmitter emit;
@@ -97,6 +142,9 @@ constexpr FeatureRow kFeatureRows[] = {
     {FeatureKind::velocity, emit_velocity},
     {FeatureKind::lowpass_velocity, emit_lowpass},
     {FeatureKind::maxwell_branch, emit_maxwell},
+    {FeatureKind::maxwell_spectrum, emit_spectrum},
+    {FeatureKind::stops, emit_stops},
+    {FeatureKind::fading_peak, emit_fading_peak},
 };
 
 FeatureEmitter emitter_of(FeatureKind kind) {
@@ -125,11 +173,36 @@ std::string feature_of(const std::vector<FeatureSpec>& features, FeatureKind kin
 }
 
 bool has_filter(FeatureKind kind) {
-  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch;
+  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch ||
+         kind == FeatureKind::maxwell_spectrum;
 }
 
 // Features whose value is a force by itself.
-bool is_force(FeatureKind kind) { return kind == FeatureKind::maxwell_branch; }
+bool is_force(FeatureKind kind) {
+  return kind == FeatureKind::maxwell_branch || kind == FeatureKind::maxwell_spectrum || kind == FeatureKind::stops;
+}
+
+bool has_peak(const std::vector<FeatureSpec>& features) {
+  return std::any_of(features.begin(), features.end(),
+                     [](const FeatureSpec& spec) { return spec.kind == FeatureKind::fading_peak; });
+}
+
+// What softening adds to the trend, as lines of trend_of; tables go to `out`.
+std::string softening_text(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {
+  static_assert(kSofteningPowers[0] == 1 && kSofteningPowers[1] == 4 && kSofteningPowers[2] == 12 &&
+                kSofteningPowers.size() == 3);
+  constexpr const char* kShare[] = {"x", "x4", "x4 * x4 * x4"};
+  const std::string depth = feature_of(features, FeatureKind::depth);
+  const std::string peak = feature_of(features, FeatureKind::fading_peak);
+  std::string text = "  {\n    const real x = " + depth + " < " + peak + " ? " + depth + " / " + peak +
+                     " : R(1.0);\n    const real x4 = x * x * x * x;\n";
+  for (std::size_t j = 0; j < kSofteningPowers.size(); ++j) {
+    out.count({.arithmetic = 25, .divisions = 1});
+    const std::string curve = coefficients(out, "softening_" + std::to_string(j), trend.softening[j], depth);
+    text += "    force_N += " + curve + " * (" + kShare[j] + ");\n";
+  }
+  return text + "  }\n";
+}
 
 }  // namespace
 
@@ -162,6 +235,7 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
   coefficients_of("viscosity", trend.viscosity_Ns_per_m);
   coefficients_of("thinning", trend.thinning_Ns_per_m);
   const std::string limit = out.number(trend.velocity_limit_m_per_s);
+  const std::string softening = has_peak(features) ? softening_text(out, trend, features) : "";
   std::string text =
       "\nstatic real quadratic(const real *c, real u) { return (c[2] * u + c[1]) * u + c[0]; }\n\n"
       "static real trend_of(void) {\n  const real u = " +
@@ -176,7 +250,7 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
     if (is_force(features[i].kind)) text += "  force_N += value" + index_text(i) + ";\n";
   }
   out.count({.arithmetic = 46, .divisions = 3});
-  out.add(text + "  return force_N;\n}\n");
+  out.add(text + softening + "  return force_N;\n}\n");
 }
 
 }  // namespace palpate

@@ -21,7 +21,7 @@ def run(*command, **more):
 def model_and_forces(palpate, folder):
     """A model, a recording without an accelerometer, and its forces."""
     whole, recording, model, forces = (folder / name for name in ("whole.csv", "rec.csv", "model.json", "forces.csv"))
-    run(palpate, "synth", "--material", "silicone_block", "--seed", 3, "--seconds", 6, "--out", whole)
+    run(palpate, "synth", "--material", "silicone", "--seed", 3, "--seconds", 6, "--out", whole)
     with open(whole, newline="") as source, open(recording, "w") as target:
         columns = ("time_s", "position_m", "force_N")
         target.write(",".join(columns) + "\n")

@@ -6,6 +6,10 @@
 //   palpate::Limiter limiter({.largest_N = 5.0});          // C++20; or set the field
 //   for (;;) render(limiter.force(stream.force(time_s, position_m), step_s));
 //
+// With palpate::fit linked also
+//   palpate::import_table("lab.txt", "press.csv");
+//   palpate::fit({"press.csv"}, "block.json");
+//
 // Everything here is inline around functions with C linkage, so that a program may be
 // built by another compiler, or with other options, than the library.
 //
@@ -16,12 +20,16 @@
 #define PALPATE_PALPATE_HPP
 
 #include <palpate/palpate.h>
+#include <palpate/palpate_fit.h>
 
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace palpate {
+// So that no name here is one of the library's own, whose sources use namespace palpate.
+inline namespace api {
 
 // Something from outside was not as it must be.
 class Failure : public std::runtime_error {
@@ -44,6 +52,7 @@ struct Free {
   void operator()(palpate_model* model) const noexcept { palpate_model_free(model); }
   void operator()(palpate_stream* stream) const noexcept { palpate_stream_free(stream); }
   void operator()(palpate_limiter* limiter) const noexcept { palpate_limiter_free(limiter); }
+  void operator()(palpate_recording* recording) const noexcept { palpate_recording_free(recording); }
 };
 
 }  // namespace detail
@@ -160,6 +169,72 @@ class Limiter {
   std::unique_ptr<palpate_limiter, detail::Free> limiter_;
 };
 
+// ---- with palpate::fit: slow side, read and write files ----
+
+// A recording in memory. Copies share it.
+class Recording {
+ public:
+  // Throws: not a recording; says file, line and column.
+  explicit Recording(const std::string& path)
+      : recording_(detail::checked([&](char* error, std::size_t size) {
+                     return palpate_recording_load(path.c_str(), error, size);
+                   }),
+                   detail::Free{}) {}
+
+  std::size_t size() const noexcept { return palpate_recording_row_count(recording_.get()); }
+  const palpate_row* begin() const noexcept { return palpate_recording_rows(recording_.get()); }
+  const palpate_row* end() const noexcept { return begin() + size(); }
+
+ private:
+  std::shared_ptr<palpate_recording> recording_;
+};
+
+// The forces of a model along a recording, one a row: `palpate replay`. Throws: as Stream.
+inline std::vector<double> replay(const Model& model, const Recording& recording, const Sensor& sensor) {
+  Stream stream(model, sensor);
+  std::vector<double> forces_N;
+  for (const palpate_row& row : recording) {
+    forces_N.push_back(stream.force(row.time_s, row.position_m, row.velocity_m_per_s, row.acceleration_m_per_s2));
+  }
+  return forces_N;
+}
+
+// `palpate import`. Throws: what cannot be guessed; the recording exists.
+inline void import_table(const std::string& table, const std::string& recording, bool overwrite = false) {
+  detail::checked([&](char* error, std::size_t size) {
+    return palpate_import(table.c_str(), recording.c_str(), overwrite, error, size) == 0;
+  });
+}
+
+// `palpate check`. Throws: not a recording.
+struct Check : palpate_check_result {
+  std::string findings;  // one line each
+
+  explicit Check(const std::string& recording) : palpate_check_result{}, findings(8192, '\0') {
+    detail::checked([&](char* error, std::size_t size) {
+      return palpate_check(recording.c_str(), this, findings.data(), findings.size(), error, size) == 0;
+    });
+    findings.resize(findings.find('\0'));
+  }
+};
+
+// Fields as in palpate_fit.h, with its defaults.
+struct FitOptions : palpate_fit_options {
+  FitOptions() noexcept { palpate_fit_options_default(this); }
+};
+
+// `palpate fit`: one model of all recordings, written to a file. Throws: a recording that is
+// not usable; an option out of its range; the file exists; stopped.
+inline void fit(const std::vector<std::string>& recordings, const std::string& model,
+                const FitOptions& options = {}) {
+  std::vector<const char*> paths;
+  for (const std::string& path : recordings) paths.push_back(path.c_str());
+  detail::checked([&](char* error, std::size_t size) {
+    return palpate_fit(paths.data(), paths.size(), &options, model.c_str(), error, size) == 0;
+  });
+}
+
+}  // namespace api
 }  // namespace palpate
 
 #endif
