@@ -105,7 +105,7 @@ Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepar
     quiet.progress = [&](double) { return control.go_on((done - 1.0) / static_cast<double>(site_counts.size())); };
     std::map<const Method*, std::pair<MethodFit, double>> fitted;
     for (const PlannedModel& model : make_plan(true, prepared.set.features.size()).models) {
-      if (!model.main) continue;
+      if (!model.main || model.rung != Rung::palpate) continue;
       const auto base = fitted.find(model.request.method->base);
       const bool has_base = base != fitted.end();
       const auto start = Clock::now();
