@@ -34,6 +34,10 @@ void ReplayDevice::seek(double at_s) noexcept {
   seek_s_.store(std::clamp(at_s, 0.0, duration_s_), std::memory_order_relaxed);
 }
 
+void ReplayDevice::move_surface(double offset_m) noexcept {
+  if (std::isfinite(offset_m)) surface_offset_m_.store(offset_m, std::memory_order_relaxed);
+}
+
 void ReplayDevice::go_to(double at_s) noexcept {
   const double time_s = recording_.rows.front().time_s + at_s;
   const auto row = std::lower_bound(recording_.rows.begin(), recording_.rows.end(), time_s,
@@ -49,6 +53,10 @@ void ReplayDevice::move_playhead(double now_s) noexcept {
   started_ = true;
   now_s_ = now_s;
   handed_over_ = 0;
+  if (const double offset_m = surface_offset_m(); offset_m != moved_m_) {
+    moved_m_ = offset_m;
+    go_to(std::min(playhead_s_, duration_s_));
+  }
   const double seek_s = seek_s_.exchange(-1.0, std::memory_order_relaxed);
   if (seek_s >= 0.0) {
     go_to(seek_s);
@@ -70,6 +78,7 @@ bool ReplayDevice::read(double now_s, DeviceSample& sample) noexcept {
   if (++handed_over_ == kMaxSamplesPerTick) playhead_s_ = due_s;
   sample = {};
   sample.tool = tool_sample(row);
+  sample.tool.position_m -= moved_m_;
   sample.measured_force_N = row.force_N;
   sample.restart = restart_;
   restart_ = false;

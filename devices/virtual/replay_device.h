@@ -1,9 +1,9 @@
 // A recording as a device: its samples at its own pace, over and over. It cannot
 // feel anything; its measured force is the reference for the models.
 //
-// Every row is handed over exactly once and unchanged, so a loop fed with it
-// computes what engine/tick/replay.h computes, bit for bit. At the end, and after a
-// seek, the stream restarts: the filters forget, as at the start of a replay.
+// Every row is handed over exactly once and unchanged but for the surface offset,
+// so a loop fed with it computes what engine/tick/replay.h computes, bit for bit. At
+// the end, after a seek and with another offset the stream restarts: the filters forget, as at the start of a replay.
 #pragma once
 
 #include <atomic>
@@ -42,6 +42,10 @@ class ReplayDevice final : public Device, public ReplayControl {
   double speed() const noexcept override { return speed_.load(std::memory_order_relaxed); }
   double playhead_s() const noexcept override { return shown_s_.load(std::memory_order_relaxed); }
   double duration_s() const noexcept override { return duration_s_; }
+  // Any thread, wait-free; ignored when not finite.
+  void move_surface(double offset_m) noexcept override;
+  double surface_offset_m() const noexcept override { return surface_offset_m_.load(std::memory_order_relaxed); }
+  const Recording& recording() const noexcept override { return recording_; }
 
  private:
   void move_playhead(double now_s) noexcept;
@@ -55,10 +59,12 @@ class ReplayDevice final : public Device, public ReplayControl {
   std::atomic<double> speed_{1.0};
   std::atomic<double> seek_s_{-1.0};  // below 0: none
   std::atomic<double> shown_s_{0.0};
+  std::atomic<double> surface_offset_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);
   // Haptics thread's own.
   double playhead_s_ = 0.0;
   double now_s_ = 0.0;
+  double moved_m_ = 0.0;  // the offset of the stream
   std::size_t next_ = 0;
   int handed_over_ = 0;  // in this tick
   bool restart_ = true;

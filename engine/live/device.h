@@ -17,6 +17,8 @@
 
 namespace palpate {
 
+struct Recording;
+
 // One sample of a device.
 struct DeviceSample {
   ToolSample tool;
@@ -55,6 +57,11 @@ class ReplayControl {
   virtual double speed() const noexcept = 0;
   virtual double playhead_s() const noexcept = 0;
   virtual double duration_s() const noexcept = 0;
+  // What is subtracted from every position, so that 0 is where the models' surface
+  // is; the stream restarts with it.
+  virtual void move_surface(double offset_m) noexcept = 0;
+  virtual double surface_offset_m() const noexcept = 0;
+  virtual const Recording& recording() const noexcept = 0;  // as it was read; any thread
 };
 
 class Device {

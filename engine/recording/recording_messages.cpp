@@ -70,28 +70,30 @@ const char* foreign_separator(std::string_view text, std::size_t expected_fields
   return nullptr;
 }
 
+std::string separator_fault(const char* separator) {
+  return std::string("found ") + separator +
+         " between the fields, expected commas; save the file as comma separated with decimal points";
+}
+
 Error separator_error(const LineScanner& scanner, const CsvLine& line, const char* separator) {
-  const std::size_t at = line.text.find_first_of(";\t");
-  return scanner.error_at(line.number, at + 1,
-                          std::string("found ") + separator +
-                              " between the fields, expected commas; save the file as "
-                              "comma separated with decimal points");
+  return scanner.error_at(line.number, line.text.find_first_of(";\t") + 1, separator_fault(separator));
 }
 
 Error missing_columns(const LineScanner& scanner, const CsvLine& line,
                       const std::vector<std::string_view>& names,
                       const std::vector<std::string_view>& missing) {
+  // A file of another program most often: said once, for whatever is wrong with it.
   const auto at = [&](std::size_t column, const std::string& text) {
-    return scanner.error_at(line.number, column, text);
+    return scanner.error_at(line.number, column, text + ", or let palpate import " + scanner.label() + " --out REC.csv do it");
   };
   if (trimmed(line.text).empty()) {
-    return at(1,
+    return scanner.error_at(line.number, 1,
               "found a blank line, expected a header row with time_s, position_m and force_N; "
               "remove the blank line");
   }
   if (missing.size() == kRequiredColumns) {
     if (const char* separator = foreign_separator(line.text, kRequiredColumns)) {
-      return separator_error(scanner, line, separator);
+      return at(line.text.find_first_of(";\t") + 1, separator_fault(separator));
     }
   }
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -42,6 +42,8 @@ class MotionEstimator {
   // Takes the next sample; its time must be later than the last one's (a
   // sample that is not is ignored and the last estimate is given again).
   MotionEstimate update(const ToolSample& sample) noexcept;
+  // What `update` gave last.
+  const MotionEstimate& estimate() const noexcept { return estimate_; }
 
  private:
   static constexpr int kFilters = 3;

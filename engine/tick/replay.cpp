@@ -14,9 +14,11 @@ Status check_count(const ForceModels& models) {
 }
 
 void run(HapticsTick& tick, const RecordingRow* rows, std::size_t count, const ReplayVisitor& visitor,
-         ReplaySummary& summary) {
+         double surface_offset_m, ReplaySummary& summary) {
   for (std::size_t i = 0; i < count; ++i) {
-    const TickSnapshot& snapshot = tick.step(tool_sample(rows[i]));
+    ToolSample sample = tool_sample(rows[i]);
+    sample.position_m -= surface_offset_m;
+    const TickSnapshot& snapshot = tick.step(sample);
     ++summary.samples;
     if (snapshot.in_contact) ++summary.contact_samples;
     if (snapshot.fault != TickFault::none) ++summary.faults;
@@ -38,16 +40,18 @@ Result<std::size_t> read_full(RecordingReader& reader, std::vector<RecordingRow>
 
 }  // namespace
 
-Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor) {
+Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
+                             double surface_offset_m) {
   if (const Status status = check_count(models); !status) return status.error();
   ReplaySummary summary;
   summary.sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
   HapticsTick tick(summary.sensor, models);
-  run(tick, recording.rows.data(), recording.rows.size(), visitor, summary);
+  run(tick, recording.rows.data(), recording.rows.size(), visitor, surface_offset_m, summary);
   return summary;
 }
 
-Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor) {
+Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
+                             double surface_offset_m) {
   if (const Status status = check_count(models); !status) return status.error();
   // One buffer for all: the rows that identification needs are also the chunk.
   std::vector<RecordingRow> rows(kSensorIdentificationRows);
@@ -57,7 +61,7 @@ Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models,
   summary.sensor = identify_sensor(rows.data(), *count, reader.columns());
   HapticsTick tick(summary.sensor, models);
   while (*count > 0) {
-    run(tick, rows.data(), *count, visitor, summary);
+    run(tick, rows.data(), *count, visitor, surface_offset_m, summary);
     count = read_full(reader, rows);
     if (!count) return count.error();
   }

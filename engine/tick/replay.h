@@ -36,11 +36,14 @@ struct ReplaySummary {
   std::uint64_t faults = 0;  // ticks with a fault of any kind
 };
 
-// Errors: more than kMaxModels models.
-Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor);
+// `surface_offset_m` is subtracted from every position before the tick; the
+// visitor still gets the row as recorded. Errors: more than kMaxModels models.
+Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
+                             double surface_offset_m = 0.0);
 
 // The rest of `reader` in bounded memory. Errors: as above, and any of the
 // reader's; rows before the fault have been visited then.
-Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor);
+Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
+                             double surface_offset_m = 0.0);
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
 // From recordings to a model: the whole of `palpate fit`, as two steps, so that
 // a comparison of methods prepares the data once.
 //
-//   prepare_training   greatest depth, relaxation times, trend, features,
-//                      normalisation, reduction, one-sided contact, domain cover
+//   prepare_training   surface of every recording, greatest depth, relaxation times,
+//                      trend, features, normalisation, reduction, one-sided contact, domain cover
 //   fit_method         one of the methods of models/fit/methods.h on the prepared sites
 //
 // The paper's own recipe (reduction by force and weighting 1/f, together) is
@@ -33,6 +33,8 @@ namespace palpate {
 enum class Relaxation { scene, automatic, given };
 // In model files, in the order of the values.
 inline constexpr std::array<const char*, 3> kRelaxationNames{"scene", "auto", "given"};
+// Where the surface of each recording is: estimated, or 0 as recorded.
+enum class Surface { automatic, recorded };
 
 struct TrainingRequest {
   std::string scene;
@@ -43,6 +45,7 @@ struct TrainingRequest {
   Relaxation relaxation = Relaxation::scene;
   std::vector<double> relaxation_times_s;  // when given
   BranchDrive drive = BranchDrive::elastic_rate;
+  Surface surface = Surface::automatic;
 };
 
 struct PreparedTraining {

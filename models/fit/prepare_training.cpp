@@ -5,6 +5,7 @@
 #include "models/fit/fit.h"
 #include "models/fit/fit_random.h"
 #include "models/training/relaxation.h"
+#include "models/training/surface_registration.h"
 
 namespace palpate {
 namespace {
@@ -155,6 +156,21 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
   return {};
 }
 
+// Moves every recording to its own surface.
+Status find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
+                     const FitControl& control) {
+  source.correct({});
+  if (request.surface == Surface::recorded) return {};
+  const auto surfaces = register_surfaces(source, request.features, control);
+  if (!surfaces) return surfaces.error();
+  source.correct(corrections_of(*surfaces));
+  for (std::size_t i = 0; i < surfaces->size(); ++i) {
+    const RegisteredSurface& one = (*surfaces)[i];
+    provenance.surfaces.push_back({source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N});
+  }
+  return {};
+}
+
 Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, const FitControl& control) {
   FeatureFilter filter(prepared.common.features);
   const std::size_t stride = prepared.set.contact_samples / kMaximumJudged + 1;
@@ -174,6 +190,9 @@ Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, con
 
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
+  PreparedTraining prepared;
+  ModelData& common = prepared.common;
+  if (Status status = find_surfaces(source, request, common.provenance, control); !status) return status.error();
   const auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (!control.go_on(0.05)) return interrupted();
@@ -183,8 +202,6 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   }
   const double no_force_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
 
-  PreparedTraining prepared;
-  ModelData& common = prepared.common;
   std::vector<double> times_s = filter_times(request.features);
   if (request.relaxation != Relaxation::scene && times_s.empty()) {
     return Error{"scene \"" + request.scene + "\" has no relaxation features; leave out --relaxation, or use a scene "

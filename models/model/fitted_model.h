@@ -34,9 +34,19 @@ struct RelaxationTime {
   double standard_error_s = 0.0;  // 0: given, not identified
 };
 
+// Where the surface of a training recording was found, and what its force sensor
+// reads in air; both were subtracted.
+struct RecordingSurface {
+  std::string name;
+  double offset_m = 0.0;
+  double standard_error_m = 0.0;  // infinite: not known
+  double force_zero_N = 0.0;
+};
+
 // Where a model comes from; no effect on its forces.
 struct Provenance {
   std::vector<std::string> recordings;
+  std::vector<RecordingSurface> surfaces;  // empty: positions as recorded
   std::string scene;
   std::uint64_t samples = 0;  // rows of all recordings
   std::uint64_t contact_samples = 0;

@@ -1,7 +1,10 @@
 #include "models/training/motion_source.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
@@ -52,7 +55,96 @@ class RowStream {
   std::size_t position_ = 0;
 };
 
+// Files up to this many rows together are read once, when they are put in order.
+constexpr std::size_t kRowsReadOnce = 500000;
+
+// FNV-1a over the numbers of the rows.
+class ContentHash {
+ public:
+  void add(const RecordingRow& row) {
+    for (const double value : {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2}) {
+      value_ = (value_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
+      value_ ^= value_ >> 29;
+    }
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xCBF29CE484222325ULL;
+};
+
+struct ArrangedInput {
+  std::size_t rows = 0;
+  std::uint64_t hash = 0;
+  std::string name;
+  MotionSource::Input input;
+};
+
+// Rows moved by their recording's correction, contacts counted as they are then.
+class CorrectedRows {
+ public:
+  explicit CorrectedRows(const std::vector<RowCorrection>& corrections) : corrections_(corrections) {}
+
+  const MotionRow& next(const MotionRow& recorded) {
+    row_ = recorded;
+    if (!corrections_.empty()) {
+      const RowCorrection& correction = corrections_[static_cast<std::size_t>(recorded.recording)];
+      row_.sample.position_m -= correction.offset_m;
+      row_.motion.position_m -= correction.offset_m;
+      row_.force_N -= correction.force_zero_N;
+    }
+    const bool in_contact = row_.sample.position_m > 0.0;
+    if (in_contact && (recorded.first || !was_in_contact_)) ++stroke_;
+    was_in_contact_ = in_contact;
+    row_.stroke = stroke_;
+    return row_;
+  }
+
+ private:
+  const std::vector<RowCorrection>& corrections_;
+  MotionRow row_;
+  int stroke_ = 0;
+  bool was_in_contact_ = false;
+};
+
 }  // namespace
+
+Status MotionSource::arrange(const FitControl& control, double fraction) {
+  if (inputs_.size() < 2) return {};
+  std::vector<ArrangedInput> arranged;
+  std::vector<RecordingRow> chunk(kRowsPerQuestion);
+  std::size_t held = 0;
+  for (Input& input : inputs_) {
+    auto stream = RowStream::open(input);
+    if (!stream) return stream.error();
+    auto copy = std::make_shared<Recording>(Recording{stream->name(), stream->columns(), {}});
+    ArrangedInput one{0, 0, stream->name(), input};
+    ContentHash hash;
+    while (true) {
+      const auto count = stream->next(chunk);
+      if (!count) return count.error();
+      if (*count == 0) break;
+      for (std::size_t i = 0; i < *count; ++i) hash.add(chunk[i]);
+      one.rows += *count;
+      if (!input.loaded && held + one.rows <= std::min(kRowsReadOnce, kept_rows_)) {
+        copy->rows.insert(copy->rows.end(), chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(*count));
+      }
+      if (!control.go_on(fraction)) return interrupted();
+    }
+    one.hash = hash.value();
+    if (!input.loaded && copy->rows.size() == one.rows) {
+      held += one.rows;
+      one.input.loaded = std::move(copy);
+    }
+    arranged.push_back(std::move(one));
+  }
+  // The longest first, then by content; equal recordings by name.
+  std::stable_sort(arranged.begin(), arranged.end(), [](const ArrangedInput& a, const ArrangedInput& b) {
+    return std::tie(b.rows, a.hash, a.name) < std::tie(a.rows, b.hash, b.name);
+  });
+  for (std::size_t i = 0; i < arranged.size(); ++i) inputs_[i] = std::move(arranged[i].input);
+  return {};
+}
 
 Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit) {
   names_.clear();
@@ -62,7 +154,6 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
   // One chunk is what sensor identification looks at.
   std::vector<RecordingRow> chunk(kSensorIdentificationRows);
   MotionRow row;
-  bool was_in_contact = false;
   for (std::size_t index = 0; index < inputs_.size(); ++index) {
     auto stream = RowStream::open(inputs_[index]);
     if (!stream) return stream.error();
@@ -82,9 +173,6 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
         row.sample = tool_sample(chunk[i]);
         row.force_N = chunk[i].force_N;
         row.motion = estimator->update(row.sample);
-        const bool in_contact = row.sample.position_m > 0.0;
-        if (in_contact && (row.first || !was_in_contact)) ++row.stroke;
-        was_in_contact = in_contact;
         if (keep && kept_.size() == kept_rows_) {
           keep = false;
           kept_.clear();
@@ -106,9 +194,14 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
 
 Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control,
                               double fraction) {
+  if (!arranged_) {
+    if (Status status = arrange(control, fraction); !status) return status;
+    arranged_ = true;
+  }
   std::size_t seen = 0;
+  CorrectedRows corrected(corrections_);
   const auto visit_and_ask = [&](const MotionRow& row) {
-    return visit(row) && (++seen % kRowsPerQuestion != 0 || control.go_on(fraction));
+    return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.go_on(fraction));
   };
   if (!complete_) return read_all(visit_and_ask);
   for (const MotionRow& row : kept_) {

@@ -37,6 +37,13 @@ struct MotionRow {
   bool first = false;    // of its recording: filters start anew
 };
 
+// What is subtracted from the rows of one recording on their way into training;
+// velocity and acceleration stay as they are.
+struct RowCorrection {
+  double offset_m = 0.0;
+  double force_zero_N = 0.0;
+};
+
 class MotionSource {
  public:
   // One training recording: a file, or rows in memory.
@@ -55,18 +62,25 @@ class MotionSource {
   Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
                   double fraction = 0.0);
 
+  // From now on every pass sees its rows moved; one for each recording, in the
+  // order of `names`. Contact and strokes follow the moved position.
+  void correct(std::vector<RowCorrection> corrections) { corrections_ = std::move(corrections); }
+
   const std::vector<std::string>& names() const { return names_; }  // after the first pass
   std::size_t rows() const { return rows_; }                        // after the first pass
   // The largest force noise among the recordings; after the first pass.
   double force_noise_N() const { return force_noise_N_; }
 
  private:
+  Status arrange(const FitControl& control, double fraction);
   Status read_all(const std::function<bool(const MotionRow&)>& visit);
 
   std::vector<Input> inputs_;
   std::size_t kept_rows_;
   std::vector<std::string> names_;
-  std::vector<MotionRow> kept_;
+  std::vector<MotionRow> kept_;  // as recorded
+  std::vector<RowCorrection> corrections_;
+  bool arranged_ = false;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
   bool complete_ = false;  // kept_ holds everything

@@ -56,8 +56,12 @@ void TrendRows::begin_recording() {
   for (FeatureFilter& branch : branches_) branch.reset();
 }
 
-void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke) {
+void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
   for (FeatureFilter& branch : branches_) branch.update(sample, motion);
+}
+
+void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke) {
+  advance(sample, motion);
   if (!(sample.position_m > 0.0)) return;
   if (phase_++ % stride_ != 0) return;
   const double depth_m = std::max(0.0, motion.position_m);

@@ -38,6 +38,9 @@ class TrendRows {
   // Every sample in order, in contact or not. `stroke` numbers contacts.
   void add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke);
 
+  // A sample that only moves the filters and makes no row.
+  void advance(const ToolSample& sample, const MotionEstimate& motion);
+
   std::size_t columns() const { return columns_; }
   std::size_t viscous_columns() const;
   std::size_t count() const { return force_N_.size(); }

@@ -202,6 +202,12 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift) {
   tip("Its speed (, and .)");
   ImGui::SameLine();
   ImGui::Text("%.2f x", replay.speed());
+  if (session.surface().found_m() != 0.0) {
+    bool moved = session.surface().moved();
+    const std::string label = "surface " + fixed(1e3 * session.surface().found_m(), 2) + " mm from the models'; moved there";
+    if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
+    tip("Where the forces of the models fit the recording best; off: positions as recorded");
+  }
   ImGui::End();
 }
 
@@ -400,7 +406,8 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
                         const std::function<void(Command)>& run) {
   const float line = style.fonts().body->FontSize;
   const float buttons = 2.4F * line;
-  const float bars = buttons + (session.replay() != nullptr ? 2.4F * line : 0.0F);
+  const float surface = session.surface().found_m() != 0.0 ? 1.7F * line : 0.0F;
+  const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
   // Who only passes by needs no model's name.
   const bool passing = view.kiosk && session.mouse() != nullptr && session.mouse()->hand_is_exploring();
   if (!passing) draw_labels(session, blocks, view, style, area);

@@ -9,8 +9,10 @@
 #include <string>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/text.h"
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
+#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
@@ -28,6 +30,7 @@ struct FitArguments {
   std::string weighting = "jnd";
   std::string reduction = "coverage";
   std::string relaxation = "scene";
+  std::string surface = "auto";
   std::string grid;
   std::string scene = "silicone_block";
   std::string solver = "cholesky";
@@ -108,6 +111,7 @@ TrainingRequest training_request(const FitArguments& arguments, const Scene& sce
   TrainingRequest request = palpate::training_request(scene);
   request.weighting = static_cast<Weighting>(index_of(kWeightingNames, arguments.weighting));
   request.reduction = static_cast<Reduction>(index_of(kReductionNames, arguments.reduction));
+  request.surface = arguments.surface == "recorded" ? Surface::recorded : Surface::automatic;
   if (arguments.relaxation == "auto") {
     request.relaxation = Relaxation::automatic;
   } else if (arguments.relaxation != "scene") {
@@ -143,12 +147,43 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
   return text.empty() ? "none" : text;
 }
 
+std::vector<RecordingSurface> surfaces_of(const Provenance& provenance) {
+  if (!provenance.surfaces.empty()) return provenance.surfaces;
+  std::vector<RecordingSurface> as_recorded;
+  for (const std::string& name : provenance.recordings) as_recorded.push_back({name, 0.0, 0.0, 0.0});
+  return as_recorded;
+}
+
+void print_surfaces(const Provenance& provenance) {
+  for (const RecordingSurface& surface : provenance.surfaces) {
+    const std::string error = std::isfinite(surface.standard_error_m)
+                                  ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
+                                  : std::string(" mm (no onset found)");
+    std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
+              << fixed(1e3 * surface.force_zero_N, 1) << " mN: " << surface.name << "\n";
+  }
+}
+
+nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
+  auto list = nlohmann::ordered_json::array();
+  for (const RecordingSurface& surface : surfaces_of(provenance)) {
+    list.push_back({{"name", surface.name},
+                    {"surface_offset_m", surface.offset_m},
+                    {"standard_error_m", std::isfinite(surface.standard_error_m)
+                                             ? nlohmann::ordered_json(surface.standard_error_m)
+                                             : nlohmann::ordered_json(nullptr)},
+                    {"force_zero_N", surface.force_zero_N}});
+  }
+  return list;
+}
+
 void print_summary(const MethodFit& fit, double seconds, const std::string& out) {
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
-            << "after reduction     " << provenance.samples_after_reduction << "\n"
-            << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
+            << "after reduction     " << provenance.samples_after_reduction << "\n";
+  print_surfaces(provenance);
+  std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
             << "condition, rank     " << fit.report.condition << ", " << fit.report.rank << " of "
             << fit.report.columns << "\n"
             << "fit time            " << seconds << " s\n"
@@ -174,11 +209,12 @@ void print_json(const MethodFit& fit, const FitArguments& arguments, double seco
                                          {"name", fit.data.name},
                                          {"contact_samples", provenance.contact_samples},
                                          {"relaxation_times", times},
+                                         {"recordings", surfaces_json(provenance)},
                                          {"condition", fit.report.condition},
                                          {"rank", fit.report.rank},
                                          {"smoothing", fit.report.smoothing},
                                          {"notes", fit.report.notes}};
-  std::cout << object.dump(2) << "\n";
+  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
 }
 
 // Wrong usage that CLI11 cannot see: what is missing unless the methods are only
@@ -214,8 +250,13 @@ Status run_fit(const FitArguments& arguments) {
   FitControl method;
   method.progress = [&](double fraction) { return line.update(0.3 + 0.7 * fraction); };
 
+  auto checked = check_before_use(arguments.recordings, check_request(*scene));
+  if (!checked) return checked.error();
   std::vector<MotionSource::Input> inputs;
-  for (const std::string& path : arguments.recordings) inputs.push_back({path, nullptr});
+  for (CheckedFile& file : *checked) {
+    // What the check has read need not be read again.
+    inputs.push_back({file.path, file.whole ? std::make_shared<const Recording>(std::move(file.recording)) : nullptr});
+  }
   MotionSource source(std::move(inputs));
   const auto prepared = prepare_training(source, training_request(arguments, *scene), prepare);
   if (!prepared) return prepared.error();
@@ -256,6 +297,8 @@ void add_fit(CLI::App& app, Verbs& verbs) {
       ->check(CLI::IsMember({"coverage", "force", "none"}))->capture_default_str();
   verb->add_option("--relaxation", arguments->relaxation, "Relaxation times: the scene's, identified, or given")
       ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"))->capture_default_str();
+  verb->add_option("--surface", arguments->surface, "Where each recording's surface is: found, or at 0 as recorded")
+      ->check(CLI::IsMember({"auto", "recorded"}))->capture_default_str();
   verb->add_option("--grid", arguments->grid,
                    "Nodes of the grid per feature [25x11x11x11], of " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));

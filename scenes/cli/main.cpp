@@ -21,6 +21,8 @@ constexpr int kUsage = 2;
 
 void add_all_verbs(CLI::App& app, Verbs& verbs) {
   add_synth(app, verbs);
+  add_import(app, verbs);
+  add_check(app, verbs);
   add_fit(app, verbs);
   add_replay(app, verbs);
   add_report(app, verbs);

@@ -1,18 +1,15 @@
-// palpate replay: models against a recording, through the tick of the live loop.
+// palpate replay: models against recordings, through the tick of the live loop.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/text.h"
-#include "engine/tick/replay.h"
-#include "engine/tick/evaluation.h"
-#include "models/model/file/model_io.h"
-#include "scenes/cli/forces_file.h"
-#include "scenes/scene/model_timing.h"
+#include "scenes/cli/check_recordings.h"
+#include "scenes/cli/replayed_recording.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -21,45 +18,21 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 struct Options {
-  std::string recording;
+  std::vector<std::string> recordings;
   std::vector<std::string> models;
   std::string out;
   bool json = false;
   bool force = false;
 };
 
-// One model on its way through the recording.
-struct Contestant {
-  std::string name;
-  std::shared_ptr<const FittedModel> model;
-  ErrorStatistics statistics;
-  FeatureSample features;
-  ErrorSummary errors;
-  ModelTiming time;
-};
-
-Result<std::vector<Contestant>> load_contestants(const std::vector<std::string>& paths) {
-  if (paths.size() > kMaxModels) {
-    return Error{"found " + std::to_string(paths.size()) + " models, expected at most " +
-                 std::to_string(kMaxModels) + "; replay them in several runs"};
-  }
-  std::vector<Contestant> contestants;
-  std::vector<std::string> names;
-  for (const std::string& path : paths) {
-    auto model = load_model(path);
-    if (!model) return model.error();
-    names.push_back((*model)->name());
-    contestants.push_back({"", *model, ErrorStatistics((*model)->data().jnd), {}, {}, {}});
-  }
-  names = distinct_names(names);
-  for (std::size_t i = 0; i < names.size(); ++i) contestants[i].name = names[i];
-  return contestants;
-}
-
 // The output must not replace what is being read, --force or not.
 Status check_output(const Options& options) {
+  if (options.recordings.size() > 1) {
+    return Error{"found " + std::to_string(options.recordings.size()) +
+                 " recordings with --out, expected one; replay them in several runs"};
+  }
   std::vector<std::string> inputs = options.models;
-  inputs.push_back(options.recording);
+  inputs.push_back(options.recordings.front());
   for (const std::string& input : inputs) {
     std::error_code missing;
     if (std::filesystem::equivalent(options.out, input, missing)) {
@@ -84,61 +57,88 @@ OrderedJson bins_json(const std::vector<ForceBin>& bins) {
 }
 
 // Figures over no sample are null: there is no number that would be true.
-OrderedJson contestant_json(const Contestant& one) {
-  const ErrorSummary& errors = one.errors;
+void add_figures(OrderedJson& object, const ErrorSummary& errors) {
   const auto figure = [&](double value) { return errors.samples > 0 ? OrderedJson(value) : OrderedJson(nullptr); };
-  const auto time = [&](double value) { return one.time.measured ? OrderedJson(value) : OrderedJson(nullptr); };
-  return {{"name", one.name},
-          {"method", one.model->method()},
-          {"centres", one.model->centre_count()},
-          {"rms_error_N", figure(errors.rms_error_N)},
-          {"max_error_N", figure(errors.max_error_N)},
-          {"within_jnd", figure(errors.within_jnd)},
-          {"p99_error_over_jnd", figure(errors.p99_error_over_jnd)},
-          {"max_error_over_jnd", figure(errors.max_error_over_jnd)},
-          {"out_of_domain_samples", errors.out_of_domain_samples},
-          {"evaluation_ns", {{"median", time(one.time.median_ns)}, {"p99", time(one.time.p99_ns)}}},
-          {"bins", bins_json(errors.bins)}};
+  object["rms_error_N"] = figure(errors.rms_error_N);
+  object["max_error_N"] = figure(errors.max_error_N);
+  object["within_jnd"] = figure(errors.within_jnd);
+  object["p99_error_over_jnd"] = figure(errors.p99_error_over_jnd);
+  object["max_error_over_jnd"] = figure(errors.max_error_over_jnd);
 }
 
-void print_json(const Options& options, const ReplaySummary& summary, const std::vector<Contestant>& contestants) {
-  OrderedJson models = OrderedJson::array();
-  for (const Contestant& one : contestants) models.push_back(contestant_json(one));
-  const OrderedJson object = {{"recording", options.recording},
-                       {"samples", summary.samples},
-                       {"contact_samples", summary.contact_samples},
-                       {"models", models}};
+OrderedJson model_json(const LoadedModel& one, const ModelErrors& errors) {
+  const auto time = [&](double value) { return errors.time.measured ? OrderedJson(value) : OrderedJson(nullptr); };
+  OrderedJson object = {
+      {"name", one.name}, {"method", one.model->method()}, {"centres", one.model->centre_count()}};
+  add_figures(object, errors.as_recorded);
+  object["out_of_domain_samples"] = errors.as_recorded.out_of_domain_samples;
+  object["evaluation_ns"] = {{"median", time(errors.time.median_ns)}, {"p99", time(errors.time.p99_ns)}};
+  OrderedJson moved;
+  add_figures(moved, errors.surface_moved);
+  object["surface_moved"] = std::move(moved);
+  object["bins"] = bins_json(errors.as_recorded.bins);
+  return object;
+}
+
+OrderedJson recording_json(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+  OrderedJson list = OrderedJson::array();
+  for (std::size_t i = 0; i < models.size(); ++i) list.push_back(model_json(models[i], replayed.models[i]));
+  return {{"recording", replayed.path},
+          {"samples", replayed.samples},
+          {"contact_samples", replayed.contact_samples},
+          {"surface_offset_m", replayed.surface_offset_m},
+          {"models", list}};
+}
+
+void print_json(const std::vector<ReplayedRecording>& all, const std::vector<LoadedModel>& models) {
+  OrderedJson list = OrderedJson::array();
+  for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed, models));
   // A path need not be UTF-8; what cannot be said is replaced.
-  std::printf("%s\n", object.dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
+  std::printf("%s\n", (all.size() == 1 ? list.front() : list)
+                          .dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
 }
 
 using Row = std::vector<std::string>;
 
-Row table_row(const Contestant& one) {
-  const ErrorSummary& errors = one.errors;
-  const auto figure = [&](double value, int decimals) {
+Row table_row(const LoadedModel& one, const ModelErrors& model) {
+  const auto figure = [&](const ErrorSummary& errors, double value, int decimals) {
     return errors.samples > 0 ? fixed(value, decimals) : std::string("-");
   };
-  const auto time = [&](double value) { return one.time.measured ? fixed(value, 0) : std::string("-"); };
+  const ErrorSummary& errors = model.as_recorded;
+  const ErrorSummary& moved = model.surface_moved;
+  const auto time = [&](double value) { return model.time.measured ? fixed(value, 0) : std::string("-"); };
   return {one.name,
           std::to_string(one.model->centre_count()),
-          figure(1e3 * errors.rms_error_N, 1),
-          figure(1e3 * errors.max_error_N, 1),
-          figure(1e2 * errors.within_jnd, 2),
-          figure(errors.p99_error_over_jnd, 2),
-          figure(errors.max_error_over_jnd, 2),
+          figure(errors, 1e3 * errors.rms_error_N, 1),
+          figure(errors, 1e3 * errors.max_error_N, 1),
+          figure(errors, 1e2 * errors.within_jnd, 2),
+          figure(errors, errors.p99_error_over_jnd, 2),
+          figure(errors, errors.max_error_over_jnd, 2),
           std::to_string(errors.out_of_domain_samples),
-          time(one.time.median_ns),
-          time(one.time.p99_ns)};
+          figure(moved, 1e3 * moved.rms_error_N, 1),
+          figure(moved, 1e3 * moved.max_error_N, 1),
+          figure(moved, 1e2 * moved.within_jnd, 2),
+          figure(moved, moved.p99_error_over_jnd, 2),
+          figure(moved, moved.max_error_over_jnd, 2),
+          time(model.time.median_ns),
+          time(model.time.p99_ns)};
 }
 
-void print_table(const Options& options, const ReplaySummary& summary, const std::vector<Contestant>& contestants) {
-  std::printf("%s: %llu samples, %llu in contact\n", options.recording.c_str(),
-              static_cast<unsigned long long>(summary.samples),
-              static_cast<unsigned long long>(summary.contact_samples));
+std::string surface_text(const ReplayedRecording& replayed) {
+  if (!std::isfinite(replayed.surface_error_m)) return "surface not found";
+  const std::string error = fixed(1e3 * replayed.surface_error_m, 3) + " mm";
+  if (replayed.surface_offset_m == 0.0) return "surface where the models have it, +- " + error;
+  return "surface at " + fixed(1e3 * replayed.surface_offset_m, 3) + " +- " + error;
+}
+
+void print_table(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+  std::printf("%s: %llu samples, %llu in contact, %s\n", replayed.path.c_str(),
+              static_cast<unsigned long long>(replayed.samples),
+              static_cast<unsigned long long>(replayed.contact_samples), surface_text(replayed).c_str());
   std::vector<Row> rows = {{"MODEL", "CENTRES", "RMS mN", "MAX mN", "WITHIN JND %", "P99 JND", "MAX JND",
-                            "OUT OF DOMAIN", "MEDIAN ns", "P99 ns"}};
-  for (const Contestant& one : contestants) rows.push_back(table_row(one));
+                            "OUT OF DOMAIN", "MOVED: RMS mN", "MAX mN", "WITHIN JND %", "P99 JND", "MAX JND",
+                            "MEDIAN ns", "P99 ns"}};
+  for (std::size_t i = 0; i < models.size(); ++i) rows.push_back(table_row(models[i], replayed.models[i]));
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const Row& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
@@ -148,51 +148,28 @@ void print_table(const Options& options, const ReplaySummary& summary, const std
     for (std::size_t i = 1; i < row.size(); ++i) line += "  " + std::string(widths[i] - row[i].size(), ' ') + row[i];
     std::printf("%s\n", line.c_str());
   }
+  if (const std::string remark = surface_remark(replayed, models); !remark.empty()) std::printf("note: %s\n", remark.c_str());
 }
 
 Status run(const Options& options) {
   if (!options.out.empty()) {
     if (const Status status = check_output(options); !status) return status;
   }
-  Result<std::vector<Contestant>> contestants = load_contestants(options.models);
-  if (!contestants) return contestants.error();
-  Result<RecordingReader> reader = RecordingReader::open(options.recording);
-  if (!reader) return reader.error();
-
-  ForceModels models;
-  std::vector<std::string> names;
-  for (const Contestant& one : *contestants) {
-    models.push_back(one.model);
-    names.push_back(one.name);
-  }
-  std::optional<ForcesFile> forces;
-  if (!options.out.empty()) {
-    Result<ForcesFile> file = ForcesFile::create(options.out, options.force, models, names);
-    if (!file) return file.error();
-    forces.emplace(std::move(*file));
-  }
-  const Result<ReplaySummary> summary =
-      replay(*reader, models, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-        if (forces) forces->add(row, snapshot, tick);
-        if (!snapshot.in_contact) return;
-        for (std::size_t i = 0; i < contestants->size(); ++i) {
-          Contestant& one = (*contestants)[i];
-          one.statistics.add(snapshot.force_N[i], row.force_N, (snapshot.out_of_domain_mask >> i & 1U) != 0);
-          one.features.add(tick.features_of(i));
-        }
-      });
-  if (!summary) return summary.error();
-  if (forces) {
-    if (const Status status = forces->commit(); !status) return status;
-  }
-  for (Contestant& one : *contestants) {
-    one.errors = one.statistics.summary();
-    one.time = time_model(*one.model, one.features);
+  const auto models = load_models(options.models);
+  if (!models) return models.error();
+  CheckRequest request;
+  request.jnd = models->front().model->data().jnd;
+  if (const auto checked = check_before_use(options.recordings, request); !checked) return checked.error();
+  std::vector<ReplayedRecording> all;
+  for (const std::string& recording : options.recordings) {
+    auto replayed = replay_recording(recording, *models, options.out, options.force);
+    if (!replayed) return replayed.error();
+    all.push_back(std::move(*replayed));
   }
   if (options.json) {
-    print_json(options, *summary, *contestants);
+    print_json(all, *models);
   } else {
-    print_table(options, *summary, *contestants);
+    for (const ReplayedRecording& replayed : all) print_table(replayed, *models);
   }
   return {};
 }
@@ -200,9 +177,10 @@ Status run(const Options& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, Verbs& verbs) {
-  CLI::App* command = app.add_subcommand("replay", "Run models over a recording and measure their errors");
+  CLI::App* command = app.add_subcommand("replay", "Run models over recordings and measure their errors");
   const auto options = std::make_shared<Options>();
-  command->add_option("--recording", options->recording, "Recording to replay (CSV)")->required();
+  command->add_option("--recording", options->recordings, "Recordings to replay; repeat the option or list them")
+      ->required()->type_name("CSV");
   command->add_option("--model", options->models, "Model file (JSON); up to 16, repeat the option or list them")
       ->required();
   command->add_option("--out", options->out, "Write features and forces, row by row, to this file (CSV)");

@@ -2,7 +2,9 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/report/report.h"
@@ -43,6 +45,11 @@ std::string command_line(const ReportRequest& request) {
 Status run(ReportRequest request) {
   request.command_line = command_line(request);
   request.version = "palpate " PALPATE_VERSION;
+  const auto scene = load_scene(request.scene);
+  if (!scene) return scene.error();
+  std::vector<std::string> recordings = request.train;
+  recordings.insert(recordings.end(), request.test.begin(), request.test.end());
+  if (const auto checked = check_before_use(recordings, check_request(*scene)); !checked) return checked.error();
   Result<ReportSummary> summary = [&] {
     ProgressLine line("reporting");
     FitControl control;

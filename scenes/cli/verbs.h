@@ -20,6 +20,8 @@ namespace palpate::cli {
 using Verbs = std::vector<std::pair<CLI::App*, std::function<Status()>>>;
 
 void add_synth(CLI::App& app, Verbs& verbs);
+void add_import(CLI::App& app, Verbs& verbs);
+void add_check(CLI::App& app, Verbs& verbs);
 void add_fit(CLI::App& app, Verbs& verbs);
 void add_replay(CLI::App& app, Verbs& verbs);
 void add_scenes(CLI::App& app, Verbs& verbs);

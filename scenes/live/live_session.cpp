@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "devices/registry/device_registry.h"
+#include "engine/base/text.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/local_time.h"
@@ -32,6 +33,7 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
       device_(std::move(device)),
       models_(scene_, request.seed, notices_),
       comparison_(models_, scene_.jnd),
+      surface_(device_->replay(), scene_.jnd),
       buffer_(kSnapshotsAtOnce) {}
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
@@ -81,6 +83,7 @@ LiveSession::~LiveSession() {
 
 void LiveSession::update() {
   update_models();
+  if (surface_.update(models_)) comparison_.forget_errors();
   loop_->collect_models();
   read_snapshots();
   newest_ = loop_->newest();
@@ -185,6 +188,10 @@ std::string LiveSession::device_words() const {
   return words;
 }
 
+void LiveSession::move_surface(bool moved) {
+  if (surface_.move(moved)) comparison_.forget_errors();
+}
+
 void LiveSession::use_dead_man(DeadMan what) {
   dead_man_ = what;
   send_controls();
@@ -198,7 +205,10 @@ void LiveSession::hold() {
 std::vector<std::string> LiveSession::recording_comments() const {
   return {"recorded live; scene " + scene_.name + ", device " + device_->name(),
           "force_N: " + reference_words() + ", not what the device rendered",
-          "a stream that starts over (end of a replay, seek) begins 30 s later than the last one ended"};
+          "a stream that starts over (end of a replay, seek) begins 30 s later than the last one ended",
+          "position_m: " + (surface_.offset_m() == 0.0 ? std::string("as the device gave it")
+                                                       : "moved to the models' surface by " +
+                                                             fixed(-1e3 * surface_.offset_m(), 3) + " mm")};
 }
 
 Status LiveSession::start_recording(const std::string& path) {

@@ -20,6 +20,7 @@
 #include "scenes/live/fault_log.h"
 #include "scenes/live/model_slots.h"
 #include "scenes/live/notices.h"
+#include "scenes/live/replay_surface.h"
 #include "scenes/live/session_recorder.h"
 #include "scenes/scene/scene.h"
 
@@ -84,6 +85,10 @@ class LiveSession {
   // What it can be asked for beside: null when it cannot.
   ToolInput* mouse() const noexcept { return device_->mouse(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
+  // Where the surface of the recording is for the models; moved there unless told
+  // otherwise. Errors so far are forgotten with every change.
+  const ReplaySurface& surface() const noexcept { return surface_; }
+  void move_surface(bool moved);
   // What must be held for the device to push; `hold` says that it is, every frame.
   DeadMan dead_man() const noexcept { return dead_man_; }
   void use_dead_man(DeadMan what);
@@ -119,6 +124,7 @@ class LiveSession {
   std::unique_ptr<HapticsLoop> loop_;
   ModelSlots models_;
   Comparison comparison_;
+  ReplaySurface surface_;
   FaultLog faults_;
   std::unique_ptr<SessionRecorder> recorder_;
   std::uint32_t recording_ = 0;  // these four as in LoopControls

@@ -135,6 +135,14 @@ void ModelSlots::write_selection(LoopControls& controls) const {
       static_cast<std::uint32_t>(sets_.back().place_of(selected_).value_or(sets_.back().slots.size()));
 }
 
+std::vector<std::shared_ptr<const ForceModel>> ModelSlots::ready_models() const {
+  std::vector<std::shared_ptr<const ForceModel>> models;
+  for (const auto& slot : slots_) {
+    if (slot->view.state == SlotState::ready) models.push_back(slot->model);
+  }
+  return models;
+}
+
 std::size_t ModelSlots::size() const noexcept { return slots_.size(); }
 const SlotView& ModelSlots::view(std::size_t slot) const noexcept { return slots_[slot]->view; }
 SlotView& ModelSlots::view(std::size_t slot) noexcept { return slots_[slot]->view; }

@@ -59,6 +59,9 @@ class ModelSlots {
   // Which model of the newest set is active.
   void write_selection(LoopControls& controls) const;
 
+  // Of all slots that are ready.
+  std::vector<std::shared_ptr<const ForceModel>> ready_models() const;
+
   std::size_t size() const noexcept;
   const SlotView& view(std::size_t slot) const noexcept;
   SlotView& view(std::size_t slot) noexcept;

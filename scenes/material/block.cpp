@@ -9,6 +9,9 @@ namespace {
 constexpr double kLongestSubstep_s = 1e-4;
 constexpr double kMostSubsteps = 1000.0;
 constexpr double kFlat_m = 1e-15;
+// A free surface is where the force on it is 0, to far below any force cell; a
+// root to the last bit would cost most of the tick.
+constexpr double kFree_N = 1e-11;
 
 }  // namespace
 
@@ -66,7 +69,7 @@ double Block::free_surface_m(double depth_m, double depth_residual_N) const noex
   for (int i = 0; i < 24 && high_m - low_m > kFlat_m; ++i) {
     const double middle_m = (low_m * high_N - high_m * low_N) / (high_N - low_N);
     const double middle_N = residual_N(middle_m);
-    if (middle_N == 0.0) return middle_m;
+    if (std::abs(middle_N) < kFree_N) return middle_m;
     if (middle_N < 0.0) {
       low_m = middle_m, low_N = middle_N;
       if (side < 0) high_N *= 0.5;
@@ -91,7 +94,7 @@ void Block::substep(double position_m, double velocity_m_per_s) noexcept {
   const double depth_m = std::max(0.0, position_m);
   if (depth_m < surface_m_) {
     const double residual = residual_N(depth_m);
-    if (residual < 0.0) {
+    if (residual < -kFree_N) {
       move_surface(free_surface_m(depth_m, residual), false);
       force_N_ = 0.0;
       return;

@@ -22,7 +22,8 @@ double RelaxationSpectrum::midpoint_s(double shortest_s, double longest_s, std::
 }
 
 void RelaxationSpectrum::prepare(double substep_s) noexcept {
-  gain_ = 0.0;
+  for (std::size_t i = 0; i < kTimes; ++i) memory_N_[i] += kick_[i] * settled_N_;
+  settled_N_ = gain_ = 0.0;
   for (std::size_t i = 0; i < kTimes; ++i) {
     const double ratio = substep_s / time_s_[i];
     decay_[i] = std::exp(-ratio);
@@ -35,21 +36,20 @@ void RelaxationSpectrum::relax() noexcept {
   double sum_N[kLanes] = {};
   for (std::size_t i = 0; i < kTimes; i += kLanes) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double left_N = memory_N_[i + lane] * decay_[i + lane];
+      const double left_N = (memory_N_[i + lane] + kick_[i + lane] * settled_N_) * decay_[i + lane];
       memory_N_[i + lane] = std::abs(left_N) > kSmallest_N ? left_N : 0.0;
       sum_N[lane] += memory_N_[i + lane];
     }
   }
+  settled_N_ = 0.0;
   relaxed_N_ = (sum_N[0] + sum_N[1]) + (sum_N[2] + sum_N[3]);
 }
 
-void RelaxationSpectrum::settle(double change_N) noexcept {
-  for (std::size_t i = 0; i < kTimes; ++i) memory_N_[i] += kick_[i] * change_N;
-}
+void RelaxationSpectrum::settle(double change_N) noexcept { settled_N_ = change_N; }
 
 void RelaxationSpectrum::forget() noexcept {
   memory_N_.fill(0.0);
-  relaxed_N_ = 0.0;
+  relaxed_N_ = settled_N_ = 0.0;
 }
 
 }  // namespace palpate

@@ -51,6 +51,7 @@ class RelaxationSpectrum {
   double total_weight_ = 0.0;
   double gain_ = 0.0;       // sum of kick_
   double relaxed_N_ = 0.0;  // sum of memory_N_ after relax
+  double settled_N_ = 0.0;  // last change, which the next sub-step adds: one pass for both
 };
 
 }  // namespace palpate

@@ -172,6 +172,8 @@ std::string make_page(const ReportData& data, const ReportOrigin& origin, const 
     page.heading("Between recordings");
     page.table("per_recording");
   }
+  page.heading("Where the surface is");
+  page.table("surface_moved");
   page.heading("Is it luck?");
   page.figure("repeatability");
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/tick/replay.h"
+#include "models/training/surface_search.h"
 #include "scenes/report/coverage_finder.h"
 #include "scenes/report/evaluator.h"
 #include "scenes/report/no_force.h"
@@ -70,7 +71,9 @@ double largest_force_N(const RecordingSet& recordings) {
 }
 
 // Where the surface of a tested recording is for the models; 0 where that cannot be told.
-double surface_of_models(const Recording&, const std::vector<ModelPointer>&, const JndLine&) { return 0.0; }
+double surface_of_models(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd) {
+  return locate_surface(thinned_rows(recording, kSearchRows), models, jnd).offset_m;
+}
 
 // The training as each recipe prepares it.
 struct Preparations {

@@ -34,10 +34,10 @@ double expected_cost_s(const SlotPlan& plan) {
   return expected_seconds(request) + (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
-// Of this thread and those that it will start: Linux counts threads one by one.
-void lower_priority() { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
-
 }  // namespace
+
+// Linux counts threads one by one.
+void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
 
 ModelWorker::ModelWorker(Scene scene, std::uint64_t seed) : scene_(std::move(scene)), seed_(seed) {}
 
@@ -53,7 +53,7 @@ ModelWorker::~ModelWorker() {
 Status ModelWorker::start() {
   try {
     thread_ = std::thread([this] {
-      lower_priority();
+      lower_thread_priority();
       work();
     });
   } catch (const std::system_error& error) {

@@ -36,6 +36,10 @@ struct FinishedModel {
   std::string problem;
 };
 
+// For threads that must never hold up graphics or haptics: of this thread and those
+// that it will start.
+void lower_thread_priority() noexcept;
+
 class ModelWorker {
  public:
   ModelWorker(Scene scene, std::uint64_t seed);

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/example_model.h"
 #include "tests/support/closed_loop_rest.h"
 #include "tests/support/fitting.h"
 #include "tests/support/live_doubles.h"
@@ -209,7 +210,7 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const Press&
     strokes.lowest_J = std::min(strokes.lowest_J, loop.tool().energy().balance_J());
     strokes.largest_N = std::max(strokes.largest_N, snapshot.rendered_N);
     if (!snapshot.tick.in_contact) return;
-    const double cost_jnd = (snapshot.mixed_N - snapshot.passive_N) / JndLine{}.at(snapshot.mixed_N);
+    const double cost_jnd = (snapshot.commanded_N - snapshot.passive_N) / JndLine{}.at(snapshot.commanded_N);
     EXPECT_GE(cost_jnd, 0.0) << "it never adds force";
     strokes.largest_cost_jnd = std::max(strokes.largest_cost_jnd, cost_jnd);
     cost_sum += cost_jnd;
@@ -322,7 +323,7 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip,
     const double aim_m = kFirm.depth_m + kFirm.force_N / grip.stiffness_N_per_m;
     loop.run(3.0, [&](double time) { return test::minimum_jerk(-2e-3, aim_m, 0.3, time); },
              [&](const LoopSnapshot& snapshot) {
-               EXPECT_TRUE(std::isfinite(snapshot.mixed_N) && std::isfinite(snapshot.rendered_N));
+               EXPECT_TRUE(std::isfinite(snapshot.commanded_N) && std::isfinite(snapshot.rendered_N));
                time_s.push_back(snapshot.loop_time_s);
                force_N.push_back(snapshot.rendered_N);
                if (time_s.back() < 1.0) return;

@@ -13,7 +13,7 @@ namespace {
 
 using test::fit;
 using test::fit_all;
-using test::judge;
+using test::judge_moved;
 using test::ModelPtr;
 using test::prepare;
 using test::real_recording;
@@ -42,15 +42,30 @@ TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
   double within = 0.0;
   double samples = 0.0;
   for (const RecordingPtr& recording : skin("test", {"400", "800", "900"})) {
-    const ErrorSummary summary = judge(*recording, greedy);
+    const ErrorSummary summary = judge_moved(*recording, {greedy}).front();
     std::cout << test::figures(recording->name, summary) << "\n";
     const auto n = static_cast<double>(summary.samples);
     squares += n * summary.rms_error_N * summary.rms_error_N;
     within += n * summary.within_jnd;
     samples += n;
   }
-  EXPECT_GE(within / samples, 0.97);
-  EXPECT_LE(std::sqrt(squares / samples), 0.035);
+  // Measured: 100 % and 8.3 mN; as recorded 98.5 % and 35 mN.
+  EXPECT_GE(within / samples, 0.999);
+  EXPECT_LE(std::sqrt(squares / samples), 0.015);
+}
+
+// The surface lies elsewhere in every trial, by up to a millimetre.
+TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
+  std::vector<RecordingPtr> training;
+  for (const char* trial : {"3", "4", "7", "10", "12"}) {
+    training.push_back(real_recording(std::string("zwick_silicone/train_trial") + trial + ".csv"));
+  }
+  const ModelPtr greedy = fit(prepare(training, scene_request("silicone_block")), &kGreedyMethod);
+  const ErrorSummary summary =
+      judge_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
+  std::cout << test::figures("trial 9", summary) << "\n";
+  EXPECT_GE(summary.within_jnd, 0.995);
+  EXPECT_LE(summary.rms_error_N, 0.015);  // measured: 8.2 mN
 }
 
 // The second cycle leaves what the first one showed: see how many samples are
@@ -60,7 +75,7 @@ TEST_F(RealAccuracy, PressOnItsSecondCycle) {
       prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block"));
   const RecordingPtr recording = real_recording("ur3e_press_mit/test_cycle2.csv");
   for (const ModelPtr& model : fit_all(prepared)) {
-    const ErrorSummary summary = judge(*recording, model);
+    const ErrorSummary summary = judge_moved(*recording, {model}).front();
     std::cout << test::figures(model->name(), summary) << "\n";
     EXPECT_LE(summary.rms_error_N, 0.5) << model->name();
     EXPECT_GE(summary.within_jnd, 0.7) << model->name() << "; required of greedy only";
@@ -75,7 +90,7 @@ TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
     double peak_N = 0.0;
     for (const RecordingRow& row : recording->rows) peak_N = std::max(peak_N, row.force_N);
     for (const ModelPtr& model : fit_all(prepared)) {
-      const ErrorSummary summary = judge(*recording, model);
+      const ErrorSummary summary = judge_moved(*recording, {model}).front();
       std::cout << test::figures(model->name(), summary) << ", " << 100.0 * summary.rms_error_N / peak_N
                 << " % of the peak\n";
       EXPECT_LT(summary.rms_error_N, 0.01 * peak_N) << model->name() << ", " << thinner;

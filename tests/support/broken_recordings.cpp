@@ -43,16 +43,16 @@ void add_headers(std::vector<BrokenRecording>& table) {
        {"blank first line", "\n"s + good_header() + rows,
         "rec.csv:1:1: found a blank line, " + no_header + "; remove the blank line"},
        {"no header", rows,
-        "rec.csv:1:1: found a row of numbers, " + no_header + "; add the header row"},
+        "rec.csv:1:1: found a row of numbers, " + no_header + "; add the header row, or let palpate import rec.csv --out REC.csv do it"},
        {"missing column", "time_s,position_m\n0,0\n",
         "rec.csv:1:1: found columns time_s,position_m, expected also force_N; add the column or "
-        "rename what holds the values"},
+        "rename what holds the values, or let palpate import rec.csv --out REC.csv do it"},
        {"two missing columns", "# c\ntime_s,x,f\n0,0,0\n",
         "rec.csv:2:1: found columns time_s,x,f, expected also position_m and force_N; add the "
-        "columns or rename what holds the values"},
+        "columns or rename what holds the values, or let palpate import rec.csv --out REC.csv do it"},
        {"unknown columns only", "a,b,c\n1,2,3\n",
         "rec.csv:1:1: found columns a,b,c, expected also time_s, position_m and force_N; add the "
-        "columns or rename what holds the values"},
+        "columns or rename what holds the values, or let palpate import rec.csv --out REC.csv do it"},
        {"duplicate column", "time_s,position_m,force_N,position_m\n0,0,0,0\n",
         "rec.csv:1:27: found column position_m twice, expected it once; remove or rename one of "
         "the two"},
@@ -60,17 +60,17 @@ void add_headers(std::vector<BrokenRecording>& table) {
         "rec.csv:1:44: found column velocity_m_per_s twice, expected it once; remove or rename one "
         "of the two"},
        {"quoted header", "\"time_s\",\"position_m\",\"force_N\"\n" + rows,
-        "rec.csv:1:1: found column '\"time_s\"', expected exactly time_s; rename the column"},
+        "rec.csv:1:1: found column '\"time_s\"', expected exactly time_s; rename the column, or let palpate import rec.csv --out REC.csv do it"},
        {"blank before a name", "time_s, position_m,force_N\n" + rows,
-        "rec.csv:1:9: found column ' position_m', expected exactly position_m; rename the column"},
+        "rec.csv:1:9: found column ' position_m', expected exactly position_m; rename the column, or let palpate import rec.csv --out REC.csv do it"},
        {"other case", "time_s,position_m,Force_n\n" + rows,
-        "rec.csv:1:19: found column 'Force_n', expected exactly force_N; rename the column"},
+        "rec.csv:1:19: found column 'Force_n', expected exactly force_N; rename the column, or let palpate import rec.csv --out REC.csv do it"},
        {"semicolons", "time_s;position_m;force_N\n0;0;0\n",
         "rec.csv:1:7: found semicolons between the fields, expected commas; save the file as comma "
-        "separated with decimal points"},
+        "separated with decimal points, or let palpate import rec.csv --out REC.csv do it"},
        {"tabs", "time_s\tposition_m\tforce_N\n0\t0\t0\n",
         "rec.csv:1:7: found tabs between the fields, expected commas; save the file as comma "
-        "separated with decimal points"},
+        "separated with decimal points, or let palpate import rec.csv --out REC.csv do it"},
        {"Latin-1 header", "time_s,position_m,force_N,Kr\xE4"
                           "fte\n",
         "rec.csv:1:29: found byte \\xe4, expected UTF-8 text in the header; save the file as UTF-8 "

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "engine/tick/replay.h"
+#include "models/training/surface_search.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/training.h"
 
@@ -74,7 +75,8 @@ std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
   return models;
 }
 
-std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models) {
+std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models,
+                                double surface_offset_m) {
   std::vector<ErrorStatistics> statistics;
   for (const ModelPtr& model : models) statistics.emplace_back(model->data().jnd);
   must(replay(recording, ForceModels(models.begin(), models.end()),
@@ -83,10 +85,17 @@ std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<Mo
                 for (std::size_t i = 0; i < models.size(); ++i) {
                   statistics[i].add(snapshot.force_N[i], row.force_N, (snapshot.out_of_domain_mask >> i & 1U) != 0);
                 }
-              }));
+              },
+              surface_offset_m));
   std::vector<ErrorSummary> summaries;
   for (const ErrorStatistics& one : statistics) summaries.push_back(one.summary());
   return summaries;
+}
+
+std::vector<ErrorSummary> judge_moved(const Recording& recording, const std::vector<ModelPtr>& models) {
+  const SurfaceLocation surface = locate_surface(thinned_rows(recording, kSearchRows), {models.begin(), models.end()},
+                                                 models.front()->data().jnd);
+  return judge(recording, models, surface.offset_m);
 }
 
 ErrorSummary judge(const Recording& recording, const ModelPtr& model) {

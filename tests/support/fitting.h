@@ -50,8 +50,11 @@ ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
 
 // One summary per model, over the samples in contact.
-std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models);
+std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models,
+                                double surface_offset_m = 0.0);
 ErrorSummary judge(const Recording& recording, const ModelPtr& model);
+// The same with the surface of the recording moved to where the models have theirs.
+std::vector<ErrorSummary> judge_moved(const Recording& recording, const std::vector<ModelPtr>& models);
 
 // The worst of (mean + standard deviation) / JND over the bins that begin at
 // `from_N` or above and hold at least 100 samples.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <exception>
 #include <initializer_list>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -160,6 +161,24 @@ class ModelReader : private JsonFields {
 
   static std::string quoted(const CorrectionKind& kind) { return std::string("\"").append(kind.key).append("\""); }
 
+  // Models of positions as recorded have no such list.
+  void read_surfaces(const JsonNode& provenance) {
+    if (optional_member(provenance, "surfaces").value == nullptr) return;
+    const JsonNode surfaces = list(provenance, "surfaces", "a list");
+    for (std::size_t i = 0; surfaces.value != nullptr && i < surfaces.value->size(); ++i) {
+      const JsonNode node = entry(surfaces, i);
+      RecordingSurface surface;
+      surface.name = text(node, "name");
+      surface.offset_m = number(node, "surface_offset_m");
+      surface.force_zero_N = number(node, "force_zero_N");
+      surface.standard_error_m = std::numeric_limits<double>::infinity();
+      if (optional_member(node, "standard_error_m").value != nullptr) {
+        surface.standard_error_m = number(node, "standard_error_m", Sign::kNotNegative);
+      }
+      data_.provenance.surfaces.push_back(std::move(surface));
+    }
+  }
+
   void read_provenance(const JsonNode& node) {
     Provenance& from = data_.provenance;
     const JsonNode recordings = list(node, "recordings", "a list of names");
@@ -179,6 +198,7 @@ class ModelReader : private JsonFields {
     from.weighting = text(node, "weighting");
     from.reduction = text(node, "reduction");
     from.relaxation = text(node, "relaxation");
+    read_surfaces(node);
     from.training_within_jnd = number(node, "training_within_jnd", Sign::kNotNegative);
     optional_member(node, "fit_seconds");  // older files
     const JsonNode times = list(node, "relaxation_times", "a list");

@@ -41,11 +41,24 @@ std::string trend(const Trend& trend) {
          ",\n    \"velocity_limit_m_per_s\": " + json_number(trend.velocity_limit_m_per_s) + "\n  }";
 }
 
+// File name without its folders.
+std::string stem_of(const std::string& name) { return name.substr(name.find_last_of("/\\") + 1); }
+
+// Nothing for positions as recorded.
+std::string surfaces(const std::vector<RecordingSurface>& all) {
+  std::vector<std::string> items;
+  for (const RecordingSurface& one : all) {
+    std::string text = "{\"name\": " + json_quoted(stem_of(one.name)) + ", \"surface_offset_m\": " + json_number(one.offset_m);
+    if (std::isfinite(one.standard_error_m)) text += ", \"standard_error_m\": " + json_number(one.standard_error_m);
+    items.push_back(text + ", \"force_zero_N\": " + json_number(one.force_zero_N) + "}");
+  }
+  return items.empty() ? "" : ",\n    \"surfaces\": " + json_lines(items);
+}
+
 std::string provenance(const Provenance& provenance) {
   std::string recordings;
   for (const std::string& name : provenance.recordings) {
-    const std::string stem = name.substr(name.find_last_of("/\\") + 1);
-    recordings += (recordings.empty() ? "" : ", ") + json_quoted(stem);
+    recordings += (recordings.empty() ? "" : ", ") + json_quoted(stem_of(name));
   }
   std::string times;
   for (const RelaxationTime& time : provenance.relaxation_times) {
@@ -53,7 +66,8 @@ std::string provenance(const Provenance& provenance) {
              ", \"standard_error_s\": " + json_number(time.standard_error_s) + "}";
   }
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
-  return "{\n    \"recordings\": [" + recordings + "],\n    \"scene\": " + json_quoted(provenance.scene) +
+  return "{\n    \"recordings\": [" + recordings + "]" + surfaces(provenance.surfaces) +
+         ",\n    \"scene\": " + json_quoted(provenance.scene) +
          ",\n    \"samples\": " + count(provenance.samples) +
          ",\n    \"contact_samples\": " + count(provenance.contact_samples) +
          ",\n    \"samples_after_reduction\": " + count(provenance.samples_after_reduction) +
@@ -74,6 +88,10 @@ Status check(const ModelData& data) {
   for (const RelaxationTime& time : from.relaxation_times) {
     plausible = plausible && time.time_s > 0.0 && std::isfinite(time.time_s) && time.standard_error_s >= 0.0 &&
                 std::isfinite(time.standard_error_s);
+  }
+  for (const RecordingSurface& surface : from.surfaces) {
+    plausible = plausible && std::isfinite(surface.offset_m) && std::isfinite(surface.force_zero_N) &&
+                surface.standard_error_m >= 0.0;
   }
   if (!plausible) return Error{"provenance: found a number that is negative or not finite, expected finite ones"};
   return {};

@@ -86,7 +86,7 @@ void push_without_end(int descriptor) {
   HidCommand command;
   command.drive = true;
   command.units = 500;
-  const OutReports push = encode_command(HidKind::paddle, command);
+  const OutReports push = kPaddleDriver.encode_command(command);
   while (true) {
     if (!begin_force_write()) continue;
     poll(nullptr, 0, 2);
@@ -103,7 +103,7 @@ Ended run_two_signals(int first, int second) {
   if (child == 0) {
     nothing_ignored();
     const StopListener listener;
-    register_device_stop(ends[1], encode_stop(HidKind::paddle));
+    register_device_stop(ends[1], kPaddleDriver.encode_stop());
     stop_devices_on_signals();
     std::thread([&] { push_without_end(ends[1]); }).detach();
     poll(nullptr, 0, 10);

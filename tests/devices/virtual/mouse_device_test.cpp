@@ -96,7 +96,7 @@ TEST(AutoDevice, GivesWayToTheMouseAndComesBack) {
   };
   run(0, 3000);
   EXPECT_TRUE(device.hand_is_exploring());
-  device.mouse().set_target(-2e-3, 3.0);
+  device.mouse()->set_target(-2e-3, 3.0);
   run(3000, 5000);
   EXPECT_FALSE(device.hand_is_exploring());
   EXPECT_NEAR(last_m, -2e-3, 1e-6);

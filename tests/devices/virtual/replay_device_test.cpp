@@ -55,6 +55,26 @@ TEST(ReplayDevice, HandsOverEveryRowOnceAndUnchanged) {
   }
 }
 
+TEST(ReplayDevice, MovesTheSurfaceAndRestarts) {
+  const Recording recording = ramp(2000, 1000.0);
+  ReplayDevice device(recording);
+  Player player{device};
+  player.play(100);
+  const double at_s = device.playhead_s();
+  device.move_surface(std::nan(""));  // ignored
+  device.move_surface(0.25e-3);
+  const std::vector<DeviceSample> samples = player.play(100);
+  ASSERT_GT(samples.size(), 90u);
+  EXPECT_TRUE(samples.front().restart);
+  EXPECT_NEAR(samples.front().tool.time_s - recording.rows.front().time_s, at_s, 2e-3);
+  for (const DeviceSample& sample : samples) {
+    const auto row = static_cast<std::size_t>(std::lround((sample.tool.time_s - 7.0) * 1000.0));
+    EXPECT_EQ(sample.tool.position_m, recording.rows[row].position_m - 0.25e-3);
+    EXPECT_EQ(sample.measured_force_N, recording.rows[row].force_N);
+  }
+  EXPECT_EQ(device.surface_offset_m(), 0.25e-3);
+}
+
 TEST(ReplayDevice, BeginsAgainAtTheEnd) {
   ReplayDevice device(ramp(100, 1000.0));
   Player player{device};

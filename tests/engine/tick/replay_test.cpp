@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <string>
 
 #include "engine/tick/sensor_identification.h"
@@ -55,6 +57,22 @@ TEST(Replay, EqualsSteppingByHand) {
   EXPECT_EQ(summary->contact_samples, contact);
   EXPECT_EQ(summary->faults, 0u);
   EXPECT_NEAR(summary->sensor.encoder_step_m, 30e-6, 1e-12);
+}
+
+// Moved, the tick sees what it would see of a recording with other positions; the
+// visitor gets the row as it is. The offset is a power of two, so that no sum rounds.
+TEST(Replay, MovesTheSurface) {
+  const double offset_m = std::ldexp(1.0, -12);
+  Recording recording = example_recording(3000, 1000.0);
+  for (RecordingRow& row : recording.rows) row.position_m = std::round(row.position_m * 1e7) * std::ldexp(1.0, -23);
+  Recording shifted = recording;
+  for (RecordingRow& row : shifted.rows) row.position_m += offset_m;
+  const ForceModels models = all_models();
+  Trace plain;
+  Trace moved;
+  ASSERT_TRUE(replay(recording, models, plain.visitor()).ok());
+  ASSERT_TRUE(replay(shifted, models, moved.visitor(), offset_m).ok());
+  EXPECT_EQ(plain.values, moved.values);
 }
 
 TEST(Replay, GivesTheSameEveryTime) {

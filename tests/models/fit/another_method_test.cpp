@@ -9,7 +9,7 @@
 #include "models/model/file/json_arrays.h"
 #include "models/model/file/json_text.h"
 #include "models/model/file/model_io.h"
-#include "scenes/live/slot_plan.h"
+#include "scenes/worker/slot_plan.h"
 #include "scenes/report/figure.h"
 #include "scenes/report/plan.h"
 #include "scenes/scene/method_look.h"

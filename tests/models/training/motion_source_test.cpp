@@ -77,6 +77,43 @@ TEST(MotionSource, AStrokeDoesNotGoOnIntoTheNextRecording) {
   EXPECT_EQ(rows.back().stroke, 2);
 }
 
+// Contact and strokes follow the moved position.
+TEST(MotionSource, CorrectsPositionsAndForces) {
+  Recording recording;
+  for (int i = 0; i < 40; ++i) recording.rows.push_back({1e-3 * i, i % 10 >= 5 ? 1e-3 : -1e-3, 1.0, 0.0, 0.0});
+  MotionSource source({in_memory(recording)});
+  const auto before = rows_of(source);
+  source.correct({{2e-3, 0.25}});
+  const auto out = rows_of(source);
+  EXPECT_EQ(out[5].sample.position_m, 1e-3 - 2e-3);
+  EXPECT_EQ(out[5].motion.position_m, before[5].motion.position_m - 2e-3);
+  EXPECT_EQ(out[5].motion.velocity_m_per_s, before[5].motion.velocity_m_per_s);
+  EXPECT_EQ(out[5].force_N, 0.75);
+  EXPECT_EQ(out.back().stroke, 0);
+  source.correct({{-2e-3, 0.0}});
+  EXPECT_EQ(rows_of(source).back().stroke, 1);
+  source.correct({});
+  expect_same(rows_of(source), before);
+}
+
+TEST(MotionSource, TheOrderOfInputsChangesNothing) {
+  const test::TemporaryFolder folder;
+  const Recording a = test::example_recording(2000, 1000.0, 30e-6);
+  Recording b = a;
+  for (RecordingRow& row : b.rows) row.force_N *= 2.0;
+  const Recording c = test::example_recording(3000, 1000.0);
+  ASSERT_TRUE(write_recording(folder.file("b.csv"), b, {}, false).ok());
+  const Input file{folder.file("b.csv"), nullptr};
+  MotionSource one({in_memory(a), file, in_memory(c)});
+  MotionSource other({in_memory(c), in_memory(a), file});
+  MotionSource bounded({file, in_memory(c), in_memory(a)}, 1000);
+  const auto rows = rows_of(one);
+  expect_same(rows_of(other), rows);
+  expect_same(rows_of(bounded), rows);
+  EXPECT_EQ(other.names(), one.names());
+  EXPECT_EQ(bounded.names(), one.names());
+}
+
 // More rows than may be kept: every pass reads and estimates again.
 TEST(MotionSource, LongRecordingsAreReadAgain) {
   const Input input = in_memory(test::example_recording(40000, 1000.0, 30e-6));

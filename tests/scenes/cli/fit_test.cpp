@@ -83,6 +83,10 @@ TEST_F(FitVerb, JsonIsOneObjectWithTheContractsKeys) {
   ASSERT_TRUE(object.at("training_within_jnd").is_number());
   EXPECT_GT(object.at("training_within_jnd").get<double>(), 0.9);
   EXPECT_LE(object.at("training_within_jnd").get<double>(), 1.0);
+  ASSERT_EQ(object.at("recordings").size(), 1u);
+  EXPECT_EQ(object.at("recordings")[0].at("name"), "press");
+  EXPECT_TRUE(object.at("recordings")[0].at("surface_offset_m").is_number());
+  EXPECT_TRUE(object.at("recordings")[0].at("force_zero_N").is_number());
 }
 
 TEST_F(FitVerb, TheSameCommandTwiceGivesTheSameBytes) {

@@ -44,7 +44,12 @@ struct Files {
     result.realtime = false;
     return result;
   }
-  Session replaying() const { return must(LiveSession::open(request("replay:" + folder.file("played.csv")))); }
+  // Positions as recorded: these models were fitted to nothing and have no surface.
+  Session replaying() const {
+    Session session = must(LiveSession::open(request("replay:" + folder.file("played.csv"))));
+    session->move_surface(false);
+    return session;
+  }
   Session exploring() const { return must(LiveSession::open(request("hand"))); }
 
   TemporaryFolder folder;
@@ -148,6 +153,30 @@ TEST(LiveSession, ReplaysAsTold) {
   EXPECT_EQ(replay.speed(), 2.0);
   EXPECT_NEAR(replay.playhead_s(), 0.25, 1.1e-3);
   EXPECT_NEAR(replay.duration_s(), 0.699, 1e-9);
+}
+
+TEST(LiveSession, MovesTheSurfaceOfARecordingToThatOfTheModels) {
+  const Files files;
+  auto training = std::make_shared<Recording>(test::example_recording(3000, 1000.0, 30e-6));
+  const auto model = test::fit(test::prepare({training}, test::scene_request("silicone_block")), &kRandomMethod);
+  ASSERT_TRUE(save_model(files.folder.file("fitted.json"), model->data(), false).ok());
+  for (RecordingRow& row : training->rows) row.position_m += 0.3e-3;
+  ASSERT_TRUE(write_recording(files.folder.file("shifted.csv"), *training, {}, false).ok());
+  SessionRequest request = files.request("replay:" + files.folder.file("shifted.csv"));
+  request.models = {files.folder.file("fitted.json")};
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->surface().found_m() != 0.0; }));
+  EXPECT_NEAR(session->surface().found_m(), 0.3e-3, 0.02e-3);
+  EXPECT_EQ(session->replay()->surface_offset_m(), session->surface().found_m());
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).errors.samples() > 300; }));
+  const double moved_N = session->models().view(0).errors.rms_error_N();
+
+  session->move_surface(false);
+  EXPECT_EQ(session->models().view(0).errors.samples(), 0u) << "figures begin anew";
+  EXPECT_EQ(session->replay()->surface_offset_m(), 0.0);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).errors.samples() > 300; }));
+  // 0.3 mm of 300 N/m are 90 mN.
+  EXPECT_GT(session->models().view(0).errors.rms_error_N(), 3.0 * moved_N);
 }
 
 TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {

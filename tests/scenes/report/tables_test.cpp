@@ -99,6 +99,31 @@ TEST(Findings, NameTheSmallestGoodAndTheQuickest) {
                       "11.0 mN, worst error 2.00 JND.");
 }
 
+TEST(Tables, EveryErrorStandsBesideTheOneWithTheSurfaceMoved) {
+  ReportData data = example();
+  data.test_names = {"one", "two"};
+  data.surface_offset_m = {0.0, 0.0003};
+  for (ModelResult& model : data.models) {
+    model.pooled_moved = errors(0.005, 1.0, 0.5);
+    model.per_recording = {model.pooled, model.pooled};
+    model.per_recording_moved = {model.pooled, model.pooled_moved};
+  }
+  const auto tables = make_tables(data);
+  const auto moved = std::find_if(tables.begin(), tables.end(), [](const Table& t) { return t.name == "surface_moved"; });
+  ASSERT_NE(moved, tables.end());
+  EXPECT_EQ(moved->rows.size(), data.models.size() + 2 * kMainModels);
+  const std::string csv = table_csv(*moved);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "recording,surface_offset_m,model,rms_error_N_as_recorded,max_error_N_as_recorded,within_jnd_as_recorded,"
+            "p99_error_over_jnd_as_recorded,max_error_over_jnd_as_recorded,rms_error_N_surface_moved,"
+            "max_error_N_surface_moved,within_jnd_surface_moved,p99_error_over_jnd_surface_moved,"
+            "max_error_over_jnd_surface_moved");
+  EXPECT_NE(csv.find("\ntwo,0.0003,direct,0.01,0.1,0.99,0.5,2,0.005,0.1,1,0.5,0.5\n"), std::string::npos) << csv;
+  EXPECT_EQ(findings(data, false)[2],
+            "1 of 2 test recordings have their surface elsewhere than the models (two farthest, by 0.300 mm). With the "
+            "surface moved direct has 100.00 % within the JND and RMS 5.00 mN, as recorded 99.00 % and 10.0 mN.");
+}
+
 TEST(Findings, SayWhenNoModelIsGoodEnough) {
   ReportData data = example();
   for (ModelResult& model : data.models) model.pooled.within_jnd = 0.5;

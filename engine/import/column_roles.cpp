@@ -1,0 +1,226 @@
+#include "engine/import/column_roles.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "engine/base/csv_scanner.h"
+
+namespace palpate {
+namespace {
+
+// What each role is called. A column whose whole name is one of the words claims its
+// role most strongly, then one that has it among its words, then one that has it
+// inside a word (German compounds: "Standardkraft").
+constexpr std::array<std::string_view, 18> kTimeWords = {
+    "time", "t", "zeit", "temps", "timestamp", "stamp", "seconds", "secs", "elapsed", "x_value", "millis", "micros",
+    "clock", "uhrzeit", "pruefzeit", "testzeit", "zeitstempel", "datetime"};
+constexpr std::array<std::string_view, 25> kPositionWords = {
+    "position", "pos", "weg", "displacement", "disp", "depth", "extension", "stroke", "crosshead", "travel", "compression",
+    "indentation", "penetration", "allongement", "traversenweg", "standardweg", "verschiebung", "eindringtiefe", "tiefe",
+    "deplacement", "height", "encoder", "x", "y", "z"};
+constexpr std::array<std::string_view, 12> kForceWords = {"force", "f", "kraft", "load", "last", "fn", "fx", "fy", "fz",
+                                                          "charge", "loadcell", "newton"};
+// Columns that are something else, whatever other word stands in their name.
+constexpr std::array<std::string_view, 32> kOtherWords = {
+    "torque", "moment", "temperature", "temp", "voltage", "current", "status", "velocity", "speed", "geschwindigkeit",
+    "acceleration", "accel", "stress", "strain", "spannung", "dehnung", "seq", "index", "id", "frame", "cycle", "zyklus",
+    "tx", "ty", "tz", "mx", "my", "mz", "comment", "rate", "volt", "orientation"};
+// Second choice: what was asked for and not measured, what is not the raw value.
+constexpr std::array<std::string_view, 9> kSecondWords = {"target", "desired", "setpoint", "soll", "sollwert", "command",
+                                                          "cmd", "reference", "raw"};
+
+constexpr int kWholeName = 6;
+constexpr int kOneWord = 4;
+constexpr int kInsideWord = 2;
+constexpr int kRightUnit = 3;
+constexpr int kSecondChoice = 3;  // taken off
+
+// Lower case, umlauts and accents as plain letters.
+std::string plain_name(std::string_view text) {
+  std::string plain = lower_ascii(text);
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kLetters = {
+      {{"\xC3\xBC", "ue"}, {"\xC3\x9C", "ue"}, {"\xC3\xA4", "ae"}, {"\xC3\xA9", "e"}, {"\xC3\x89", "e"},
+       {"\xC3\xB6", "oe"}, {"\xC3\xA8", "e"}, {"\xC3\x9F", "ss"}}};
+  for (const auto& [from, to] : kLetters) {
+    for (std::size_t at = 0; (at = plain.find(from, at)) != std::string::npos; at += to.size()) {
+      plain.replace(at, from.size(), to);
+    }
+  }
+  return plain;
+}
+
+// "field.wrench.force.z" -> field, wrench, force, z; "crossheadPos" stays one lower-case word
+// unless a capital begins a new one.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  char last = ' ';
+  for (const char c : name) {
+    const bool capital = c >= 'A' && c <= 'Z';
+    const bool was_small = last >= 'a' && last <= 'z';
+    const bool letter = capital || (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
+    if ((!letter || (capital && was_small)) && !words.back().empty()) words.emplace_back();
+    if (letter) words.back() += c;
+    last = c;
+  }
+  for (std::string& word : words) word = plain_name(word);
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+template <std::size_t N>
+bool holds(const std::array<std::string_view, N>& list, std::string_view word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+template <std::size_t N>
+bool any_word_in(const std::array<std::string_view, N>& list, const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return holds(list, word); });
+}
+
+template <std::size_t N>
+int name_claim(const std::array<std::string_view, N>& list, const std::string& name,
+               const std::vector<std::string>& words) {
+  // An axis alone may be anything along it.
+  if (holds(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
+  if (any_word_in(list, words)) return kOneWord;
+  for (const std::string& word : words) {
+    for (const std::string_view known : list) {
+      // Shorter ones stand in words that have nothing to do with them.
+      if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known))) {
+        return kInsideWord;
+      }
+    }
+  }
+  return 0;
+}
+
+// How strongly a column claims each role; 0: not at all.
+std::array<int, kRoles> claims_of(const TableColumn& column) {
+  std::string name = plain_name(column.parts.name);
+  if (name.starts_with('%')) name.erase(0, 1);
+  const std::vector<std::string> words = words_of(column.parts.name);
+  std::array<int, kRoles> claims = {name_claim(kTimeWords, name, words), name_claim(kPositionWords, name, words),
+                                    name_claim(kForceWords, name, words)};
+  const auto& unit = column.parts.unit;
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
+    // A bracketed unit that none of the three has: "Weg [%]".
+    if (!column.parts.foreign_unit.empty()) claims[role] = 0;
+    if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
+  }
+  // What a column is called most clearly, that it is.
+  const int strongest = *std::max_element(claims.begin(), claims.end());
+  for (int& claim : claims) claim = claim < strongest ? 0 : claim;
+  // A word of the force beats the axis beside it ("force.x"); a word of anything else beats all.
+  if (claims[2] > 0 && !unit) claims[1] = 0;
+  if (any_word_in(kOtherWords, words) && !unit) claims = {};
+  return claims;
+}
+
+std::string flag_for(std::size_t role, const std::string& what) {
+  return std::string("--columns ") + kRoleNames[role] + "=" + what;
+}
+
+// A name with blanks needs quotes in a shell, so the number is given then.
+std::string shell_name(const std::vector<TableColumn>& columns, std::size_t index) {
+  const std::string& header = columns[index].header;
+  const bool plain = header.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
+                     std::string::npos;
+  const auto same = std::count_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.header == header; });
+  return plain && !header.empty() && same == 1 ? header : std::to_string(index + 1);
+}
+
+Result<std::size_t> find_column(const std::vector<TableColumn>& columns, std::size_t role, const std::string& wanted) {
+  const auto with = [&](auto&& name_of) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (name_of(columns[i])) found.push_back(i);
+    }
+    return found;
+  };
+  const std::string lower = lower_ascii(wanted);
+  std::vector<std::size_t> found = with([&](const TableColumn& c) { return c.header == wanted; });
+  if (found.empty()) found = with([&](const TableColumn& c) { return lower_ascii(c.header) == lower; });
+  if (found.empty()) found = with([&](const TableColumn& c) { return lower_ascii(c.parts.name) == lower; });
+  if (found.size() == 1) return found.front();
+  if (found.size() > 1) {
+    return Error{"found " + std::to_string(found.size()) + " columns called \"" + printable(wanted) +
+                 "\", expected one; give the number, as in " + flag_for(role, std::to_string(found.front() + 1)) +
+                 "; the columns are " + list_columns(columns)};
+  }
+  std::size_t number = 0;
+  const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+  const bool is_number = parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size();
+  if (is_number && number >= 1 && number <= columns.size()) return number - 1;
+  return Error{"found no column \"" + printable(wanted) + "\" for the " + kRoleNames[role] +
+               ", expected one of " + list_columns(columns)};
+}
+
+Error no_column(const std::vector<TableColumn>& columns, std::size_t role, bool has_header) {
+  const std::string time_advice = role == 0 ? ", or --rate HZ if the rows are evenly spaced" : "";
+  if (!has_header) {
+    return Error{"found no header, expected names of columns; say which column is which: --columns " +
+                 std::string(role == 0 ? "time=1,position=2,force=3" : "position=1,force=2") + time_advice +
+                 "; the first row is " + list_columns(columns)};
+  }
+  return Error{std::string("found no column that is clearly the ") + kRoleNames[role] + "; add " +
+               flag_for(role, "NAME") + " (a name or a number)" + time_advice + "; the columns are " +
+               list_columns(columns)};
+}
+
+Error several_columns(const std::vector<TableColumn>& columns, std::size_t role, const std::vector<std::size_t>& best) {
+  std::string flags;
+  for (const std::size_t index : best) {
+    flags += (flags.empty() ? "" : index == best.back() ? " or " : ", ") + flag_for(role, shell_name(columns, index));
+  }
+  return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " + flags +
+               "; the columns are " + list_columns(columns)};
+}
+
+}  // namespace
+
+std::string list_columns(const std::vector<TableColumn>& columns) {
+  std::string text;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " \"" + printable(columns[i].header) + "\"";
+  }
+  return text;
+}
+
+Result<RoleChoice> choose_columns(const std::vector<TableColumn>& columns, const RoleRequest& request,
+                                  bool has_header, bool needs_time) {
+  RoleChoice choice;
+  std::vector<std::array<int, kRoles>> claims;
+  for (const TableColumn& column : columns) claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    if (request[role].empty() || (role == 0 && !needs_time)) continue;
+    const auto found = find_column(columns, role, request[role]);
+    if (!found) return found.error();
+    choice.column[role] = *found;
+    claims[*found] = {};
+  }
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    if (choice.column[role] || (role == 0 && !needs_time)) continue;
+    int strongest = 0;
+    for (const auto& claim : claims) strongest = std::max(strongest, claim[role]);
+    std::vector<std::size_t> best;
+    for (std::size_t i = 0; i < columns.size() && strongest > 0; ++i) {
+      if (claims[i][role] == strongest) best.push_back(i);
+    }
+    if (best.empty()) return no_column(columns, role, has_header);
+    if (best.size() > 1) return several_columns(columns, role, best);
+    choice.column[role] = best.front();
+    choice.guessed[role] = true;
+  }
+  for (std::size_t a = 0; a < kRoles; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (!choice.column[a] || choice.column[a] != choice.column[b]) continue;
+      return Error{"found column \"" + printable(columns[*choice.column[a]].header) + "\" for the " + kRoleNames[b] +
+                   " and the " + kRoleNames[a] + ", expected a column for each; the columns are " + list_columns(columns)};
+    }
+  }
+  return choice;
+}
+
+}  // namespace palpate

@@ -1,0 +1,152 @@
+#include "engine/import/foreign_text.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "engine/base/csv_scanner.h"
+
+namespace palpate {
+namespace {
+
+// As much as decides about the encoding; names of columns stand at the beginning.
+constexpr std::size_t kEncodingSampleBytes = 64 * 1024;
+
+struct FileMapping {
+  void* bytes = nullptr;
+  std::size_t size = 0;
+  ~FileMapping() { ::munmap(bytes, size); }
+};
+
+void append_utf8(std::string& out, unsigned code) {
+  const auto put = [&out](unsigned byte) { out += static_cast<char>(byte); };
+  if (code < 0x80) return put(code);
+  if (code < 0x800) {
+    put(0xC0 | code >> 6);
+  } else if (code < 0x10000) {
+    put(0xE0 | code >> 12);
+    put(0x80 | (code >> 6 & 0x3F));
+  } else {
+    put(0xF0 | code >> 18);
+    put(0x80 | (code >> 12 & 0x3F));
+    put(0x80 | (code >> 6 & 0x3F));
+  }
+  put(0x80 | (code & 0x3F));
+}
+
+std::string decode_utf16(std::string_view bytes, bool big_endian) {
+  const auto unit = [&](std::size_t i) {
+    const unsigned first = static_cast<unsigned char>(bytes[i]);
+    const unsigned second = static_cast<unsigned char>(bytes[i + 1]);
+    return big_endian ? first << 8 | second : second << 8 | first;
+  };
+  std::string out;
+  out.reserve(bytes.size() / 2);
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    unsigned code = unit(i);
+    const bool is_high = code >= 0xD800 && code < 0xDC00;
+    if (is_high && i + 3 < bytes.size() && unit(i + 2) >= 0xDC00 && unit(i + 2) < 0xE000) {
+      code = 0x10000 + ((code - 0xD800) << 10) + (unit(i + 2) - 0xDC00);
+      i += 2;
+    }
+    append_utf8(out, code);
+  }
+  return out;
+}
+
+// How many of the bytes at even (or odd) places are 0: text in UTF-16 without a
+// mark has nearly all of its digits' high bytes there.
+double share_of_zeros(std::string_view bytes, std::size_t first) {
+  std::size_t zeros = 0;
+  std::size_t count = 0;
+  for (std::size_t i = first; i < bytes.size(); i += 2, ++count) zeros += bytes[i] == '\0' ? 1 : 0;
+  return count == 0 ? 0.0 : static_cast<double>(zeros) / static_cast<double>(count);
+}
+
+Error wrong_kind(const std::string& label, const char* found, const char* advice) {
+  return Error{label + ": found " + found + ", expected a table as text (CSV, TXT); " + advice};
+}
+
+}  // namespace
+
+std::string_view encoding_name(TextEncoding encoding) {
+  constexpr std::string_view kNames[] = {"UTF-8", "Latin-1", "UTF-16"};
+  return kNames[static_cast<std::size_t>(encoding)];
+}
+
+Status ForeignText::interpret(std::string_view bytes, const std::string& label) {
+  if (bytes.empty()) return wrong_kind(label, "an empty file", "check that the recording was saved");
+  if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0")) {
+    return wrong_kind(label, "an Excel workbook or another archive", "save the sheet as CSV");
+  }
+  const std::string_view sample = bytes.substr(0, kEncodingSampleBytes);
+  const bool marked_big = bytes.starts_with("\xFE\xFF");
+  const bool marked = marked_big || bytes.starts_with("\xFF\xFE");
+  const bool zeros_first = share_of_zeros(sample, 0) > 0.9;
+  if (marked || zeros_first || share_of_zeros(sample, 1) > 0.9) {
+    const bool big_endian = marked ? marked_big : zeros_first;
+    auto decoded = std::make_shared<const std::string>(decode_utf16(bytes.substr(marked ? 2 : 0), big_endian));
+    text_ = *decoded;
+    storage_ = std::move(decoded);
+    encoding_ = TextEncoding::utf16;
+  } else {
+    text_ = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+    std::size_t bad_offset = 0;
+    // A sequence that the end of the sample cuts is no fault.
+    const bool valid = is_utf8(sample, bad_offset) || (sample.size() < bytes.size() && bad_offset + 4 > sample.size());
+    encoding_ = valid ? TextEncoding::utf8 : TextEncoding::latin1;
+  }
+  if (text_.substr(0, kEncodingSampleBytes).find('\0') != std::string_view::npos) {
+    return wrong_kind(label, "a binary file", "export it as CSV from the program that wrote it");
+  }
+  return {};
+}
+
+Result<ForeignText> ForeignText::from_memory(std::string bytes, const std::string& label) {
+  ForeignText text;
+  auto kept = std::make_shared<const std::string>(std::move(bytes));
+  text.storage_ = kept;
+  if (const Status status = text.interpret(*kept, label); !status) return status.error();
+  return text;
+}
+
+Result<ForeignText> ForeignText::open(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    return Error{path + ": the file cannot be opened (" + std::strerror(errno) + "); check the path"};
+  }
+  if (S_ISDIR(status.st_mode)) return wrong_kind(path, "a folder", "name a file in it");
+  if (!S_ISREG(status.st_mode)) return wrong_kind(path, "a pipe or a device", "save it to a file first");
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) {
+    return Error{path + ": the file cannot be opened (" + std::strerror(errno) +
+                 "); check its permissions (chmod u+r)"};
+  }
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* const bytes = size > 0 ? ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
+  const int error_number = errno;
+  ::close(descriptor);
+  if (size > 0 && bytes == MAP_FAILED) {
+    return Error{path + ": the file cannot be read (" + std::strerror(error_number) + "); copy it elsewhere"};
+  }
+  ForeignText text;
+  if (size > 0) text.storage_ = std::make_shared<const FileMapping>(bytes, size);
+  const std::string_view mapped(static_cast<const char*>(bytes), size);
+  if (const Status interpreted = text.interpret(mapped, path); !interpreted) return interpreted.error();
+  return text;
+}
+
+std::string ForeignText::to_utf8(std::string_view piece) const {
+  if (encoding_ != TextEncoding::latin1) return std::string(piece);
+  std::string out;
+  for (const char c : piece) append_utf8(out, static_cast<unsigned char>(c));
+  return out;
+}
+
+}  // namespace palpate

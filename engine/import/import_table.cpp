@@ -1,0 +1,425 @@
+#include "engine/import/import_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "engine/base/csv_scanner.h"
+#include "engine/import/table_number.h"
+#include "engine/recording/press_direction.h"
+#include "engine/recording/recording_rules.h"
+
+namespace palpate {
+namespace {
+
+// Steps beyond this are a clock that passed midnight.
+constexpr std::int64_t kHalfDay_s = 43200;
+// Of the first rows, to see what unit the time is in.
+constexpr std::size_t kTimeUnitRows = 200;
+constexpr std::array<Unit, 4> kTimeUnits = {{{"s", Quantity::time, 1.0},
+                                             {"ms", Quantity::time, 1e-3},
+                                             {"us", Quantity::time, 1e-6},
+                                             {"ns", Quantity::time, 1e-9}}};
+
+std::string count_of(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+// Fields of one row that are wanted, in the order of the file; fast, without quotes.
+class RowSplitter {
+ public:
+  explicit RowSplitter(Delimiter delimiter) : delimiter_(delimiter) {}
+
+  // How many fields; `wanted[i]` becomes field `index[i]`, empty when it is missing.
+  void split(std::string_view line, const std::array<std::size_t, kRoles>& index,
+             std::array<std::string_view, kRoles>& wanted) {
+    wanted = {};
+    const bool simple = delimiter_ != Delimiter::blanks && line.find('"') == std::string_view::npos;
+    if (!simple) {
+      split_table_fields(line, delimiter_, fields_);
+      for (std::size_t i = 0; i < kRoles; ++i) {
+        if (index[i] < fields_.size()) wanted[i] = fields_[index[i]];
+      }
+      return;
+    }
+    constexpr char kMarks[] = {',', ';', '\t'};
+    const char mark = kMarks[static_cast<std::size_t>(delimiter_)];
+    const std::size_t last = *std::max_element(index.begin(), index.end(), [](std::size_t a, std::size_t b) {
+      return (a == kNoColumn ? 0 : a + 1) < (b == kNoColumn ? 0 : b + 1);
+    });
+    for (std::size_t column = 0, begin = 0; column <= last; ++column) {
+      const std::size_t end = std::min(line.find(mark, begin), line.size());
+      for (std::size_t i = 0; i < kRoles; ++i) {
+        if (index[i] == column) wanted[i] = line.substr(begin, end - begin);
+      }
+      if (end == line.size()) return;
+      begin = end + 1;
+    }
+  }
+
+  static constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
+
+ private:
+  Delimiter delimiter_;
+  std::vector<std::string_view> fields_;
+};
+
+class Importer {
+ public:
+  Importer(const ForeignText& text, std::string label, const ImportRequest& request)
+      : text_(text), label_(std::move(label)), request_(request) {}
+
+  Result<ImportedTable> run();
+
+ private:
+  Error fail(const std::string& text) const { return Error{label_ + ": " + text}; }
+  Error fail_at(std::uint64_t line, const std::string& text) const {
+    return Error{label_ + ":" + std::to_string(line) + ": " + text};
+  }
+  // ' "Weg [mm]"' for a message, empty without a header.
+  std::string quoted_name(std::size_t role) const {
+    if (table_.layout.names.empty()) return {};
+    return std::string(" \"").append(printable(header_[index_[role]].header)).append("\"");
+  }
+  void note(const std::string& sentence) { table_.notes.push_back(sentence); }
+
+  Status find_columns();
+  Status find_unit_of(std::size_t role);
+  Status find_time_unit();
+  bool parse_time(std::string_view field, TableTime& time) const;
+  bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
+  Error explain_row(std::string_view line, std::uint64_t number) const;
+  Status check_size(const RecordingRow& row, std::uint64_t line) const;
+  Status add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
+  Status read_rows();
+  Error time_fault(std::uint64_t line, double time_s, double last_time_s) const;
+  void describe_time();
+  void advise_flips();
+
+  const ForeignText& text_;
+  std::string label_;
+  const ImportRequest& request_;
+  ImportedTable table_;
+  std::vector<TableColumn> header_;
+  std::array<std::size_t, kRoles> index_{};
+  std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
+  RowSplitter splitter_{Delimiter::comma};
+  std::array<std::string_view, kRoles> fields_;
+  bool clock_ = false;
+  bool has_date_ = false;
+  bool started_ = false;
+  TableTime first_;
+  double last_time_s_ = 0.0;
+  std::int64_t midnights_ = 0;
+};
+
+const Unit* requested_unit(const ImportRequest& request, Quantity quantity) {
+  for (const Unit& unit : request.units) {
+    if (unit.quantity == quantity) return &unit;
+  }
+  return nullptr;
+}
+
+Status Importer::find_columns() {
+  const TableLayout& layout = table_.layout;
+  std::string_view rest = text_.text().substr(layout.data_offset);
+  std::vector<std::string_view> first_row;
+  split_table_fields(take_line(rest), layout.delimiter, first_row);
+  const bool has_header = !layout.names.empty();
+  for (std::size_t i = 0; i < layout.columns; ++i) {
+    TableColumn column;
+    const std::string_view name = has_header ? layout.names[i] : i < first_row.size() ? first_row[i] : "";
+    column.header = text_.to_utf8(name);
+    if (has_header) column.parts = split_name_and_unit(column.header);
+    if (!layout.units.empty() && i < layout.units.size()) {
+      if (const auto unit = find_unit(text_.to_utf8(layout.units[i]))) column.parts.unit = unit;
+    }
+    header_.push_back(std::move(column));
+  }
+  const auto choice = choose_columns(header_, request_.columns, has_header, !request_.rate_Hz);
+  if (!choice) return fail(choice.error().message);
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    index_[role] = choice->column[role].value_or(RowSplitter::kNoColumn);
+    if (!choice->column[role]) continue;
+    table_.columns[role] = {index_[role] + 1, has_header ? header_[index_[role]].header : "", "", choice->guessed[role]};
+  }
+  return {};
+}
+
+// Position and force: what the user says, then the header.
+Status Importer::find_unit_of(std::size_t role) {
+  const Quantity quantity = static_cast<Quantity>(role);
+  const auto& column = header_[index_[role]];
+  const Unit* const said = requested_unit(request_, quantity);
+  const auto& unit = column.parts.unit;
+  if (said == nullptr && unit && unit->quantity != quantity) {
+    return fail("found the unit " + std::string(unit->name) + " in the column \"" + printable(column.header) +
+                "\", expected one of a " + (role == 1 ? "length" : "force") + " for the " + kRoleNames[role] +
+                "; choose another with --columns " + kRoleNames[role] + "=NAME; the columns are " + list_columns(header_));
+  }
+  if (said == nullptr && !unit) {
+    const std::string what = quoted_name(role);
+    return fail("found no unit of the " + std::string(kRoleNames[role]) + what + "; add --units " +
+                (role == 1 ? "mm (or m, cm, um, inch)" : "N (or mN, kN, g, kg, lbf)") +
+                ", with a comma between two units: --units mm,N");
+  }
+  const Unit& chosen = said != nullptr ? *said : *unit;
+  to_si_[role] = chosen.to_si;
+  table_.columns[role].unit = std::string(chosen.name);
+  return {};
+}
+
+bool Importer::parse_time(std::string_view field, TableTime& time) const {
+  return clock_ ? parse_clock_time(field, time) : parse_number_time(field, table_.layout.decimal, time);
+}
+
+// A clock, a unit from the header or the user, or the only unit in which the rate is
+// that of a recording.
+Status Importer::find_time_unit() {
+  std::string_view rest = text_.text().substr(table_.layout.data_offset);
+  std::vector<double> steps;
+  TableTime last;
+  for (std::size_t row = 0; row < kTimeUnitRows && !rest.empty(); ++row) {
+    splitter_.split(take_line(rest), index_, fields_);
+    TableTime time;
+    if (row == 0) {
+      clock_ = !parse_number_time(fields_[0], table_.layout.decimal, time) && parse_clock_time(fields_[0], time);
+      has_date_ = clock_ && has_date(fields_[0]);
+    }
+    if (!parse_time(fields_[0], time)) break;
+    const double step = static_cast<double>(time.whole - last.whole) + (time.fraction - last.fraction);
+    if (row > 0 && step > 0.0) steps.push_back(step);
+    last = time;
+  }
+  ImportedColumn& column = table_.columns[0];
+  if (clock_) {
+    column.unit = "clock";
+    return {};
+  }
+  const Unit* const said = requested_unit(request_, Quantity::time);
+  const auto& unit = header_[index_[0]].parts.unit;
+  if (said != nullptr || (unit && unit->quantity == Quantity::time)) {
+    const Unit& chosen = said != nullptr ? *said : *unit;
+    to_si_[0] = chosen.to_si;
+    column.unit = std::string(chosen.name);
+    return {};
+  }
+  double step = 0.0;
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    step = *middle;
+  }
+  std::vector<const Unit*> possible;
+  for (const Unit& candidate : kTimeUnits) {
+    const double rate_Hz = 1.0 / (step * candidate.to_si);
+    const bool in_range = rate_Hz >= kMinimumRate_Hz * (1.0 - kRateTolerance) &&
+                          rate_Hz <= kMaximumRate_Hz * (1.0 + kRateTolerance);
+    if (step > 0.0 && in_range) possible.push_back(&candidate);
+  }
+  if (possible.size() != 1) {
+    const std::string choices = possible.empty() ? "s, ms, us or ns"
+                                                 : std::string(possible[0]->name) + " or --units " + std::string(possible[1]->name);
+    return fail("found no unit of the time" + quoted_name(0) + " and steps of " + short_number(step) + "; add --units " +
+                choices + ", or --rate HZ if the rows are evenly spaced");
+  }
+  to_si_[0] = possible.front()->to_si;
+  column.unit = std::string(possible.front()->name);
+  note("the header has no unit of the time: taken as " + column.unit + ", the only one in which its steps of " +
+       short_number(step) + " are a rate of 10 Hz to 20 kHz");
+  return {};
+}
+
+bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& row) {
+  splitter_.split(line, index_, fields_);
+  if (!request_.rate_Hz && !parse_time(fields_[0], time)) return false;
+  const char decimal = table_.layout.decimal;
+  if (!parse_table_number(fields_[1], decimal, row.position_m) || !parse_table_number(fields_[2], decimal, row.force_N)) {
+    return false;
+  }
+  row.position_m *= to_si_[1];
+  row.force_N *= to_si_[2];
+  return true;
+}
+
+// The row that could not be read although later rows can.
+Error Importer::explain_row(std::string_view line, std::uint64_t number) const {
+  RowSplitter splitter(table_.layout.delimiter);
+  std::array<std::string_view, kRoles> fields;
+  splitter.split(line, index_, fields);
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    if (index_[role] == RowSplitter::kNoColumn) continue;
+    TableTime time;
+    double value = 0.0;
+    const bool good = role == 0 ? parse_time(fields[0], time) : parse_table_number(fields[role], table_.layout.decimal, value);
+    if (good) continue;
+    const std::string_view field = trimmed(fields[role]);
+    const std::string found = field.empty() ? "an empty field" : std::string("\"").append(printable(text_.to_utf8(field))).append("\"");
+    return fail_at(number, "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
+                               ", expected the " + kRoleNames[role] + "; remove the row or repair the value");
+  }
+  return fail_at(number, "found a row that cannot be read; remove it");
+}
+
+Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
+  const bool position_ok = std::abs(row.position_m) <= kMaximumPosition_m;
+  if (position_ok && std::abs(row.force_N) <= kMaximumForce_N) return {};
+  const std::size_t role = position_ok ? 2 : 1;
+  return fail_at(line, std::string("found a ") + kRoleNames[role] + " of " +
+                           short_number(position_ok ? row.force_N : row.position_m) + (position_ok ? " N" : " m") +
+                           " (column " + std::to_string(index_[role] + 1) + quoted_name(role) + " in " +
+                           table_.columns[role].unit + "), expected at most " + (position_ok ? "1000000 N" : "1 m") +
+                           "; check the unit and give it with --units " + (position_ok ? "mN" : "mm") +
+                           ", or choose another column");
+}
+
+Error Importer::time_fault(std::uint64_t line, double time_s, double last_time_s) const {
+  const std::string what = time_s == last_time_s ? "found the time of the row before once more"
+                                                 : "found a time " + short_number(last_time_s - time_s) + " s before that of the row above";
+  // The rate of the rows up to here, which is the best that is known of them.
+  const std::size_t rows = table_.recording.rows.size();
+  const std::string rate = rows > 2 && last_time_s > 0.0
+                               ? short_number(std::round(static_cast<double>(rows - 1) / last_time_s))
+                               : std::string("HZ");
+  const std::string advice = time_s == last_time_s ? "if the rows are evenly spaced, add --rate " + rate +
+                                                         " (the mean rate so far), or remove the repeated row"
+                                                   : "split the file there, or sort its rows; if the rows are evenly spaced, add --rate " + rate;
+  return fail_at(line, what + quoted_name(0) + ", expected later times in every row; " + advice);
+}
+
+Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
+  if (request_.rate_Hz) {
+    row.time_s = static_cast<double>(table_.recording.rows.size()) / *request_.rate_Hz;
+    return {};
+  }
+  if (!started_) first_ = time;
+  const auto since_first = [&] {
+    return (static_cast<double>(time.whole - first_.whole + midnights_ * 2 * kHalfDay_s) + (time.fraction - first_.fraction)) *
+           to_si_[0];
+  };
+  row.time_s = since_first();
+  if (started_ && clock_ && !has_date_ && last_time_s_ - row.time_s > static_cast<double>(kHalfDay_s)) {
+    ++midnights_;
+    row.time_s = since_first();
+    note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
+  }
+  if (started_ && !(row.time_s > last_time_s_)) return time_fault(line, row.time_s, last_time_s_);
+  started_ = true;
+  last_time_s_ = row.time_s;
+  return {};
+}
+
+// Every row in one pass. Lines that are no rows may stand at the end only.
+Status Importer::read_rows() {
+  std::string_view rest = text_.text().substr(table_.layout.data_offset);
+  auto& rows = table_.recording.rows;
+  std::uint64_t number = table_.layout.data_line - 1;
+  std::uint64_t comments = 0;
+  std::uint64_t footer_line = 0;
+  std::string_view footer;
+  std::uint64_t footer_lines = 0;
+  if (!request_.rate_Hz) table_.columns[0].number = index_[0] + 1;
+  while (!rest.empty()) {
+    const std::string_view line = take_line(rest);
+    ++number;
+    TableTime time;
+    RecordingRow row;
+    if (!parse_row(line, time, row)) {
+      const std::string_view bare = trimmed(line);
+      if (bare.empty()) continue;
+      if (bare.starts_with('#')) {
+        ++comments;
+        continue;
+      }
+      if (footer_line == 0) {
+        footer_line = number;
+        footer = line;
+      }
+      ++footer_lines;
+      continue;
+    }
+    if (footer_line > 0) return explain_row(footer, footer_line);
+    if (request_.flip_position) row.position_m = -row.position_m;
+    if (request_.flip_force) row.force_N = -row.force_N;
+    if (const Status status = check_size(row, number); !status) return status;
+    if (const Status status = add_time(time, number, row); !status) return status;
+    rows.push_back(row);
+  }
+  if (comments > 0) note(count_of(comments, "comment line") + " between the rows left out");
+  if (footer_lines > 0) {
+    note(count_of(footer_lines, "line") + " behind the table left out, from line " + std::to_string(footer_line) + " \"" +
+         printable(text_.to_utf8(footer)) + "\"");
+  }
+  return {};
+}
+
+void Importer::describe_time() {
+  if (request_.rate_Hz) return note("time from --rate " + short_number(*request_.rate_Hz) + ": rows evenly spaced");
+  if (clock_) return note(has_date_ ? "times are dates: counted from the first row" : "times are times of day: counted from the first row");
+  const double start_s = (static_cast<double>(first_.whole) + first_.fraction) * to_si_[0];
+  if (start_s != 0.0) note("time began at " + short_number(start_s) + " s and begins at 0 now");
+}
+
+void Importer::advise_flips() {
+  const PressDirection direction = find_press_direction(table_.recording.rows);
+  if (!direction.known) return;
+  const std::string forces = std::string(" (") + short_number(direction.shallow_force_N) + " N in the air or at the surface, " +
+                             short_number(direction.deep_force_N) + " N at the deepest)";
+  if (direction.position_flipped) {
+    note("the force grows while the position falls" + forces +
+         ": position must be positive inside the block; import again with --flip position");
+  }
+  if (direction.force_flipped) {
+    note("the force is negative in contact" + forces +
+         ": it must be positive when the block pushes the tool out; import again with --flip force");
+  }
+}
+
+Result<ImportedTable> Importer::run() {
+  auto layout = find_table_layout(text_.text(), request_.layout);
+  if (!layout) return fail(layout.error().message);
+  table_.layout = std::move(*layout);
+  table_.encoding = text_.encoding();
+  splitter_ = RowSplitter(table_.layout.delimiter);
+  if (const Status status = find_columns(); !status) return status.error();
+  if (!request_.rate_Hz) {
+    if (const Status status = find_time_unit(); !status) return status.error();
+  }
+  for (const std::size_t role : {1u, 2u}) {
+    if (const Status status = find_unit_of(role); !status) return status.error();
+  }
+  if (const Status status = read_rows(); !status) return status.error();
+  if (table_.recording.rows.size() < kRecordingMinimumRows) {
+    return fail("found " + count_of(table_.recording.rows.size(), "row") + " of numbers, expected at least " +
+                std::to_string(kRecordingMinimumRows) + "; record for longer");
+  }
+  describe_time();
+  advise_flips();
+  table_.layout.names.clear();
+  table_.layout.units.clear();
+  table_.recording.name = std::filesystem::path(label_).stem().string();
+  return std::move(table_);
+}
+
+}  // namespace
+
+Result<ImportedTable> import_table(const ForeignText& text, const std::string& label, const ImportRequest& request) {
+  return Importer(text, label, request).run();
+}
+
+Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request) {
+  const auto text = ForeignText::open(path);
+  if (!text) return text.error();
+  return import_table(*text, path, request);
+}
+
+}  // namespace palpate

@@ -1,0 +1,349 @@
+#include "engine/import/table_layout.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/base/csv_scanner.h"
+#include "engine/import/table_number.h"
+#include "engine/import/units.h"
+
+namespace palpate {
+namespace {
+
+// Preambles of testing machines are some hundred lines long at most.
+constexpr std::size_t kSampleLines = 2000;
+constexpr std::size_t kSampleBytes = 1024 * 1024;
+// A header stands at most so many lines above the numbers: units, a type, a rule.
+constexpr std::size_t kHeaderReach = 6;
+constexpr std::array<Delimiter, 4> kDelimiters = {Delimiter::tab, Delimiter::semicolon, Delimiter::comma,
+                                                  Delimiter::blanks};
+constexpr std::array<std::string_view, 4> kDelimiterNames = {"comma", "semicolon", "tab", "blanks"};
+
+struct SampleLine {
+  std::string_view text;
+  std::size_t offset = 0;
+};
+
+std::vector<SampleLine> sample_lines(std::string_view text) {
+  std::vector<SampleLine> lines;
+  const char* const begin = text.data();
+  const bool cut = text.size() > kSampleBytes;
+  text = text.substr(0, kSampleBytes);
+  while (!text.empty() && lines.size() < kSampleLines) {
+    const auto offset = static_cast<std::size_t>(text.data() - begin);
+    const std::string_view line = take_line(text);
+    if (text.empty() && cut) break;  // the sample ends inside this line
+    lines.push_back({line, offset});
+  }
+  return lines;
+}
+
+std::string_view unquoted(std::string_view field) {
+  field = trimmed(field);
+  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') return trimmed(field.substr(1, field.size() - 2));
+  return field;
+}
+
+bool is_cell_of_numbers(std::string_view field, char decimal) {
+  double value = 0.0;
+  TableTime time;
+  return parse_table_number(field, decimal, value) || is_missing_value(field) || has_date(field) ||
+         parse_clock_time(field, time);
+}
+
+// A field that begins as a number and is none: the sign of a wrong reading.
+bool is_mangled(std::string_view field) {
+  return field.find_first_of("0123456789") < 2 && field.find_first_not_of("0123456789.,;+-eE \t") == std::string_view::npos;
+}
+
+struct RowLooks {
+  std::size_t fields = 0;
+  std::size_t numbers = 0;
+  std::size_t mangled = 0;
+  bool is_data() const { return numbers >= 2 && 2 * numbers >= fields; }
+};
+
+RowLooks look_at(std::string_view line, Delimiter delimiter, char decimal, std::vector<std::string_view>& fields) {
+  split_table_fields(line, delimiter, fields);
+  RowLooks looks;
+  looks.fields = fields.size();
+  for (const std::string_view field : fields) {
+    if (is_cell_of_numbers(field, decimal)) {
+      ++looks.numbers;
+    } else if (is_mangled(field)) {
+      ++looks.mangled;
+    }
+  }
+  return looks;
+}
+
+// The table as one reading of the sample sees it.
+struct Reading {
+  TableLayout layout;
+  std::size_t first = 0;  // index of its first line in the sample
+  std::size_t rows = 0;
+  std::size_t numbers = 0;
+  std::size_t mangled = 0;
+
+  bool better_than(const Reading& other) const {
+    if ((mangled == 0) != (other.mangled == 0)) return mangled == 0;
+    return numbers > other.numbers;
+  }
+};
+
+std::size_t most_frequent(const std::vector<std::size_t>& counts) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    if (counts[i] > counts[best]) best = i;
+  }
+  return best;
+}
+
+Reading read_as(const std::vector<SampleLine>& lines, Delimiter delimiter, char decimal) {
+  Reading best;
+  std::vector<std::string_view> fields;
+  for (std::size_t i = 0; i < lines.size();) {
+    Reading run;
+    run.first = i;
+    std::vector<std::size_t> counts;
+    for (; i < lines.size(); ++i) {
+      if (trimmed(lines[i].text).empty()) continue;
+      const RowLooks looks = look_at(lines[i].text, delimiter, decimal, fields);
+      if (!looks.is_data()) break;
+      if (looks.fields >= counts.size()) counts.resize(looks.fields + 1);
+      ++counts[looks.fields];
+      ++run.rows;
+      run.numbers += looks.numbers;
+      run.mangled += looks.mangled;
+    }
+    run.layout.columns = most_frequent(counts);
+    if (run.numbers > best.numbers) best = run;
+    ++i;
+  }
+  best.layout.delimiter = delimiter;
+  best.layout.decimal = decimal;
+  return best;
+}
+
+// The first lines of a run that have fewer fields than the others are the last of a
+// preamble: "Rate 1000".
+void skip_short_rows(Reading& reading, const std::vector<SampleLine>& lines) {
+  std::vector<std::string_view> fields;
+  const std::size_t end = std::min(lines.size(), reading.first + kHeaderReach);
+  std::size_t first = reading.first;
+  for (std::size_t i = reading.first; i < end; ++i) {
+    split_table_fields(lines[i].text, reading.layout.delimiter, fields);
+    first = i;
+    if (fields.size() >= reading.layout.columns) break;
+  }
+  reading.first = first;
+  reading.layout.data_line = first + 1;
+  reading.layout.data_offset = lines[first].offset;
+}
+
+// Names may be written behind the mark of a comment.
+std::string_view without_comment_mark(std::string_view line) {
+  line = trimmed(line);
+  const std::size_t begin = line.find_first_not_of("#%/");
+  // "%time" is a name of ROS, and a lone mark is a name of a column of row numbers.
+  if (begin == std::string_view::npos || (begin == 1 && line.front() == '%' && line.find_first_of(" \t") > 5)) return line;
+  return trimmed(line.substr(begin));
+}
+
+// Fields of a header written with blanks: units in brackets belong to the name before.
+void join_bracketed(std::vector<std::string_view>& fields) {
+  std::size_t kept = 0;
+  for (const std::string_view field : fields) {
+    if (kept > 0 && (field.front() == '[' || field.front() == '(')) {
+      std::string_view& last = fields[kept - 1];
+      last = std::string_view(last.data(), static_cast<std::size_t>(field.data() + field.size() - last.data()));
+    } else {
+      fields[kept++] = field;
+    }
+  }
+  fields.resize(kept);
+}
+
+void split_at_wide_gaps(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  while (!(line = trimmed(line)).empty()) {
+    const std::size_t end = std::min(line.find("  "), line.find('\t'));
+    fields.push_back(trimmed(line.substr(0, end)));
+    line.remove_prefix(std::min(end, line.size()));
+  }
+}
+
+bool fits(const std::vector<std::string_view>& fields, std::size_t columns) {
+  return fields.size() >= columns && columns > 0;
+}
+
+// Fields of a line above the table, separated as the table or, failing that, in any
+// way that gives as many fields as the table has columns.
+bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
+  const std::string_view bare = without_comment_mark(line);
+  for (const std::string_view text : {line, bare}) {
+    split_table_fields(text, layout.delimiter, fields);
+    if (layout.delimiter != Delimiter::blanks) {
+      if (fits(fields, layout.columns)) return true;
+      continue;
+    }
+    if (fields.size() == layout.columns) return true;
+    join_bracketed(fields);
+    if (fields.size() == layout.columns) return true;
+    split_at_wide_gaps(text, fields);
+    if (fields.size() == layout.columns) return true;
+  }
+  for (const Delimiter other : kDelimiters) {
+    split_table_fields(bare, other, fields);
+    if (fields.size() == layout.columns) return true;
+  }
+  return false;
+}
+
+// As R writes tables: the column of row numbers has no name, so the header is one
+// shorter than the rows.
+bool split_header_of_row_names(std::string_view line, const Reading& reading, const std::vector<SampleLine>& lines,
+                               std::vector<std::string_view>& fields) {
+  double number = 0.0;
+  split_table_fields(lines[reading.first].text, reading.layout.delimiter, fields);
+  if (fields.empty() || !parse_table_number(fields.front(), '.', number) || number != 1.0) return false;
+  split_table_fields(line, reading.layout.delimiter, fields);
+  if (fields.size() + 1 != reading.layout.columns) return false;
+  fields.insert(fields.begin(), std::string_view());
+  return true;
+}
+
+bool is_units_row(const std::vector<std::string_view>& fields) {
+  std::size_t units = 0;
+  for (const std::string_view field : fields) {
+    if (field.empty() || field == "-" || field == "[]" || field == "[-]") continue;
+    const bool bracketed = field.size() > 2 && (field.front() == '[' || field.front() == '(');
+    if (!find_unit(field) && !bracketed && field.size() > 3) return false;
+    if (find_unit(field)) ++units;
+  }
+  return units >= 2;
+}
+
+bool is_names_row(const std::vector<std::string_view>& fields) {
+  std::size_t names = 0;
+  for (const std::string_view field : fields) {
+    double value = 0.0;
+    const bool has_letter = std::any_of(field.begin(), field.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+    });
+    if (has_letter && !parse_table_number(field, '.', value)) ++names;
+  }
+  return names >= 2;
+}
+
+void find_header(Reading& reading, const std::vector<SampleLine>& lines) {
+  TableLayout& layout = reading.layout;
+  std::vector<std::string_view> fields;
+  std::size_t seen = 0;
+  for (std::size_t i = reading.first; i-- > 0 && seen < kHeaderReach;) {
+    if (trimmed(lines[i].text).empty()) continue;
+    ++seen;
+    if (!split_header(lines[i].text, layout, fields) && !split_header_of_row_names(lines[i].text, reading, lines, fields)) {
+      continue;
+    }
+    fields.resize(layout.columns);
+    if (layout.units.empty() && is_units_row(fields)) {
+      layout.units = fields;
+    } else if (is_names_row(fields)) {
+      layout.names = fields;
+      layout.header_line = i + 1;
+      return;
+    }
+  }
+}
+
+// Whether a comma in the numbers can be nothing but a decimal mark: not followed by
+// exactly three digits, or behind a lone 0 or more than three digits.
+bool proves_decimal_comma(std::string_view field) {
+  const std::size_t comma = field.find(',');
+  if (comma == std::string_view::npos) return false;
+  std::string_view whole = field.substr(0, comma);
+  if (!whole.empty() && (whole.front() == '-' || whole.front() == '+')) whole.remove_prefix(1);
+  const std::size_t end = std::min(field.find_first_not_of("0123456789", comma + 1), field.size());
+  return end - comma - 1 != 3 || whole.empty() || whole.front() == '0' || whole.size() > 3;
+}
+
+Status check_decimal_comma(const Reading& reading, const std::vector<SampleLine>& lines) {
+  std::vector<std::string_view> fields;
+  std::string_view example;
+  for (std::size_t i = reading.first; i < lines.size(); ++i) {
+    split_table_fields(lines[i].text, reading.layout.delimiter, fields);
+    for (const std::string_view field : fields) {
+      double value = 0.0;
+      if (!parse_table_number(field, ',', value) || field.find(',') == std::string_view::npos) continue;
+      if (proves_decimal_comma(field)) return {};
+      example = field;
+    }
+  }
+  if (example.empty()) return {};
+  return Error{"found numbers such as " + std::string(example) +
+               ", whose comma may be a decimal mark or a thousands mark; add --decimal comma, or export the "
+                   "numbers without thousands marks"};
+}
+
+}  // namespace
+
+std::string_view delimiter_name(Delimiter delimiter) { return kDelimiterNames[static_cast<std::size_t>(delimiter)]; }
+
+std::optional<Delimiter> delimiter_from_name(std::string_view name) {
+  const auto found = std::find(kDelimiterNames.begin(), kDelimiterNames.end(), name);
+  if (found == kDelimiterNames.end()) return std::nullopt;
+  return static_cast<Delimiter>(found - kDelimiterNames.begin());
+}
+
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  while (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<std::string_view>& fields) {
+  constexpr std::string_view kMarks[] = {",", ";", "\t", " \t"};
+  const std::string_view marks = kMarks[static_cast<std::size_t>(delimiter)];
+  fields.clear();
+  if (delimiter == Delimiter::blanks) line = trimmed(line);
+  for (std::size_t begin = 0; begin <= line.size();) {
+    std::size_t end = begin;
+    const std::size_t text = delimiter == Delimiter::blanks ? begin : line.find_first_not_of(" ", begin);
+    if (text < line.size() && line[text] == '"') end = std::min(line.find('"', text + 1), line.size());
+    end = std::min(line.find_first_of(marks, end), line.size());
+    fields.push_back(unquoted(line.substr(begin, end - begin)));
+    begin = end + 1;
+    if (delimiter == Delimiter::blanks) begin = std::min(line.find_first_not_of(marks, begin), line.size() + 1);
+  }
+  while (!fields.empty() && fields.back().empty()) fields.pop_back();
+}
+
+Result<TableLayout> find_table_layout(std::string_view text, const LayoutRequest& request) {
+  const std::vector<SampleLine> lines = sample_lines(text);
+  Reading best;
+  for (const Delimiter delimiter : kDelimiters) {
+    if (request.delimiter && *request.delimiter != delimiter) continue;
+    for (const char decimal : {'.', ','}) {
+      if (request.decimal && *request.decimal != decimal) continue;
+      if (delimiter == Delimiter::comma && decimal == ',') continue;
+      const Reading reading = read_as(lines, delimiter, decimal);
+      if (reading.rows > 0 && (best.rows == 0 || reading.better_than(best))) best = reading;
+    }
+  }
+  if (best.rows == 0) {
+    return Error{"found no rows of numbers in the first " + std::to_string(lines.size()) +
+                 (lines.size() == 1 ? " line" : " lines") +
+                 ", expected a table with columns of time, position and force; export the recording as CSV"};
+  }
+  skip_short_rows(best, lines);
+  find_header(best, lines);
+  if (best.layout.decimal == ',' && !request.decimal) {
+    if (const Status status = check_decimal_comma(best, lines); !status) return status.error();
+  }
+  return best.layout;
+}
+
+}  // namespace palpate

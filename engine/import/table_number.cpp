@@ -1,0 +1,200 @@
+#include "engine/import/table_number.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+#include "engine/base/csv_scanner.h"
+#include "engine/import/units.h"
+
+namespace palpate {
+namespace {
+
+// Longer cells are no numbers; doubles written out take at most 24 characters.
+constexpr std::size_t kLongestNumber = 64;
+constexpr std::int64_t kSecondsPerDay = 86400;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool parse_plain(const char* begin, const char* end, double& value) {
+  if (begin != end && *begin == '+') ++begin;
+  if (begin == end || !(is_digit(*begin) || *begin == '.' || *begin == '-')) return false;
+  const auto parsed = std::from_chars(begin, end, value);
+  return parsed.ec == std::errc() && parsed.ptr == end && std::isfinite(value);
+}
+
+bool is_thousands_mark(char c, char decimal) {
+  return c == '\'' || c == ' ' || (c == ',' && decimal == '.') || (c == '.' && decimal == ',');
+}
+
+// "1,234.5" without its thousands marks, into `buffer`; 0 unless they are
+// unmistakable.
+std::size_t without_thousands(std::string_view text, char decimal, char* buffer) {
+  std::size_t length = 0;
+  std::size_t marks = 0;
+  std::size_t digits = 0;  // since the last mark
+  char mark = '\0';
+  bool behind_decimal = false;
+  for (const char c : text) {
+    if (!behind_decimal && is_thousands_mark(c, decimal)) {
+      if ((mark != '\0' && c != mark) || digits == 0 || digits > 3 || (marks > 0 && digits != 3)) return 0;
+      mark = c;
+      ++marks;
+      digits = 0;
+      continue;
+    }
+    const bool ends_groups = c == decimal;
+    if (ends_groups && marks > 0 && digits != 3) return 0;
+    behind_decimal = behind_decimal || ends_groups;
+    if (!behind_decimal && is_digit(c)) ++digits;
+    buffer[length++] = ends_groups ? '.' : c;
+  }
+  if (!behind_decimal && digits != 3) return 0;
+  const bool unmistakable = marks >= 2 || (marks == 1 && (behind_decimal || mark == '\''));
+  return unmistakable ? length : 0;
+}
+
+// Two to four digits at the start of `text`, which loses them.
+bool take_digits(std::string_view& text, std::size_t most, int& value) {
+  const auto parsed = std::from_chars(text.data(), text.data() + std::min(text.size(), most), value);
+  if (text.empty() || !is_digit(text.front()) || parsed.ec != std::errc()) return false;
+  text.remove_prefix(static_cast<std::size_t>(parsed.ptr - text.data()));
+  return true;
+}
+
+bool take(std::string_view& text, std::string_view any_of) {
+  if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+// Days since 1970 of the proleptic Gregorian calendar. Source: Hinnant (2021),
+// "chrono-compatible low-level date algorithms", days_from_civil.
+std::int64_t days_since_1970(int year, int month, int day) {
+  const int y = month <= 2 ? year - 1 : year;
+  const int era = (y >= 0 ? y : y - 399) / 400;
+  const int year_of_era = y - era * 400;
+  const int day_of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
+  const int day_of_era = year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year;
+  return static_cast<std::int64_t>(era) * 146097 + day_of_era - 719468;
+}
+
+// A date at the start of `text`, which loses it. Only the difference between rows
+// counts, so that of 3/5/2024 either reading will do.
+bool take_date(std::string_view& text, std::int64_t& days) {
+  std::string_view rest = text;
+  std::array<int, 3> parts{};
+  if (!take_digits(rest, 4, parts[0])) return false;
+  if (rest.empty() || (rest.front() != '-' && rest.front() != '/' && rest.front() != '.')) return false;
+  const char separator = rest.front();
+  const std::string_view mark(&separator, 1);
+  if (!take(rest, mark) || !take_digits(rest, 2, parts[1]) || !take(rest, mark) || !take_digits(rest, 4, parts[2])) {
+    return false;
+  }
+  if (parts[0] < 32) std::swap(parts[0], parts[2]);
+  if (separator == '/' && parts[2] > 12) std::swap(parts[1], parts[2]);
+  if (parts[1] > 12) std::swap(parts[1], parts[2]);
+  if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
+  days = days_since_1970(parts[0], parts[1], parts[2]);
+  text = rest;
+  return true;
+}
+
+}  // namespace
+
+bool parse_table_number(std::string_view text, char decimal, double& value) {
+  text = trimmed(text);
+  if (text.empty() || text.size() > kLongestNumber) return false;
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  if (decimal == '.') {
+    if (parse_plain(begin, end, value)) return true;
+  } else {
+    std::array<char, kLongestNumber> buffer;
+    bool has_point = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      has_point = has_point || text[i] == '.';
+      buffer[i] = text[i] == ',' ? '.' : text[i];
+    }
+    if (!has_point && parse_plain(buffer.data(), buffer.data() + text.size(), value)) return true;
+  }
+  const std::string_view body = text.front() == '-' || text.front() == '+' ? text.substr(1) : text;
+  if (body.empty() || !is_digit(body.front())) return false;
+  std::array<char, kLongestNumber> buffer;
+  const std::size_t length = without_thousands(body, decimal, buffer.data());
+  if (length == 0 || !parse_plain(buffer.data(), buffer.data() + length, value)) return false;
+  if (text.front() == '-') value = -value;
+  return true;
+}
+
+bool is_missing_value(std::string_view text) {
+  const std::string lower = lower_ascii(trimmed(text));
+  for (const char* const word : {"nan", "-nan", "inf", "-inf", "+inf", "1.#qnan", "n/a", "na", "null", "none", "-"}) {
+    if (lower == word) return true;
+  }
+  return false;
+}
+
+bool parse_number_time(std::string_view text, char decimal, TableTime& time) {
+  text = trimmed(text);
+  const auto whole = std::from_chars(text.data(), text.data() + text.size(), time.whole);
+  const std::string_view rest = text.substr(static_cast<std::size_t>(whole.ptr - text.data()));
+  time.fraction = 0.0;
+  if (whole.ec == std::errc() && rest.empty()) return true;
+  if (whole.ec == std::errc() && time.whole > 0 && rest.front() == decimal &&
+      rest.find_first_not_of("0123456789", 1) == std::string_view::npos) {
+    return rest.size() == 1 || parse_table_number(std::string("0").append(rest), decimal, time.fraction);
+  }
+  double value = 0.0;
+  if (!parse_table_number(text, decimal, value)) return false;
+  constexpr double kLargest = 9e18;
+  if (std::abs(value) > kLargest) return false;
+  time.whole = static_cast<std::int64_t>(std::floor(value));
+  time.fraction = value - std::floor(value);
+  return true;
+}
+
+bool has_date(std::string_view text) {
+  text = trimmed(text);
+  std::int64_t days = 0;
+  return take_date(text, days);
+}
+
+bool parse_clock_time(std::string_view text, TableTime& time) {
+  text = trimmed(text);
+  std::int64_t days = 0;
+  if (take_date(text, days)) {
+    if (text.empty()) return false;
+    if (!take(text, "T ")) return false;
+    text = trimmed(text);
+  }
+  int first = 0;
+  int second = 0;
+  int third = 0;
+  if (!take_digits(text, 4, first) || !take(text, ":") || !take_digits(text, 2, second) || second > 59) return false;
+  const bool has_hours = take(text, ":");
+  if (has_hours && (!take_digits(text, 2, third) || third > 60)) return false;
+  time.fraction = 0.0;
+  if (text.starts_with('.') || text.starts_with(',')) {
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());
+    const std::string digits = std::string("0.").append(text.substr(1, end - 1));
+    if (end > 1) std::from_chars(digits.data(), digits.data() + digits.size(), time.fraction);
+    text.remove_prefix(end);
+  }
+  const std::int64_t hours = has_hours ? first : 0;
+  time.whole = days * kSecondsPerDay + hours * 3600 + (has_hours ? second : first) * 60 + (has_hours ? third : second);
+  text = trimmed(text);
+  const std::string half = lower_ascii(text.substr(0, 2));
+  if (half == "am" || half == "pm") {
+    if (half == "pm" && first < 12) time.whole += kSecondsPerDay / 2;
+    if (half == "am" && first == 12) time.whole -= kSecondsPerDay / 2;
+    text.remove_prefix(2);
+  }
+  // A zone is the same in every row: "Z", "+01:00".
+  return text.empty() || text == "Z" || text.front() == '+' || text.front() == '-';
+}
+
+}  // namespace palpate

@@ -1,0 +1,334 @@
+#include "models/check/check_recording.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "engine/recording/press_direction.h"
+#include "engine/tick/sensor_identification.h"
+#include "models/check/force_lag.h"
+#include "models/check/recording_measures.h"
+#include "models/training/surface_estimate.h"
+
+namespace palpate {
+namespace {
+
+// A range of forces below this, or below five deviations of its noise, is no press.
+constexpr double kLeastForce_N = 0.01;
+constexpr double kLeastTravel_m = 10e-6;
+// A hand presses with some 100 N at most; stiffer than 15 kN/m is harder than any
+// haptic device renders (the stiff block of the scenes has 3 kN/m).
+constexpr double kStrangeForce_N = 100.0;
+constexpr double kImpossibleForce_N = 400.0;
+constexpr double kStrangeStiffness_N_per_m = 15e3;
+constexpr double kImpossibleStiffness_N_per_m = 40e3;
+constexpr double kStrangeDepth_m = 0.05;
+constexpr double kImpossibleDepth_m = 0.2;
+constexpr double kGap_s = 0.25;
+constexpr double kGapSteps = 20.0;
+constexpr double kClippedTravelShare = 0.015;
+constexpr std::size_t kClippedRows = 5;
+constexpr double kLeastLag_s = 0.01;
+// The residual without the lag must be this much larger: less may be the material.
+constexpr double kLagImprovement = 0.8;
+constexpr double kMonotonicShare = 0.1;
+constexpr double kRelaxationsToSee = 3.0;
+constexpr double kSlowRate_Hz = 100.0;
+constexpr double kLargeOffset_m = 0.2e-3;
+constexpr double kSurfaceDrift_m = 0.1e-3;
+constexpr int kFewStrokes = 5;
+constexpr double kLeastCell_s = 0.05;
+
+template <typename... Values>
+std::string words(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+class Checker {
+ public:
+  Checker(const Recording& recording, const CheckRequest& request) : recording_(recording), request_(request) {}
+  RecordingCheck run();
+
+ private:
+  void add(const char* code, Severity severity, double value, std::string text, std::string advice) {
+    check_.findings.push_back({code, severity, value, std::move(text), std::move(advice)});
+  }
+  bool check_signal();
+  void check_signs();
+  void check_units();
+  void check_sampling();
+  void check_sensors();
+  void check_zero();
+  void check_clipping();
+  void check_lag();
+  void check_surface();
+  void check_exploration();
+  void check_memory();
+  void find_noise_floor();
+
+  double force_range_N() const { return measures_.highest_force_N - measures_.lowest_force_N; }
+  double travel_m() const { return measures_.highest_position_m - measures_.lowest_position_m; }
+  double depth_m() const { return measures_.highest_position_m - check_.surface_offset_m; }
+
+  const Recording& recording_;
+  const CheckRequest& request_;
+  RecordingCheck check_;
+  RecordingMeasures measures_;
+  SurfaceEstimate surface_;
+  double noise_N_ = 0.0;
+};
+
+// Without force or motion there is nothing to say about the rest.
+bool Checker::check_signal() {
+  const bool force = force_range_N() > std::max(kLeastForce_N, 5.0 * noise_N_);
+  const bool motion = travel_m() > kLeastTravel_m;
+  if (!force) {
+    add("no_force", Severity::fatal, force_range_N(),
+        words("the force changes by %.3g N over the whole recording, its noise is %.3g N", force_range_N(), noise_N_),
+        "check the sensor's cable and which column was recorded as force_N");
+  }
+  if (!motion) {
+    add("no_motion", Severity::fatal, travel_m(), words("the position changes by %.3g mm over the whole recording", 1e3 * travel_m()),
+        "check the encoder and which column was recorded as position_m");
+  }
+  return force && motion;
+}
+
+void Checker::check_signs() {
+  const PressDirection direction = find_press_direction(recording_.rows);
+  const double change_N = direction.deep_force_N - direction.shallow_force_N;
+  if (!direction.known || std::abs(change_N) < std::max(2.0 * kLeastForce_N, 5.0 * noise_N_)) return;
+  if (direction.position_flipped) {
+    add("position_sign", Severity::fatal, change_N,
+        words("the force grows as the position falls: %.3g N at the lowest position, %.3g N at the highest",
+              direction.deep_force_N, direction.shallow_force_N),
+        "position_m must be positive inside the block: turn its sign round (palpate import --flip position)");
+  }
+  if (direction.force_flipped) {
+    add("force_sign", Severity::fatal, change_N,
+        words("the force falls from %.3g N at the surface to %.3g N at the deepest", direction.shallow_force_N,
+              direction.deep_force_N),
+        "force_N must be positive when the block pushes the tool out: turn its sign round (palpate import --flip force)");
+  }
+}
+
+void Checker::check_units() {
+  const double peak_N = std::max(std::abs(measures_.highest_force_N), std::abs(measures_.lowest_force_N));
+  if (travel_m() > kStrangeDepth_m && depth_m() > kStrangeDepth_m) {
+    add("position_unit", depth_m() > kImpossibleDepth_m ? Severity::fatal : Severity::warning, depth_m(),
+        words("the tool goes %.3g m deep", depth_m()),
+        "position_m must be in metres: if it is in millimetres, divide by 1000 (palpate import --units mm,N)");
+  }
+  const double stiffness_N_per_m = force_range_N() / std::max(travel_m(), kLeastTravel_m);
+  const bool impossible = peak_N > kImpossibleForce_N || stiffness_N_per_m > kImpossibleStiffness_N_per_m;
+  if (!impossible && peak_N <= kStrangeForce_N && stiffness_N_per_m <= kStrangeStiffness_N_per_m) return;
+  add("force_unit", impossible ? Severity::fatal : Severity::warning, peak_N,
+      words("the force reaches %.4g N over %.3g mm, %.3g kN/m", peak_N, 1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
+      "force_N must be in newtons and position_m in metres: if the force is in mN or grams, import it with --units mm,mN "
+      "or --units mm,g");
+}
+
+void Checker::check_sampling() {
+  const double rate_Hz = 1.0 / measures_.median_step_s;
+  add("rate", Severity::note, rate_Hz, words("%.4g rows a second for %.3g s", rate_Hz, measures_.duration_s),
+      rate_Hz < kSlowRate_Hz ? "slow motion only: record faster for presses by hand (500 Hz or more)" : "");
+  if (measures_.largest_step_s <= std::max(kGap_s, kGapSteps * measures_.median_step_s)) return;
+  add("gap", Severity::warning, measures_.largest_step_s,
+      words("nothing was recorded for %.3g s from %.4g s on", measures_.largest_step_s, measures_.largest_step_at_s),
+      "the material's memory across the gap is unknown: split the recording there");
+}
+
+void Checker::check_sensors() {
+  const SensorSpec sensor = identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns);
+  if (sensor.encoder_step_m > 0.0) {
+    const bool coarse = sensor.encoder_step_m > 0.02 * std::max(depth_m(), kLeastTravel_m);
+    add("encoder_step", coarse ? Severity::warning : Severity::note, sensor.encoder_step_m,
+        words("the position comes in steps of %.3g um", 1e6 * sensor.encoder_step_m),
+        coarse ? "less than 50 steps over the depth: use a finer encoder or press deeper" : "");
+  }
+  const bool loud = noise_N_ > 0.5 * request_.jnd.offset_N;
+  add("force_noise", loud ? Severity::warning : Severity::note, noise_N_, words("the force noise is %.3g mN rms", 1e3 * noise_N_),
+      loud ? "small forces drown in it: shield or filter the sensor, and read errors against the noise floor" : "");
+}
+
+void Checker::check_zero() {
+  check_.force_zero_N = surface_.force_zero_N;
+  const double half_jnd_N = 0.5 * request_.jnd.offset_N;
+  if (surface_.force_zero_N != 0.0) {
+    const bool large = std::abs(surface_.force_zero_N) > half_jnd_N;
+    add("force_zero", large ? Severity::warning : Severity::note, surface_.force_zero_N,
+        words("the force is %.3g N in free air", surface_.force_zero_N),
+        large ? "tare the sensor before recording, or subtract this from force_N" : "");
+  }
+  if (std::abs(surface_.force_zero_drift_N) > std::max(half_jnd_N, 3.0 * surface_.force_zero_error_N) &&
+      std::isfinite(surface_.force_zero_error_N)) {
+    add("force_zero_drift", Severity::warning, surface_.force_zero_drift_N,
+        words("the force in free air drifts by %.3g N over the recording", surface_.force_zero_drift_N),
+        "let the sensor warm up, tare it again, record in shorter parts");
+  }
+}
+
+void Checker::check_clipping() {
+  if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
+  add("clipping", Severity::warning, measures_.highest_force_N,
+      words("the force stays at exactly %.5g N for %zu rows while the tool moves on by %.3g mm", measures_.highest_force_N,
+            measures_.flat_rows, 1e3 * measures_.flat_travel_m),
+      "the sensor or its amplifier is at its limit: press less or choose a larger range");
+}
+
+// A late force hides the surface and the zero, so both are estimated without the lag.
+void Checker::check_lag() {
+  const ForceLag lag = find_force_lag(recording_);
+  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
+  surface_ = estimate_surface(late ? without_lag(recording_, lag.lag_s) : recording_);
+  if (!late) return;
+  add("lag", Severity::warning, lag.lag_s,
+      words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,
+            1.0 / lag.improvement),
+      "record both with one clock, or move the force column back by as much");
+}
+
+void Checker::check_surface() {
+  check_.surface_offset_m = surface_.offset_m;
+  if (surface_.offset_m != 0.0) {
+    const bool large = std::abs(surface_.offset_m) > kLargeOffset_m;
+    add("surface_offset", large ? Severity::warning : Severity::note, surface_.offset_m,
+        words("force begins at %+.3g mm (+- %.2g), not at 0", 1e3 * surface_.offset_m, 1e3 * surface_.standard_error_m),
+        large ? "subtract it from position_m, or find the surface anew before each recording" : "");
+  }
+  if (std::isfinite(surface_.offset_drift_error_m) &&
+      std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
+    add("surface_drift", Severity::warning, surface_.offset_drift_m,
+        words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
+        "the specimen creeps or has slipped: fasten it, let it recover between strokes");
+  }
+  const std::size_t as_recorded = measure_recording(recording_, 0.0).contact_rows;
+  if (as_recorded == 0) {
+    add("no_contact", Severity::fatal, measures_.highest_position_m,
+        words("the highest position is %.3g mm, so the tool never touches the surface at 0", 1e3 * measures_.highest_position_m),
+        "set position_m to 0 where force begins, and check its sign");
+  }
+}
+
+void Checker::check_exploration() {
+  add("strokes", Severity::note, measures_.strokes,
+      words("%d strokes, %.3g s in contact, to %.3g mm", measures_.strokes,
+            static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * depth_m()),
+      measures_.strokes < kFewStrokes ? "record more strokes of different depth and speed" : "");
+  int empty = 0;
+  std::string where;
+  constexpr const char* kBands[kSpeedBands] = {"slow (below 10 mm/s)", "by hand (10 to 50 mm/s)", "fast (above 50 mm/s)"};
+  for (std::size_t band = 0; band < kSpeedBands; ++band) {
+    std::string quarters;
+    for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
+      if (measures_.seconds[quarter][band] >= kLeastCell_s) continue;
+      ++empty;
+      quarters += words("%s%.3g-%.3g", quarters.empty() ? "" : ", ", 250.0 * static_cast<double>(quarter) * depth_m(),
+                        250.0 * static_cast<double>(quarter + 1) * depth_m());
+    }
+    if (!quarters.empty()) where += (where.empty() ? "" : "; ") + std::string(kBands[band]) + " at " + quarters + " mm";
+  }
+  const int cells = static_cast<int>(kDepthQuarters * kSpeedBands);
+  add("explored", Severity::note, static_cast<double>(cells - empty) / cells,
+      words("%d of %d cells of depth and speed were visited", cells - empty, cells),
+      where.empty() ? "" : std::string("record next: ").append(where));
+}
+
+// Whether the scene's relaxation times can be seen at all.
+void Checker::check_memory() {
+  if (request_.relaxation_times_s.empty()) return;
+  const double longest_s = *std::max_element(request_.relaxation_times_s.begin(), request_.relaxation_times_s.end());
+  if (measures_.outward_travel_m < kMonotonicShare * measures_.inward_travel_m) {
+    add("monotonic", Severity::warning, measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
+        "the tool goes in and hardly comes out, so that depth and memory cannot be told apart",
+        "record releases and holds, or fit a scene without relaxation (--scene elastic_block)");
+  }
+  if (measures_.duration_s < kRelaxationsToSee * longest_s) {
+    add("too_short", Severity::warning, measures_.duration_s,
+        words("%.3g s are too short for a relaxation time of %.3g s", measures_.duration_s, longest_s),
+        words("record at least %.2g s, or fit a scene with shorter times", kRelaxationsToSee * longest_s));
+  } else if (measures_.longest_hold_s < longest_s) {
+    add("no_hold", Severity::note, measures_.longest_hold_s,
+        words("the longest hold in contact is %.2g s, the scene's longest relaxation time %.3g s", measures_.longest_hold_s,
+              longest_s),
+        words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
+  }
+}
+
+void Checker::find_noise_floor() {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const RecordingRow& row : recording_.rows) {
+    if (!(row.position_m > check_.surface_offset_m)) continue;
+    const double jnd_N = request_.jnd.at(row.force_N - check_.force_zero_N);
+    // Beyond six deviations the share is 1 to nine digits, and erf is slow.
+    sum += jnd_N > 6.0 * noise_N_ ? 1.0 : std::erf(jnd_N / (std::sqrt(2.0) * noise_N_));
+    ++count;
+  }
+  check_.noise_floor_within_jnd = count > 0 ? sum / static_cast<double>(count) : 1.0;
+}
+
+// FNV-1a over the bits of the three required columns, eight bytes at a time.
+std::uint64_t hash_rows(const std::vector<RecordingRow>& rows) {
+  constexpr std::uint64_t kPrime = 0x100000001b3;
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const double start_s = rows.front().time_s;
+  for (const RecordingRow& row : rows) {
+    for (const double value : {row.time_s - start_s, row.position_m, row.force_N}) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * kPrime;
+    }
+  }
+  return hash;
+}
+
+RecordingCheck Checker::run() {
+  const auto& rows = recording_.rows;
+  check_.content_hash = hash_rows(rows);
+  noise_N_ = identify_force_noise_N(rows.data(), rows.size());
+  measures_ = measure_recording(recording_, 0.0);
+  check_sampling();
+  if (check_signal()) {
+    check_signs();
+    const bool right_way = check_.findings.back().severity != Severity::fatal;
+    // The surface of a press the wrong way round is nowhere.
+    if (right_way) {
+      check_lag();
+      check_surface();
+      measures_ = measure_recording(recording_, check_.surface_offset_m);
+      check_zero();
+      check_exploration();
+      check_memory();
+    }
+    check_units();
+    check_clipping();
+    check_sensors();
+  }
+  find_noise_floor();
+  std::stable_sort(check_.findings.begin(), check_.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  return std::move(check_);
+}
+
+}  // namespace
+
+const char* severity_name(Severity severity) {
+  constexpr const char* kNames[] = {"note", "warning", "fatal"};
+  return kNames[static_cast<std::size_t>(severity)];
+}
+
+const char* RecordingCheck::verdict() const {
+  Severity gravest = Severity::note;
+  for (const Finding& finding : findings) gravest = std::max(gravest, finding.severity);
+  constexpr const char* kVerdicts[] = {"usable", "care", "unusable"};
+  return kVerdicts[static_cast<std::size_t>(gravest)];
+}
+
+RecordingCheck check_recording(const Recording& recording, const CheckRequest& request) {
+  return Checker(recording, request).run();
+}
+
+}  // namespace palpate

@@ -1,0 +1,75 @@
+// Is this recording fit to be fitted? One answer, and findings with a number, why it
+// matters and what to do, for palpate check, fit, replay and report alike.
+//
+// Fatal is what makes a fit meaningless: a flipped sign, no force, no motion, no
+// contact, a wrong unit. Warnings are what a fit survives and its user should know;
+// notes say what was measured.
+// Thread guarantee: slow side, pure but for check_recording_file (does I/O).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/recording/recording.h"
+#include "engine/tick/jnd.h"
+
+namespace palpate {
+
+enum class Severity { note, warning, fatal };
+const char* severity_name(Severity severity);
+
+struct Finding {
+  std::string code;  // stable, for programs: "force_sign"
+  Severity severity = Severity::note;
+  double value = 0.0;  // SI, of what `text` says
+  std::string text;    // what was found
+  std::string advice;  // what to do; may be empty
+};
+
+// What the recording is wanted for.
+struct CheckRequest {
+  JndLine jnd;
+  std::vector<double> relaxation_times_s;  // of the scene; empty: no memory
+};
+
+struct RecordingCheck {
+  std::vector<Finding> findings;  // the gravest first
+  // The share of contact samples that a perfect model would have within the JND, given
+  // the force noise: mean of P(|noise| <= JND(f)).
+  double noise_floor_within_jnd = 1.0;
+  double surface_offset_m = 0.0;  // to be subtracted from position_m
+  double force_zero_N = 0.0;      // to be subtracted from force_N
+  std::uint64_t content_hash = 0;  // of all rows; equal for copies under other names
+
+  // "usable", "care" (a warning) or "unusable" (fatal).
+  const char* verdict() const;
+};
+
+// `recording`: at least kRecordingMinimumRows rows.
+RecordingCheck check_recording(const Recording& recording, const CheckRequest& request);
+
+// Longer recordings are judged by their first rows: 100 minutes at 1 kHz.
+inline constexpr std::size_t kMostCheckedRows = 6000000;
+
+struct CheckedFile {
+  std::string path;
+  Recording recording;  // what was judged
+  bool whole = true;    // false: the file is longer than kMostCheckedRows
+  RecordingCheck check;
+};
+
+// Errors: those of RecordingReader.
+Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request);
+
+// Several recordings of one set; the same rows twice are a finding of the later one.
+// Errors: those of the first file that cannot be read.
+Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths, const CheckRequest& request);
+
+// An error of the first fatal finding: "path: force_sign: ...; ...".
+Status refuse_unusable(const std::vector<CheckedFile>& files);
+// One line for each warning: "path: gap: ...; ...".
+std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files);
+
+}  // namespace palpate

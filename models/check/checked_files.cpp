@@ -1,0 +1,86 @@
+// Recordings read and checked, for the verbs.
+#include <algorithm>
+#include <utility>
+
+#include "models/check/check_recording.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kReadRows = 65536;
+
+void add_repetitions(std::vector<CheckedFile>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (files[i].check.content_hash != files[j].check.content_hash) continue;
+      files[i].check.findings.insert(
+          files[i].check.findings.begin(),
+          {"repeated", Severity::warning, 1.0, "it has the same rows as " + files[j].path,
+           "name every recording once: a repeated one counts twice, and errors on it say nothing"});
+      auto& findings = files[i].check.findings;
+      std::stable_sort(findings.begin(), findings.end(),
+                       [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+      break;
+    }
+  }
+}
+
+std::string finding_line(const CheckedFile& file, const Finding& finding) {
+  return file.path + ": " + finding.code + ": " + finding.text + (finding.advice.empty() ? "" : "; " + finding.advice);
+}
+
+}  // namespace
+
+Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {
+  auto reader = RecordingReader::open(path);
+  if (!reader) return reader.error();
+  CheckedFile file{path, {reader->name(), reader->columns(), {}}, true, {}};
+  auto& rows = file.recording.rows;
+  for (;;) {
+    const std::size_t before = rows.size();
+    if (before >= kMostCheckedRows) {
+      file.whole = false;
+      break;
+    }
+    if (rows.capacity() < before + kReadRows) rows.reserve(std::max(2 * before, before + kReadRows));
+    rows.resize(before + kReadRows);
+    const auto count = reader->read(rows.data() + before, kReadRows);
+    if (!count) return count.error();
+    rows.resize(before + *count);
+    if (*count == 0) break;
+  }
+  file.check = check_recording(file.recording, request);
+  return file;
+}
+
+Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths, const CheckRequest& request) {
+  std::vector<CheckedFile> files;
+  for (const std::string& path : paths) {
+    auto file = check_recording_file(path, request);
+    if (!file) return file.error();
+    files.push_back(std::move(*file));
+  }
+  add_repetitions(files);
+  return files;
+}
+
+Status refuse_unusable(const std::vector<CheckedFile>& files) {
+  for (const CheckedFile& file : files) {
+    for (const Finding& finding : file.check.findings) {
+      if (finding.severity == Severity::fatal) return Error{finding_line(file, finding)};
+    }
+  }
+  return {};
+}
+
+std::vector<std::string> warning_lines(const std::vector<CheckedFile>& files) {
+  std::vector<std::string> lines;
+  for (const CheckedFile& file : files) {
+    for (const Finding& finding : file.check.findings) {
+      if (finding.severity == Severity::warning) lines.push_back(finding_line(file, finding));
+    }
+  }
+  return lines;
+}
+
+}  // namespace palpate

@@ -1,0 +1,114 @@
+#include "models/check/recording_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr double kHoldShare = 0.02;
+// A speed is the way over this time, so that encoder steps do not look like motion.
+constexpr double kSpeedWindow_s = 0.02;
+// Out of contact for less than this is the same stroke: noise at the surface.
+constexpr double kStrokePause_s = 0.05;
+constexpr std::size_t kShortestFlat = 3;
+
+void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
+  std::vector<double> steps_s;
+  steps_s.reserve(rows.size());
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double step_s = rows[i].time_s - rows[i - 1].time_s;
+    steps_s.push_back(step_s);
+    if (step_s <= measures.largest_step_s) continue;
+    measures.largest_step_s = step_s;
+    measures.largest_step_at_s = rows[i - 1].time_s;
+  }
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  measures.median_step_s = *middle;
+  measures.duration_s = rows.back().time_s - rows.front().time_s;
+}
+
+void measure_ranges(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
+  measures.lowest_position_m = measures.highest_position_m = rows.front().position_m;
+  measures.lowest_force_N = measures.highest_force_N = rows.front().force_N;
+  for (const RecordingRow& row : rows) {
+    measures.lowest_position_m = std::min(measures.lowest_position_m, row.position_m);
+    measures.highest_position_m = std::max(measures.highest_position_m, row.position_m);
+    measures.lowest_force_N = std::min(measures.lowest_force_N, row.force_N);
+    measures.highest_force_N = std::max(measures.highest_force_N, row.force_N);
+  }
+}
+
+void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].force_N != measures.highest_force_N) continue;
+    const std::size_t begin = i;
+    double low_m = rows[i].position_m;
+    double high_m = rows[i].position_m;
+    for (; i < rows.size() && rows[i].force_N == measures.highest_force_N; ++i) {
+      low_m = std::min(low_m, rows[i].position_m);
+      high_m = std::max(high_m, rows[i].position_m);
+    }
+    if (i - begin < kShortestFlat) continue;
+    measures.flat_rows += i - begin;
+    measures.flat_travel_m = std::max(measures.flat_travel_m, high_m - low_m);
+  }
+}
+
+class MotionMeasure {
+ public:
+  MotionMeasure(RecordingMeasures& measures, double surface_m)
+      : measures_(measures), surface_m_(surface_m), deepest_m_(measures.highest_position_m - surface_m) {}
+
+  // A row and the first row of the window that ends with it.
+  void add(const RecordingRow& before, const RecordingRow& row, double step_s) {
+    const double depth_m = row.position_m - surface_m_;
+    if (!(depth_m > 0.0)) return;
+    ++measures_.contact_rows;
+    if (row.time_s - last_contact_s_ > kStrokePause_s) ++measures_.strokes;
+    last_contact_s_ = row.time_s;
+    const double window_s = row.time_s - before.time_s;
+    const double way_m = row.position_m - before.position_m;
+    const double speed_m_per_s = window_s > 0.0 ? way_m / window_s : 0.0;
+    (speed_m_per_s > 0.0 ? measures_.inward_travel_m : measures_.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
+    const auto quarter = static_cast<std::size_t>(depth_m / deepest_m_ * static_cast<double>(kDepthQuarters));
+    const auto band = static_cast<std::size_t>(
+        std::upper_bound(kSpeedEdges_m_per_s.begin(), kSpeedEdges_m_per_s.end(), std::abs(speed_m_per_s)) -
+        kSpeedEdges_m_per_s.begin());
+    measures_.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures_.median_step_s);
+    if (std::abs(row.position_m - hold_m_) > kHoldShare * deepest_m_) {
+      hold_m_ = row.position_m;
+      hold_since_s_ = row.time_s;
+    }
+    measures_.longest_hold_s = std::max(measures_.longest_hold_s, row.time_s - hold_since_s_);
+  }
+
+ private:
+  RecordingMeasures& measures_;
+  double surface_m_;
+  double deepest_m_;
+  double last_contact_s_ = -HUGE_VAL;
+  double hold_m_ = HUGE_VAL;
+  double hold_since_s_ = 0.0;
+};
+
+}  // namespace
+
+RecordingMeasures measure_recording(const Recording& recording, double surface_m) {
+  RecordingMeasures measures;
+  const auto& rows = recording.rows;
+  measure_sampling(rows, measures);
+  measure_ranges(rows, measures);
+  measure_flat_tops(rows, measures);
+  MotionMeasure motion(measures, surface_m);
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    while (before + 1 < i && rows[i].time_s - rows[before].time_s > kSpeedWindow_s) ++before;
+    motion.add(rows[before], rows[i], i > 0 ? rows[i].time_s - rows[i - 1].time_s : 0.0);
+  }
+  return measures;
+}
+
+}  // namespace palpate

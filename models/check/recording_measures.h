@@ -1,0 +1,41 @@
+// What one pass over a recording tells of its sampling, its force and its motion.
+// Thread guarantee: slow side, pure.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/recording/recording.h"
+
+namespace palpate {
+
+// Depths by quarters of the deepest, speeds by bands.
+inline constexpr std::size_t kDepthQuarters = 4;
+inline constexpr std::size_t kSpeedBands = 3;
+inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_m_per_s = {0.01, 0.05};
+
+struct RecordingMeasures {
+  double duration_s = 0.0;
+  double median_step_s = 0.0;
+  double largest_step_s = 0.0;
+  double largest_step_at_s = 0.0;
+  double lowest_position_m = 0.0;
+  double highest_position_m = 0.0;
+  double lowest_force_N = 0.0;
+  double highest_force_N = 0.0;
+  // Flat tops: rows at exactly the greatest force, in runs of at least three, while
+  // the position goes on; the greatest way that it goes in one run.
+  std::size_t flat_rows = 0;
+  double flat_travel_m = 0.0;
+  // Inside: beyond the surface given.
+  std::size_t contact_rows = 0;
+  int strokes = 0;
+  double inward_travel_m = 0.0;
+  double outward_travel_m = 0.0;
+  double longest_hold_s = 0.0;  // in contact, moving by less than 2 % of the depth
+  std::array<std::array<double, kSpeedBands>, kDepthQuarters> seconds{};  // depth x speed
+};
+
+RecordingMeasures measure_recording(const Recording& recording, double surface_m);
+
+}  // namespace palpate

@@ -1,0 +1,40 @@
+// Rows for the search for a surface: a recording thinned to what that needs.
+// Thread guarantee: value types and pure functions, slow side.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/recording/recording.h"
+#include "engine/tick/motion_estimator.h"
+#include "engine/tick/tool_sample.h"
+
+namespace palpate {
+
+struct SurfaceRow {
+  ToolSample sample;
+  MotionEstimate motion;  // by the estimator over every row, before thinning
+  double force_N = 0.0;
+};
+
+// Every row up to a bound; beyond, every second one, then every fourth ...
+class GrowingStride {
+ public:
+  explicit GrowingStride(std::size_t most) : most_(most) {}
+
+  void add(const SurfaceRow& row);
+  const std::vector<SurfaceRow>& rows() const { return rows_; }
+
+ private:
+  std::size_t most_;
+  std::size_t stride_ = 1;
+  std::size_t seen_ = 0;
+  std::vector<SurfaceRow> rows_;
+};
+
+// Every n-th row, at most `most` of them.
+std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
+// Every n-th row of a recording, at most `most` of them.
+std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
+
+}  // namespace palpate

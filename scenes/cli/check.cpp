@@ -1,0 +1,103 @@
+// palpate check: is this recording fit to be fitted?
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "models/check/check_recording.h"
+#include "scenes/cli/check_recordings.h"
+#include "scenes/cli/verbs.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate::cli {
+namespace {
+
+struct CheckOptions {
+  std::vector<std::string> recordings;
+  std::string scene = "silicone_block";
+  bool json = false;
+};
+
+void print_check_json(const std::vector<CheckedFile>& files) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const CheckedFile& file : files) {
+    Json findings = Json::array();
+    for (const Finding& finding : file.check.findings) {
+      findings.push_back({{"code", finding.code},
+                          {"severity", severity_name(finding.severity)},
+                          {"value", finding.value},
+                          {"text", finding.text},
+                          {"advice", finding.advice}});
+    }
+    list.push_back({{"file", file.path},
+                    {"verdict", file.check.verdict()},
+                    {"findings", findings},
+                    {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
+                    {"surface_offset_m", file.check.surface_offset_m},
+                    {"force_zero_N", file.check.force_zero_N}});
+  }
+  std::cout << Json{{"recordings", list}}.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+std::string verdict_text(const RecordingCheck& check) {
+  const std::string verdict = check.verdict();
+  return verdict == "care" ? "usable with care" : verdict == "unusable" ? "not usable" : "usable";
+}
+
+void print_check(const CheckedFile& file) {
+  std::cout << file.path << ": " << verdict_text(file.check) << "\n";
+  for (const Finding& finding : file.check.findings) {
+    const std::string severity = severity_name(finding.severity);
+    std::cout << "  " << severity << std::string(9 - severity.size(), ' ') << finding.code
+              << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
+              << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
+  }
+  std::cout << "  a perfect model would be within the JND in " << 100.0 * file.check.noise_floor_within_jnd
+            << " % of the contact samples\n";
+  if (!file.whole) std::cout << "  judged by its first " << kMostCheckedRows << " rows\n";
+}
+
+Status run_check(const CheckOptions& options) {
+  const auto scene = load_scene(options.scene);
+  if (!scene) return scene.error();
+  const auto files = check_recording_files(options.recordings, check_request(*scene));
+  if (!files) return files.error();
+  if (options.json) {
+    print_check_json(*files);
+  } else {
+    for (const CheckedFile& file : *files) print_check(file);
+  }
+  return refuse_unusable(*files);
+}
+
+}  // namespace
+
+CheckRequest check_request(const Scene& scene) {
+  CheckRequest request;
+  request.jnd = scene.jnd;
+  for (const FeatureSpec& feature : scene.features) {
+    if (feature.relaxation_time_s > 0.0) request.relaxation_times_s.push_back(feature.relaxation_time_s);
+  }
+  return request;
+}
+
+Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request) {
+  auto files = check_recording_files(paths, request);
+  if (!files) return files.error();
+  if (const Status usable = refuse_unusable(*files); !usable) return usable.error();
+  for (const std::string& line : warning_lines(*files)) std::cerr << "warning: " << line << "\n";
+  return files;
+}
+
+void add_check(CLI::App& app, Verbs& verbs) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* verb = app.add_subcommand("check", "Is this recording fit to be fitted?");
+  verb->add_option("recording", options->recordings, "Recordings")->required()->type_name("REC.csv");
+  verb->add_option("--scene", options->scene, "Scene whose relaxation times and JND line count")->capture_default_str();
+  verb->add_flag("--json", options->json, "Print one JSON object");
+  verbs.emplace_back(verb, [options] { return run_check(*options); });
+}
+
+}  // namespace palpate::cli

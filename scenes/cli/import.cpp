@@ -1,0 +1,194 @@
+// palpate import: a table that another program wrote becomes a recording.
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/base/atomic_file.h"
+#include "engine/base/csv_scanner.h"
+#include "engine/import/import_table.h"
+#include "scenes/cli/verbs.h"
+
+namespace palpate::cli {
+namespace {
+
+struct ImportOptions {
+  std::string file;
+  std::string out;
+  std::vector<std::string> columns;
+  std::vector<std::string> units;
+  std::vector<std::string> flips;
+  std::string delimiter;
+  std::string decimal;
+  double rate_Hz = 0.0;
+  bool json = false;
+  bool force = false;
+};
+
+// "time=NAME" into its place.
+void read_column(const std::string& text, RoleRequest& columns) {
+  const std::size_t equals = text.find('=');
+  for (std::size_t role = 0; role < kRoles && equals != std::string::npos; ++role) {
+    if (text.substr(0, equals) != kRoleNames[role] || equals + 1 == text.size()) continue;
+    columns[role] = text.substr(equals + 1);
+    return;
+  }
+  throw CLI::ValidationError("--columns", "found \"" + text + "\", expected time=NAME, position=NAME or force=NAME");
+}
+
+void read_unit(const std::string& text, std::vector<Unit>& units) {
+  const auto unit = find_unit(text);
+  if (!unit) {
+    throw CLI::ValidationError("--units", "found \"" + text +
+                                              "\", expected a unit of length (m, cm, mm, um, inch), force (N, mN, kN, g, kg, "
+                                              "lbf) or time (s, ms, us, ns)");
+  }
+  for (const Unit& other : units) {
+    if (other.quantity == unit->quantity) {
+      throw CLI::ValidationError("--units", "found " + std::string(other.name) + " and " + std::string(unit->name) +
+                                                ", expected at most one unit of length, of force and of time");
+    }
+  }
+  units.push_back(*unit);
+}
+
+ImportRequest import_request(const ImportOptions& options) {
+  ImportRequest request;
+  for (const std::string& column : options.columns) read_column(column, request.columns);
+  for (const std::string& unit : options.units) read_unit(unit, request.units);
+  for (const std::string& flip : options.flips) {
+    (flip == "position" ? request.flip_position : request.flip_force) = true;
+  }
+  if (!options.delimiter.empty()) request.layout.delimiter = delimiter_from_name(options.delimiter);
+  if (!options.decimal.empty()) request.layout.decimal = options.decimal == "comma" ? ',' : '.';
+  if (options.rate_Hz > 0.0) request.rate_Hz = options.rate_Hz;
+  return request;
+}
+
+std::string decimal_name(const TableLayout& layout) { return layout.decimal == ',' ? "comma" : "point"; }
+
+std::vector<std::string> flip_names(const ImportRequest& request) {
+  std::vector<std::string> flips;
+  if (request.flip_position) flips.emplace_back("position");
+  if (request.flip_force) flips.emplace_back("force");
+  return flips;
+}
+
+// Where a role's values come from: column 2 "Weg [mm]" in mm.
+std::string column_text(const ImportedColumn& column) {
+  if (column.number == 0) return "from --rate";
+  const std::string name = column.header.empty() ? "" : " \"" + printable(column.header) + "\"";
+  return "column " + std::to_string(column.number) + name + " in " + column.unit + (column.guessed ? " (guessed)" : "");
+}
+
+std::string table_text(const ImportedTable& table) {
+  const TableLayout& layout = table.layout;
+  return std::string(delimiter_name(layout.delimiter)) + " between fields, decimal " + decimal_name(layout) + ", " +
+         std::string(encoding_name(table.encoding)) + ", " +
+         (layout.header_line > 0 ? "header in line " + std::to_string(layout.header_line) : "no header") +
+         ", numbers from line " + std::to_string(layout.data_line);
+}
+
+double seconds_of(const ImportedTable& table) {
+  return table.recording.rows.back().time_s - table.recording.rows.front().time_s;
+}
+
+// What the recording says of its origin, with no path and no date.
+std::vector<std::string> origin_of(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
+  std::vector<std::string> comments = {"imported by palpate import from " +
+                                       std::filesystem::path(options.file).filename().string()};
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    comments.push_back(std::string(kRoleNames[role]) + ": " + column_text(table.columns[role]));
+  }
+  for (const std::string& flip : flip_names(request)) comments.push_back(flip + ": sign turned round");
+  return comments;
+}
+
+void print_text(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
+  std::cout << "table      " << table_text(table) << "\n";
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    const std::string name = kRoleNames[role];
+    std::cout << name << std::string(11 - name.size(), ' ') << column_text(table.columns[role]) << "\n";
+  }
+  for (const std::string& flip : flip_names(request)) std::cout << "flipped    " << flip << "\n";
+  for (const std::string& note : table.notes) std::cout << "note       " << note << "\n";
+  std::cout << "written    " << options.out << ": " << table.recording.rows.size() << " rows, " << seconds_of(table) << " s\n";
+}
+
+void print_import_json(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
+  using Json = nlohmann::ordered_json;
+  Json columns = Json::object();
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    const ImportedColumn& column = table.columns[role];
+    if (column.number == 0) {
+      columns[kRoleNames[role]] = {{"rate_Hz", *request.rate_Hz}};
+    } else {
+      columns[kRoleNames[role]] = {
+          {"number", column.number}, {"name", column.header}, {"unit", column.unit}, {"guessed", column.guessed}};
+    }
+  }
+  const double seconds = seconds_of(table);
+  const Json object = {{"file", options.file},
+                       {"out", options.out},
+                       {"rows", table.recording.rows.size()},
+                       {"seconds", seconds},
+                       {"rate_Hz", static_cast<double>(table.recording.rows.size() - 1) / seconds},
+                       {"encoding", encoding_name(table.encoding)},
+                       {"delimiter", delimiter_name(table.layout.delimiter)},
+                       {"decimal", decimal_name(table.layout)},
+                       {"header_line", table.layout.header_line},
+                       {"data_line", table.layout.data_line},
+                       {"columns", columns},
+                       {"flips", flip_names(request)},
+                       {"notes", table.notes}};
+  std::cout << object.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+}
+
+Status run_import(const ImportOptions& options) {
+  std::error_code missing;
+  if (std::filesystem::equivalent(options.file, options.out, missing)) {
+    return Error{options.out + " is the file to read from, expected another one for --out; name a new file"};
+  }
+  const ImportRequest request = import_request(options);
+  // A name that cannot be written is told now and not after the reading.
+  if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
+  const auto table = import_table(options.file, request);
+  if (!table) return table.error();
+  const Status written = write_recording(options.out, table->recording, origin_of(options, request, *table), options.force);
+  if (!written) return written;
+  if (options.json) {
+    print_import_json(options, request, *table);
+  } else {
+    print_text(options, request, *table);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, Verbs& verbs) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* verb = app.add_subcommand("import", "Turn another program's table into a recording");
+  verb->add_option("file", options->file, "Table as text: CSV, TXT, LVM, TSV, ...")->required()->type_name("FILE");
+  verb->add_option("--out", options->out, "Recording to write")->required()->type_name("REC.csv");
+  verb->add_option("--columns", options->columns, "time=NAME,position=NAME,force=NAME; a name or a number from 1")
+      ->delimiter(',')->type_name("ROLE=NAME,...");
+  verb->add_option("--units", options->units, "Units that the header does not say or says wrongly, such as mm,N or ms,mm,mN")
+      ->delimiter(',')->type_name("UNIT,...");
+  verb->add_option("--rate", options->rate_Hz, "Rows are evenly spaced at this rate; the file's time is not used")
+      ->check(CLI::Range(10.0, 20000.0))->type_name("HZ");
+  verb->add_option("--flip", options->flips, "Turn the sign round: position, force or both")
+      ->delimiter(',')->check(CLI::IsMember({"position", "force"}));
+  verb->add_option("--delimiter", options->delimiter, "Instead of the guess: comma, semicolon, tab or blanks")
+      ->check(CLI::IsMember({"comma", "semicolon", "tab", "blanks"}));
+  verb->add_option("--decimal", options->decimal, "Instead of the guess: point or comma")
+      ->check(CLI::IsMember({"point", "comma"}));
+  verb->add_flag("--json", options->json, "Print one JSON object");
+  verb->add_flag("--force", options->force, "Replace an existing file");
+  verbs.emplace_back(verb, [options] { return run_import(*options); });
+}
+
+}  // namespace palpate::cli

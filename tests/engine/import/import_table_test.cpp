@@ -1,0 +1,149 @@
+// Tables as rigs write them, each with the press that stands in it.
+#include "engine/import/import_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+std::string file(const std::string& name) { return std::string(PALPATE_SOURCE_DIR) + "/tests/engine/import/files/" + name; }
+
+RecordingRow press_row(std::size_t i) {
+  RecordingRow row;
+  row.time_s = 0.02 * static_cast<double>(i);
+  const double d = 4.0 * std::sin(std::numbers::pi * row.time_s / 0.48) - 1.0;
+  row.position_m = 1e-3 * d;
+  row.force_N = d > 0.0 ? 0.4 * d + 0.05 * d * d : 0.0;
+  return row;
+}
+
+struct RigFile {
+  const char* name;
+  ImportRequest request;
+};
+
+ImportRequest request(const RoleRequest& columns, std::initializer_list<const char*> units = {}, double rate_Hz = 0.0) {
+  ImportRequest made;
+  made.columns = columns;
+  for (const char* unit : units) made.units.push_back(*find_unit(unit));
+  if (rate_Hz > 0.0) made.rate_Hz = rate_Hz;
+  return made;
+}
+
+std::vector<RigFile> rig_files() {
+  std::vector<RigFile> files = {
+      {"01_labview.lvm", request({}, {"mm", "N"})},
+      {"02_matlab.csv", {}},
+      {"03_rostopic.csv", request({"", "", "field.wrench.force.z"}, {"m", "N"})},
+      {"04_ros2bag.csv", request({}, {"N"})},
+      {"05_logger.csv", {}},
+      {"06_zwick.txt", {}},
+      {"07_instron.csv", {}},
+      {"08_excel_de.csv", {}},
+      {"09_arduino.txt", request({"1", "2", "3"}, {"ms", "mm", "g"})},
+      {"10_ati.csv", request({"", "", "4"})},
+      {"11_numpy.txt", {}},
+      {"12_pandas.csv", {}},
+      {"13_quoted.csv", {}},
+      {"14_unicode.txt", {}},
+      {"15_fixed.dat", {}},
+      {"16_thousands.tsv", {}},
+      {"17_iso.csv", {}},
+      {"18_clock.csv", {}},
+      {"19_rate.csv", request({}, {}, 50.0)},
+      {"20_bare.txt", request({"1", "2", "3"}, {"s", "mm", "N"})},
+      {"21_francais.csv", {}},
+      {"22_outward.csv", {}},
+      {"23_r.txt", {}},
+  };
+  files[9].request.flip_force = true;      // the sensor's own axis points in
+  files[21].request.flip_position = true;  // a height above the table
+  return files;
+}
+
+TEST(ImportTable, ReadsTheSamePressFromEveryRig) {
+  for (const RigFile& rig : rig_files()) {
+    SCOPED_TRACE(rig.name);
+    const auto table = import_table(file(rig.name), rig.request);
+    ASSERT_TRUE(table.ok()) << table.error().message;
+    ASSERT_EQ(table->recording.rows.size(), 24u);
+    for (std::size_t i = 0; i < 24; ++i) {
+      const RecordingRow expected = press_row(i);
+      const RecordingRow& row = table->recording.rows[i];
+      // Half of the last digit that the files print: 0.5 ms, 0.5 um, 0.005 gram-force.
+      EXPECT_NEAR(row.time_s, expected.time_s, 0.6e-3) << i;
+      EXPECT_NEAR(row.position_m, expected.position_m, 0.6e-6) << i;
+      EXPECT_NEAR(row.force_N, expected.force_N, 0.6e-4) << i;
+    }
+  }
+}
+
+std::string rows_of(const std::string& separator, int count = 12) {
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    text += "0.0" + std::to_string(10 + i) + separator + "0.5" + separator + std::to_string(i) + ".25\n";
+  }
+  return text;
+}
+
+std::string message(const std::string& bytes, const ImportRequest& request = {}) {
+  const auto text = ForeignText::from_memory(bytes, "rig.txt");
+  if (!text) return text.error().message;
+  const auto table = import_table(*text, "rig.txt", request);
+  return table ? "accepted" : table.error().message;
+}
+
+TEST(ImportTable, SaysWhatIsAmbiguousAndWhatToAdd) {
+  EXPECT_EQ(message("t [s],pos,Fz [N]\n" + rows_of(",")),
+            "rig.txt: found no unit of the position \"pos\"; add --units mm (or m, cm, um, inch), with a comma between "
+            "two units: --units mm,N");
+  EXPECT_EQ(message("t [s],pos [mm],Fx [N],Fy [N],Fz [N]\n" + rows_of(",1,")),
+            "rig.txt: found 3 columns that can be the force; add --columns force=3, --columns force=4 or --columns "
+            "force=5; the columns are 1 \"t [s]\", 2 \"pos [mm]\", 3 \"Fx [N]\", 4 \"Fy [N]\", 5 \"Fz [N]\"");
+  EXPECT_EQ(message(rows_of(",")),
+            "rig.txt: found no header, expected names of columns; say which column is which: --columns "
+            "time=1,position=2,force=3, or --rate HZ if the rows are evenly spaced; the first row is 1 \"0.010\", 2 "
+            "\"0.5\", 3 \"0.25\"");
+  EXPECT_EQ(message("t [s],pos [mm],F [N]\n" + rows_of(","), request({"", "weg", ""})),
+            "rig.txt: found no column \"weg\" for the position, expected one of 1 \"t [s]\", 2 \"pos [mm]\", 3 \"F [N]\"");
+}
+
+TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
+  EXPECT_EQ(message(""), "rig.txt: found an empty file, expected a table as text (CSV, TXT); check that the recording was saved");
+  EXPECT_EQ(message("PK\x03\x04rest"),
+            "rig.txt: found an Excel workbook or another archive, expected a table as text (CSV, TXT); save the sheet as CSV");
+  EXPECT_EQ(message("only words\nand more\n"),
+            "rig.txt: found no rows of numbers in the first 2 lines, expected a table with columns of time, position and "
+            "force; export the recording as CSV");
+  const std::string header = "t [s],pos [mm],F [N]\n";
+  EXPECT_EQ(message(header + rows_of(",") + "0.030,oops,1\n0.040,0.5,1\n"),
+            "rig.txt:14: found \"oops\" in column 2 \"pos [mm]\", expected the position; remove the row or repair the value");
+  EXPECT_EQ(message(header + rows_of(",") + "0.021,0.5,1\n"),
+            "rig.txt:14: found the time of the row before once more \"t [s]\", expected later times in every row; if the "
+            "rows are evenly spaced, add --rate 1000 (the mean rate so far), or remove the repeated row");
+  EXPECT_EQ(message(header + rows_of(",", 4)), "rig.txt: found 4 rows of numbers, expected at least 10; record for longer");
+}
+
+TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
+  const auto text = ForeignText::from_memory("t [s],pos [mm],F [N]\n" + rows_of(","), "rig.txt");
+  const auto table = import_table(*text, "rig.txt", {});
+  ASSERT_TRUE(table.ok());
+  EXPECT_EQ(table->recording.rows.front().time_s, 0.0);
+  ASSERT_FALSE(table->notes.empty());
+  EXPECT_EQ(table->notes.front(), "time began at 0.01 s and begins at 0 now");
+}
+
+TEST(ImportTable, AdvisesAFlipAndDoesNotFlip) {
+  const auto table = import_table(file("22_outward.csv"), {});
+  ASSERT_TRUE(table.ok());
+  EXPECT_LT(table->recording.rows[12].position_m, 0.0);
+  EXPECT_NE(table->notes.back().find("--flip position"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,126 @@
+// Each fault of a recording is found, and no good recording is blamed for one.
+#include "models/check/check_recording.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "scenes/material/rig.h"
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+const CheckRequest kSilicone{JndLine{}, {0.17, 1.27}};
+
+Recording silicone() {
+  static const Recording made = *test::rig_recording(test::train_settings("silicone"));
+  return made;
+}
+
+const Finding* find(const RecordingCheck& check, const std::string& code) {
+  for (const Finding& finding : check.findings) {
+    if (finding.code == code) return &finding;
+  }
+  return nullptr;
+}
+
+std::string all_of(const RecordingCheck& check) {
+  std::string text;
+  for (const Finding& f : check.findings) text += std::string(severity_name(f.severity)) + " " + f.code + ": " + f.text + "\n";
+  return text;
+}
+
+struct Fault {
+  const char* code;
+  const char* verdict;
+  std::function<void(Recording&)> apply;
+};
+
+void each(Recording& recording, const std::function<void(RecordingRow&)>& change) {
+  for (RecordingRow& row : recording.rows) change(row);
+}
+
+// The force of `seconds` ago.
+void delay_force(Recording& recording, double seconds) {
+  const Recording before = recording;
+  std::size_t j = 0;
+  for (RecordingRow& row : recording.rows) {
+    while (j + 1 < before.rows.size() && before.rows[j + 1].time_s <= row.time_s - seconds) ++j;
+    row.force_N = before.rows[j].force_N;
+  }
+}
+
+void first_seconds(Recording& recording, double from_s, double seconds) {
+  std::erase_if(recording.rows, [&](const RecordingRow& row) { return row.time_s < from_s || row.time_s > from_s + seconds; });
+}
+
+TEST(CheckRecording, FindsEachFault) {
+  const std::vector<Fault> faults = {
+      {"force_sign", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = -row.force_N; }); }},
+      {"position_sign", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = -row.position_m; }); }},
+      {"no_force", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = 0.0; }); }},
+      {"no_motion", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); }},
+      {"force_unit", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N *= 1000.0; }); }},
+      {"force_unit", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N /= 9.80665e-3; }); }},
+      {"clipping", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); }},
+      {"force_zero", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N += 0.5; }); }},
+      {"lag", "care", [](Recording& r) { delay_force(r, 0.03); }},
+      {"gap", "care", [](Recording& r) { each(r, [](RecordingRow& row) { if (row.time_s > 10.0) row.time_s += 5.0; }); }},
+      {"too_short", "care", [](Recording& r) { first_seconds(r, 2.0, 1.0); }},
+  };
+  for (const Fault& fault : faults) {
+    SCOPED_TRACE(fault.code);
+    Recording recording = silicone();
+    fault.apply(recording);
+    const RecordingCheck check = check_recording(recording, kSilicone);
+    const Finding* const finding = find(check, fault.code);
+    EXPECT_NE(finding, nullptr) << all_of(check);
+    EXPECT_STREQ(check.verdict(), fault.verdict) << all_of(check);
+    if (finding != nullptr) EXPECT_FALSE(finding->advice.empty());
+  }
+}
+
+TEST(CheckRecording, FindsAMonotonicCompressionOnlyForASceneWithMemory) {
+  Recording recording;
+  for (int i = 0; i < 1000; ++i) {
+    const double depth_m = 1e-5 * i;
+    recording.rows.push_back({0.05 * i, depth_m, 500.0 * depth_m, 0.0, 0.0});
+  }
+  EXPECT_NE(find(check_recording(recording, kSilicone), "monotonic"), nullptr);
+  EXPECT_EQ(find(check_recording(recording, CheckRequest{}), "monotonic"), nullptr);
+}
+
+TEST(CheckRecording, BlamesNoVirtualMaterial) {
+  for (const Material& material : materials()) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      SCOPED_TRACE(std::string(material.name) + " " + std::to_string(seed));
+      RigSettings settings;
+      settings.material = std::string(material.name);
+      settings.seed = seed;
+      const RecordingCheck check = check_recording(*test::rig_recording(settings), CheckRequest{});
+      for (const Finding& finding : check.findings) {
+        EXPECT_NE(finding.severity, Severity::fatal) << all_of(check);
+        EXPECT_NE(finding.code, "lag") << all_of(check);
+        EXPECT_NE(finding.code, "clipping") << all_of(check);
+      }
+    }
+  }
+}
+
+TEST(CheckRecording, BlamesNoRealRecording) {
+  const std::filesystem::path folder = test::real_data();
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real recordings here";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".csv") continue;
+    const auto checked = check_recording_file(entry.path().string(), CheckRequest{});
+    ASSERT_TRUE(checked.ok()) << checked.error().message;
+    EXPECT_STRNE(checked->check.verdict(), "unusable") << entry.path() << "\n" << all_of(checked->check);
+    EXPECT_EQ(find(checked->check, "lag"), nullptr) << entry.path() << "\n" << all_of(checked->check);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
