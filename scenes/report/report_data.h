@@ -175,7 +175,7 @@ struct Recommendation {
 struct ModelFacts {
   std::string model;
   std::vector<std::vector<TableCell>> values;     // quantity, value, unit, meaning
-  std::vector<std::vector<TableCell>> features;   // name, range, error without it
+  std::vector<std::vector<TableCell>> features;   // name, lowest, highest, error with and without it
   std::vector<std::array<double, 6>> depth;  // depth_m, elastic_N, stiffness, viscosity at rest, at v_0, instantaneous
   std::vector<std::array<double, 2>> spectrum;  // relaxation time, stiffness
 };

@@ -367,11 +367,10 @@ std::vector<Table> facts_tables(const ReportData& data) {
                {{"quantity", "quantity"}, {"value", "value"}, {"unit", "unit"}, {"meaning", "meaning"}},
                facts.values};
   Table features{"model_features",
-                 "What it is given: the range in training and, where that was measured, the trend's RMS error over "
-                 "the JND on strokes left out, with the feature and without it.",
+                 "What it is given, in SI, and the range in training. Worth: the trend's RMS error over the JND on "
+                 "strokes left out, with the feature and without it, where the features were chosen by the recordings.",
                  false,
                  {{"feature", "feature"},
-                  {"unit", "unit"},
                   {"lowest", "lowest"},
                   {"highest", "highest"},
                   {"error_over_jnd_with", "error with it"},
