@@ -12,6 +12,12 @@ double drive_of(const FeatureSpec& spec, double depth_m) noexcept {
   return spec.kind == FeatureKind::maxwell_branch ? spec.drive.at(depth_m) : depth_m;
 }
 
+std::string four_digits(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 4);
+  return {buffer.data(), end.ptr};
+}
+
 }  // namespace
 
 double DriveCurve::at(double depth_m) const noexcept {
@@ -32,20 +38,31 @@ std::string_view feature_kind_name(FeatureKind kind) {
     case FeatureKind::velocity: return "velocity";
     case FeatureKind::lowpass_velocity: return "lowpass_velocity";
     case FeatureKind::maxwell_branch: return "maxwell_branch";
+    case FeatureKind::maxwell_spectrum: return "maxwell_spectrum";
+    case FeatureKind::stops: return "stops";
+    case FeatureKind::fading_peak: return "fading_peak";
   }
   return "depth";
 }
 
 std::string feature_name(const FeatureSpec& spec) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), spec.relaxation_time_s,
-                                 std::chars_format::general, 4);
-  const std::string time(buffer.data(), end.ptr);
+  const auto first_to_last = [&](auto&& constant) {
+    const std::string first = four_digits(constant(spec.parts[0]));
+    if (spec.part_count <= 1) return first;
+    return first + "-" + four_digits(constant(spec.parts[spec.part_count - 1]));
+  };
+  const std::string time = four_digits(spec.relaxation_time_s);
   switch (spec.kind) {
     case FeatureKind::depth: return "feature_depth_m";
     case FeatureKind::velocity: return "feature_velocity_m_per_s";
     case FeatureKind::lowpass_velocity: return "feature_lowpass_velocity_" + time + "s_m_per_s";
     case FeatureKind::maxwell_branch: return "feature_maxwell_branch_" + time + "s_N";
+    case FeatureKind::maxwell_spectrum:
+      return "feature_maxwell_spectrum_" + first_to_last([](const FeaturePart& part) { return part.relaxation_time_s; }) +
+             "s_N";
+    case FeatureKind::stops:
+      return "feature_stops_" + first_to_last([](const FeaturePart& part) { return 1e3 * part.threshold_m; }) + "mm_N";
+    case FeatureKind::fading_peak: return "feature_fading_peak_" + time + "s_m";
   }
   return {};
 }
@@ -88,11 +105,63 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
         drive_[i] = drive;
         break;
       }
+      case FeatureKind::maxwell_spectrum:
+        value = updated_spectrum(i, depth_m, step_s, advance);
+        break;
+      case FeatureKind::stops:
+        value = updated_stops(i, depth_m, advance);
+        break;
+      case FeatureKind::fading_peak:
+        if (advance) {
+          value = std::max(depth_m, depth_m_ + (value - depth_m_) * std::exp(-step_s / spec.relaxation_time_s));
+          // Healed, to far below an atom.
+          if (value < 1e-15) value = 0.0;
+        } else if (!started_) {
+          value = depth_m;
+        }
+        break;
     }
   }
   started_ = true;
   time_s_ = sample.time_s;
+  depth_m_ = depth_m;
   return vector_;
+}
+
+double FeatureFilter::updated_spectrum(std::size_t index, double depth_m, double step_s, bool advance) noexcept {
+  const FeatureSpec& spec = specs_[index];
+  double sum = 0.0;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const double time_s = spec.parts[p].relaxation_time_s;
+    const double drive = spec.parts[p].drive.at(depth_m);
+    double& z = part_state_[index][p];
+    if (advance) {
+      const double keep = std::exp(-step_s / time_s);
+      z = keep * z + time_s * (1.0 - keep) * (drive - part_drive_[index][p]) / step_s;
+      if (std::abs(z) < 1e-30) z = 0.0;
+    } else if (!started_) {
+      z = 0.0;
+    }
+    part_drive_[index][p] = drive;
+    sum += z;
+  }
+  return sum;
+}
+
+double FeatureFilter::updated_stops(std::size_t index, double depth_m, bool advance) noexcept {
+  const FeatureSpec& spec = specs_[index];
+  double sum = 0.0;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const double threshold_m = spec.parts[p].threshold_m;
+    double& s = part_state_[index][p];
+    if (!started_ || !(depth_m > 0.0)) {
+      s = 0.0;
+    } else if (advance) {
+      s = std::clamp(s + depth_m - depth_m_, -threshold_m, threshold_m);
+    }
+    sum += spec.parts[p].drive.at(depth_m) * s / threshold_m;
+  }
+  return sum;
 }
 
 }  // namespace palpate

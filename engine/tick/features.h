@@ -6,6 +6,10 @@
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
 //   lowpass_velocity  y with dy/dt = (dd/dt - y) / tau                      [m/s]
 //   maxwell_branch    z with dz/dt = g'(d) dd/dt - z / tau                  [N]
+//   maxwell_spectrum  z = sum_p z_p, each a branch with tau_p and g_p       [N]
+//   stops             y = sum_p g_p(d) s_p / r_p, s_p a stop operator       [N]
+//   fading_peak       m = the deepest depth, fading: dm/dt = -(m - d) / tau
+//                     while d < m, m = d while d is the deepest             [m]
 //
 // The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the
 // same filter behind a spring whose stiffness g'(d) depends on depth; g is
@@ -13,11 +17,26 @@
 // low-pass. Both are driven by the depth, not by the velocity estimate: free
 // air relaxes the material and does not load it.
 //
+// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau, and of the store
+// integral_0^d g ds - q d + integral_0^q g^-1 ds it loses
+// (d - g^-1(q)) (g(d) - q) / tau >= 0 while g rises.
+//
+// A stop operator of threshold r follows the depth like the tip of a bristle that
+// bends by at most r and then slips: s' = clamp(s + d' - d, -r, r), and 0 out of
+// contact. Several together are a Prandtl-Ishlinskii operator: dry friction with
+// presliding. With every g_p >= 0 a closed cycle of depth takes the energy
+//   sum_p closed integral G_p dp_p / r_p >= 0,  G_p' = g_p, p_p = d - s_p,
+// for p_p moves up only at d = p_p + r and down only at d = p_p - r. The fading
+// peak is the memory of materials that soften below their deepest press and heal.
+//
 // Discretisation is exact for a depth that is linear between samples, with the
 // measured time step h and e = exp(-h / tau):
 //   y' = e y + (1 - e) (d' - d) / h
 //   z' = e z + tau (1 - e) (g(d') - g(d)) / h
 // so recordings of one motion at different rates give the same features.
+// Sources: Visintin (1994), "Differential models of hysteresis" (stop and play
+// operators); Dahl (1968) (friction with presliding); Diani, Fayolle & Gilormini
+// (2009) (softening below the deepest press, and recovery).
 //
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and
 // never throws; one thread at a time.
@@ -35,8 +54,13 @@ namespace palpate {
 
 inline constexpr std::size_t kMaxFeatures = 8;
 inline constexpr std::size_t kDriveCoefficients = 4;
+inline constexpr std::size_t kMaxFeatureParts = 8;
 
-enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_branch };
+enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak };
+inline constexpr std::array kFeatureKinds{FeatureKind::depth,          FeatureKind::velocity,
+                                          FeatureKind::lowpass_velocity, FeatureKind::maxwell_branch,
+                                          FeatureKind::maxwell_spectrum, FeatureKind::stops,
+                                          FeatureKind::fading_peak};
 
 // g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
 // u <= 1; beyond, g continues along its tangent at u = 1.
@@ -48,13 +72,33 @@ struct DriveCurve {
   bool operator==(const DriveCurve&) const = default;
 };
 
+// One branch of a maxwell_spectrum, or one stop operator.
+struct FeaturePart {
+  double relaxation_time_s = 0.0;  // maxwell_spectrum
+  double threshold_m = 0.0;        // stops
+  DriveCurve drive;                // g_p; of stops never negative
+
+  bool operator==(const FeaturePart&) const = default;
+};
+
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::depth;
-  double relaxation_time_s = 0.0;  // filters only
-  DriveCurve drive;                // maxwell_branch only
+  double relaxation_time_s = 0.0;  // lowpass_velocity, maxwell_branch, fading_peak
+  DriveCurve drive{};              // maxwell_branch only
+  std::size_t part_count = 0;      // maxwell_spectrum and stops
+  std::array<FeaturePart, kMaxFeatureParts> parts{};
 
   bool operator==(const FeatureSpec&) const = default;
 };
+
+// Whether the kind has one time constant, and whether it has parts.
+constexpr bool has_time(FeatureKind kind) noexcept {
+  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch ||
+         kind == FeatureKind::fading_peak;
+}
+constexpr bool has_parts(FeatureKind kind) noexcept {
+  return kind == FeatureKind::maxwell_spectrum || kind == FeatureKind::stops;
+}
 
 std::string_view feature_kind_name(FeatureKind kind);
 // Column name with unit, e.g. "depth_m", "lowpass_velocity_0.17s_m_per_s".
@@ -83,8 +127,15 @@ class FeatureFilter {
   const FeatureVector& vector() const noexcept { return vector_; }
 
  private:
+  using PartStates = std::array<double, kMaxFeatureParts>;
+  double updated_spectrum(std::size_t index, double depth_m, double step_s, bool advance) noexcept;
+  double updated_stops(std::size_t index, double depth_m, bool advance) noexcept;
+
   std::array<FeatureSpec, kMaxFeatures> specs_{};
   std::array<double, kMaxFeatures> drive_{};  // d or g(d) at the last sample
+  std::array<PartStates, kMaxFeatures> part_drive_{};  // g_p(d) at the last sample
+  std::array<PartStates, kMaxFeatures> part_state_{};  // z_p or s_p
+  double depth_m_ = 0.0;                               // at the last sample
   std::size_t count_ = 0;
   FeatureVector vector_;
   double time_s_ = 0.0;

@@ -40,6 +40,8 @@ constexpr double kLargeOffset_m = 0.2e-3;
 constexpr double kSurfaceDrift_m = 0.1e-3;
 constexpr int kFewStrokes = 5;
 constexpr double kLeastCell_s = 0.05;
+// Ten minutes at 500 Hz.
+constexpr std::size_t kSurfaceRows = 300000;
 
 template <typename... Values>
 std::string words(const char* format, Values... values) {
@@ -173,6 +175,8 @@ void Checker::check_zero() {
 }
 
 void Checker::check_clipping() {
+  // Zero force is no limit.
+  if (!(measures_.highest_force_N > 0.0)) return;
   if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
   add("clipping", Severity::warning, measures_.highest_force_N,
       words("the force stays at exactly %.5g N for %zu rows while the tool moves on by %.3g mm", measures_.highest_force_N,
@@ -180,11 +184,22 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
+// At most `rows` rows, evenly spread.
+Recording every_so_many(const Recording& recording, std::size_t rows) {
+  const std::size_t step = (recording.rows.size() + rows - 1) / rows;
+  if (step < 2) return recording;
+  Recording thin{recording.name, recording.columns, {}};
+  for (std::size_t i = 0; i < recording.rows.size(); i += step) thin.rows.push_back(recording.rows[i]);
+  return thin;
+}
+
 // A late force hides the surface and the zero, so both are estimated without the lag.
 void Checker::check_lag() {
   const ForceLag lag = find_force_lag(recording_);
   const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
-  surface_ = estimate_surface(late ? without_lag(recording_, lag.lag_s) : recording_);
+  // Of a long recording every so-many-th row: the onset needs no more, and the motion of
+  // every row costs more than reading it.
+  surface_ = estimate_surface(every_so_many(late ? without_lag(recording_, lag.lag_s) : recording_, kSurfaceRows));
   if (!late) return;
   add("lag", Severity::warning, lag.lag_s,
       words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,
@@ -206,8 +221,7 @@ void Checker::check_surface() {
         words("the surface moves by %+.3g mm between the first touch and the last", 1e3 * surface_.offset_drift_m),
         "the specimen creeps or has slipped: fasten it, let it recover between strokes");
   }
-  const std::size_t as_recorded = measure_recording(recording_, 0.0).contact_rows;
-  if (as_recorded == 0) {
+  if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
     add("no_contact", Severity::fatal, measures_.highest_position_m,
         words("the highest position is %.3g mm, so the tool never touches the surface at 0", 1e3 * measures_.highest_position_m),
         "set position_m to 0 where force begins, and check its sign");
@@ -298,7 +312,7 @@ RecordingCheck Checker::run() {
     if (right_way) {
       check_lag();
       check_surface();
-      measures_ = measure_recording(recording_, check_.surface_offset_m);
+      if (check_.surface_offset_m != 0.0) measures_ = measure_recording(recording_, check_.surface_offset_m);
       check_zero();
       check_exploration();
       check_memory();

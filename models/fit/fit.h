@@ -20,7 +20,9 @@
 #include "engine/tick/jnd.h"
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "models/fit/correction_strength.h"
 #include "models/fit/methods.h"
+#include "models/training/feature_selection.h"
 #include "models/training/fit_trend.h"
 #include "models/model/fitted_model.h"
 #include "models/training/motion_source.h"
@@ -35,6 +37,9 @@ enum class Relaxation { scene, automatic, given };
 inline constexpr std::array<const char*, 3> kRelaxationNames{"scene", "auto", "given"};
 // Where the surface of each recording is: estimated, or 0 as recorded.
 enum class Surface { automatic, recorded };
+// Which features: those that the recordings support (feature_selection.h), the
+// scene's (with `relaxation`), or a list.
+enum class FeatureChoice { automatic, scene, given };
 
 struct TrainingRequest {
   std::string scene;
@@ -42,6 +47,8 @@ struct TrainingRequest {
   JndLine jnd;
   Weighting weighting = Weighting::jnd;
   Reduction reduction = Reduction::coverage;
+  FeatureChoice choice = FeatureChoice::scene;
+  FeatureList list;  // when given
   Relaxation relaxation = Relaxation::scene;
   std::vector<double> relaxation_times_s;  // when given
   BranchDrive drive = BranchDrive::elastic_rate;
@@ -52,9 +59,12 @@ struct PreparedTraining {
   TrainingSet set;
   Sites sites;       // normalised; target: what h has to fit
   ModelData common;  // everything of a model but its method's part
+  FeatureSelection selection;              // what each feature is worth; empty unless chosen here
+  std::optional<StrengthChoice> strength;  // of the correction; none for the paper's recipe
   // In-contact feature vectors and forces to judge the fit by, at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> judge_features;
   std::vector<double> judge_force_N;
+  std::vector<int> judge_fold;
 };
 
 struct MethodFit {

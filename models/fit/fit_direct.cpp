@@ -99,9 +99,9 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
     if (!solve_by_truncation(kernel, solution)) return failed;
     return solution;
   }
-  double smoothing = options.smoothing.value_or(0.0);
+  double smoothing = options.smoothing.value_or(sites.smoothing.value_or(0.0));
   double criterion = 0.0;
-  if (!options.smoothing) {
+  if (!options.smoothing && !sites.smoothing) {
     const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel, options.by_group);
     if (!choice) return choice.error();
     smoothing = choice->smoothing;
@@ -132,6 +132,8 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   if (!control.go_on(kFactorised)) return interrupted();
   FittedRbf fitted;
   fitted.function = kernel.function(solution->u);
+  fitted.function.weights *= sites.strength;
+  fitted.function.tail *= sites.strength;
   FitReport& report = fitted.report;
   report.centres_asked = report.centres_used = sites.count();
   report.columns = sites.count() + fitted.function.tail.size();

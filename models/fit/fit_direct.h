@@ -22,7 +22,7 @@ namespace palpate {
 struct DirectOptions {
   KernelKind kernel = KernelKind::cubic;
   DirectSolver solver = DirectSolver::cholesky;
-  // Smoothing; without one it is chosen. 0 interpolates, up to the least
+  // Smoothing; without one the sites' own, and where they have none it is chosen. 0 interpolates, up to the least
   // smoothing at which the matrix can be factorised.
   std::optional<double> smoothing = std::nullopt;
   // Choose by leaving out strokes (when the sites know them) or by generalised

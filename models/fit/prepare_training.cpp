@@ -19,6 +19,12 @@ constexpr Eigen::Index kQuickCentres = 100;
 constexpr int kOneSidedPasses = 3;
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumJudged = 100000;
+constexpr std::size_t kLeftOutSamples = 4000;
+// Where the error on strokes left out stays above these, other lists of features are
+// tried beside the selected one.
+constexpr double kLittleIsLeft_jnd = 0.1;
+constexpr double kMuchIsLeft_jnd = 0.3;
+constexpr int kLadderTimes = 6;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
 
@@ -37,6 +43,49 @@ std::vector<double> filter_times(const std::vector<FeatureSpec>& features) {
     if (spec.kind == FeatureKind::lowpass_velocity) times.push_back(spec.relaxation_time_s);
   }
   return times;
+}
+
+// The scene's features as a list; each relaxation time is a feature.
+FeatureList scene_list(const std::vector<FeatureSpec>& scene, const std::vector<double>& times_s) {
+  FeatureList list;
+  list.velocity = has_velocity(scene);
+  for (const double time_s : times_s) list.relaxation_times_s.push_back({time_s});
+  return list;
+}
+
+std::vector<double> all_times(const FeatureList& list) {
+  std::vector<double> times_s;
+  for (const auto& group : list.relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
+  return times_s;
+}
+
+// One feature of several branches; a branch alone is the older kind.
+FeatureSpec spectrum_of(const FeatureSpec* branches, std::size_t count) {
+  if (count == 1) return branches[0];
+  FeatureSpec spec;
+  spec.kind = FeatureKind::maxwell_spectrum;
+  spec.part_count = count;
+  for (std::size_t p = 0; p < count; ++p) spec.parts[p] = {branches[p].relaxation_time_s, 0.0, branches[p].drive};
+  return spec;
+}
+
+std::vector<FeatureSpec> features_of(const FeatureList& list, const FittedTrend& fitted) {
+  std::vector<FeatureSpec> features{FeatureSpec{}};
+  if (list.velocity) features.push_back({FeatureKind::velocity});
+  std::size_t next = 0;
+  for (const auto& group : list.relaxation_times_s) {
+    features.push_back(spectrum_of(fitted.branches.data() + next, group.size()));
+    next += group.size();
+  }
+  if (!fitted.stops.empty()) {
+    FeatureSpec stops;
+    stops.kind = FeatureKind::stops;
+    stops.part_count = fitted.stops.size();
+    std::copy(fitted.stops.begin(), fitted.stops.end(), stops.parts.begin());
+    features.push_back(stops);
+  }
+  for (const double time_s : list.peak_times_s) features.push_back({FeatureKind::fading_peak, time_s});
+  return features;
 }
 
 // The scene's features with its low-passes replaced by `filters`.
@@ -85,7 +134,7 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     if (site.no_force && base_N(k) < 0.0 && prepared.common.corrects_trend) sites.target_N(k) = 0.0;
     sites.row_scale(k) = row_scale(request.weighting, request.jnd, site.force_N) *
                          std::sqrt(std::min(site.count, kMaximumSiteCount));
-    sites.group[i] = site.stroke;
+    sites.group[i] = prepared.strength ? site.fold : site.stroke;
     any_one_sided = any_one_sided || site.no_force;
   }
   if (any_one_sided && n > 1) {
@@ -110,6 +159,8 @@ struct Extent {
   double depth_m = 0.0;
   double force_N = 0.0;
   double rms_velocity_m_per_s = 0.0;  // in contact
+  std::size_t contact_samples = 0;
+  std::size_t strokes = 0;
 };
 
 Result<Extent> measure_extent(MotionSource& source, const FitControl& control) {
@@ -122,9 +173,11 @@ Result<Extent> measure_extent(MotionSource& source, const FitControl& control) {
       extent.force_N = std::max(extent.force_N, row.force_N);
       squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
       count += 1.0;
+      extent.strokes = static_cast<std::size_t>(row.stroke);
     }
     return true;
   }, control, 0.0);
+  extent.contact_samples = static_cast<std::size_t>(count);
   if (!status) return status.error();
   // A tool that never moved still needs a scale: 1 um/s.
   extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
@@ -132,27 +185,32 @@ Result<Extent> measure_extent(MotionSource& source, const FitControl& control) {
 }
 
 Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const TrainingRequest& request,
-                        const Extent& extent, double no_force_N, const std::vector<double>& times_s,
-                        const FitControl& control) {
+                        const Extent& extent, double no_force_N, const FeatureList& list, const FitControl& control) {
   const bool papers = is_papers_recipe(request);
-  const bool viscous = !papers && has_velocity(request.features);
-  TrendRows rows(extent.depth_m, viscous ? extent.rms_velocity_m_per_s : 0.0,
-                 papers ? std::vector<double>{} : times_s);
+  TrendTerms terms{extent.depth_m, 0.0, {}, {}, {}};
+  if (!papers) {
+    terms = {extent.depth_m, list.velocity ? extent.rms_velocity_m_per_s : 0.0, all_times(list),
+             list.stop_thresholds_m, list.peak_times_s};
+  }
+  TrendRows rows(terms);
   const Status status = source.for_each([&](const MotionRow& row) {
     if (row.first) rows.begin_recording();
     rows.add(row.sample, row.motion, row.force_N, row.stroke);
     return true;
   }, control, 0.15);
   if (!status) return status;
-  FittedTrend fitted =
-      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N, request.drive);
+  const FittedTrend fitted =
+      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N, request.drive,
+                !papers);
   prepared.common.trend = fitted.trend;
-  std::vector<FeatureSpec> filters = std::move(fitted.branches);
-  if (papers) {
-    for (const double time_s : times_s) filters.push_back({FeatureKind::lowpass_velocity, time_s, {}});
-  }
-  prepared.common.features = with_filters(request.features, filters);
   prepared.common.corrects_trend = !papers;
+  if (!papers) {
+    prepared.common.features = features_of(list, fitted);
+    return {};
+  }
+  std::vector<FeatureSpec> filters;
+  for (const double time_s : all_times(list)) filters.push_back({FeatureKind::lowpass_velocity, time_s, {}});
+  prepared.common.features = with_filters(request.features, filters);
   return {};
 }
 
@@ -171,19 +229,167 @@ Status find_surfaces(MotionSource& source, const TrainingRequest& request, Prove
   return {};
 }
 
-Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, const FitControl& control) {
+Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, const FoldDealer& dealer,
+                           const FitControl& control) {
   FeatureFilter filter(prepared.common.features);
+  FoldDealer folds = dealer;
   const std::size_t stride = prepared.set.contact_samples / kMaximumJudged + 1;
   std::size_t seen = 0;
   return source.for_each([&](const MotionRow& row) {
     if (row.first) filter.reset();
     const FeatureVector& vector = filter.update(row.sample, row.motion);
-    if (vector.in_contact && seen++ % stride == 0) {
-      prepared.judge_features.push_back(vector.values);
-      prepared.judge_force_N.push_back(row.force_N);
+    if (vector.in_contact) {
+      const int fold = folds.next(row);
+      if (seen++ % stride == 0) {
+        prepared.judge_features.push_back(vector.values);
+        prepared.judge_force_N.push_back(row.force_N);
+        prepared.judge_fold.push_back(fold);
+      }
     }
     return true;
   }, control, 0.28);
+}
+
+std::vector<LeftOutSample> left_out_samples(const PreparedTraining& prepared) {
+  const ModelData& common = prepared.common;
+  const auto d = static_cast<Eigen::Index>(common.features.size());
+  const std::size_t stride = prepared.judge_force_N.size() / kLeftOutSamples + 1;
+  std::vector<LeftOutSample> samples;
+  for (std::size_t i = 0; i < prepared.judge_force_N.size(); i += stride) {
+    const double* features = prepared.judge_features[i].data();
+    LeftOutSample sample;
+    sample.point = (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
+    sample.trend_N = common.trend.at(features, common.features);
+    sample.force_N = prepared.judge_force_N[i];
+    sample.depth_m = features[0];
+    sample.fold = prepared.judge_fold[i];
+    samples.push_back(std::move(sample));
+  }
+  return samples;
+}
+
+void decide_strength(PreparedTraining& prepared, const TrainingRequest& request, const FoldDealer& dealer,
+                     double no_force_N) {
+  ModelData& common = prepared.common;
+  const std::vector<LeftOutSample> samples = left_out_samples(prepared);
+  StrengthInput input{prepared.sites, samples, dealer.folds(), KernelKind::cubic, request.jnd};
+  input.correction_limit_N = common.correction_limit_N;
+  input.force_floor_N = no_force_N;
+  input.least_radius = common.cover.inner_radius;
+  input.outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
+  prepared.strength = choose_strength(input);
+  prepared.sites.smoothing = prepared.strength->smoothing;
+  prepared.sites.strength = prepared.strength->strength;
+  common.cover.inner_radius = prepared.strength->inner_radius;
+  common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
+}
+
+// The relaxation times of the scene, given ones instead, or identified ones.
+Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequest& request, const Extent& extent,
+                                        double no_force_N, Provenance& provenance, const FitControl& control) {
+  std::vector<double> times_s = filter_times(request.features);
+  if (request.relaxation != Relaxation::scene && times_s.empty()) {
+    return Error{"scene \"" + request.scene + "\" has no relaxation features; leave out --relaxation, or use a scene "
+                 "that has them (palpate scenes)"};
+  }
+  if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
+  if (request.relaxation != Relaxation::automatic) {
+    for (const double time_s : times_s) provenance.relaxation_times.push_back({time_s, 0.0});
+    return times_s;
+  }
+  const auto identified = identify_relaxation(source, extent.depth_m,
+                                              has_velocity(request.features) ? extent.rms_velocity_m_per_s : 0.0,
+                                              request.weighting, request.jnd, no_force_N, control);
+  if (!identified) return identified.error();
+  times_s.clear();
+  for (const IdentifiedTime& time : identified->times) {
+    times_s.push_back(time.time_s);
+    provenance.relaxation_times.push_back({time.time_s, time.standard_error_s});
+  }
+  return times_s;
+}
+
+// What all candidate lists of features share.
+struct Ground {
+  MotionSource& source;
+  const TrainingRequest& request;
+  const Extent& extent;
+  const FoldDealer& dealer;
+  double no_force_N;
+};
+
+// Trend, sites and correction strength of one list of features.
+Status prepare_list(PreparedTraining& prepared, const Ground& ground, const FeatureList& list,
+                    const FitControl& control) {
+  const TrainingRequest& request = ground.request;
+  ModelData& common = prepared.common;
+  if (Status status = fit_common_trend(prepared, ground.source, request, ground.extent, ground.no_force_N, list, control);
+      !status) {
+    return status;
+  }
+  const bool papers = is_papers_recipe(request);
+  auto set = make_training_set(ground.source, common.features, request.reduction, ground.no_force_N, control, 0.2,
+                               papers ? nullptr : &ground.dealer);
+  if (!set) return set.error();
+  prepared.set = std::move(*set);
+  if (!control.go_on(0.25)) return interrupted();
+  common.largest_force_N = std::max(0.0, ground.extent.force_N);
+  common.offset = prepared.set.normalisation.offset;
+  common.scale = prepared.set.normalisation.scale;
+  common.lower = prepared.set.normalisation.lower;
+  common.upper = prepared.set.normalisation.upper;
+  common.jnd = request.jnd;
+  if (!papers) prepared.strength.emplace();
+  if (Status status = make_sites(prepared, request); !status) return status;
+  common.cover = make_cover(prepared.sites.points);
+  if (Status status = keep_judged_samples(prepared, ground.source, ground.dealer, control); !status) return status;
+  if (!papers) decide_strength(prepared, request, ground.dealer, ground.no_force_N);
+  return {};
+}
+
+// Lists that the selected one must not lose against: the scene's own, and, where much
+// is left to explain, six times on a logarithmic ladder, each a feature.
+std::vector<FeatureList> rivals_of(const FeatureSelection& selection, const TrainingRequest& request,
+                                   double left_over_jnd) {
+  std::vector<FeatureList> rivals;
+  if (selection.turns_round && left_over_jnd > kLittleIsLeft_jnd) {
+    rivals.push_back(scene_list(request.features, filter_times(request.features)));
+  }
+  if (selection.turns_round && left_over_jnd > kMuchIsLeft_jnd) {
+    FeatureList ladder;
+    ladder.velocity = true;
+    for (int i = 0; i < kLadderTimes; ++i) {
+      ladder.relaxation_times_s.push_back({selection.shortest_s * std::pow(selection.longest_s / selection.shortest_s,
+                                                                           static_cast<double>(i) / (kLadderTimes - 1))});
+    }
+    rivals.push_back(std::move(ladder));
+  }
+  return rivals;
+}
+
+// Features as the recordings have it; `prepared` brings its provenance.
+Result<PreparedTraining> prepare_automatic(const PreparedTraining& begun, const Ground& ground,
+                                           const FitControl& control) {
+  const TrainingRequest& request = ground.request;
+  const SelectionInput input{ground.extent.depth_m, ground.extent.rms_velocity_m_per_s, ground.no_force_N,
+                             request.weighting, request.jnd};
+  auto selection = select_features(ground.source, ground.dealer, input, control, 0.1);
+  if (!selection) return selection.error();
+  const auto prepare = [&](const FeatureList& list) -> Result<PreparedTraining> {
+    PreparedTraining prepared = begun;
+    for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
+    if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
+    return prepared;
+  };
+  auto best = prepare(selection->list);
+  if (!best) return best.error();
+  for (const FeatureList& rival : rivals_of(*selection, request, best->strength->error_over_jnd)) {
+    auto other = prepare(rival);
+    if (!other) return other.error();
+    if (is_better(*other->strength, *best->strength)) best = std::move(other);
+  }
+  best->selection = std::move(*selection);
+  return best;
 }
 
 }  // namespace
@@ -191,8 +397,9 @@ Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, con
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
   PreparedTraining prepared;
-  ModelData& common = prepared.common;
-  if (Status status = find_surfaces(source, request, common.provenance, control); !status) return status.error();
+  if (Status status = find_surfaces(source, request, prepared.common.provenance, control); !status) {
+    return status.error();
+  }
   const auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (!control.go_on(0.05)) return interrupted();
@@ -201,45 +408,26 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
                  "record a press, or check the sign and zero of position_m"};
   }
   const double no_force_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
-
-  std::vector<double> times_s = filter_times(request.features);
-  if (request.relaxation != Relaxation::scene && times_s.empty()) {
-    return Error{"scene \"" + request.scene + "\" has no relaxation features; leave out --relaxation, or use a scene "
-                 "that has them (palpate scenes)"};
-  }
-  if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
-  for (const double time_s : times_s) common.provenance.relaxation_times.push_back({time_s, 0.0});
-  if (request.relaxation == Relaxation::automatic) {
-    const auto identified = identify_relaxation(source, extent->depth_m,
-                                                has_velocity(request.features) ? extent->rms_velocity_m_per_s : 0.0,
-                                                request.weighting, request.jnd, no_force_N, control);
-    if (!identified) return identified.error();
-    times_s.clear();
-    common.provenance.relaxation_times.clear();
-    for (const IdentifiedTime& time : identified->times) {
-      times_s.push_back(time.time_s);
-      common.provenance.relaxation_times.push_back({time.time_s, time.standard_error_s});
+  const FoldDealer dealer(source.names().size(), extent->strokes, extent->contact_samples);
+  const Ground ground{source, request, *extent, dealer, no_force_N};
+  if (request.choice == FeatureChoice::automatic) {
+    auto automatic = prepare_automatic(prepared, ground, control);
+    if (!automatic) return automatic.error();
+    prepared = std::move(*automatic);
+  } else {
+    FeatureList list = request.list;
+    if (request.choice == FeatureChoice::scene) {
+      const auto times_s = scene_times(source, request, *extent, no_force_N, prepared.common.provenance, control);
+      if (!times_s) return times_s.error();
+      list = scene_list(request.features, *times_s);
+    } else {
+      for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
     }
+    if (!control.go_on(0.15)) return interrupted();
+    if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
   }
-  if (!control.go_on(0.15)) return interrupted();
-  if (Status status = fit_common_trend(prepared, source, request, *extent, no_force_N, times_s, control); !status) {
-    return status.error();
-  }
-  auto set = make_training_set(source, common.features, request.reduction, no_force_N, control, 0.2);
-  if (!set) return set.error();
-  prepared.set = std::move(*set);
-  if (!control.go_on(0.25)) return interrupted();
-  common.largest_force_N = std::max(0.0, extent->force_N);
-  common.offset = prepared.set.normalisation.offset;
-  common.scale = prepared.set.normalisation.scale;
-  common.lower = prepared.set.normalisation.lower;
-  common.upper = prepared.set.normalisation.upper;
-  common.jnd = request.jnd;
-  if (Status status = make_sites(prepared, request); !status) return status.error();
-  common.cover = make_cover(prepared.sites.points);
-  if (Status status = keep_judged_samples(prepared, source, control); !status) return status.error();
 
-  Provenance& provenance = common.provenance;
+  Provenance& provenance = prepared.common.provenance;
   provenance.recordings = source.names();
   provenance.scene = request.scene;
   provenance.samples = source.rows();
@@ -247,7 +435,10 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   provenance.samples_after_reduction = prepared.set.sites.size();
   provenance.weighting = weighting_name(request.weighting);
   provenance.reduction = reduction_name(request.reduction);
-  provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(request.relaxation)];
+  const Relaxation relaxation = request.choice == FeatureChoice::automatic ? Relaxation::automatic
+                                : request.choice == FeatureChoice::given   ? Relaxation::given
+                                                                           : request.relaxation;
+  provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(relaxation)];
   if (!control.go_on(0.3)) return interrupted();
   return prepared;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "models/fit/lapack.h"
+#include "models/fit/penalised_weights.h"
 #include "engine/base/parallel.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
@@ -152,8 +153,14 @@ bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, Ridge ri
 
 }  // namespace
 
+bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
+               Eigen::MatrixXd& triangle) {
+  return RowFolder(sites, kernel, centres).fold(control, triangle);
+}
+
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
                                 const FitControl& control, Ridge ridge, double truncation) {
+  if (ridge == Ridge::by_evidence && sites.smoothing) return penalised_weights(sites, kernel, centres, control);
   if (const Status status = validate_sites(sites); !status) return status.error();
   if (centres.rows() != sites.points.rows() || !centres.allFinite())
     return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +

@@ -18,6 +18,8 @@
 //   N ln(sum_i lambda z_i^2 / (s_i^2 + lambda) + rho^2) + sum_i ln(1 + s_i^2 / lambda).
 // It is taken where sites are fewer than ten to an unknown, or where it says that
 // noise rules (lambda above 1e-6 s_1^2); a healthy fit stays plain least squares.
+// Sites that come with a smoothing of their own get that penalty instead
+// (penalised_weights.h).
 // Source: Hoever & Harders (2009), eq. 8 and section 4.2.1; MacKay (1992),
 // "Bayesian interpolation", for the evidence.
 #pragma once
@@ -32,6 +34,12 @@ namespace palpate {
 // Rounding in the triangle is about 1e-14 of the largest singular value for a
 // thousand columns; what lies two decades above is still data.
 inline constexpr double kDefaultTruncation = 1e-12;
+
+// R of the QR factorisation of [row_scale * (Phi G f)], n + tail + 1 columns, where
+// the columns are the kernel at the n centres, the tail and the data. False if
+// cancelled.
+bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
+               Eigen::MatrixXd& triangle);
 
 enum class Ridge { none, by_evidence };
 

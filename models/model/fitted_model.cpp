@@ -19,21 +19,38 @@ Status validate_vector(const Eigen::VectorXd& values, const std::string& field, 
   return {};
 }
 
+Status validate_positive(const std::string& field, double value) {
+  if (value > 0.0 && std::isfinite(value)) return {};
+  return wrong(field, std::to_string(value), "a positive number");
+}
+
+Status validate_drive(const std::string& field, const DriveCurve& drive) {
+  if (Status status = validate_positive(field + ".reference_depth_m", drive.reference_depth_m); !status) return status;
+  for (const double coefficient : drive.coefficient_N) {
+    if (!std::isfinite(coefficient)) return wrong(field, "a non-finite number", "finite numbers");
+  }
+  return {};
+}
+
 Status validate_features(const std::vector<FeatureSpec>& features) {
   if (features.empty() || features.size() > kMaxFeatures) {
     return wrong("features", std::to_string(features.size()) + " features", "1 to 8");
   }
   for (const FeatureSpec& spec : features) {
-    const bool filter = spec.kind == FeatureKind::lowpass_velocity || spec.kind == FeatureKind::maxwell_branch;
-    if (filter && !(spec.relaxation_time_s > 0.0 && std::isfinite(spec.relaxation_time_s))) {
-      return wrong("features.relaxation_time_s", std::to_string(spec.relaxation_time_s), "a positive number");
+    if (has_time(spec.kind)) {
+      if (Status status = validate_positive("features.relaxation_time_s", spec.relaxation_time_s); !status) return status;
     }
-    if (!(spec.drive.reference_depth_m > 0.0 && std::isfinite(spec.drive.reference_depth_m))) {
-      return wrong("features.drive.reference_depth_m", std::to_string(spec.drive.reference_depth_m),
-                   "a positive number");
+    if (Status status = validate_drive("features.drive", spec.drive); !status) return status;
+    if (!has_parts(spec.kind)) continue;
+    if (spec.part_count < 1 || spec.part_count > kMaxFeatureParts) {
+      return wrong("features.parts", std::to_string(spec.part_count) + " parts", "1 to 8");
     }
-    for (const double coefficient : spec.drive.coefficient_N) {
-      if (!std::isfinite(coefficient)) return wrong("features.drive", "a non-finite number", "finite numbers");
+    for (std::size_t p = 0; p < spec.part_count; ++p) {
+      const bool stops = spec.kind == FeatureKind::stops;
+      const double constant = stops ? spec.parts[p].threshold_m : spec.parts[p].relaxation_time_s;
+      const char* field = stops ? "features.parts.threshold_m" : "features.parts.relaxation_time_s";
+      if (Status status = validate_positive(field, constant); !status) return status;
+      if (Status status = validate_drive("features.parts.drive", spec.parts[p].drive); !status) return status;
     }
   }
   return {};
@@ -52,6 +69,9 @@ Status validate_trend(const Trend& trend) {
   if (!(trend.thinning_velocity_m_per_s > 0.0) || !std::isfinite(trend.thinning_velocity_m_per_s)) {
     return wrong("trend.thinning_velocity_m_per_s", std::to_string(trend.thinning_velocity_m_per_s),
                  "a positive number");
+  }
+  for (const DriveCurve& curve : trend.softening) {
+    if (Status status = validate_drive("trend.softening", curve); !status) return status;
   }
   if (!(trend.velocity_limit_m_per_s >= 0.0) || !std::isfinite(trend.velocity_limit_m_per_s)) {
     return wrong("trend.velocity_limit_m_per_s", std::to_string(trend.velocity_limit_m_per_s), "0 or more");

@@ -58,6 +58,12 @@ class NonNegativeSolver {
         x_(Eigen::VectorXd::Zero(right_side_.size())),
         passive_(static_cast<std::size_t>(right_side_.size()), 0) {}
 
+  void start_at(const Eigen::VectorXd& x) {
+    x_ = x;
+    for (Eigen::Index i = 0; i < x_.size(); ++i) passive_[static_cast<std::size_t>(i)] = x_(i) > 0.0 ? 1 : 0;
+    move_to_minimum();
+  }
+
   Eigen::VectorXd solve() {
     // They end after few changes; 3 n is their own bound.
     for (Eigen::Index change = 0; change < 3 * x_.size(); ++change) {
@@ -144,6 +150,12 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
       }
     }
   }
+  for (std::size_t i = 0; i < rows.terms().peak_times_s.size(); ++i) {
+    for (std::size_t j = 0; j < kSofteningPowers.size(); ++j) {
+      const double* weights = x.data() + rows.first_softening() + i * kSofteningTerms + j * kBranchTerms;
+      trend.softening[j] = combined_drive(weights, rows.reference_depth_m());
+    }
+  }
   for (std::size_t i = 0; i < rows.count(); ++i) {
     trend.velocity_limit_m_per_s =
         std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows.velocity_m_per_s(i)));
@@ -168,17 +180,22 @@ Eigen::MatrixXd free_directions(const TrendRows& rows, BranchDrive drive) {
 
 }  // namespace
 
-Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side) {
+Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side,
+                                   const Eigen::VectorXd& start) {
   Eigen::VectorXd inverse_norm = gram.diagonal();
   for (double& value : inverse_norm) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
   Eigen::MatrixXd scaled = inverse_norm.asDiagonal() * gram * inverse_norm.asDiagonal();
   scaled.diagonal().array() += kRidge;
   NonNegativeSolver solver(std::move(scaled), right_side.cwiseProduct(inverse_norm));
+  if (start.size() > 0 && (start.array() > 0.0).any()) {
+    const auto moving = inverse_norm.array() > 0.0;
+    solver.start_at(moving.select(start.array() / moving.select(inverse_norm.array(), 1.0), 0.0).matrix());
+  }
   return solver.solve().cwiseMax(0.0).cwiseProduct(inverse_norm);
 }
 
 FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
-                      BranchDrive drive) {
+                      BranchDrive drive, bool robust) {
   FittedTrend fitted;
   const Eigen::MatrixXd directions = free_directions(rows, drive);
   std::vector<double> scale(rows.count());
@@ -191,6 +208,12 @@ FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine&
                                         directions.transpose() * equations.right_side);
     bool changed = false;
     for (std::size_t i = 0; i < rows.count(); ++i) {
+      if (robust) {
+        const double plain = row_scale(weighting, jnd, rows.force_N(i));
+        const double scaled = plain * robust_scale(jnd.error_over_jnd(dot(rows.row(i), x), rows.force_N(i)));
+        changed = changed || std::abs(scaled - scale[i]) > 0.1 * plain;
+        scale[i] = scaled;
+      }
       if (rows.force_N(i) > no_force_N) continue;
       const char counts = dot(rows.row(i), x) > 0.0 ? 1 : 0;
       changed = changed || counts != fitted.active[i];
@@ -199,11 +222,17 @@ FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine&
     if (!changed) break;
   }
   fitted.trend = trend_from(rows, x);
-  const std::size_t first = rows.columns() - kBranchTerms * rows.relaxation_times_s().size();
+  const std::size_t first = rows.first_branch();
   for (std::size_t b = 0; b < rows.relaxation_times_s().size(); ++b) {
     const double* weights = x.data() + first + b * kBranchTerms;
     fitted.branches.push_back({FeatureKind::maxwell_branch, rows.relaxation_times_s()[b],
                                combined_drive(weights, rows.reference_depth_m())});
+  }
+  for (std::size_t s = 0; s < rows.terms().stop_thresholds_m.size(); ++s) {
+    const double* weights = x.data() + rows.first_stop() + s * kStopTerms;
+    if (std::all_of(weights, weights + kStopTerms, [](double weight) { return weight == 0.0; })) continue;
+    fitted.stops.push_back(
+        {0.0, rows.terms().stop_thresholds_m[s], combined_friction(weights, rows.reference_depth_m())});
   }
   double sum = 0.0;
   std::size_t counted = 0;

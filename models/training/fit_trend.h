@@ -24,12 +24,15 @@
 namespace palpate {
 
 // x >= 0 that minimises x^T G x - 2 b^T x. `gram`: n x n, symmetric, positive
-// semidefinite; a small ridge keeps equal columns apart. Returns n values.
-Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side);
+// semidefinite; a small ridge keeps equal columns apart. `start`: a solution to
+// begin at, n values >= 0, or empty. Returns n values.
+Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right_side,
+                                   const Eigen::VectorXd& start = {});
 
 struct FittedTrend {
   Trend trend;
   std::vector<FeatureSpec> branches;  // one maxwell_branch per relaxation time
+  std::vector<FeaturePart> stops;     // one per threshold; without those that carry nothing
   double weighted_rms = 0.0;          // of s_i (f_i - T_i), over the active rows
   std::vector<char> active;           // per row: counted in the last pass
 };
@@ -39,8 +42,9 @@ struct FittedTrend {
 // comparison of choices (palpate-bench) says what the first is worth.
 enum class BranchDrive { elastic_rate, velocity };
 
+// `robust`: rows are scaled down as weighting.h has it, again after every pass.
 // `no_force_N`: at or below it a sample counts as "no measured force".
 FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
-                      BranchDrive drive = BranchDrive::elastic_rate);
+                      BranchDrive drive = BranchDrive::elastic_rate, bool robust = false);
 
 }  // namespace palpate

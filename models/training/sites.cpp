@@ -38,6 +38,8 @@ Status validate_sites(const Sites& sites) {
 Sites even_subset(const Sites& sites, Eigen::Index most) {
   const Eigen::Index count = std::min(sites.count(), most);
   Sites subset;
+  subset.smoothing = sites.smoothing;
+  subset.strength = sites.strength;
   subset.points.resize(sites.dimension(), count);
   subset.target_N.resize(count);
   subset.row_scale.resize(count);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -22,6 +23,11 @@ struct Sites {
   // N stroke numbers in time order, for leave-one-stroke-out; empty means no
   // grouping is known.
   std::vector<int> group;
+  // What was decided about the correction by leaving groups out
+  // (models/fit/correction_strength.h): the penalty on its roughness, in place of
+  // what a method would choose itself, and the share of it that the model gets.
+  std::optional<double> smoothing;
+  double strength = 1.0;
 
   Eigen::Index count() const { return points.cols(); }
   int dimension() const { return static_cast<int>(points.rows()); }

@@ -7,9 +7,9 @@
 // and those after kRestBeforeTouch_s of air. (A surface that still recovers
 // from the touch before meets the tool late, by up to a millimetre.) While the
 // tool goes in,
-//   J(d0) = sum_i (f_i - zero - a x_i (1 - x_i / 2w) - b x_i^2 / 2w)^2,
-//           x_i = max(0, p_i - d0),  a, b >= 0,  w = 3 mm
-// is minimised over d0, with a and b of every touch (variable projection). A
+//   J(d0) = sum_i (f_i - zero - a x_i (1 - x_i / 2w) - b x_i^2 / 2w - c x_i^1.5)^2,
+//           x_i = max(0, p_i - d0),  a, b, c >= 0,  w = 3 mm
+// (c: a sphere on a soft solid, Hertz 1881) is minimised over d0, with a, b and c of every touch (variable projection). A
 // threshold on force instead would be late by what a soft onset takes to reach
 // it.
 // An offset that cannot be told from 0 (two standard errors, 0.02 mm) is 0.

@@ -20,6 +20,9 @@ namespace {
 // Rows of all recordings together for the common trend, and of each for its onset.
 constexpr std::size_t kCommonRows = 4000;
 constexpr std::size_t kOnsetRows = 400000;
+// A shift common to all recordings changes no force of the model, only where its zero
+// lies; below what an onset tells on any material it stays as recorded.
+constexpr double kLeastCommonShift_m = 0.1e-3;
 constexpr std::size_t kRegistrationFolds = 8;
 constexpr std::size_t kPiecesOfARecording = 16;
 constexpr int kSteps = 12;
@@ -292,8 +295,11 @@ void anchor(Consistent& consistent, const std::vector<Member>& members, double& 
     sum += weight * (members[r].own.raw_offset_m - consistent.offset_m[r]);
     weights += weight;
   }
-  const double shift_m = weights > 0.0 ? sum / weights : -median_of(consistent.offset_m);
   error_m = weights > 0.0 ? std::sqrt(1.0 / weights) : kUnknownError;
+  const double as_recorded_m = -median_of(consistent.offset_m);
+  const double by_onset_m = weights > 0.0 ? sum / weights : as_recorded_m;
+  const bool told = std::abs(by_onset_m - as_recorded_m) > std::max(kLeastCommonShift_m, kSignificantErrors * error_m);
+  const double shift_m = told ? by_onset_m : as_recorded_m;
   for (double& offset_m : consistent.offset_m) offset_m += shift_m;
 }
 
@@ -301,7 +307,8 @@ std::vector<RegisteredSurface> registered(const std::vector<Member>& members, co
                                           double no_force_N) {
   std::vector<RegisteredSurface> surfaces;
   for (const Member& member : members) {
-    surfaces.push_back({member.own.offset_m, member.own.standard_error_m, member.own.force_zero_N});
+    const bool told = members.size() > 1 || std::abs(member.own.offset_m) > kLeastCommonShift_m;
+    surfaces.push_back({told ? member.own.offset_m : 0.0, member.own.standard_error_m, member.own.force_zero_N});
   }
   if (members.size() < 2) return surfaces;
   std::vector<double> start_m;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <unordered_map>
 
 namespace palpate {
@@ -85,7 +86,7 @@ class CoverageReduction {
       const double u = (site.features[i] - normalisation_.offset(k)) / normalisation_.scale(k);
       result[i] = static_cast<std::int32_t>(std::clamp(std::floor(u / step_), -1e9, 1e9));
     }
-    result[kMaxFeatures] = site.no_force ? 1 : 0;
+    result[kMaxFeatures] = 2 * site.fold + (site.no_force ? 1 : 0);
     return result;
   }
 
@@ -176,7 +177,7 @@ class NoReduction {
 
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double no_force_N, const FitControl& control,
-                                      double fraction) {
+                                      double fraction, const FoldDealer* dealer) {
   TrainingSet set;
   set.features = features;
   const auto n = static_cast<Eigen::Index>(features.size());
@@ -207,8 +208,11 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   ForceReduction force;
   NoReduction none;
   int recording = -1;
+  std::optional<FoldDealer> folds;
+  if (dealer != nullptr) folds = *dealer;
   status = pass([&](const MotionRow& row, const FeatureVector& vector) {
-    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, row.force_N <= no_force_N};
+    const int fold = folds ? folds->next(row) : 0;
+    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= no_force_N};
     switch (reduction) {
       case Reduction::coverage: coverage.add(site); break;
       case Reduction::force: force.add(site, row.recording != recording); break;

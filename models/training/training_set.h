@@ -20,6 +20,8 @@
 // recording streams through in bounded memory. (none: every other sample is
 // dropped instead.)
 //
+// Samples of different folds (fold_dealer.h), when they are dealt, never share a
+// site: what is decided by leaving folds out must not have seen them.
 // Contact is one-sided: samples without measured force never share a site with
 // others and are marked.
 // Thread guarantee: slow side.
@@ -32,6 +34,7 @@
 
 #include "engine/tick/features.h"
 #include "engine/base/result.h"
+#include "models/training/fold_dealer.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
@@ -58,6 +61,7 @@ struct TrainingSite {
   double force_N = 0.0;
   double count = 1.0;  // samples behind it
   int stroke = 0;
+  int fold = 0;
   bool no_force = false;  // one-sided: the force is not positive, no more is known
 };
 
@@ -74,6 +78,6 @@ struct TrainingSet {
 // those of the source; no sample in contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double no_force_N, const FitControl& control = {},
-                                      double fraction = 0.0);
+                                      double fraction = 0.0, const FoldDealer* dealer = nullptr);
 
 }  // namespace palpate

@@ -6,8 +6,10 @@
 //   viscous    v B_k,2(min(u, 1))      k = 0..2, when the scene has velocity,
 //              then the same with v / (1 + |v| / v_0)
 //   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
-// The branch filters are the features' own code. When more than
-// kMaximumTrendRows rows come, every other one is dropped and the stride
+//   stop       s / r times 1 - (1 - u)^4, u and u^2, per threshold r
+//   softening  (d / m)^p int_0^u B_k,2, k = 0..2 for each p, per fading time of m
+// The filters are the features' own code. When more than
+// kMaximumTrendRows rows (or as many as asked for) come, every other one is dropped and the stride
 // doubles.
 // Thread guarantee: slow side.
 #pragma once
@@ -17,6 +19,7 @@
 
 #include "engine/tick/features.h"
 #include "engine/tick/tool_sample.h"
+#include "models/model/trend.h"
 
 namespace palpate {
 
@@ -28,8 +31,24 @@ inline constexpr std::size_t kBranchTerms = 3;
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m);
 DriveCurve combined_drive(const double* weights, double reference_depth_m);
 
+// What a trend may consist of besides its elastic response.
+struct TrendTerms {
+  double reference_depth_m = 1.0;
+  double thinning_velocity_m_per_s = 0.0;  // v_0; 0: no viscosity
+  std::vector<double> relaxation_times_s;
+  std::vector<double> stop_thresholds_m;
+  std::vector<double> peak_times_s;
+};
+
+inline constexpr std::size_t kStopTerms = 3;
+inline constexpr std::size_t kSofteningTerms = kBranchTerms * kSofteningPowers.size();
+
+// g of stops from its kStopTerms weights: as many shapes of rising friction.
+DriveCurve combined_friction(const double* weights, double reference_depth_m);
+
 class TrendRows {
  public:
+  explicit TrendRows(TrendTerms terms, std::size_t most_rows = kMaximumTrendRows);
   // `thinning_velocity_m_per_s`: v_0; 0 when the scene has no velocity.
   TrendRows(double reference_depth_m, double thinning_velocity_m_per_s, std::vector<double> relaxation_times_s);
 
@@ -49,17 +68,24 @@ class TrendRows {
   double velocity_m_per_s(std::size_t index) const { return velocity_m_per_s_[index]; }
   double depth_m(std::size_t index) const { return depth_m_[index]; }
   int stroke(std::size_t index) const { return stroke_[index]; }
-  double reference_depth_m() const { return reference_depth_m_; }
-  double thinning_velocity_m_per_s() const { return thinning_velocity_m_per_s_; }
-  const std::vector<double>& relaxation_times_s() const { return relaxation_times_s_; }
+  const TrendTerms& terms() const { return terms_; }
+  double reference_depth_m() const { return terms_.reference_depth_m; }
+  double thinning_velocity_m_per_s() const { return terms_.thinning_velocity_m_per_s; }
+  const std::vector<double>& relaxation_times_s() const { return terms_.relaxation_times_s; }
+  // Where the columns of each kind begin; those of the elastic response begin at 0.
+  std::size_t first_branch() const { return kElasticCoefficients + viscous_columns(); }
+  std::size_t first_stop() const { return first_branch() + kBranchTerms * terms_.relaxation_times_s.size(); }
+  std::size_t first_softening() const { return first_stop() + kStopTerms * terms_.stop_thresholds_m.size(); }
 
  private:
   void halve();
+  void add_softening(double depth_m);
 
-  double reference_depth_m_;
-  double thinning_velocity_m_per_s_;
-  std::vector<double> relaxation_times_s_;
-  std::vector<FeatureFilter> branches_;
+  TrendTerms terms_;
+  std::size_t most_rows_;
+  std::vector<FeatureFilter> branches_;  // and the stops, kBranchTerms values each
+  std::vector<FeatureFilter> peaks_;
+  DriveCurve softening_basis_[kBranchTerms];
   std::size_t columns_;
   std::vector<double> values_;
   std::vector<double> force_N_;

@@ -33,4 +33,14 @@ inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N)
   return 1.0;
 }
 
+// What an error of `error_over_jnd` leaves of the row's scale: errors that are felt
+// anyhow must not bend the fit where it could be right. The weights of a Cauchy
+// likelihood (Holland & Welsch 1977), which leave small errors alone.
+inline constexpr double kRobustError_jnd = 2.0;
+
+inline double robust_scale(double error_over_jnd) noexcept {
+  const double share = error_over_jnd / kRobustError_jnd;
+  return 1.0 / std::sqrt(1.0 + share * share);
+}
+
 }  // namespace palpate

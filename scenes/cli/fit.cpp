@@ -3,9 +3,11 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "engine/base/atomic_file.h"
@@ -13,6 +15,7 @@
 #include "models/fit/fit.h"
 #include "models/model/file/model_io.h"
 #include "scenes/cli/check_recordings.h"
+#include "scenes/cli/feature_list.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
@@ -29,7 +32,8 @@ struct FitArguments {
   std::string kernel = "cubic";
   std::string weighting = "jnd";
   std::string reduction = "coverage";
-  std::string relaxation = "scene";
+  std::string features = "auto";
+  std::string relaxation;  // empty: not given
   std::string surface = "auto";
   std::string grid;
   std::string scene = "silicone_block";
@@ -98,6 +102,12 @@ std::string check_relaxation(const std::string& text) {
   return "found \"" + text + "\", expected scene, auto, or one to six times in seconds such as 0.17,1.27";
 }
 
+std::string check_features(const std::string& text) {
+  if (text == "auto" || text == "scene") return "";
+  const auto list = parse_feature_list(text);
+  return list ? "" : list.error().message + "; or auto, or scene";
+}
+
 std::string check_grid(const std::string& text) {
   return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
 }
@@ -112,9 +122,20 @@ TrainingRequest training_request(const FitArguments& arguments, const Scene& sce
   request.weighting = static_cast<Weighting>(index_of(kWeightingNames, arguments.weighting));
   request.reduction = static_cast<Reduction>(index_of(kReductionNames, arguments.reduction));
   request.surface = arguments.surface == "recorded" ? Surface::recorded : Surface::automatic;
+  // Relaxation times that are asked for are those of the scene's features, and the
+  // paper's own recipe has the scene's low-pass features.
+  const bool papers = request.reduction == Reduction::force && request.weighting == Weighting::relative;
+  if (!arguments.relaxation.empty() || papers || arguments.features == "scene") {
+    request.choice = FeatureChoice::scene;
+  } else if (arguments.features == "auto") {
+    request.choice = FeatureChoice::automatic;
+  } else {
+    request.choice = FeatureChoice::given;
+    request.list = *parse_feature_list(arguments.features);
+  }
   if (arguments.relaxation == "auto") {
     request.relaxation = Relaxation::automatic;
-  } else if (arguments.relaxation != "scene") {
+  } else if (!arguments.relaxation.empty() && arguments.relaxation != "scene") {
     request.relaxation = Relaxation::given;
     request.relaxation_times_s = parse_times(arguments.relaxation);
   }
@@ -147,6 +168,25 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
   return text.empty() ? "none" : text;
 }
 
+// One row a feature: what the trend's error on strokes left out is with it and
+// without it.
+void print_worth(const FeatureSelection& selection) {
+  if (selection.worth.empty()) return;
+  std::printf("%-32s %-5s %12s %12s   RMS over the JND, strokes left out\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
+  for (const FeatureWorth& one : selection.worth) {
+    std::printf("%-32s %-5s %12.4f %12.4f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
+                one.error_without);
+  }
+  std::fflush(stdout);
+}
+
+std::string strength_text(const StrengthChoice& strength) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%.0f %% of it; RMS over the JND on strokes left out %.4f, %.4f without it",
+                100.0 * strength.strength, strength.error_over_jnd, strength.trend_error_over_jnd);
+  return text;
+}
+
 std::vector<RecordingSurface> surfaces_of(const Provenance& provenance) {
   if (!provenance.surfaces.empty()) return provenance.surfaces;
   std::vector<RecordingSurface> as_recorded;
@@ -177,13 +217,15 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
   return list;
 }
 
-void print_summary(const MethodFit& fit, double seconds, const std::string& out) {
+void print_summary(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& out) {
+  print_worth(prepared.selection);
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
             << "after reduction     " << provenance.samples_after_reduction << "\n";
   print_surfaces(provenance);
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
+            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
             << "condition, rank     " << fit.report.condition << ", " << fit.report.rank << " of "
             << fit.report.columns << "\n"
             << "fit time            " << seconds << " s\n"
@@ -192,7 +234,29 @@ void print_summary(const MethodFit& fit, double seconds, const std::string& out)
   std::cout << "written             " << out << "\n";
 }
 
-void print_json(const MethodFit& fit, const FitArguments& arguments, double seconds) {
+nlohmann::ordered_json worth_json(const FeatureSelection& selection) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const FeatureWorth& one : selection.worth) {
+    list.push_back({{"name", one.name},
+                    {"taken", one.taken},
+                    {"error_over_jnd_with", one.error_with},
+                    {"error_over_jnd_without", one.error_without}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json strength_json(const std::optional<StrengthChoice>& strength) {
+  if (!strength) return nullptr;
+  return {{"strength", strength->strength},
+          {"smoothing", strength->smoothing},
+          {"error_over_jnd", strength->error_over_jnd},
+          {"trend_error_over_jnd", strength->trend_error_over_jnd}};
+}
+
+void print_json(const MethodFit& fit, const PreparedTraining& prepared, const FitArguments& arguments,
+                double seconds) {
+  nlohmann::ordered_json features = nlohmann::ordered_json::array();
+  for (const FeatureSpec& spec : fit.data.features) features.push_back(feature_name(spec));
   const Provenance& provenance = fit.data.provenance;
   nlohmann::ordered_json times = nlohmann::ordered_json::array();
   for (const RelaxationTime& time : provenance.relaxation_times) {
@@ -207,6 +271,9 @@ void print_json(const MethodFit& fit, const FitArguments& arguments, double seco
                                          {"fit_seconds", seconds},
                                          {"training_within_jnd", provenance.training_within_jnd},
                                          {"name", fit.data.name},
+                                         {"features", features},
+                                         {"feature_worth", worth_json(prepared.selection)},
+                                         {"correction", strength_json(prepared.strength)},
                                          {"contact_samples", provenance.contact_samples},
                                          {"relaxation_times", times},
                                          {"recordings", surfaces_json(provenance)},
@@ -265,9 +332,9 @@ Status run_fit(const FitArguments& arguments) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;
   if (arguments.json) {
-    print_json(*fit, arguments, seconds);
+    print_json(*fit, *prepared, arguments, seconds);
   } else {
-    print_summary(*fit, seconds, arguments.out);
+    print_summary(*fit, *prepared, seconds, arguments.out);
   }
   return {};
 }
@@ -295,8 +362,13 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   verb->add_option("--reduction", arguments->reduction,
                    "Which samples become sites: feature space covered, the paper's 50 mN steps, or all")
       ->check(CLI::IsMember({"coverage", "force", "none"}))->capture_default_str();
-  verb->add_option("--relaxation", arguments->relaxation, "Relaxation times: the scene's, identified, or given")
-      ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"))->capture_default_str();
+  verb->add_option("--features", arguments->features,
+                   std::string("What the force may depend on: what the recordings support, the scene's features, or a "
+                               "list such as ") + kFeatureListExample)
+      ->check(CLI::Validator(check_features, "auto|scene|LIST"))->capture_default_str();
+  verb->add_option("--relaxation", arguments->relaxation,
+                   "The scene's features with its relaxation times, identified ones, or these")
+      ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"));
   verb->add_option("--surface", arguments->surface, "Where each recording's surface is: found, or at 0 as recorded")
       ->check(CLI::IsMember({"auto", "recorded"}))->capture_default_str();
   verb->add_option("--grid", arguments->grid,

@@ -42,7 +42,10 @@ std::string describe_features(const Scene& scene) {
       case FeatureKind::lowpass_velocity:
         words.emplace_back(low_pass);
         break;
-      case FeatureKind::maxwell_branch:  // identified in a fit, never written in a scene
+      case FeatureKind::maxwell_branch:  // these are identified in a fit, never written in a scene
+      case FeatureKind::maxwell_spectrum:
+      case FeatureKind::stops:
+      case FeatureKind::fading_peak:
         break;
     }
   }

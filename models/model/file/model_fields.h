@@ -10,10 +10,6 @@
 
 namespace palpate {
 
-inline bool is_filter(FeatureKind kind) {
-  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch;
-}
-
 // What is wrong with the name of a model or a method, empty if nothing is. It heads a column of a
 // CSV file, so it holds nothing that would break a line into other columns.
 inline std::string model_name_fault(const std::string& name) {

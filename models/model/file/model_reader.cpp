@@ -1,5 +1,6 @@
 // From the text of a model file to ModelData. The text may come from anywhere,
 // so nothing in it is believed before it was checked.
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <initializer_list>
@@ -114,23 +115,50 @@ class ModelReader : private JsonFields {
     const std::string kind = text(node, "kind");
     FeatureSpec spec;
     bool known = false;
-    for (const FeatureKind candidate : {FeatureKind::depth, FeatureKind::velocity, FeatureKind::lowpass_velocity,
-                                        FeatureKind::maxwell_branch}) {
+    std::string known_kinds;
+    for (const FeatureKind candidate : kFeatureKinds) {
+      known_kinds += (known_kinds.empty() ? "" : ", ") + std::string(feature_kind_name(candidate));
       if (feature_kind_name(candidate) != kind) continue;
       spec.kind = candidate;
       known = true;
     }
     if (!known) {
-      complain(node.pointer + "/kind", "found \"" + printable(kind) +
-                                           "\", expected one of depth, velocity, lowpass_velocity, maxwell_branch");
+      complain(node.pointer + "/kind", "found \"" + printable(kind) + "\", expected one of " + known_kinds);
     }
-    if (is_filter(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
-    if (spec.kind == FeatureKind::maxwell_branch) {
-      const JsonNode drive = member(node, "drive", "an object with reference_depth_m and coefficient_N");
-      spec.drive.reference_depth_m = number(drive, "reference_depth_m", Sign::kPositive);
-      coefficients(drive, "coefficient_N", spec.drive.coefficient_N);
-    }
+    if (has_time(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
+    if (spec.kind == FeatureKind::maxwell_branch) spec.drive = drive_member(node, "drive");
+    if (has_parts(spec.kind)) read_parts(node, spec);
     data_.features.push_back(spec);
+  }
+
+  DriveCurve read_drive(const JsonNode& node) {
+    DriveCurve drive;
+    drive.reference_depth_m = number(node, "reference_depth_m", Sign::kPositive);
+    coefficients(node, "coefficient_N", drive.coefficient_N);
+    return drive;
+  }
+  DriveCurve drive_member(const JsonNode& node, const char* key) {
+    return read_drive(member(node, key, "an object with reference_depth_m and coefficient_N"));
+  }
+
+  void read_parts(const JsonNode& node, FeatureSpec& spec) {
+    const std::string expected = "a list of 1 to " + std::to_string(kMaxFeatureParts) + " parts";
+    const JsonNode parts = list(node, "parts", expected);
+    if (parts.value == nullptr) return;
+    if (parts.value->empty() || parts.value->size() > kMaxFeatureParts) {
+      complain(parts.pointer, found(*parts.value) + ", expected " + expected);
+      return;
+    }
+    spec.part_count = parts.value->size();
+    for (std::size_t p = 0; p < spec.part_count; ++p) {
+      const JsonNode part{&(*parts.value)[p], parts.pointer + "/" + std::to_string(p)};
+      if (spec.kind == FeatureKind::stops) {
+        spec.parts[p].threshold_m = number(part, "threshold_m", Sign::kPositive);
+      } else {
+        spec.parts[p].relaxation_time_s = number(part, "relaxation_time_s", Sign::kPositive);
+      }
+      spec.parts[p].drive = drive_member(part, "drive");
+    }
   }
 
   void read_trend(const JsonNode& node) {
@@ -140,6 +168,24 @@ class ModelReader : private JsonFields {
     coefficients(node, "thinning_Ns_per_m", data_.trend.thinning_Ns_per_m);
     data_.trend.thinning_velocity_m_per_s = number(node, "thinning_velocity_m_per_s", Sign::kPositive);
     data_.trend.velocity_limit_m_per_s = number(node, "velocity_limit_m_per_s", Sign::kNotNegative);
+    const bool softens = std::any_of(data_.features.begin(), data_.features.end(), [](const FeatureSpec& spec) {
+      return spec.kind == FeatureKind::fading_peak;
+    });
+    if (softens) read_softening(node);
+  }
+
+  // Only a model with a fading peak has it.
+  void read_softening(const JsonNode& node) {
+    const std::string expected = "a list of " + std::to_string(kSofteningPowers.size()) + " curves";
+    const JsonNode curves = list(node, "softening", expected);
+    if (curves.value == nullptr) return;
+    if (curves.value->size() != data_.trend.softening.size()) {
+      complain(curves.pointer, found(*curves.value) + ", expected " + expected);
+      return;
+    }
+    for (std::size_t j = 0; j < data_.trend.softening.size(); ++j) {
+      data_.trend.softening[j] = read_drive({&(*curves.value)[j], curves.pointer + "/" + std::to_string(j)});
+    }
   }
 
   // Exactly one of the fields that tell the kinds of correction apart.

@@ -11,18 +11,44 @@
 namespace palpate {
 namespace {
 
+std::string drive(const DriveCurve& curve) {
+  return "{\"reference_depth_m\": " + json_number(curve.reference_depth_m) +
+         ", \"coefficient_N\": " + json_list(curve.coefficient_N) + "}";
+}
+
+std::string parts(const FeatureSpec& spec) {
+  std::string text;
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    const FeaturePart& part = spec.parts[p];
+    text += p == 0 ? "{" : ", {";
+    text += spec.kind == FeatureKind::stops ? "\"threshold_m\": " + json_number(part.threshold_m)
+                                            : "\"relaxation_time_s\": " + json_number(part.relaxation_time_s);
+    text += ", \"drive\": " + drive(part.drive) + "}";
+  }
+  return "[" + text + "]";
+}
+
 std::string features(const std::vector<FeatureSpec>& specs) {
   std::vector<std::string> items;
   for (const FeatureSpec& spec : specs) {
     std::string text = "{\"kind\": " + json_quoted(std::string(feature_kind_name(spec.kind)));
-    if (is_filter(spec.kind)) text += ", \"relaxation_time_s\": " + json_number(spec.relaxation_time_s);
-    if (spec.kind == FeatureKind::maxwell_branch) {
-      text += ", \"drive\": {\"reference_depth_m\": " + json_number(spec.drive.reference_depth_m) +
-              ", \"coefficient_N\": " + json_list(spec.drive.coefficient_N) + "}";
-    }
+    if (has_time(spec.kind)) text += ", \"relaxation_time_s\": " + json_number(spec.relaxation_time_s);
+    if (spec.kind == FeatureKind::maxwell_branch) text += ", \"drive\": " + drive(spec.drive);
+    if (has_parts(spec.kind)) text += ", \"parts\": " + parts(spec);
     items.push_back(text + "}");
   }
   return json_lines(items);
+}
+
+bool softens(const std::vector<FeatureSpec>& specs) {
+  return std::any_of(specs.begin(), specs.end(),
+                     [](const FeatureSpec& spec) { return spec.kind == FeatureKind::fading_peak; });
+}
+
+std::string softening(const Trend& trend) {
+  std::string text;
+  for (const DriveCurve& curve : trend.softening) text += (text.empty() ? "" : ", ") + drive(curve);
+  return ",\n    \"softening\": [" + text + "]";
 }
 
 std::string domain(const ModelData& data) {
@@ -32,13 +58,14 @@ std::string domain(const ModelData& data) {
          ",\n    \"points\": " + json_columns(data.cover.points) + "\n  }";
 }
 
-std::string trend(const Trend& trend) {
+std::string trend(const ModelData& data) {
+  const Trend& trend = data.trend;
   return "{\n    \"reference_depth_m\": " + json_number(trend.reference_depth_m) +
          ",\n    \"elastic_N\": " + json_list(trend.elastic_N) +
          ",\n    \"viscosity_Ns_per_m\": " + json_list(trend.viscosity_Ns_per_m) +
          ",\n    \"thinning_Ns_per_m\": " + json_list(trend.thinning_Ns_per_m) +
          ",\n    \"thinning_velocity_m_per_s\": " + json_number(trend.thinning_velocity_m_per_s) +
-         ",\n    \"velocity_limit_m_per_s\": " + json_number(trend.velocity_limit_m_per_s) + "\n  }";
+         ",\n    \"velocity_limit_m_per_s\": " + json_number(trend.velocity_limit_m_per_s) + (softens(data.features) ? softening(trend) : "") + "\n  }";
 }
 
 // File name without its folders.
@@ -108,7 +135,7 @@ Result<std::string> write_model_text(const ModelData& data) {
       {"method", json_quoted(data.method)},
       {"features", features(data.features)},
       {"normalisation", "{\n    \"offset\": " + json_list(data.offset) + ",\n    \"scale\": " + json_list(data.scale) + "\n  }"},
-      {"trend", trend(data.trend)},
+      {"trend", trend(data)},
       {"corrects_trend", data.corrects_trend ? "true" : "false"},
       {"correction_limit_N", json_number(data.correction_limit_N)},
       {"largest_force_N", json_number(data.largest_force_N)},

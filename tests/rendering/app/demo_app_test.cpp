@@ -1,5 +1,6 @@
 // The real window on a display in memory: what people do to it, and what it does.
 #include "rendering/app/demo_app.h"
+#include "rendering/panels/panel_views.h"
 
 #include <epoxy/gl.h>
 // After epoxy, which brings OpenGL's functions.
@@ -246,9 +247,9 @@ TEST_F(DemoAppTest, AVisitorsChoiceStaysASecretUntilTheAnswer) {
 
 TEST_F(DemoAppTest, SaysWhenTheProbeIsAwayFromTheData) {
   open("mouse");
-  EXPECT_FALSE(away_from_data(app_->session()));
+  EXPECT_FALSE(models_view(app_->session()).out_of_domain());
   app_->session().mouse()->set_target(0.03, steady_now_s());  // example models know 6 mm
-  EXPECT_TRUE(until([&] { return away_from_data(app_->session()); }));
+  EXPECT_TRUE(until([&] { return models_view(app_->session()).out_of_domain(); }));
 }
 
 TEST_F(DemoAppTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {

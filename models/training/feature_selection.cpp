@@ -1,0 +1,319 @@
+#include "models/training/feature_selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "models/training/cross_validated_trend.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMostRows = 8000;
+constexpr double kTimesPerDecade = 4.0;
+constexpr double kShortest_s = 1e-3;
+constexpr double kLongest_s = 100.0;
+constexpr int kBands = 3;
+constexpr std::array kThresholds_m{0.05e-3, 0.1e-3, 0.2e-3, 0.4e-3, 0.8e-3};
+constexpr double kThresholdDepth_m = 4e-3;  // in shallower recordings they shrink with the depth
+constexpr std::array kPeakTimes_s{0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+// A candidate that lowers the error by less ends the forward selection.
+constexpr double kLeastGain = 0.003;
+
+// Of the way in: with less way out in contact the recording is one way in.
+constexpr double kLeastWayOut = 0.1;
+
+enum class Family { velocity, relaxation, stops, peak };
+
+struct Candidate {
+  Family family = Family::velocity;
+  std::string name;
+  ColumnList columns;
+  std::vector<double> constants;  // times or thresholds
+};
+
+struct TimeScales {
+  double sample_s = 0.0;
+  double longest_recording_s = 0.0;
+  double way_in_m = 0.0;  // in contact, over all recordings
+  double way_out_m = 0.0;
+};
+
+Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction) {
+  double start_s = 0.0;
+  double last_s = 0.0;
+  double last_m = 0.0;
+  double duration_s = 0.0;
+  std::size_t steps = 0;
+  TimeScales scales;
+  const Status status = source.for_each([&](const MotionRow& row) {
+    if (row.first) {
+      start_s = row.sample.time_s;
+    } else {
+      duration_s += row.sample.time_s - last_s;
+      ++steps;
+      const double way_m = row.motion.position_m - last_m;
+      if (row.sample.position_m > 0.0) (way_m > 0.0 ? scales.way_in_m : scales.way_out_m) += std::abs(way_m);
+    }
+    last_s = row.sample.time_s;
+    last_m = row.motion.position_m;
+    scales.longest_recording_s = std::max(scales.longest_recording_s, last_s - start_s);
+    return true;
+  }, control, fraction);
+  if (!status) return status.error();
+  scales.sample_s = duration_s / static_cast<double>(std::max<std::size_t>(steps, 1));
+  return scales;
+}
+
+std::vector<double> ladder(const TimeScales& scales) {
+  const double shortest_s = std::max(kShortest_s, 2.0 * scales.sample_s);
+  const double longest_s = std::min(kLongest_s, scales.longest_recording_s / 3.0);
+  std::vector<double> times_s;
+  const double ratio = std::pow(10.0, 1.0 / kTimesPerDecade);
+  for (double time_s = shortest_s; time_s <= longest_s; time_s *= ratio) times_s.push_back(time_s);
+  return times_s;
+}
+
+TrendTerms candidate_terms(const SelectionInput& input, const TimeScales& scales) {
+  TrendTerms terms{input.reference_depth_m, input.rms_velocity_m_per_s, ladder(scales), {}, {}};
+  const double shrink = std::min(1.0, input.reference_depth_m / kThresholdDepth_m);
+  for (const double threshold_m : kThresholds_m) terms.stop_thresholds_m.push_back(shrink * threshold_m);
+  for (const double time_s : kPeakTimes_s) {
+    if (time_s <= scales.longest_recording_s / 2.0) terms.peak_times_s.push_back(time_s);
+  }
+  return terms;
+}
+
+std::string range_text(const char* words, const std::vector<double>& values, double unit, const char* unit_name) {
+  char text[96];
+  if (values.size() == 1) {
+    std::snprintf(text, sizeof text, "%s %.3g %s", words, unit * values.front(), unit_name);
+  } else {
+    std::snprintf(text, sizeof text, "%s %.3g-%.3g %s", words, unit * values.front(), unit * values.back(), unit_name);
+  }
+  return text;
+}
+
+void append_columns(ColumnList& columns, std::size_t first, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) columns.push_back(static_cast<Eigen::Index>(first + i));
+}
+
+std::vector<Candidate> make_candidates(const TrendRows& rows) {
+  const TrendTerms& terms = rows.terms();
+  std::vector<Candidate> candidates;
+  Candidate velocity{Family::velocity, "velocity", {}, {}};
+  append_columns(velocity.columns, kElasticCoefficients, rows.viscous_columns());
+  candidates.push_back(std::move(velocity));
+  const std::size_t times = terms.relaxation_times_s.size();
+  for (int band = 0; band < kBands; ++band) {
+    Candidate one{Family::relaxation, "", {}, {}};
+    for (std::size_t t = times * static_cast<std::size_t>(band) / kBands;
+         t < times * static_cast<std::size_t>(band + 1) / kBands; ++t) {
+      append_columns(one.columns, rows.first_branch() + t * kBranchTerms, kBranchTerms);
+      one.constants.push_back(terms.relaxation_times_s[t]);
+    }
+    if (one.constants.empty()) continue;
+    one.name = range_text("relaxation", one.constants, 1.0, "s");
+    candidates.push_back(std::move(one));
+  }
+  Candidate stops{Family::stops, range_text("stops", terms.stop_thresholds_m, 1e3, "mm"), {}, terms.stop_thresholds_m};
+  append_columns(stops.columns, rows.first_stop(), kStopTerms * terms.stop_thresholds_m.size());
+  candidates.push_back(std::move(stops));
+  for (std::size_t p = 0; p < terms.peak_times_s.size(); ++p) {
+    Candidate peak{Family::peak, range_text("fading peak", {terms.peak_times_s[p]}, 1.0, "s"), {},
+                   {terms.peak_times_s[p]}};
+    append_columns(peak.columns, rows.first_softening() + p * kSofteningTerms, kSofteningTerms);
+    candidates.push_back(std::move(peak));
+  }
+  return candidates;
+}
+
+// The search over sets of candidates.
+class Search {
+ public:
+  Search(const CrossValidatedTrend& problem, std::vector<Candidate> candidates)
+      : problem_(problem), candidates_(std::move(candidates)) {}
+
+  using Set = std::vector<char>;  // by candidate: taken
+  struct Judged {
+    Set set;
+    CrossValidation error;
+  };
+
+  const std::vector<Candidate>& candidates() const { return candidates_; }
+
+  ColumnList columns(const Set& set) const {
+    ColumnList list;
+    append_columns(list, 0, kElasticCoefficients);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (set[i]) list.insert(list.end(), candidates_[i].columns.begin(), candidates_[i].columns.end());
+    }
+    return list;
+  }
+
+  Judged judge(Set set, const CrossValidation* near) const {
+    CrossValidation error = problem_.left_out(columns(set), near);
+    return {std::move(set), std::move(error)};
+  }
+
+  // Whether `i` may join: one fading peak is enough.
+  bool may_join(const Set& set, std::size_t i) const {
+    if (set[i]) return false;
+    if (candidates_[i].family != Family::peak) return true;
+    for (std::size_t j = 0; j < set.size(); ++j) {
+      if (set[j] && candidates_[j].family == Family::peak) return false;
+    }
+    return true;
+  }
+
+  // The best set that has one candidate more; nothing when there is none.
+  std::optional<Judged> best_with_one_more(const Judged& from) const {
+    std::optional<Judged> best;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      if (!may_join(from.set, i)) continue;
+      Set set = from.set;
+      set[i] = 1;
+      Judged one = judge(std::move(set), &from.error);
+      if (!best || one.error.mean() < best->error.mean()) best = std::move(one);
+    }
+    return best;
+  }
+
+  std::optional<Judged> best_with_one_less(const Judged& from) const {
+    std::optional<Judged> best;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      if (!from.set[i]) continue;
+      Set set = from.set;
+      set[i] = 0;
+      Judged one = judge(std::move(set), &from.error);
+      if (!best || one.error.mean() < best->error.mean()) best = std::move(one);
+    }
+    return best;
+  }
+
+ private:
+  const CrossValidatedTrend& problem_;
+  std::vector<Candidate> candidates_;
+};
+
+bool as_good(const Search::Judged& small, const Search::Judged& best) {
+  return small.error.mean() - best.error.mean() <= small.error.standard_error_against(best.error);
+}
+
+Search::Judged smallest_as_good(const Search& search, std::vector<Search::Judged> path) {
+  const auto best = std::min_element(path.begin(), path.end(), [](const auto& a, const auto& b) {
+    return a.error.mean() < b.error.mean();
+  });
+  Search::Judged chosen = *std::find_if(path.begin(), path.end(), [&](const auto& one) { return as_good(one, *best); });
+  while (auto less = search.best_with_one_less(chosen)) {
+    if (!as_good(*less, *best)) break;
+    chosen = std::move(*less);
+  }
+  return chosen;
+}
+
+std::vector<FeatureWorth> table_of_worth(const Search& search, const Search::Judged& chosen) {
+  const double with_all = std::sqrt(chosen.error.mean());
+  std::vector<FeatureWorth> taken;
+  std::vector<FeatureWorth> left;
+  std::optional<FeatureWorth> best_peak;
+  for (std::size_t i = 0; i < search.candidates().size(); ++i) {
+    const Candidate& candidate = search.candidates()[i];
+    Search::Set other = chosen.set;
+    if (chosen.set[i]) {
+      other[i] = 0;
+      const double without = std::sqrt(search.judge(std::move(other), &chosen.error).error.mean());
+      taken.push_back({candidate.name, true, with_all, without});
+    } else if (search.may_join(chosen.set, i)) {
+      other[i] = 1;
+      const double with = std::sqrt(search.judge(std::move(other), &chosen.error).error.mean());
+      FeatureWorth worth{candidate.name, false, with, with_all};
+      if (candidate.family != Family::peak) {
+        left.push_back(std::move(worth));
+      } else if (!best_peak || with < best_peak->error_with) {
+        best_peak = std::move(worth);
+      }
+    }
+  }
+  if (best_peak) left.push_back(std::move(*best_peak));
+  taken.insert(taken.end(), left.begin(), left.end());
+  return taken;
+}
+
+// The constants of a candidate that carry something in the solution.
+std::vector<double> in_use(const Candidate& candidate, const Eigen::VectorXd& solution) {
+  const std::size_t terms = candidate.columns.size() / candidate.constants.size();
+  std::vector<double> constants;
+  for (std::size_t c = 0; c < candidate.constants.size(); ++c) {
+    double largest = 0.0;
+    for (std::size_t k = 0; k < terms; ++k) largest = std::max(largest, solution(candidate.columns[c * terms + k]));
+    if (largest > 0.0) constants.push_back(candidate.constants[c]);
+  }
+  return constants;
+}
+
+FeatureList list_of(const Search& search, const Search::Set& set, const Eigen::VectorXd& solution) {
+  FeatureList list;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (!set[i]) continue;
+    const Candidate& candidate = search.candidates()[i];
+    if (candidate.family == Family::velocity) {
+      list.velocity = true;
+      continue;
+    }
+    std::vector<double> constants = in_use(candidate, solution);
+    if (constants.empty()) continue;
+    if (candidate.family == Family::relaxation) list.relaxation_times_s.push_back(std::move(constants));
+    if (candidate.family == Family::stops) list.stop_thresholds_m = std::move(constants);
+    if (candidate.family == Family::peak) list.peak_times_s = std::move(constants);
+  }
+  return list;
+}
+
+}  // namespace
+
+Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer& dealer, const SelectionInput& input,
+                                         const FitControl& control, double fraction) {
+  const auto scales = measure_times(source, control, fraction);
+  if (!scales) return scales.error();
+  TrendRows rows(candidate_terms(input, *scales), kMostRows);
+  FoldDealer folds = dealer;
+  const Status status = source.for_each([&](const MotionRow& row) {
+    if (row.first) rows.begin_recording();
+    rows.add(row.sample, row.motion, row.force_N, folds.next(row));
+    return true;
+  }, control, fraction);
+  if (!status) return status.error();
+  const CrossValidatedTrend problem(rows, dealer.folds(), input.weighting, input.jnd, input.force_floor_N);
+  const Search search(problem, make_candidates(rows));
+
+  std::vector<Search::Judged> path{search.judge(Search::Set(search.candidates().size(), 0), nullptr)};
+  FeatureSelection selection;
+  selection.turns_round = scales->way_out_m > kLeastWayOut * scales->way_in_m;
+  while (selection.turns_round) {
+    auto more = search.best_with_one_more(path.back());
+    if (!more) break;
+    if (!control.go_on(fraction)) return interrupted();
+    const bool worthwhile = more->error.mean() < (1.0 - kLeastGain) * path.back().error.mean();
+    if (!worthwhile) break;
+    path.push_back(std::move(*more));
+  }
+  const Search::Judged chosen = smallest_as_good(search, std::move(path));
+
+  const Eigen::VectorXd solution = problem.solve(search.columns(chosen.set));
+  selection.list = list_of(search, chosen.set, solution);
+  if (const auto& times_s = rows.relaxation_times_s(); !times_s.empty()) {
+    selection.shortest_s = times_s.front();
+    selection.longest_s = times_s.back();
+  }
+  selection.worth = table_of_worth(search, chosen);
+  selection.left_out_error_over_jnd = std::sqrt(chosen.error.mean());
+  selection.training_error_over_jnd = std::sqrt(problem.training_error(solution));
+  if (!control.go_on(fraction)) return interrupted();
+  return selection;
+}
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+#include "models/training/fold_dealer.h"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFewestRecordings = 3;
+constexpr std::size_t kStrokeFolds = 5;
+// Pieces of one long stroke: two for every fold, so that a fold is never one
+// phase of it alone.
+constexpr std::size_t kPieces = 10;
+
+}  // namespace
+
+FoldDealer::FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples)
+    : folds_(0), by_recording_(recordings >= kFewestRecordings), longest_piece_(contact_samples / kPieces + 1) {
+  const std::size_t pieces = by_recording_ ? recordings : std::max(strokes, kStrokeFolds);
+  folds_ = static_cast<int>(std::min(pieces, by_recording_ ? static_cast<std::size_t>(kMaximumFolds) : kStrokeFolds));
+}
+
+int FoldDealer::next(const MotionRow& row) noexcept {
+  if (by_recording_) return row.recording % folds_;
+  if (row.sample.position_m > 0.0) {
+    if (row.stroke != stroke_ || in_piece_ >= longest_piece_) {
+      stroke_ = row.stroke;
+      in_piece_ = 0;
+      ++piece_;
+    }
+    ++in_piece_;
+  }
+  return std::max(piece_, 0) % folds_;
+}
+
+}  // namespace palpate

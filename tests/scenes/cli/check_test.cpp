@@ -1,0 +1,54 @@
+// palpate check as a user runs it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+
+std::string pressed(double sign) {
+  std::string text = "time_s,position_m,force_N\n";
+  for (int i = 0; i < 600; ++i) {
+    const double phase = (i % 200) / 100.0;
+    const double position_mm = 5.0 * (phase < 1.0 ? phase : 2.0 - phase) - 1.0;
+    const double force_N = position_mm > 0.0 ? sign * 0.5 * position_mm : 0.0;
+    text += std::to_string(0.01 * i) + "," + std::to_string(1e-3 * position_mm) + "," + std::to_string(force_N) + "\n";
+  }
+  return text;
+}
+
+TEST(CheckVerb, SaysTheVerdictFirst) {
+  const test::TemporaryFolder folder;
+  const auto run = run_palpate({"check", folder.with_file("good.csv", pressed(1.0)), "--json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto object = nlohmann::json::parse(run.out);
+  EXPECT_NE(object["recordings"][0]["verdict"], "unusable");
+  for (const char* field : {"file", "findings", "noise_floor_within_jnd", "surface_offset_m", "force_zero_N"}) {
+    EXPECT_TRUE(object["recordings"][0].contains(field)) << field;
+  }
+}
+
+TEST(CheckVerb, EndsWithOneForARecordingThatFitsNothing) {
+  const test::TemporaryFolder folder;
+  const std::string bad = folder.with_file("bad.csv", pressed(-1.0));
+  const auto check = run_palpate({"check", bad});
+  EXPECT_EQ(check.exit_code, 1);
+  EXPECT_EQ(check.err.rfind("error: " + bad + ": force_sign: ", 0), 0u) << check.err;
+  const auto fit = run_palpate({"fit", "--recording", bad, "--method", "greedy", "--out", folder.file("m.json")});
+  EXPECT_EQ(fit.exit_code, 1);
+  EXPECT_EQ(fit.err, check.err);
+}
+
+TEST(CheckVerb, FindsTheSameRecordingTwice) {
+  const test::TemporaryFolder folder;
+  const auto run = run_palpate({"check", folder.with_file("a.csv", pressed(1.0)), folder.with_file("b.csv", pressed(1.0))});
+  EXPECT_NE(run.out.find("repeated"), std::string::npos) << run.out;
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,51 @@
+// palpate import as a user runs it.
+#include <gtest/gtest.h>
+
+#include "engine/recording/recording.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+
+const std::string kFiles = std::string(PALPATE_SOURCE_DIR) + "/tests/engine/import/files/";
+
+TEST(ImportVerb, WritesARecordingAndSaysWhatWasGuessed) {
+  const test::TemporaryFolder folder;
+  const auto run = run_palpate({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("semicolon between fields, decimal comma, UTF-8, header in line 1, numbers from line 2"), std::string::npos);
+  EXPECT_NE(run.out.find("position   column 2 \"Weg [mm]\" in mm (guessed)"), std::string::npos);
+  const auto recording = read_recording(folder.file("rec.csv"));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(recording->rows.size(), 24u);
+}
+
+TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {
+  const test::TemporaryFolder folder;
+  const std::string kept = folder.with_file("kept.csv", "mine\n");
+  const auto refused = run_palpate({"import", kFiles + "02_matlab.csv", "--out", kept});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+  EXPECT_EQ(test::read_text(kept), "mine\n");
+  EXPECT_EQ(run_palpate({"import", kFiles + "20_bare.txt", "--out", folder.file("new.csv")}).exit_code, 1);
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"kept.csv"});
+}
+
+TEST(ImportVerb, WrongUsageEndsWithTwo) {
+  const test::TemporaryFolder folder;
+  const std::string file = kFiles + "02_matlab.csv";
+  const std::string out = folder.file("x.csv");
+  for (const std::vector<std::string>& extra : std::vector<std::vector<std::string>>{
+           {"--columns", "weg=2"}, {"--units", "furlong"}, {"--units", "mm,cm"}, {"--flip", "time"}, {"--rate", "0"}}) {
+    std::vector<std::string> arguments = {"import", file, "--out", out};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    EXPECT_EQ(run_palpate(arguments).exit_code, 2) << extra.back();
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+}  // namespace
+}  // namespace palpate
