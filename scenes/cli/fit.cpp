@@ -102,12 +102,6 @@ std::string check_relaxation(const std::string& text) {
   return "found \"" + text + "\", expected scene, auto, or one to six times in seconds such as 0.17,1.27";
 }
 
-std::string check_features(const std::string& text) {
-  if (text == "auto" || text == "scene") return "";
-  const auto list = parse_feature_list(text);
-  return list ? "" : list.error().message + "; or auto, or scene";
-}
-
 std::string check_grid(const std::string& text) {
   return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
 }

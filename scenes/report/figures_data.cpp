@@ -24,8 +24,13 @@ FeatureAxis feature_axis(const FeatureSpec& spec) {
     case FeatureKind::velocity: return {"Velocity [mm/s]", 1e3};
     case FeatureKind::lowpass_velocity: return {"Low-pass " + time + " [mm/s]", 1e3};
     case FeatureKind::maxwell_branch: return {"Branch " + time + " [N]", 1.0};
-    default: return {"Feature", 1.0};
+    case FeatureKind::maxwell_spectrum:
+      return {std::to_string(spec.part_count) + (spec.part_count == 1 ? " branch, " : " branches, ") +
+                  three_digits(spec.parts[0].relaxation_time_s) + " s [N]", 1.0};
+    case FeatureKind::stops: return {"Stop operators [N]", 1.0};
+    case FeatureKind::fading_peak: return {"Fading peak " + time + " [mm]", 1e3};
   }
+  return {"", 1.0};
 }
 
 Figure coverage_figure(const ReportData& data) {

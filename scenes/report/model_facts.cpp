@@ -30,16 +30,36 @@ class TrendCurves {
     const double low_m = std::max(0.0, depth_m - step_m);
     return (force_N(depth_m + step_m, 0.0) - force_N(low_m, 0.0)) / (depth_m + step_m - low_m);
   }
-  double branch_stiffness(const FeatureSpec& spec, double depth_m) const {
+  double slope(const DriveCurve& drive, double depth_m) const {
     const double step_m = 1e-4 * reference_m();
     const double low_m = std::max(0.0, depth_m - step_m);
-    return (spec.drive.at(depth_m + step_m) - spec.drive.at(low_m)) / (depth_m + step_m - low_m);
+    return (drive.at(depth_m + step_m) - drive.at(low_m)) / (depth_m + step_m - low_m);
+  }
+  // Relaxation time and stiffness of every branch.
+  std::vector<std::array<double, 2>> spectrum(double depth_m) const {
+    std::vector<std::array<double, 2>> branches;
+    for (const FeatureSpec& spec : data_.features) {
+      if (spec.kind == FeatureKind::maxwell_branch) branches.push_back({spec.relaxation_time_s, slope(spec.drive, depth_m)});
+      if (spec.kind != FeatureKind::maxwell_spectrum) continue;
+      for (std::size_t p = 0; p < spec.part_count; ++p) {
+        branches.push_back({spec.parts[p].relaxation_time_s, slope(spec.parts[p].drive, depth_m)});
+      }
+    }
+    std::sort(branches.begin(), branches.end());
+    return branches;
+  }
+  // What the stop operators can hold: half the gap between going in and coming out.
+  double friction_N(double depth_m) const {
+    double sum = 0.0;
+    for (const FeatureSpec& spec : data_.features) {
+      if (spec.kind != FeatureKind::stops) continue;
+      for (std::size_t p = 0; p < spec.part_count; ++p) sum += spec.parts[p].drive.at(depth_m);
+    }
+    return sum;
   }
   double instantaneous_stiffness(double depth_m) const {
     double sum = stiffness(depth_m);
-    for (const FeatureSpec& spec : data_.features) {
-      if (spec.kind == FeatureKind::maxwell_branch) sum += branch_stiffness(spec, depth_m);
-    }
+    for (const auto& branch : spectrum(depth_m)) sum += branch[1];
     return sum;
   }
   double viscosity(double depth_m, double velocity_m_per_s) const {
@@ -69,6 +89,9 @@ void add_values(ModelFacts& facts, const ModelData& data, const TrendCurves& cur
   add("viscosity at half depth", curves.viscosity(half_m, kSlow_m_per_s), "Ns/m", "slow");
   add("viscosity at half depth", curves.viscosity(half_m, speed_m_per_s), "Ns/m", "at the RMS speed");
   add("RMS speed", speed_m_per_s, "m/s", "of the training data in contact");
+  if (curves.friction_N(half_m) > 0.0) {
+    add("dry friction at half depth", curves.friction_N(half_m), "N", "half the gap between in and out");
+  }
   for (const RelaxationTime& time : data.provenance.relaxation_times) {
     add("relaxation time", time.time_s, "s", time.standard_error_s > 0.0 ? "identified" : "given by the scene");
     if (time.standard_error_s > 0.0) add("its standard error", time.standard_error_s, "s", "jackknife over strokes");
@@ -86,7 +109,7 @@ ModelFacts model_facts(const std::string& name, const FittedModel& model) {
   add_values(facts, data, curves);
   for (std::size_t k = 0; k < data.features.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
-    facts.features.push_back({feature_name(data.features[k]), data.lower(at), data.upper(at), kNone, kNone});
+    facts.features.push_back({feature_name(data.features[k]), data.lower(at), data.upper(at)});
   }
   for (int i = 0; i < kDepths; ++i) {
     const double depth_m = curves.reference_m() * i / (kDepths - 1);
@@ -94,11 +117,7 @@ ModelFacts model_facts(const std::string& name, const FittedModel& model) {
                            curves.instantaneous_stiffness(depth_m), curves.viscosity(depth_m, kSlow_m_per_s),
                            curves.viscosity(depth_m, data.trend.thinning_velocity_m_per_s)});
   }
-  for (const FeatureSpec& spec : data.features) {
-    if (spec.kind != FeatureKind::maxwell_branch) continue;
-    facts.spectrum.push_back({spec.relaxation_time_s, curves.branch_stiffness(spec, 0.5 * curves.reference_m())});
-  }
-  std::sort(facts.spectrum.begin(), facts.spectrum.end());
+  facts.spectrum = curves.spectrum(0.5 * curves.reference_m());
   return facts;
 }
 

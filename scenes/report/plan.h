@@ -19,6 +19,9 @@ struct ReportRecipe {
   Reduction reduction = Reduction::coverage;
   Weighting weighting = Weighting::jnd;
   KernelKind kernel = KernelKind::cubic;
+  FeatureChoice choice = FeatureChoice::automatic;
+  FeatureList list;                // when given
+  std::string features = "auto";  // the same in words
 };
 
 struct ReportPlan {

@@ -64,6 +64,7 @@ OrderedJson recipes_json(const ReportRecipe& recipe) {
   if (recipe.palpate) {
     object["palpate"] = {{"reduction", reduction_name(recipe.reduction)},
                          {"weighting", weighting_name(recipe.weighting)},
+                         {"features", recipe.features},
                          {"kernel", kernel_name(recipe.kernel)}};
   }
   return object;

@@ -175,7 +175,7 @@ struct Recommendation {
 struct ModelFacts {
   std::string model;
   std::vector<std::vector<TableCell>> values;     // quantity, value, unit, meaning
-  std::vector<std::vector<TableCell>> features;   // name, lowest, highest, error with and without it
+  std::vector<std::vector<TableCell>> features;   // name, lowest, highest
   std::vector<std::array<double, 6>> depth;  // depth_m, elastic_N, stiffness, viscosity at rest, at v_0, instantaneous
   std::vector<std::array<double, 2>> spectrum;  // relaxation time, stiffness
 };
@@ -193,6 +193,7 @@ struct ReportData {
   // What to subtract from the positions of each to move its surface.
   std::vector<double> surface_offset_m;
   std::vector<std::string> relaxation_times;
+  std::vector<FeatureWorth> worth;  // of the features, where the recordings chose them
   std::vector<ModelResult> models;
   std::map<std::string, std::shared_ptr<const FittedModel>> fitted;  // of the last fold, by name
   std::vector<SeedResult> seeds;

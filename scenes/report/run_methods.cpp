@@ -184,6 +184,7 @@ class Run {
       TrainingRequest request = training_request(scene_);
       request.reduction = Reduction::force;
       request.weighting = Weighting::relative;
+      request.choice = FeatureChoice::scene;
       auto training = prepare(recordings, request);
       if (!training) return training.error();
       prepared.paper = std::move(*training);
@@ -192,6 +193,8 @@ class Run {
       TrainingRequest request = training_request(scene_);
       request.reduction = plan_.recipe.reduction;
       request.weighting = plan_.recipe.weighting;
+      request.choice = plan_.recipe.choice;
+      request.list = plan_.recipe.list;
       auto training = prepare(recordings, request);
       if (!training) return training.error();
       prepared.palpate = std::move(*training);
@@ -206,7 +209,10 @@ class Run {
     const auto prepared = prepare(training);
     if (!prepared) return prepared.error();
     const PreparedTraining& own = prepared->of(Rung::palpate);
-    if (number == 0) remember_relaxation(own);
+    if (number == 0) {
+      remember_relaxation(own);
+      data_.worth = own.selection.worth;
+    }
     coverage_.add_sites(own.set);
     auto models = fit_models(number, *prepared);
     if (!models) return models.error();
@@ -359,7 +365,7 @@ class Run {
   static std::string feature_key(const std::vector<FeatureSpec>& features) {
     std::string key;
     for (const FeatureSpec& spec : features) {
-      key += std::to_string(static_cast<int>(spec.kind)) + " " + std::to_string(spec.relaxation_time_s) + ",";
+      key += feature_name(spec) + ",";
     }
     return key;
   }

@@ -367,15 +367,22 @@ std::vector<Table> facts_tables(const ReportData& data) {
                {{"quantity", "quantity"}, {"value", "value"}, {"unit", "unit"}, {"meaning", "meaning"}},
                facts.values};
   Table features{"model_features",
-                 "What it is given, in SI, and the range in training. Worth: the trend's RMS error over the JND on "
-                 "strokes left out, with the feature and without it, where the features were chosen by the recordings.",
+                 "What it is given, in SI, with the range in training.",
                  false,
-                 {{"feature", "feature"},
-                  {"lowest", "lowest"},
-                  {"highest", "highest"},
-                  {"error_over_jnd_with", "error with it"},
-                  {"error_over_jnd_without", "without it"}},
+                 {{"feature", "feature"}, {"lowest", "lowest"}, {"highest", "highest"}},
                  facts.features};
+  Table worth{"feature_worth",
+              "What every feature is worth: the trend's RMS error over the JND on training strokes left out, with it "
+              "and without it.",
+              false,
+              {{"feature", "feature"},
+               {"taken", "taken"},
+               {"error_over_jnd_with", "error with it [JND]"},
+               {"error_over_jnd_without", "without it [JND]"}},
+              {}};
+  for (const FeatureWorth& one : data.worth) {
+    worth.rows.push_back({one.name, std::string(one.taken ? "yes" : "no"), one.error_with, one.error_without});
+  }
   Table curve{"model_depth",
               "",
               false,
@@ -389,7 +396,7 @@ std::vector<Table> facts_tables(const ReportData& data) {
   for (const auto& row : facts.depth) curve.rows.emplace_back(row.begin(), row.end());
   Table spectrum{"model_relaxation", "", false, {{"relaxation_time_s", ""}, {"stiffness_N_per_m", ""}}, {}};
   for (const auto& row : facts.spectrum) spectrum.rows.emplace_back(row.begin(), row.end());
-  return {values, features, curve, spectrum};
+  return {values, features, worth, curve, spectrum};
 }
 
 }  // namespace

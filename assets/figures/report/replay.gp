@@ -1,0 +1,58 @@
+# A replayed recording: measured force, differences over the JND, error against force.
+# Reads replay.csv, replay_bins.csv, replay_models.csv.
+load "replay.set"
+load "style.gp"
+jnd_mN(x) = 1000 * (jnd_offset_N + jnd_fraction * x)
+set lmargin at screen 0.08
+set rmargin at screen 0.86
+strip = 70.0 / height
+do for [medium in media] {
+  eval open(medium, "replay")
+  set multiplot
+  unset label
+  unset logscale
+  set grid noytics nomytics
+  set xrange [*:*]
+  set tmargin at screen 1 - 24.0 / height
+  set bmargin at screen 1 - 110.0 / height
+  set format x ""
+  unset xlabel
+  set ylabel "Force [N]"
+  set yrange [*:*]
+  set ytics autofreq
+  set label 1 "measured" at graph 1.015,0.5 left textcolor rgb measured
+  set label 2 title_text at graph 0,1.1 left noenhanced textcolor rgb ink
+  plot "replay.csv" using 1:3 with lines linewidth 2 linecolor rgb measured
+  unset label
+  do for [m = 0:models - 1] {
+    stats "replay_models.csv" using 3 every ::m::m nooutput
+    colour = STATS_max
+    text = system(sprintf("sed -n %dp replay_models.csv | cut -d, -f2", m + 2))
+    set tmargin at screen 1 - 118.0 / height - m * strip
+    set bmargin at screen 1 - 118.0 / height - (m + 1) * strip + 8.0 / height
+    set yrange [-limit:limit]
+    set ytics (-1, 0, 1)
+    set ylabel m == int(models / 2) ? "Difference [JND]" : ""
+    if (m == models - 1) {
+      set format x "%g"
+      set xlabel "Time [s]"
+    }
+    set label 1 text at graph 1.015,0.5 left noenhanced textcolor rgb colour
+    plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
+      "replay.csv" using 1:(column(4 + m)) with lines linewidth 1.3 linecolor rgb colour
+  }
+  unset label
+  set grid xtics ytics mxtics mytics
+  set tmargin at screen 150.0 / height
+  set bmargin at screen 45.0 / height
+  set xrange [0:force_high]
+  set yrange [*:*]
+  set logscale y
+  set ytics autofreq
+  set xlabel "Measured force [N]"
+  set ylabel "Mean + std [mN]"
+  plot '+' using 1:(1e-3):(jnd_mN($1)) with filledcurves fillcolor rgb band fillstyle solid noborder, \
+    "replay_bins.csv" using "force_N":"error_mN":"colour" with linespoints pointtype 7 pointsize 0.5 linewidth 1.5 linecolor rgb variable
+  unset multiplot
+  unset output
+}
