@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kDepths = 41;
 constexpr double kSlow_m_per_s = 1e-6;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
 class TrendCurves {
  public:
@@ -85,7 +85,7 @@ void add_values(ModelFacts& facts, const ModelData& data, const TrendCurves& cur
   add("stiffness at full depth", curves.stiffness(deepest_m * 0.999), "N/m", "slow");
   const double instant = curves.instantaneous_stiffness(half_m);
   add("instantaneous stiffness at half depth", instant, "N/m", "before anything relaxes");
-  add("share that relaxes", instant > 0.0 ? 1.0 - curves.stiffness(half_m) / instant : kNone, "1", "of it, at half depth");
+  add("share that relaxes", instant > 0.0 ? 1.0 - curves.stiffness(half_m) / instant : kNoFigure, "1", "of it, at half depth");
   add("viscosity at half depth", curves.viscosity(half_m, kSlow_m_per_s), "Ns/m", "slow");
   add("viscosity at half depth", curves.viscosity(half_m, speed_m_per_s), "Ns/m", "at the RMS speed");
   add("RMS speed", speed_m_per_s, "m/s", "of the training data in contact");

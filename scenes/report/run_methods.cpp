@@ -1,8 +1,6 @@
 #include "scenes/report/run_methods.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,14 +13,13 @@
 #include "scenes/report/no_force.h"
 #include "scenes/report/recommendation.h"
 #include "scenes/report/scaling.h"
+#include "scenes/report/stopwatch.h"
 #include "scenes/report/trace_finder.h"
 #include "scenes/report/weighted_progress.h"
 #include "scenes/scene/training.h"
 
 namespace palpate {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // A method's base has been fitted before it.
 double own_seconds(const MethodRequest& request) { return request.method->expected_seconds(request); }
@@ -31,10 +28,6 @@ constexpr double kPrepareWeight = 1.0;
 constexpr double kEvaluateWeight = 0.1;  // a model
 constexpr double kSitesWeight = 8.0;
 constexpr double kDimensionWeight = 10.0;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double total_weight(const RecordingSet& recordings, const ReportPlan& plan) {
   const double prepare = kPrepareWeight * ((plan.recipe.paper ? 1.0 : 0.0) + (plan.recipe.palpate ? 1.0 : 0.0));
@@ -97,10 +90,10 @@ class MethodFitter {
   Result<Outcome> fit(const PlannedModel& model, const FitControl& control) {
     const auto base = done_.find({model.rung, model.request.method->base});
     const bool has_base = base != done_.end();
-    const auto start = Clock::now();
+    const Stopwatch start;
     auto fit = fit_method(prepared_.of(model.rung), model.request, control, has_base ? &base->second.fit : nullptr);
     if (!fit) return Error{model.name + ": " + fit.error().message};
-    Outcome outcome{std::move(*fit), seconds_since(start) + (has_base ? base->second.seconds : 0.0)};
+    Outcome outcome{std::move(*fit), start.seconds() + (has_base ? base->second.seconds : 0.0)};
     done_.try_emplace({model.rung, model.request.method}, outcome);
     return outcome;
   }
