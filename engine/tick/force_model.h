@@ -1,6 +1,7 @@
 // What every force model is to the tick: a feature vector in, a force out.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct ForceEstimate {
   // The feature vector is not near the data that the model was fitted to: the
   // force comes from the model's safe trend, see models/model/domain_guard.h.
   bool out_of_domain = false;
+  // The force is off by at most this in 95 of 100 samples; NaN where the model does
+  // not know (models/model/error_bound.h).
+  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Immutable once built. Thread guarantee: `evaluate` may run on any thread, also

@@ -59,6 +59,7 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   snapshot_ = before.snapshot_;
   snapshot_.model_count = models;
   snapshot_.force_N.fill(0.0);
+  snapshot_.predicted_error_N.fill(0.0);
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     for (const FeatureFilter& old : before.filters_) {
       if (same_lists(filters_[i], old)) filters_[i] = old;
@@ -95,13 +96,19 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
 
 void HapticsTick::evaluate_models() noexcept {
   snapshot_.out_of_domain_mask = 0;
-  for (std::size_t i = 0; i < models_.size(); ++i) {
+  // Each is the first in turn: the first after a pause pays for what the processor has
+  // forgotten, and none should look slower for its place.
+  const std::size_t first = models_.empty() ? 0 : static_cast<std::size_t>(snapshot_.tick % models_.size());
+  for (std::size_t k = 0; k < models_.size(); ++k) {
+    const std::size_t i = first + k < models_.size() ? first + k : first + k - models_.size();
     double force_N = 0.0;
+    double predicted_error_N = 0.0;
     if (snapshot_.in_contact) {
       const std::uint64_t before = timed_ ? cycle_count() : 0;
       const ForceEstimate estimate = models_[i]->evaluate(vectors_[filter_of_[i]].values.data());
       if (timed_) cycles_[i] = cycle_count() - before;
       force_N = estimate.force_N;
+      predicted_error_N = estimate.predicted_error_N;
       if (estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
       if (!std::isfinite(force_N)) {
         force_N = 0.0;
@@ -109,6 +116,7 @@ void HapticsTick::evaluate_models() noexcept {
       }
     }
     snapshot_.force_N[i] = force_N;
+    snapshot_.predicted_error_N[i] = predicted_error_N;
   }
 }
 

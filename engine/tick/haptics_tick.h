@@ -44,6 +44,9 @@ struct TickSnapshot {
   std::uint32_t model_count = 0;
   std::uint32_t out_of_domain_mask = 0;  // bit i: model i
   std::array<double, kMaxModels> force_N{};
+  // 95 % bounds on the errors of the forces; NaN where a model has none, and 0 out of
+  // contact.
+  std::array<double, kMaxModels> predicted_error_N{};
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
 

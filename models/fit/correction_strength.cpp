@@ -225,7 +225,7 @@ bool is_better(const StrengthChoice& a, const StrengthChoice& b) {
   if (a.fold_squares.size() != b.fold_squares.size()) return false;
   double gain = 0.0;
   for (std::size_t k = 0; k < a.fold_squares.size(); ++k) gain += b.fold_squares[k] - a.fold_squares[k];
-  return gain > standard_error(a.fold_squares, b.fold_squares);
+  return gain > 0.5 * standard_error(a.fold_squares, b.fold_squares);
 }
 
 StrengthChoice choose_strength(const StrengthInput& input) {
@@ -288,6 +288,8 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     const double trusted = trust(distance[i], chosen->inner_radius, input.outer_to_inner * chosen->inner_radius);
     const double force_N = force_of(sample, input, chosen->strength, trusted, h(static_cast<Eigen::Index>(i)));
     choice.predictions.push_back({i, std::abs(force_N - sample.force_N), force_N, distance[i]});
+    const double trend_N = force_of(sample, input, 0.0, 0.0, 0.0);
+    choice.trend_predictions.push_back({i, std::abs(trend_N - sample.force_N), trend_N, distance[i]});
   }
   return choice;
 }

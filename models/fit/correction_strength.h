@@ -65,6 +65,7 @@ struct StrengthChoice {
   double error_over_jnd = 0.0;
   std::vector<double> fold_squares;   // sums of squared errors over the JND, by fold
   std::vector<LeftOutPrediction> predictions;
+  std::vector<LeftOutPrediction> trend_predictions;  // the same by the trend alone
 };
 
 // Whether `a` predicts the same left-out samples better than `b`, by more than one

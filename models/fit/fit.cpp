@@ -38,6 +38,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   fit.data.method = method.name;
   fit.data.provenance.seed = request.seed;
   fit.data.correction = std::move(fitted->correction);
+  if (fit.data.correction->is_none()) fit.data.error_bound = prepared.trend_bound;
   fit.data.name = method.name;
   if (!fitted->size.empty()) fit.data.name.append("-").append(fitted->size);
   if (const Status valid = validate_model(fit.data); !valid) {

@@ -60,6 +60,7 @@ struct PreparedTraining {
   Sites sites;       // normalised; target: what h has to fit
   ModelData common;  // everything of a model but its method's part
   FeatureSelection selection;              // what each feature is worth; empty unless chosen here
+  std::optional<ErrorBound> trend_bound;   // of the trend alone; that of `common` is of a correction
   std::optional<StrengthChoice> strength;  // of the correction; none for the paper's recipe
   // In-contact feature vectors and forces to judge the fit by, at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> judge_features;

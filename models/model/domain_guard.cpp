@@ -48,8 +48,7 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
 
 DomainGuard::DomainGuard(DomainCover cover) : cover_(std::move(cover)), nearest_(cover_.points) {}
 
-double DomainGuard::trust(const double* x) const noexcept {
-  const double squared = nearest_.nearest_squared(x);
+double DomainGuard::trust_at(double squared) const noexcept {
   if (!(squared < cover_.outer_radius * cover_.outer_radius)) return 0.0;
   if (squared <= cover_.inner_radius * cover_.inner_radius) return 1.0;
   const double t = (cover_.outer_radius - std::sqrt(squared)) / (cover_.outer_radius - cover_.inner_radius);

@@ -39,7 +39,12 @@ class DomainGuard {
   explicit DomainGuard(DomainCover cover);
 
   // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
-  double trust(const double* x) const noexcept;
+  double trust(const double* x) const noexcept { return trust_at(nearest_.nearest_squared(x)); }
+
+  // The squared distance to the cover, infinite when x is not finite, and the trust
+  // that goes with it.
+  double squared_distance(const double* x) const noexcept { return nearest_.nearest_squared(x); }
+  double trust_at(double squared_distance) const noexcept;
 
   const DomainCover& cover() const noexcept { return cover_; }
 

@@ -108,6 +108,12 @@ Status validate_model(const ModelData& data) {
   if (!(data.scale.array() > 0.0).all()) return wrong("normalisation.scale", "0 or less", "positive numbers");
   if (Status status = validate_trend(data.trend); !status) return status;
   if (Status status = validate_cover(data.cover, n); !status) return status;
+  if (data.error_bound) {
+    for (const double value :
+         {data.error_bound->floor_N, data.error_bound->per_force, data.error_bound->per_distance_N}) {
+      if (!(value >= 0.0) || !std::isfinite(value)) return wrong("error_bound", std::to_string(value), "0 or more");
+    }
+  }
   for (const auto& [value, field] : {std::pair{data.correction_limit_N, "correction_limit_N"},
                                      std::pair{data.largest_force_N, "largest_force_N"},
                                      std::pair{data.jnd.offset_N, "jnd.offset_N"},
@@ -133,7 +139,8 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
     u[i] = (features[i] - data_.offset(static_cast<Eigen::Index>(i))) * inverse_scale_[i];
   }
   const double trend_N = data_.trend.at(features, data_.features);
-  const double trust = guard_.trust(u.data());
+  const double squared_distance = guard_.squared_distance(u.data());
+  const double trust = guard_.trust_at(squared_distance);
   double force_N = trend_N;
   if (trust > 0.0 && correction_ != nullptr) {
     const double correction_N = correction_->evaluate(u.data()) - (data_.corrects_trend ? 0.0 : trend_N);
@@ -142,7 +149,12 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   // A comparison that fails for NaN, so that nothing but a force leaves.
   const double largest_N = kForceMargin * data_.largest_force_N;
   if (!(force_N > 0.0)) force_N = 0.0;
-  return {std::min(force_N, largest_N), trust < 0.5};
+  ForceEstimate estimate{std::min(force_N, largest_N), trust < 0.5};
+  if (data_.error_bound) {
+    const double beyond = std::sqrt(squared_distance) - data_.cover.inner_radius;
+    estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond);
+  }
+  return estimate;
 }
 
 }  // namespace palpate

@@ -18,6 +18,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@
 #include "engine/tick/jnd.h"
 #include "models/model/correction.h"
 #include "models/model/domain_guard.h"
+#include "models/model/error_bound.h"
 #include "models/model/trend.h"
 
 namespace palpate {
@@ -72,6 +74,7 @@ struct ModelData {
   double correction_limit_N = 0.0;
   double largest_force_N = 0.0;  // of the training data; output stays below 1.2 times it
   DomainCover cover;
+  std::optional<ErrorBound> error_bound;  // none in files of before, and of the paper's recipe
   JndLine jnd;
   CorrectionPtr correction;  // h; shared by copies
   Provenance provenance;

@@ -20,6 +20,7 @@ constexpr int kBands = 3;
 constexpr std::array kThresholds_m{0.05e-3, 0.1e-3, 0.2e-3, 0.4e-3, 0.8e-3};
 constexpr double kThresholdDepth_m = 4e-3;  // in shallower recordings they shrink with the depth
 constexpr std::array kPeakTimes_s{0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+constexpr int kPressesForPeak = 3;  // of each recording
 // A candidate that lowers the error by less ends the forward selection.
 constexpr double kLeastGain = 0.003;
 
@@ -40,6 +41,8 @@ struct TimeScales {
   double longest_recording_s = 0.0;
   double way_in_m = 0.0;  // in contact, over all recordings
   double way_out_m = 0.0;
+  int strokes = 0;
+  int recordings = 0;
 };
 
 Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction) {
@@ -50,7 +53,9 @@ Result<TimeScales> measure_times(MotionSource& source, const FitControl& control
   std::size_t steps = 0;
   TimeScales scales;
   const Status status = source.for_each([&](const MotionRow& row) {
+    scales.strokes = row.stroke;
     if (row.first) {
+      ++scales.recordings;
       start_s = row.sample.time_s;
     } else {
       duration_s += row.sample.time_s - last_s;
@@ -81,8 +86,11 @@ TrendTerms candidate_terms(const SelectionInput& input, const TimeScales& scales
   TrendTerms terms{input.reference_depth_m, input.rms_velocity_m_per_s, ladder(scales), {}, {}};
   const double shrink = std::min(1.0, input.reference_depth_m / kThresholdDepth_m);
   for (const double threshold_m : kThresholds_m) terms.stop_thresholds_m.push_back(shrink * threshold_m);
+  // One press of a fresh material cannot tell a memory of its deepest depth from
+  // other differences between the way in and the way out.
+  const bool presses_again = scales.strokes >= kPressesForPeak * scales.recordings;
   for (const double time_s : kPeakTimes_s) {
-    if (time_s <= scales.longest_recording_s / 2.0) terms.peak_times_s.push_back(time_s);
+    if (presses_again && time_s <= scales.longest_recording_s / 2.0) terms.peak_times_s.push_back(time_s);
   }
   return terms;
 }
@@ -169,18 +177,10 @@ class Search {
     return true;
   }
 
-  // The best set that has one candidate more; nothing when there is none.
-  std::optional<Judged> best_with_one_more(const Judged& from) const {
-    std::optional<Judged> best;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      if (!may_join(from.set, i)) continue;
-      Set set = from.set;
-      set[i] = 1;
-      Judged one = judge(std::move(set), &from.error);
-      if (!best || one.error.mean() < best->error.mean()) best = std::move(one);
-    }
-    return best;
-  }
+  // The best set that has one candidate more; nothing when there is none. Of sets as
+  // good as the best, that of the more common cause: one press alone cannot tell
+  // relaxation from friction and softening.
+  std::optional<Judged> best_with_one_more(const Judged& from) const;
 
   std::optional<Judged> best_with_one_less(const Judged& from) const {
     std::optional<Judged> best;
@@ -201,6 +201,30 @@ class Search {
 
 bool as_good(const Search::Judged& small, const Search::Judged& best) {
   return small.error.mean() - best.error.mean() <= small.error.standard_error_against(best.error);
+}
+
+std::optional<Search::Judged> Search::best_with_one_more(const Judged& from) const {
+  constexpr std::array kByCause{Family::relaxation, Family::velocity, Family::stops, Family::peak};
+  std::array<std::optional<Judged>, kByCause.size()> best_of;
+  const Judged* best = nullptr;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    if (!may_join(from.set, i)) continue;
+    Set set = from.set;
+    set[i] = 1;
+    Judged one = judge(std::move(set), &from.error);
+    const auto cause = std::find(kByCause.begin(), kByCause.end(), candidates_[i].family) - kByCause.begin();
+    auto& so_far = best_of[static_cast<std::size_t>(cause)];
+    if (!so_far || one.error.mean() < so_far->error.mean()) so_far = std::move(one);
+  }
+  for (const auto& one : best_of) {
+    if (one && (best == nullptr || one->error.mean() < best->error.mean())) best = &*one;
+  }
+  if (best == nullptr) return std::nullopt;
+  for (const auto& one : best_of) {
+    const bool gains = one && one->error.mean() < (1.0 - kLeastGain) * from.error.mean();
+    if (gains && as_good(*one, *best)) return one;
+  }
+  return *best;
 }
 
 Search::Judged smallest_as_good(const Search& search, std::vector<Search::Judged> path) {

@@ -24,10 +24,10 @@ struct NormalEquations {
 NormalEquations normal_equations(const TrendRows& rows, const std::vector<double>& scale,
                                  const std::vector<char>& active) {
   const auto n = static_cast<Eigen::Index>(rows.columns());
-  constexpr Eigen::Index kBlock = 512;
+  constexpr Eigen::Index kRowBlock = 512;
   NormalEquations sum{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  Eigen::MatrixXd block(n, kBlock);
-  Eigen::VectorXd force(kBlock);
+  Eigen::MatrixXd block(n, kRowBlock);
+  Eigen::VectorXd force(kRowBlock);
   Eigen::Index filled = 0;
   const auto flush = [&] {
     const auto used = block.leftCols(filled);
@@ -39,7 +39,7 @@ NormalEquations normal_equations(const TrendRows& rows, const std::vector<double
     if (!active[i]) continue;
     block.col(filled) = scale[i] * Eigen::Map<const Eigen::VectorXd>(rows.row(i), n);
     force(filled) = scale[i] * rows.force_N(i);
-    if (++filled == kBlock) flush();
+    if (++filled == kRowBlock) flush();
   }
   flush();
   return sum;

@@ -17,8 +17,8 @@ constexpr std::size_t kMaximumTimes = 3;
 constexpr std::size_t kFolds = 5;
 // Strokes are dealt to the folds in turn; longer ones in pieces.
 constexpr std::size_t kLongestPiece = 3000;
-constexpr double kShortest_s = 0.01;
-constexpr double kLongest_s = 10.0;
+constexpr double kShortestTime_s = 0.01;
+constexpr double kLongestTime_s = 10.0;
 constexpr std::size_t kLadder = 24;    // 0.01 to 10 s in steps of 35 %
 constexpr int kFineSteps = 4;          // to each side, within one coarse step
 constexpr int kOneSidedPasses = 4;
@@ -238,14 +238,14 @@ std::vector<double> ladder(double shortest_s) {
   std::vector<double> times_s;
   for (std::size_t i = 0; i < kLadder; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(kLadder - 1);
-    times_s.push_back(shortest_s * std::pow(kLongest_s / shortest_s, share));
+    times_s.push_back(shortest_s * std::pow(kLongestTime_s / shortest_s, share));
   }
   return times_s;
 }
 
 // Around every centre 2 kFineSteps + 1 times, over one coarse step to each side.
 std::vector<double> fine_ladders(const std::array<std::vector<double>, kMaximumTimes>& centres_s) {
-  const double ratio = std::pow(kLongest_s / kShortest_s, 1.0 / static_cast<double>((kLadder - 1) * kFineSteps));
+  const double ratio = std::pow(kLongestTime_s / kShortestTime_s, 1.0 / static_cast<double>((kLadder - 1) * kFineSteps));
   std::vector<double> times_s;
   for (const std::vector<double>& centres : centres_s) {
     for (const double centre_s : centres) {
@@ -279,7 +279,7 @@ Result<RelaxationIdentification> identify_relaxation(MotionSource& source, doubl
   }, control, 0.05);
   if (!status) return status.error();
   const double shortest_s = std::clamp(2.0 * duration_s / static_cast<double>(std::max<std::size_t>(steps, 1)),
-                                       kShortest_s, 0.1 * kLongest_s);
+                                       kShortestTime_s, 0.1 * kLongestTime_s);
 
   auto rows = gather(source, reference_depth_m, thinning_velocity_m_per_s, ladder(shortest_s), control, 0.06);
   if (!rows) return rows.error();

@@ -8,9 +8,11 @@
 // For given offsets the trend is linear in x, for given x the offsets are far
 // apart from each other: Gauss-Newton steps on both, the offsets eliminated.
 // Consistency says nothing of a shift common to all; the onsets decide it,
-// weighted by their errors.
+// weighted by their errors; of what these allow, the shift that leaves most
+// recordings as they are.
 // One recording: its own onset. Offsets that cannot be told from 0 are 0.
-// Standard errors: delete-one-fold jackknife over pieces of the recordings.
+// Standard errors: delete-one-fold jackknife over pieces of the recordings, and a
+// share of what the trend cannot follow.
 // Source: variable projection, Golub & Pereyra (1973); trend: fit_trend.h.
 // Thread guarantee: slow side.
 #pragma once

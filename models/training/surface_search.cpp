@@ -42,9 +42,9 @@ double vertex(double below, double at, double above) {
   return curvature > 0.0 ? 0.5 * (below - above) / curvature : kInfinite;
 }
 
-class Search {
+class OffsetSearch {
  public:
-  Search(const std::vector<SurfaceRow>& rows, const std::vector<std::shared_ptr<const ForceModel>>& models,
+  OffsetSearch(const std::vector<SurfaceRow>& rows, const std::vector<std::shared_ptr<const ForceModel>>& models,
          const JndLine& jnd)
       : rows_(rows), models_(models), jnd_(jnd) {}
 
@@ -137,7 +137,7 @@ double jackknife_error_m(const std::array<BlockCosts, 3>& around) {
 SurfaceLocation locate_surface(const std::vector<SurfaceRow>& rows,
                                const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
   if (rows.empty() || models.empty()) return {0.0, kInfinite};
-  const Search search(rows, models, jnd);
+  const OffsetSearch search(rows, models, jnd);
   const double coarse_m = search.coarse();
   const double best_m = search.golden(coarse_m - kCoarseSearchStep_m, coarse_m + kCoarseSearchStep_m);
   const std::array<BlockCosts, 3> around{search.costs(best_m - kParabolaStep_m, 1), search.costs(best_m, 1),

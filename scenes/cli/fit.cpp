@@ -283,7 +283,7 @@ void print_json(const MethodFit& fit, const PreparedTraining& prepared, const Fi
 void check_usage(const CLI::App& verb, const FitArguments& arguments) {
   if (arguments.list_methods) return;
   for (const char* needed : {"--recording", "--method", "--out"}) {
-    if (verb.count(needed) == 0) throw CLI::ValidationError(needed, "is required");
+    if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
   }
   const Method& method = *find_method(arguments.method);
   for (const MethodOnly& only : kMethodOnly) {

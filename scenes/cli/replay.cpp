@@ -80,6 +80,9 @@ OrderedJson model_json(const LoadedModel& one, const ModelErrors& errors) {
   OrderedJson moved;
   add_figures(moved, errors.surface_moved);
   object["surface_moved"] = std::move(moved);
+  const auto bound = [&](double value) { return std::isnan(value) ? OrderedJson(nullptr) : OrderedJson(value); };
+  object["predicted_error"] = {{"bound_95_held", bound(errors.bound.held_share)},
+                               {"median_bound_N", bound(errors.bound.median_N)}};
   object["bins"] = bins_json(errors.as_recorded.bins);
   return object;
 }

@@ -20,7 +20,7 @@ constexpr double kRmsThatMatters = 0.1;
 // One pass over the recording, its errors model by model.
 class ErrorPass {
  public:
-  explicit ErrorPass(const std::vector<LoadedModel>& models) : features_(models.size()) {
+  explicit ErrorPass(const std::vector<LoadedModel>& models) : features_(models.size()), bounds_(models.size()) {
     for (const LoadedModel& one : models) statistics_.emplace_back(one.model->data().jnd);
   }
 
@@ -29,15 +29,32 @@ class ErrorPass {
     for (std::size_t i = 0; i < statistics_.size(); ++i) {
       statistics_[i].add(snapshot.force_N[i], row.force_N, (snapshot.out_of_domain_mask >> i & 1U) != 0);
       features_[i].add(tick.features_of(i));
+      const double bound_N = snapshot.predicted_error_N[i];
+      if (std::isnan(bound_N)) continue;
+      bounds_[i].bound_N.push_back(static_cast<float>(bound_N));
+      if (std::abs(snapshot.force_N[i] - row.force_N) <= bound_N) ++bounds_[i].held;
     }
   }
 
   ErrorSummary errors(std::size_t model) const { return statistics_[model].summary(); }
   const FeatureSample& features(std::size_t model) const { return features_[model]; }
 
+  BoundSummary bound(std::size_t model) const {
+    std::vector<float> all = bounds_[model].bound_N;
+    if (all.empty()) return {std::nan(""), std::nan("")};
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    return {static_cast<double>(bounds_[model].held) / static_cast<double>(all.size()), *middle};
+  }
+
  private:
+  struct Bounds {
+    std::vector<float> bound_N;
+    std::size_t held = 0;
+  };
   std::vector<ErrorStatistics> statistics_;
   std::vector<FeatureSample> features_;
+  std::vector<Bounds> bounds_;
 };
 
 Result<ReplaySummary> run_pass(const std::string& path, const ForceModels& models, const ReplayVisitor& visitor,
@@ -130,7 +147,8 @@ Result<ReplayedRecording> replay_recording(const std::string& path, const std::v
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ErrorSummary plain = as_recorded.errors(i);
     replayed.models.push_back(
-        {plain, moved ? moved->errors(i) : plain, time_model(*models[i].model, as_recorded.features(i))});
+        {plain, moved ? moved->errors(i) : plain, moved ? moved->bound(i) : as_recorded.bound(i),
+         time_model(*models[i].model, as_recorded.features(i))});
   }
   return replayed;
 }

@@ -25,9 +25,16 @@ struct LoadedModel {
   std::shared_ptr<const FittedModel> model;
 };
 
+// The predicted 95 % bound against the errors; held_share is NaN for a model without.
+struct BoundSummary {
+  double held_share = 0.0;
+  double median_N = 0.0;
+};
+
 struct ModelErrors {
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
+  BoundSummary bound;  // with the surface moved
   ModelTiming time;
 };
 

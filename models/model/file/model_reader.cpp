@@ -69,6 +69,7 @@ class ModelReader : private JsonFields {
     data_.cover.inner_radius = number(domain, "inner_radius", Sign::kNotNegative);
     data_.cover.outer_radius = number(domain, "outer_radius", Sign::kPositive);
     data_.cover.points = read_points(*this, domain, "points", dimension());
+    if (top.value->contains("error_bound")) read_error_bound(member(top, "error_bound", "an object"));
     read_correction(top);
     // After another error not all that may be there was asked for.
     if (error_count() == 0) refuse_unknown(top);
@@ -139,6 +140,14 @@ class ModelReader : private JsonFields {
   }
   DriveCurve drive_member(const JsonNode& node, const char* key) {
     return read_drive(member(node, key, "an object with reference_depth_m and coefficient_N"));
+  }
+
+  void read_error_bound(const JsonNode& node) {
+    ErrorBound bound;
+    bound.floor_N = number(node, "floor_N", Sign::kNotNegative);
+    bound.per_force = number(node, "per_force", Sign::kNotNegative);
+    bound.per_distance_N = number(node, "per_distance_N", Sign::kNotNegative);
+    data_.error_bound = bound;
   }
 
   void read_parts(const JsonNode& node, FeatureSpec& spec) {

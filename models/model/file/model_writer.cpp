@@ -40,6 +40,11 @@ std::string features(const std::vector<FeatureSpec>& specs) {
   return json_lines(items);
 }
 
+std::string error_bound(const ErrorBound& bound) {
+  return "{\"floor_N\": " + json_number(bound.floor_N) + ", \"per_force\": " + json_number(bound.per_force) +
+         ", \"per_distance_N\": " + json_number(bound.per_distance_N) + "}";
+}
+
 bool softens(const std::vector<FeatureSpec>& specs) {
   return std::any_of(specs.begin(), specs.end(),
                      [](const FeatureSpec& spec) { return spec.kind == FeatureKind::fading_peak; });
@@ -143,6 +148,7 @@ Result<std::string> write_model_text(const ModelData& data) {
                   ", \"weber_fraction\": " + json_number(data.jnd.weber_fraction) + "}"},
       {"provenance", provenance(data.provenance)},
       {"domain", domain(data)}};
+  if (data.error_bound) fields.emplace_back("error_bound", error_bound(*data.error_bound));
   for (auto& field : data.correction->file_fields()) fields.push_back(std::move(field));
   std::string text = "{";
   for (const auto& [key, value] : fields) text += (text.size() == 1 ? "\n  \"" : ",\n  \"") + key + "\": " + value;

@@ -38,7 +38,8 @@ class FitVerb : public ::testing::Test {
     Arguments arguments = {"fit"};
     std::vector<std::pair<std::string, std::string>> defaults = {
         {"--recording", recording()}, {"--method", method}, {"--out", out()}};
-    if (find_method(method)->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
+    const Method* row = find_method(method);
+    if (row != nullptr && row->can_take(kTakesCentres)) defaults.emplace_back("--centres", "20");
     for (const auto& [option, value] : defaults) {
       if (std::find(more.begin(), more.end(), option) == more.end()) arguments.insert(arguments.end(), {option, value});
     }
@@ -142,10 +143,22 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
 }
 
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
-  const ProgramRun run = run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out",
+  Recording other = example_recording(1000, 1000.0);
+  for (RecordingRow& row : other.rows) row.force_N *= 1.001;
+  const std::string second = recording() + ".second.csv";
+  ASSERT_TRUE(write_recording(second, other, {}, false).ok());
+  const ProgramRun run = run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out",
                                       out(), "--json"});
   expect_model(run);
   EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 2000);
+}
+
+TEST_F(FitVerb, TheSameRecordingTwiceIsTold) {
+  const ProgramRun run = run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out",
+                                      out(), "--json"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "warning: " + recording() + ": repeated: it has the same rows as " + recording() +
+                         "; name every recording once: a repeated one counts twice, and errors on it say nothing\n");
 }
 
 TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
@@ -192,7 +205,7 @@ TEST_F(FitVerb, NoContactIsToldInOneLine) {
   Recording air = example_recording(100, 1000.0);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3;
   ASSERT_TRUE(write_recording(recording(), air, {}, true).ok());
-  expect_refused(fit({}), 1, "in contact");
+  expect_refused(fit({}), 1, "no_force: ");
 }
 
 // Starts `palpate fit` and waits until it reads its recording, which is after

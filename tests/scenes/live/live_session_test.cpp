@@ -79,7 +79,11 @@ TEST(LiveSession, RefusesWhatCannotBeOpened) {
   EXPECT_EQ(error_of(request).rfind("unknown device \"brush\"", 0), 0u);
   request = {};
   request.scene = "skin";
+  request.models = {"greedy"};
   EXPECT_EQ(error_of(request).rfind("the scene \"skin\" has no virtual material", 0), 0u);
+  request.models.clear();
+  request.device = "hand";
+  EXPECT_EQ(error_of(request), "opened") << "a session that waits for a file";
 }
 
 // The loop and replay give the same bits for the same samples. The models join
@@ -264,7 +268,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   const Session session = must(LiveSession::open(request));
   ASSERT_EQ(session->models().size(), 3u);
   EXPECT_EQ(session->models().view(2).name, "direct") << "the reference, always";
-  EXPECT_EQ(session->reference_words(), "true force of the virtual elastic");
+  EXPECT_EQ(session->reference_words(), "true force of the virtual material, elastic");
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).state == SlotState::ready; }));
   EXPECT_EQ(session->models().view(1).state, SlotState::ready) << "the quickest first";
   EXPECT_EQ(session->models().selected(), 0u) << "the first asked for";

@@ -59,7 +59,7 @@ TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
             "S01.csv:5:1: found \"# consent refused, text 811c9dc5\", expected \"# consent accepted, \" and which text");
   EXPECT_EQ(complaint_after(",response_ms", ""),
             "S01.csv:6:1: found \"part,trial,reference_N,comparison_N,comparison_first,firs...\", expected the "
-            "columns " + std::string(kStudyColumns));
+            "columns " + std::string(kStudyColumns) + std::string(kDeviceColumns));
   EXPECT_EQ(complaint_after("training,1", "practice,1"),
             "S01.csv:7:1: found \"practice\", expected training or study");
   EXPECT_EQ(complaint_after("study,1,", "study,0,"), "S01.csv:8:7: found \"0\", expected a whole number above 0");
@@ -109,6 +109,21 @@ TEST(StudyReader, RefusesWhatIsNotAPairOfStrokes) {
     const auto cut = parse_study(std::string_view(good).substr(0, length), "S01.csv");
     EXPECT_TRUE(!cut.ok() || cut->whole_bytes <= length) << length;
   }
+}
+
+TEST(StudyReader, RowsSayOnWhatTheyWereGivenAndRehearsalsAreTakenOut) {
+  const std::string text = "# palpate-study 1\n# subject S01\n# procedure constant\n"
+                           "# timing_ms lead_in 400 ramp 100 hold 900 pause 500\n# consent accepted, text 8c1f2a9d\n" +
+                           std::string(kStudyColumns) + std::string(kDeviceColumns) +
+                           "\nstudy,1,2.5,3.5,0,2.4,3.5,0,first,20,paddle,true\n"
+                           "study,2,2.5,3.5,0,2.4,3.5,0,first,20,mouse,false\n";
+  auto data = parse_study(text, "s.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->records[0].device, "paddle");
+  EXPECT_FALSE(data->records[1].rendered);
+  EXPECT_EQ(remove_rehearsals(*data), 1u);
+  ASSERT_EQ(data->records.size(), 1u);
+  EXPECT_EQ(data->records[0].device, "paddle");
 }
 
 }  // namespace

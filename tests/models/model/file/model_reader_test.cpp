@@ -118,10 +118,10 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
       {"{\"kind\": \"depth\"},", "",
        "m.json:12:15: normalisation.offset: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
        "m.json:13:14: normalisation.scale: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:42:14: domain.lower: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:43:14: domain.upper: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:47:5: domain.points[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:53:5: centres[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again"},
+       "m.json:41:14: domain.lower: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:42:14: domain.upper: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:46:5: domain.points[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+       "m.json:52:5: centres[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again"},
   });
 }
 
@@ -153,25 +153,25 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
       {"\"press-2\"", "2",
        "m.json:28:31: provenance.recordings[1]: found 2, expected a text; fit the model again"},
       {"\"standard_error_s\": 0.01", "\"standard_error\": 0.01",
-       "m.json:38:26: provenance.relaxation_times[0].standard_error_s: found no such field, expected a "
+       "m.json:37:26: provenance.relaxation_times[0].standard_error_s: found no such field, expected a "
        "number, 0 or more; fit the model again"},
       {"[0.25, 0.25, 0.25]", "",
-       "m.json:46:15: domain.points: found an empty list, expected a list of at least one point; fit the "
+       "m.json:45:15: domain.points: found an empty list, expected a list of at least one point; fit the "
        "model again"},
       {"\"linear\"", "\"gauss\"",
-       "m.json:50:13: kernel: found \"gauss\", expected one of cubic, linear, thin-plate, quintic; fit "
+       "m.json:49:13: kernel: found \"gauss\", expected one of cubic, linear, thin-plate, quintic; fit "
        "the model again"},
       {"\"tail\": [1.5]", "\"tail\": [1.5, 2]",
-       "m.json:51:11: tail: found a list of 2, expected 1 coefficients; fit the model again"},
+       "m.json:50:11: tail: found a list of 2, expected 1 coefficients; fit the model again"},
       {"[0.5, 0.5, 0.5],", "[0.5, 0.5],",
-       "m.json:53:5: centres[0]: found a list of 2, expected 3 numbers, one per feature; fit the model "
+       "m.json:52:5: centres[0]: found a list of 2, expected 3 numbers, one per feature; fit the model "
        "again"},
       {"[0.5, 0.5, 0.5],", "[0.5, \"x\", 0.5],",
-       "m.json:53:11: centres[0][1]: found \"x\", expected a number; fit the model again"},
+       "m.json:52:11: centres[0][1]: found \"x\", expected a number; fit the model again"},
       {"[0.5, 0.5, 0.5],", "",
-       "m.json:56:14: weights: found a list of 2, expected 1 numbers, one per centre; fit the model again"},
+       "m.json:55:14: weights: found a list of 2, expected 1 numbers, one per centre; fit the model again"},
       {"0.125,", "",
-       "m.json:56:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
+       "m.json:55:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
       {"\"centres\"", "\"centers\"",
        "m.json:1:1: found none of \"centres\", \"grid\", \"trend_alone\", expected one of them; fit the model again"},
       {"\"centres\"", "\"grid\": {}, \"centres\"",
@@ -182,7 +182,7 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
 TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
   expect_all(small_text(), {
       {"\"tail\"", "\"tails\": 3,\n\"tail\"",
-       "m.json:51:12: tails: found an unknown field, expected one of format, version, name, method, features, "
+       "m.json:50:12: tails: found an unknown field, expected one of format, version, name, method, features, "
        "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, jnd, provenance, domain, kernel, "
        "tail, centres, weights; fit the model again"},
       {"{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"time\": 1}",
@@ -193,18 +193,18 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
 TEST(ModelReader, RefusesWrongGrids) {
   expect_all(small_grid_text(), {
       {"[[-1, 0, 1]]", "[[-1, 0, 0]]",
-       "m.json:49:23: grid.nodes[0][2]: found 0, expected at least 2 numbers, each above the last; fit "
+       "m.json:48:23: grid.nodes[0][2]: found 0, expected at least 2 numbers, each above the last; fit "
        "the model again"},
       {"[[-1, 0, 1]]", "[[-1]]",
-       "m.json:49:15: grid.nodes[0]: found a list of 1, expected at least 2 numbers, each above the last; "
+       "m.json:48:15: grid.nodes[0]: found a list of 1, expected at least 2 numbers, each above the last; "
        "fit the model again"},
       {"[[-1, 0, 1]]", "[]",
-       "m.json:49:14: grid.nodes: found a list of 0 axes, expected 1, one per feature; fit the model again"},
+       "m.json:48:14: grid.nodes: found a list of 0 axes, expected 1, one per feature; fit the model again"},
       {"[[-1, 0, 1]]", "[[-1, 1]]",
-       "m.json:50:17: grid.values_N: found a list of 3, expected as many as the grid has nodes; fit the "
+       "m.json:49:17: grid.values_N: found a list of 3, expected as many as the grid has nodes; fit the "
        "model again"},
       {"1.5, 2.5, 3.5", "1.5, 2.5, {}",
-       "m.json:51:15: grid.values_N[2]: found an object, expected a number; fit the model again"},
+       "m.json:50:15: grid.values_N[2]: found an object, expected a number; fit the model again"},
   });
 }
 
