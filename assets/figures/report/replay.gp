@@ -20,14 +20,15 @@ do for [medium in media] {
   set ylabel "Force [N]"
   set yrange [*:*]
   set ytics autofreq
-  set label 1 "measured" at graph 1.015,0.5 left textcolor rgb measured
+  set label 1 "measured" at graph 1.015,0.5 left textcolor rgb green
   set label 2 title_text at graph 0,1.1 left noenhanced textcolor rgb ink
-  plot "replay.csv" using 1:3 with lines linewidth 2 linecolor rgb measured
+  plot "replay.csv" using 1:3 with lines linewidth 2 linecolor rgb green
   unset label
   do for [m = 0:models - 1] {
+    set yrange [*:*]
     stats "replay_models.csv" using 3 every ::m::m nooutput
-    colour = STATS_max
-    text = system(sprintf("sed -n %dp replay_models.csv | cut -d, -f2", m + 2))
+    hue = hexadecimal(STATS_max)
+    strip_name = system(sprintf("sed -n %dp replay_models.csv | cut -d, -f2", m + 2))
     set tmargin at screen 1 - 118.0 / height - m * strip
     set bmargin at screen 1 - 118.0 / height - (m + 1) * strip + 8.0 / height
     set yrange [-limit:limit]
@@ -37,9 +38,9 @@ do for [medium in media] {
       set format x "%g"
       set xlabel "Time [s]"
     }
-    set label 1 text at graph 1.015,0.5 left noenhanced textcolor rgb colour
+    set label 1 strip_name at graph 1.015,0.5 left noenhanced textcolor rgb hue
     plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
-      "replay.csv" using 1:(column(4 + m)) with lines linewidth 1.3 linecolor rgb colour
+      "replay.csv" using 1:(column(4 + m)) with lines linewidth 1.3 linecolor rgb hue
   }
   unset label
   set grid xtics ytics mxtics mytics

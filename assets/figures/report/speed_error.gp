@@ -2,9 +2,6 @@
 # times. Reads FIGURE.csv (models), FIGURE_front.csv, FIGURE_labels.csv, FIGURE_panels.csv.
 load "FIGURE.set"
 load "style.gp"
-set logscale xy
-set xrange [x_low:x_high]
-set yrange [y_low:y_high]
 if (is_fit) {
   set xtics ("1 ms" 1e-3, "10 ms" 1e-2, "0.1 s" 0.1, "1 s" 1, "10 s" 10, "100 s" 100)
 } else {
@@ -16,9 +13,15 @@ do for [medium in media] {
   eval open(medium, "FIGURE")
   set multiplot layout rows,columns
   do for [p = 0:panel_count - 1] {
+    unset logscale
+    set xrange [*:*]
+    set yrange [*:*]
     stats "FIGURE_panels.csv" using 3 every ::p::p nooutput
     floor_jnd = STATS_max
     title_of = system(sprintf("sed -n %dp FIGURE_panels.csv | cut -d, -f2", p + 2))
+    set logscale xy
+    set xrange [x_low:x_high]
+    set yrange [y_low:y_high]
     unset label
     unset arrow
     set label 1 title_of at graph 0.02,1.03 left noenhanced textcolor rgb ink

@@ -8,7 +8,7 @@ grid = "#d8d8d8"
 minor = "#ececec"
 band = "#e3e3e3"
 paper = "#fefefe"
-measured = "#009E73"
+green = "#009E73"
 blue = "#0072B2"
 vermilion = "#D55E00"
 media = "svg png"
@@ -18,6 +18,8 @@ open(medium, name) = medium eq "svg" ? \
           width, height, paper, name) : \
   sprintf('set terminal pngcairo size %d,%d font "DejaVu Sans,13" fontscale 1.7 linewidth 2 pointscale 2 background "#ffffff" rounded; set output "%s.png"', \
           2 * width, 2 * height, name)
+# In here, since gnuplot takes a # in a block for a comment.
+hexadecimal(colour) = sprintf("#%06x", int(colour))
 set key off
 set samples 200
 set border 3 linecolor rgb ink linewidth 1
@@ -26,3 +28,4 @@ set xlabel textcolor rgb ink offset 0,0.3
 set ylabel textcolor rgb ink
 set grid xtics ytics mxtics mytics linetype 1 linecolor rgb grid linewidth 1, linetype 1 linecolor rgb minor linewidth 1
 set grid back
+set errorbars 0

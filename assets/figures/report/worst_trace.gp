@@ -21,16 +21,19 @@ do for [medium in media] {
   set yrange [*:*]
   set ytics autofreq
   set grid noytics nomytics
-  set label 1 "measured" at graph 1.015,0.5 left textcolor rgb measured
-  plot "worst_trace.csv" using 1:3 with lines linewidth 2 linecolor rgb measured
+  set label 1 "measured" at graph 1.015,0.5 left textcolor rgb green
+  plot "worst_trace.csv" using 1:3 with lines linewidth 2 linecolor rgb green
   do for [s = 0:strips - 1] {
+    set xrange [*:*]
+    set yrange [*:*]
     stats "worst_trace_strips.csv" using 3 every ::s::s nooutput
-    colour = STATS_max
+    hue = hexadecimal(STATS_max)
     stats "worst_trace_strips.csv" using 4 every ::s::s nooutput
     first = int(STATS_max)
     stats "worst_trace_strips.csv" using 5 every ::s::s nooutput
     last = int(STATS_max)
-    text = system(sprintf("sed -n %dp worst_trace_strips.csv | cut -d, -f2", s + 2))
+    strip_name = system(sprintf("sed -n %dp worst_trace_strips.csv | cut -d, -f2", s + 2))
+    set xrange [from_s:to_s]
     unset label
     set tmargin at screen top - force_height - s * strip_height
     set bmargin at screen top - force_height - (s + 1) * strip_height + 0.012
@@ -41,14 +44,14 @@ do for [medium in media] {
       set format x "%g"
       set xlabel "Time [s]"
     }
-    set label 1 text at graph 1.015,0.5 left noenhanced textcolor rgb colour
+    set label 1 strip_name at graph 1.015,0.5 left noenhanced textcolor rgb hue
     if (first == last) {
       plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
-        "worst_trace.csv" using 1:last with lines linewidth 1.6 linecolor rgb colour
+        "worst_trace.csv" using 1:last with lines linewidth 1.6 linecolor rgb hue
     } else {
       plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
         "worst_trace.csv" using 1:first with lines linewidth 0.7 linecolor rgb muted, \
-        "" using 1:last with lines linewidth 1.6 linecolor rgb colour
+        "" using 1:last with lines linewidth 1.6 linecolor rgb hue
     }
   }
   unset multiplot
