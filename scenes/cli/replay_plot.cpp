@@ -92,10 +92,17 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, b
     names.rows.push_back({static_cast<std::uint64_t>(m), models_[m].name, colour_of(models_[m])});
   }
   figure.width = 900;
-  figure.height = 330 + 70 * static_cast<int>(count);
+  figure.height = 345 + 70 * static_cast<int>(count);
   figure.set_text("title_text", recording);
   figure.set_number("models", static_cast<double>(count));
   figure.set_number("limit", std::min(limit, 5.0));
+  figure.set_number("from_s", moments_.empty() ? 0.0 : moments_.front().time_s);
+  figure.set_number("to_s", moments_.empty() ? 1.0 : moments_.back().time_s);
+  double least_mN = 1e3 * jnd.at(0.0);
+  for (const auto& row : bins.rows) {
+    if (!row.empty() && row[2].number > 0.0) least_mN = std::min(least_mN, row[2].number);
+  }
+  figure.set_number("error_low", 0.7 * least_mN);
   figure.set_number("force_high", largest_N > 0.0 ? largest_N : 1.0);
   figure.set_number("jnd_offset_N", jnd.offset_N);
   figure.set_number("jnd_fraction", jnd.weber_fraction);

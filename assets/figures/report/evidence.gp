@@ -34,7 +34,7 @@ do for [medium in media] {
       set ytics scale 0 format ""
     }
     if (floor_at > least * 0.7) { set arrow 1 from first floor_at,graph 0 to first floor_at,graph 1 nohead dashtype 3 linewidth 2 linecolor rgb muted }
-    if (c == 1 || c == 3) { set arrow 2 from first 1,graph 0 to first 1,graph 1 nohead dashtype 2 linewidth 1.5 linecolor rgb muted }
+    if ((c == 1 || c == 3) && least * 0.7 < 1 && highest * 1.4 > 1) { set arrow 2 from first 1,graph 0 to first 1,graph 1 nohead dashtype 2 linewidth 1.5 linecolor rgb muted }
     shown(x) = x > least * 0.7 ? x : least * 0.75
     if (c == 0) {
       plot "evidence.csv" using (shown(column(value_at))):"row":(shown(column(value_at + 1))):(shown(column(value_at + 2))):"colour":ytic(2) with xerrorbars pointtype 0 linewidth 1.6 linecolor rgb variable, \

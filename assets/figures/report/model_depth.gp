@@ -14,8 +14,8 @@ do for [medium in media] {
   set ylabel "Elastic force [N]"
   plot "model_depth.csv" using "depth_mm":"elastic_N" with lines linewidth 2 linecolor rgb blue
   set ylabel "Stiffness [N/mm]"
-  set label 1 "slow" at graph 1.01,0.1 left textcolor rgb blue
-  set label 2 "fast" at graph 1.01,0.9 left textcolor rgb vermilion
+  set label 1 "slow" at graph 0.03,0.93 left textcolor rgb blue
+  set label 2 "fast" at graph 0.03,0.80 left textcolor rgb vermilion
   plot "model_depth.csv" using "depth_mm":"elastic_stiffness_N_per_mm" with lines linewidth 2 linecolor rgb blue, \
     "" using "depth_mm":"instantaneous_stiffness_N_per_mm" with lines linewidth 2 linecolor rgb vermilion
   set ylabel "Viscosity [Ns/m]"
@@ -23,7 +23,7 @@ do for [medium in media] {
     "" using "depth_mm":"viscosity_fast_Ns_per_m" with lines linewidth 2 linecolor rgb vermilion
   unset label
   set xlabel "Relaxation time [s]"
-  set ylabel "Stiffness that relaxes [N/mm]"
+  set ylabel "Relaxing [N/mm]"
   if (branches > 0) {
     set logscale x
     set xrange [0.005:20]

@@ -19,7 +19,11 @@ do for [medium in media] {
   unset xlabel
   set ylabel "Force [N]"
   set yrange [*:*]
-  set ytics autofreq
+  set xrange [*:*]
+  stats "worst_trace.csv" using 3 nooutput
+  decade = 10 ** floor(log10(STATS_max > 0 ? STATS_max : 1))
+  set xrange [from_s:to_s]
+  set ytics STATS_max / decade < 2 ? decade / 2 : STATS_max / decade < 5 ? decade : 2 * decade
   set grid noytics nomytics
   set label 1 "measured" at graph 1.015,0.5 left textcolor rgb green
   plot "worst_trace.csv" using 1:3 with lines linewidth 2 linecolor rgb green
@@ -47,11 +51,11 @@ do for [medium in media] {
     set label 1 strip_name at graph 1.015,0.5 left noenhanced textcolor rgb hue
     if (first == last) {
       plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
-        "worst_trace.csv" using 1:last with lines linewidth 1.6 linecolor rgb hue
+        "worst_trace.csv" using 1:(column(last)) with lines linewidth 1.6 linecolor rgb hue
     } else {
       plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
-        "worst_trace.csv" using 1:first with lines linewidth 0.7 linecolor rgb muted, \
-        "" using 1:last with lines linewidth 1.6 linecolor rgb hue
+        "worst_trace.csv" using 1:(column(first)) with lines linewidth 0.7 linecolor rgb muted, \
+        "" using 1:(column(last)) with lines linewidth 1.6 linecolor rgb hue
     }
   }
   unset multiplot
