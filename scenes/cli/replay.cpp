@@ -34,7 +34,6 @@ Status check_output(const Options& options, const std::string& option, const std
     return Error{"found " + std::to_string(options.recordings.size()) +
                  " recordings with " + option + ", expected one; replay them in several runs"};
   }
-  if (out == "-") return Error{"found " + option + " -, expected the name of a file; standard output has the figures"};
   std::vector<std::string> inputs = options.models;
   inputs.push_back(options.recordings.front());
   for (const std::string& input : inputs) {
