@@ -168,7 +168,7 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
 
 TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
   expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
-  expect_refused(fit({"--grid", "25"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
+  expect_refused(fit({"--features", "scene", "--grid", "25"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
   expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, "at most 1e7");
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
