@@ -96,7 +96,7 @@ int name_claim(const std::array<std::string_view, N>& list, const std::string& n
 }
 
 // How strongly a column claims each role; 0: not at all.
-std::array<int, kRoles> claims_of(const TableColumn& column) {
+std::array<int, kRoles> claims_of(const ForeignColumn& column) {
   std::string name = plain_name(column.parts.name);
   if (name.starts_with('%')) name.erase(0, 1);
   const std::vector<std::string> words = words_of(column.parts.name);
@@ -123,15 +123,15 @@ std::string flag_for(std::size_t role, const std::string& what) {
 }
 
 // A name with blanks needs quotes in a shell, so the number is given then.
-std::string shell_name(const std::vector<TableColumn>& columns, std::size_t index) {
+std::string shell_name(const std::vector<ForeignColumn>& columns, std::size_t index) {
   const std::string& header = columns[index].header;
   const bool plain = header.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
                      std::string::npos;
-  const auto same = std::count_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.header == header; });
+  const auto same = std::count_if(columns.begin(), columns.end(), [&](const ForeignColumn& c) { return c.header == header; });
   return plain && !header.empty() && same == 1 ? header : std::to_string(index + 1);
 }
 
-Result<std::size_t> find_column(const std::vector<TableColumn>& columns, std::size_t role, const std::string& wanted) {
+Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role, const std::string& wanted) {
   const auto with = [&](auto&& name_of) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -140,9 +140,9 @@ Result<std::size_t> find_column(const std::vector<TableColumn>& columns, std::si
     return found;
   };
   const std::string lower = lower_ascii(wanted);
-  std::vector<std::size_t> found = with([&](const TableColumn& c) { return c.header == wanted; });
-  if (found.empty()) found = with([&](const TableColumn& c) { return lower_ascii(c.header) == lower; });
-  if (found.empty()) found = with([&](const TableColumn& c) { return lower_ascii(c.parts.name) == lower; });
+  std::vector<std::size_t> found = with([&](const ForeignColumn& c) { return c.header == wanted; });
+  if (found.empty()) found = with([&](const ForeignColumn& c) { return lower_ascii(c.header) == lower; });
+  if (found.empty()) found = with([&](const ForeignColumn& c) { return lower_ascii(c.parts.name) == lower; });
   if (found.size() == 1) return found.front();
   if (found.size() > 1) {
     return Error{"found " + std::to_string(found.size()) + " columns called \"" + printable(wanted) +
@@ -157,7 +157,7 @@ Result<std::size_t> find_column(const std::vector<TableColumn>& columns, std::si
                ", expected one of " + list_columns(columns)};
 }
 
-Error no_column(const std::vector<TableColumn>& columns, std::size_t role, bool has_header) {
+Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, bool has_header) {
   const std::string time_advice = role == 0 ? ", or --rate HZ if the rows are evenly spaced" : "";
   if (!has_header) {
     return Error{"found no header, expected names of columns; say which column is which: --columns " +
@@ -169,7 +169,7 @@ Error no_column(const std::vector<TableColumn>& columns, std::size_t role, bool 
                list_columns(columns)};
 }
 
-Error several_columns(const std::vector<TableColumn>& columns, std::size_t role, const std::vector<std::size_t>& best) {
+Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t role, const std::vector<std::size_t>& best) {
   std::string flags;
   for (const std::size_t index : best) {
     flags += (flags.empty() ? "" : index == best.back() ? " or " : ", ") + flag_for(role, shell_name(columns, index));
@@ -180,7 +180,7 @@ Error several_columns(const std::vector<TableColumn>& columns, std::size_t role,
 
 }  // namespace
 
-std::string list_columns(const std::vector<TableColumn>& columns) {
+std::string list_columns(const std::vector<ForeignColumn>& columns) {
   std::string text;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     text += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " \"" + printable(columns[i].header) + "\"";
@@ -188,11 +188,11 @@ std::string list_columns(const std::vector<TableColumn>& columns) {
   return text;
 }
 
-Result<RoleChoice> choose_columns(const std::vector<TableColumn>& columns, const RoleRequest& request,
+Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
                                   bool has_header, bool needs_time) {
   RoleChoice choice;
   std::vector<std::array<int, kRoles>> claims;
-  for (const TableColumn& column : columns) claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
+  for (const ForeignColumn& column : columns) claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (request[role].empty() || (role == 0 && !needs_time)) continue;
     const auto found = find_column(columns, role, request[role]);

@@ -20,7 +20,7 @@ inline constexpr std::size_t kRoles = 3;
 inline constexpr std::array<const char*, kRoles> kRoleNames = {"time", "position", "force"};
 
 // A column as the header has it; without a header the name is its number.
-struct TableColumn {
+struct ForeignColumn {
   std::string header;  // as written
   NameAndUnit parts;
 };
@@ -36,10 +36,10 @@ struct RoleChoice {
 // Errors (without the file's name), each with the header and what to add: an unknown
 // name; no column or several that can be the time, the position or the force; one
 // column for two roles.
-Result<RoleChoice> choose_columns(const std::vector<TableColumn>& columns, const RoleRequest& request,
+Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
                                   bool has_header, bool needs_time);
 
 // The header for a message: 1 "Zeit [s]", 2 "Weg [mm]".
-std::string list_columns(const std::vector<TableColumn>& columns);
+std::string list_columns(const std::vector<ForeignColumn>& columns);
 
 }  // namespace palpate

@@ -71,7 +71,7 @@ class Importer {
   std::string label_;
   const ImportRequest& request_;
   ImportedTable table_;
-  std::vector<TableColumn> header_;
+  std::vector<ForeignColumn> header_;
   std::array<std::size_t, kRoles> index_{};
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
   RowSplitter splitter_{Delimiter::comma};
@@ -98,7 +98,7 @@ Status Importer::find_columns() {
   split_table_fields(take_line(rest), layout.delimiter, first_row);
   const bool has_header = !layout.names.empty();
   for (std::size_t i = 0; i < layout.columns; ++i) {
-    TableColumn column;
+    ForeignColumn column;
     const std::string_view name = has_header ? layout.names[i] : i < first_row.size() ? first_row[i] : "";
     column.header = text_.to_utf8(name);
     if (has_header) column.parts = split_name_and_unit(column.header);
