@@ -142,4 +142,8 @@ Result<std::unique_ptr<Device>> open_device(const std::string& name, const Devic
   return Error{"unknown device \"" + name + "\", expected one of: " + known_names() + " (palpate devices explains)"};
 }
 
+bool is_felt(Device& device) noexcept {
+  return device.renders_force() && device.mouse() == nullptr && device.name() != "hand";
+}
+
 }  // namespace palpate

@@ -40,4 +40,8 @@ std::vector<DeviceDescription> list_devices(const DeviceRequest& request = {});
 // that cannot be opened.
 Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceRequest& request = {});
 
+// Whether a person at this device feels its force: a mouse and a hand that moves by
+// itself take a force as well, but nobody feels it. Pure.
+bool is_felt(Device& device) noexcept;
+
 }  // namespace palpate

@@ -216,6 +216,8 @@ void LiveSession::move_surface(bool moved) {
   if (surface_.move(moved)) comparison_.forget_errors();
 }
 
+bool LiveSession::renders_force() const noexcept { return is_felt(*device_); }
+
 void LiveSession::use_dead_man(DeadMan what) {
   dead_man_ = what;
   send_controls();

@@ -91,7 +91,7 @@ class LiveSession {
   // empty when nothing; the tool is at its rest position.
   const std::string& device_name() const noexcept { return device_->name(); }
   std::string device_words() const;
-  bool renders_force() const noexcept { return device_->renders_force(); }
+  bool renders_force() const noexcept;  // that a person feels
   void start_zeroing() { device_->start_zeroing(); }
   // What it can be asked for beside: null when it cannot.
   ToolInput* mouse() const noexcept { return device_->mouse(); }
