@@ -180,7 +180,7 @@ TEST_P(RbfEvaluatorOnTarget, NearestDistanceIsThatOfABruteForceSearch) {
 
 // Not nearly: a force must not depend on which way its trust was found.
 TEST_P(RbfEvaluatorOnTarget, NearestDistanceWithALimitIsTheSameToTheBitBeyondIt) {
-  for (int d = 1; d <= kMaxFeatures; ++d)
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
     for (const int count : {1, 16, 63, 64, 65, 130, 500, 768}) {
       const Eigen::MatrixXd points = random_points(d, count, 1);
       const NearestDistance nearest(points);
