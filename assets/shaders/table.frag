@@ -1,6 +1,6 @@
 #version 330 core
 // The table: a pool of light that fades into the background, and under every
-// block a soft shadow, the smoothed distance to a rounded box.
+// block a soft shadow, from the distance to a rounded box.
 in vec2 place;
 
 uniform vec3 table_colour;
@@ -25,7 +25,11 @@ void main() {
   float light = 1.0;
   for (int i = 0; i < block_count; ++i) {
     vec2 from = place - blocks[i];
-    light *= 0.50 + 0.50 * smoothstep(-0.006, 0.030, box_distance(from + vec2(0.006, -0.004)));
+    // A wide soft one away from the lamp, and a narrow dark one where it stands.
+    float away = box_distance(from + vec2(-0.010, 0.013));
+    float wide = smoothstep(-0.034, 0.052, away);
+    float contact = smoothstep(-0.003, 0.012, box_distance(from));
+    light *= (0.66 + 0.34 * wide) * (0.62 + 0.38 * contact);
   }
   colour *= light;
   float ring = abs(box_distance(place - chosen_at) - 0.007);

@@ -96,7 +96,11 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
 
 void HapticsTick::evaluate_models() noexcept {
   snapshot_.out_of_domain_mask = 0;
-  for (std::size_t i = 0; i < models_.size(); ++i) {
+  // Each is the first in turn: the first after a pause pays for what the processor has
+  // forgotten, and none should look slower for its place.
+  const std::size_t first = models_.empty() ? 0 : static_cast<std::size_t>(snapshot_.tick % models_.size());
+  for (std::size_t k = 0; k < models_.size(); ++k) {
+    const std::size_t i = first + k < models_.size() ? first + k : first + k - models_.size();
     double force_N = 0.0;
     double predicted_error_N = 0.0;
     if (snapshot_.in_contact) {

@@ -20,6 +20,8 @@ namespace palpate {
 inline constexpr std::size_t kSensorIdentificationRows = 30000;
 
 SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns);
+// Of the first rows that `reader` still has. Errors: the reader's.
+Result<SensorSpec> identify_sensor(RecordingReader& reader);
 
 // The white noise of the force column, N.
 double identify_force_noise_N(const RecordingRow* rows, std::size_t count);

@@ -7,11 +7,14 @@
 // and those after kRestBeforeTouch_s of air. (A surface that still recovers
 // from the touch before meets the tool late, by up to a millimetre.) While the
 // tool goes in,
-//   J(d0) = sum_i (f_i - zero - a x_i (1 - x_i / 2w) - b x_i^2 / 2w - c x_i^1.5)^2,
-//           x_i = max(0, p_i - d0),  a, b, c >= 0,  w = 3 mm
-// (c: a sphere on a soft solid, Hertz 1881) is minimised over d0, with a, b and c of every touch (variable projection). A
-// threshold on force instead would be late by what a soft onset takes to reach
-// it.
+//   J(d0) = sum_i (f_i - zero - x_i^n (a (1 - k x_i) + b k x_i))^2,
+//           x_i = max(0, p_i - d0),  a, b >= 0,  n = 1 or 1.5
+// is minimised over d0, with a and b of every touch (variable projection): a law
+// that begins as a flat contact or, n = 1.5, as that of a ball on a soft solid
+// (Hertz, 1881), and may bend to either side; k keeps it rising. Where the touch
+// does not tell which, the ball is taken, and half of their difference is part of
+// the error; so is half of the way to an onset that was not seen. A threshold on force instead would be late by what a soft onset takes
+// to reach it.
 // An offset that cannot be told from 0 (two standard errors, 0.02 mm) is 0.
 // Thread guarantee: slow side, pure.
 #pragma once

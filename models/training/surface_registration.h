@@ -7,10 +7,13 @@
 //     sum_r sum_i s_i^2 (f_i - zero_r - max(0, T(p_i - d_r; x)))^2,  sum_r d_r fixed
 // For given offsets the trend is linear in x, for given x the offsets are far
 // apart from each other: Gauss-Newton steps on both, the offsets eliminated.
-// Consistency says nothing of a shift common to all; the onsets decide it,
-// weighted by their errors.
-// One recording: its own onset. Offsets that cannot be told from 0 are 0.
-// Standard errors: delete-one-fold jackknife over pieces of the recordings.
+// Consistency says nothing of a shift common to all; the onsets decide it, weighted
+// by their errors. Of the shifts within their errors or 0.25 mm, the one that
+// leaves most recordings as they are: it changes no force of the model, only where
+// its zero lies. One recording: its own onset, likewise. Offsets that cannot be told
+// from 0 are 0.
+// Standard errors: delete-one-fold jackknife over pieces of the recordings, and a
+// share of what the trend cannot follow.
 // Source: variable projection, Golub & Pereyra (1973); trend: fit_trend.h.
 // Thread guarantee: slow side.
 #pragma once

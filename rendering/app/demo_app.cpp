@@ -10,25 +10,43 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <utility>
 
 #include "engine/live/pacer.h"
 #include "rendering/app/screenshot.h"
-#include "scenes/scene/local_time.h"
+#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel_views.h"
+#include "scenes/scene/user_folders.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr float kSceneShare = 0.6F;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
+constexpr float kTextStep = 0.1F;
+constexpr double kExaggeration = 10.0;
 
 // Where real-time priority was refused, the picture steps back for the force:
 // that needs no privilege.
 void yield_to_haptics(const RtStatus& granted) {
   constexpr int kPictureNice = 5;
   if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
+}
+
+// ImGui counts down from the top, OpenGL up from the bottom.
+Viewport pixels_of(const SceneArea& area) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 scale = io.DisplayFramebufferScale;
+  const auto whole = [](float value) { return static_cast<int>(std::round(value)); };
+  Viewport part;
+  part.x = whole(area.at.x * scale.x);
+  part.y = whole((io.DisplaySize.y - area.at.y - area.size.y) * scale.y);
+  part.width = whole((area.at.x + area.size.x) * scale.x) - part.x;
+  part.height = whole((io.DisplaySize.y - area.at.y) * scale.y) - part.y;
+  return part;
 }
 
 }  // namespace
@@ -41,11 +59,17 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 
 Status DemoApp::set_up(const DemoRequest& request) {
   view_.kiosk = request.kiosk;
+  view_.offered_recording = request.recording;
   view_.theme = request.kiosk ? Theme::dark : Theme::light;
   // Without a display nothing else needs to start.
   if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
   wanted.position_only = wanted.position_only || request.kiosk;  // something that can be told apart
+  if (const auto folder = data_folder()) wanted.data_folder = *folder;
+  use_settings(request);
+  if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = settings_.line_up;
+  request_ = wanted;
+  first_device_ = wanted.device;
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
@@ -57,9 +81,14 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
+  blocks_->camera().turn(settings_.camera);
+  if (view_.kiosk) {
+    if (Status status = set_up_exhibit(); !status) return status;
+  }
   listen();
   if (find_font().empty())
-    toasts_.push_back({"no font found; install fonts-dejavu-core", true, steady_now_s() + kProblemToast_s});
+    notify("no font found; install fonts-dejavu-core", true);
+  view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
 }
@@ -81,6 +110,7 @@ void DemoApp::listen() {
 DemoApp::~DemoApp() {
   // A fit that cannot be stopped at once is not waited for in sight.
   if (window_ != nullptr) glfwHideWindow(window_->handle());
+  save_settings();
   session_.reset();
   blocks_.reset();
 }
@@ -95,12 +125,17 @@ void DemoApp::close() {
 }
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) session_->load_file(path);
+  for (const std::string& path : paths) {
+    if (path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0 && !view_.kiosk) {
+      view_.offered_recording = path;
+    } else {
+      session_->load_file(path);
+    }
+  }
 }
 
 SceneArea DemoApp::scene_area() const {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  return {{0.0F, 0.0F}, {std::round(kSceneShare * size.x), size.y}};
+  return lay_out(ImGui::GetIO().DisplaySize).scene;
 }
 
 void DemoApp::frame() {
@@ -108,40 +143,41 @@ void DemoApp::frame() {
   const double now_s = steady_now_s();
   session_->update();
   take_notices(now_s);
+  offer_finished_recording();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
   draw();
   handle_keys();
   handle_mouse();
+  // Between two frames: what is drawn lives as long as its session.
+  if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
 }
 
 void DemoApp::draw() {
-  const Framebuffer picture = window_->framebuffer();
-  style_.update(picture.height, picture.content_scale, view_.kiosk, view_.theme);
+  style_.update(window_->ui_size(), view_.kiosk ? kKioskText : view_.text_size, view_.theme);
   ui_->begin_frame();
+  wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
   draw_blocks();
   clear_panel();
   const SceneArea area = scene_area();
-  const ImVec2 all = ImGui::GetIO().DisplaySize;
-  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_, [this](Command command) { run(command); });
-  const ImVec2 at(area.size.x, 0.0F);
-  const ImVec2 size(all.x - area.size.x, all.y);
+  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
+  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
+                {[this](Command command) { run(command); },
+                 [this](const std::string& scene) { go_on_with(scene, first_device_); },
+                 [this](const std::string& path) { go_on_with(request_.scene, "replay:" + path); }});
   if (view_.kiosk) {
-    open_day_.draw(*session_, view_, style_, at, size);
+    open_day_.draw(*session_, view_, style_, panel.at, panel.size);
   } else {
-    panel_.draw(*session_, view_, style_, frames_, at, size);
+    panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
   ui_->end_frame();
 }
 
 void DemoApp::draw_blocks() {
   const SceneArea area = scene_area();
-  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-  Viewport viewport;
-  viewport.width = static_cast<int>(area.size.x * scale.x);
-  viewport.height = static_cast<int>(area.size.y * scale.y);
+  const Viewport viewport = pixels_of(area);
   const std::vector<BlockPose> poses = block_poses();
   // More models become ready: more blocks.
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
@@ -151,13 +187,10 @@ void DemoApp::draw_blocks() {
 
 // Clearing costs less than filling a rectangle, where the processor draws.
 void DemoApp::clear_panel() {
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto left = static_cast<int>(scene_area().size.x * io.DisplayFramebufferScale.x);
-  const auto right = static_cast<int>(io.DisplaySize.x * io.DisplayFramebufferScale.x);
-  const auto height = static_cast<int>(io.DisplaySize.y * io.DisplayFramebufferScale.y);
+  const Viewport part = pixels_of(lay_out(ImGui::GetIO().DisplaySize).panel);
   const Rgb& panel = style_.colours().panel;
   glEnable(GL_SCISSOR_TEST);
-  glScissor(left, 0, right - left, height);
+  glScissor(part.x, part.y, part.width, part.height);
   glClearColor(panel.r, panel.g, panel.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   glDisable(GL_SCISSOR_TEST);
@@ -167,14 +200,22 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   const LoopSnapshot& newest = session_->newest();
   BlockPose pose;
   pose.tool_m = static_cast<float>(newest.tick.position_m);
+  const ModelsView models = models_view(*session_);
+  const double reference_N = session_->comparison().reference_N();
   std::vector<BlockPose> poses;
   for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
-    const SlotView& model = session_->models().view(slot);
+    if (slot == kReferenceBlock) {
+      poses.push_back(reference_pose(pose));
+      continue;
+    }
+    const SlotView& model = *models.slots[slot];
     pose.dent_m = static_cast<float>(model.dent_m);
     pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
-    pose.force_N = static_cast<float>(model.force_N);
-    pose.arrow = method_colour(model.method, view_.theme);
-    pose.chosen = slot == session_->models().selected();
+    const bool exaggerated = view_.exaggerated && !view_.kiosk && std::isfinite(reference_N);
+    const double shown_N = exaggerated ? reference_N + kExaggeration * (model.force_N - reference_N) : model.force_N;
+    pose.force_N = static_cast<float>(std::max(0.0, shown_N));
+    pose.arrow = slot_colour(models, slot, view_.theme);
+    pose.chosen = slot == models.selected;
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
     pose.judged = view_.hidden_choice == 0;
     poses.push_back(pose);
@@ -186,6 +227,17 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     poses.push_back(pose);
   }
   return poses;
+}
+
+// What the others are compared with; it gives way as the active model does.
+BlockPose DemoApp::reference_pose(BlockPose pose) const {
+  const SlotView* active = models_view(*session_).active();
+  const double reference_N = session_->comparison().reference_N();
+  pose.dent_m = active != nullptr ? static_cast<float>(active->dent_m) : std::max(0.0F, pose.tool_m);
+  pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
+  pose.arrow = kReferenceColour;
+  pose.chosen = pose.judged = false;
+  return pose;
 }
 
 void DemoApp::count_frame(double now_s) {
@@ -202,7 +254,7 @@ void DemoApp::count_frame(double now_s) {
 
 void DemoApp::take_notices(double now_s) {
   for (const Notice& notice : session_->take_notices()) {
-    toasts_.push_back({notice.text, notice.problem, now_s + (notice.problem ? kProblemToast_s : kToast_s)});
+    notify(notice.text, notice.problem);
   }
   std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
   if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
@@ -212,11 +264,26 @@ void DemoApp::run(Command command) {
   switch (command) {
     case Command::next_block_count:
       view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
+      notify_of_missing_blocks();
       break;
     case Command::pause_curves:
-      view_.paused = !view_.paused;
-      view_.paused_at_s = steady_now_s();
-      view_.scrolled_back_s = 0.0;
+      if (view_.time.paused) {
+        view_.time.run();
+      } else {
+        view_.time.pause(steady_now_s());
+      }
+      break;
+    case Command::next_line_up:
+      next_line_up();
+      break;
+    case Command::exaggerate:
+      view_.exaggerated = !view_.exaggerated;
+      break;
+    case Command::scene_list:
+      view_.scene_list = !view_.scene_list;
+      break;
+    case Command::difference:
+      view_.difference = !view_.difference;
       break;
     case Command::reset_figures:
       session_->reset_figures();
@@ -245,24 +312,44 @@ void DemoApp::run(Command command) {
     case Command::help:
       view_.help = !view_.help;
       break;
+    case Command::save_curves:
+      save_curves();
+      break;
+    case Command::home_view:
+      blocks_->camera().go_home();
+      break;
+    case Command::larger_text:
+      view_.text_size = std::min(kLargestText, view_.text_size + kTextStep);
+      break;
+    case Command::smaller_text:
+      view_.text_size = std::max(kSmallestText, view_.text_size - kTextStep);
+      break;
     case Command::fullscreen:
       window_->set_fullscreen(!window_->fullscreen());
       break;
   }
 }
 
-void DemoApp::record() {
-  if (session_->recording().active) {
-    session_->stop_recording();
+// Fewer models than blocks were asked for: no block stays away without a word.
+void DemoApp::notify_of_missing_blocks() {
+  const std::size_t shown = shown_slots(*session_, view_.block_count).size();
+  if (shown >= view_.block_count) return;
+  notify(std::to_string(shown) + " of " + std::to_string(view_.block_count) + " blocks: no more models are ready", false);
+}
+
+void DemoApp::notify(std::string text, bool problem) {
+  if (view_.kiosk) {  // not for visitors
+    write_to_log(text);
     return;
   }
-  const std::string path = local_time_text("session-%Y%m%d-%H%M%S.csv");
-  const Status status = session_->start_recording(path);
-  const double until_s = steady_now_s() + (status ? kToast_s : kProblemToast_s);
-  toasts_.push_back({status ? "recording to " + path : status.error().message, !status, until_s});
+  toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 
 void DemoApp::next_dead_man() {
+  if (!session_->renders_force()) {
+    notify("there is no device that pushes: nothing to hold a switch for", false);
+    return;
+  }
   switch (session_->dead_man()) {
     case DeadMan::off:
       session_->use_dead_man(DeadMan::key);

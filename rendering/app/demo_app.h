@@ -5,10 +5,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "rendering/app/settings.h"
+#include "rendering/panels/curve_files.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/panels/open_day.h"
 #include "rendering/panels/panel.h"
@@ -25,6 +28,8 @@ struct DemoRequest {
   SessionRequest session;
   WindowRequest window;
   bool kiosk = false;
+  std::string settings_file;  // empty: nothing is remembered
+  std::string recording;      // offered to be fitted or replayed; empty: none
 };
 
 class DemoApp {
@@ -50,6 +55,7 @@ class DemoApp {
 
   // What events do; GLFW's callbacks call them. A key counts even when it was
   // pressed and let go within a frame.
+  // A recording (.csv) is offered to be fitted or replayed; all else is taken for a model.
   void drop_files(const std::vector<std::string>& paths);
   void press_key(int key, int modifiers);
   void run(Command command);
@@ -64,6 +70,8 @@ class DemoApp {
   };
   void handle_keys();
   void handle_key(const KeyPress& press);
+  void close_windows();
+  void nudge_tool(double by_m);
   void replay_key(int key);
   void handle_mouse();
   void move_tool_to_mouse();
@@ -73,10 +81,25 @@ class DemoApp {
   void clear_panel();
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
+  BlockPose reference_pose(BlockPose pose) const;
   SceneArea scene_area() const;
+  void use_settings(const DemoRequest& request);
+  void save_settings();
+  Status set_up_exhibit();
+  void write_to_log(const std::string& text) const;
+  void notify(std::string text, bool problem);
   void record();
+  // Another session in place of this one: a scene, a recording.
+  void go_on_with(const std::string& scene, const std::string& device);
+  void reopen(const SessionRequest& request);
+  void offer_finished_recording();
+  void next_line_up();
+  double limited_depth_m(double wanted_m) const;
+  void save_curves();
+  CurveSource curve_source() const;
   void next_reference();
   void next_dead_man();
+  void notify_of_missing_blocks();
 
   // What lies on the window goes before it.
   std::unique_ptr<Window> window_;
@@ -88,6 +111,12 @@ class DemoApp {
   SceneOverlay overlay_;
   OpenDay open_day_{1};
   ViewState view_;
+  Settings settings_;
+  std::string settings_file_;
+  SessionRequest request_;
+  std::string first_device_;  // as the program was asked for it
+  std::optional<SessionRequest> next_;  // what to go on with after this frame
+  std::string recording_;  // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;
   std::vector<KeyPress> keys_;  // since the last frame
@@ -96,6 +125,7 @@ class DemoApp {
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
+  float wheel_ = 0.0F;  // of the mouse, in this frame
   bool orbiting_ = false;
   bool leaving_ = false;  // a kiosk's only way out
 };

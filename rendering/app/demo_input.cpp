@@ -25,11 +25,15 @@ constexpr double kSeekStep_s = 2.0;
 constexpr double kSpeedStep = 1.25;
 constexpr float kClick_px = 4.0F;
 
-constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
+constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_N, Command::next_line_up},
+                                                    {GLFW_KEY_X, Command::exaggerate},
+                                                    {GLFW_KEY_O, Command::scene_list},
+                                                    {GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_SLASH, Command::help},
                                                     {GLFW_KEY_B, Command::next_block_count},
                                                     {GLFW_KEY_SPACE, Command::pause_curves},
                                                     {GLFW_KEY_C, Command::reset_figures},
+                                                    {GLFW_KEY_V, Command::difference},
                                                     {GLFW_KEY_F, Command::next_reference},
                                                     {GLFW_KEY_R, Command::record},
                                                     {GLFW_KEY_M, Command::file_list},
@@ -37,30 +41,41 @@ constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_H, Command::help},
                                                     {GLFW_KEY_T, Command::theme},
                                                     {GLFW_KEY_Z, Command::zero},
                                                     {GLFW_KEY_D, Command::dead_man},
+                                                    {GLFW_KEY_S, Command::save_curves},
+                                                    {GLFW_KEY_HOME, Command::home_view},
+                                                    {GLFW_KEY_EQUAL, Command::larger_text},
+                                                    {GLFW_KEY_KP_ADD, Command::larger_text},
+                                                    {GLFW_KEY_MINUS, Command::smaller_text},
+                                                    {GLFW_KEY_KP_SUBTRACT, Command::smaller_text},
                                                     {GLFW_KEY_F11, Command::fullscreen}};
 
-void nudge_tool(const LiveSession& session, double by_m) {
-  if (ToolInput* tool = session.mouse()) tool->nudge(by_m, steady_now_s());
-}
-
 void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
-  if (!view.paused || session.comparison().history().size() == 0) return;
-  const double most_s = std::max(0.0, view.paused_at_s - kShown_s - session.comparison().history()[0].loop_time_s);
-  view.scrolled_back_s = std::clamp(view.scrolled_back_s + by_s, 0.0, most_s);
+  if (session.comparison().history().size() > 0) view.time.scroll_back(by_s, session.comparison().history()[0].loop_time_s);
 }
 
 }  // namespace
 
 void DemoApp::press_key(int key, int modifiers) { keys_.push_back({key, modifiers}); }
 
+void DemoApp::nudge_tool(double by_m) {
+  ToolInput* tool = session_->mouse();
+  const double at_m = session_->newest().tick.position_m;
+  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(at_m + by_m) > at_m)) tool->nudge(by_m, steady_now_s());
+}
+
 void DemoApp::handle_keys() {
-  if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) nudge_tool(*session_, kKeyStep_m);
-  if (ImGui::IsKeyDown(GLFW_KEY_UP)) nudge_tool(*session_, -kKeyStep_m);
+  if (ImGui::GetIO().WantTextInput) {  // somebody types a name
+    keys_.clear();
+    return;
+  }
+  if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) nudge_tool(kKeyStep_m);
+  if (ImGui::IsKeyDown(GLFW_KEY_UP)) nudge_tool(-kKeyStep_m);
   if (ImGui::IsKeyDown(GLFW_KEY_G) && session_->dead_man() == DeadMan::key) session_->hold();
   if (ImGui::IsKeyDown(GLFW_KEY_LEFT)) scroll_back(*session_, view_, kScrollStep_s);
   if (ImGui::IsKeyDown(GLFW_KEY_RIGHT)) scroll_back(*session_, view_, -kScrollStep_s);
   for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);
-  if (view_.kiosk) open_day_.update(*session_, view_);
+  // The next visitor finds it as new.
+  if (view_.kiosk && open_day_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
 void DemoApp::handle_key(const KeyPress& press) {
@@ -76,11 +91,16 @@ void DemoApp::handle_key(const KeyPress& press) {
   for (const auto& [key, command] : kCommandKeys) {
     if (press.key == key) run(command);
   }
-  const auto slot = static_cast<std::size_t>(press.key - GLFW_KEY_1);
-  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && slot < session_->models().size())
-    session_->select(slot);
-  if (press.key == GLFW_KEY_ESCAPE) view_.help = view_.file_list = view_.details = false;
+  const std::vector<std::size_t> listed = models_view(*session_).listed();
+  const auto number = static_cast<std::size_t>(press.key - GLFW_KEY_1);
+  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && number < listed.size()) session_->select(listed[number]);
+  if (press.key == GLFW_KEY_ESCAPE) close_windows();
   if (session_->replay() != nullptr) replay_key(press.key);
+}
+
+void DemoApp::close_windows() {
+  view_.help = view_.file_list = view_.details = view_.scene_list = false;
+  view_.offered_recording.clear();
 }
 
 void DemoApp::replay_key(int key) {
@@ -117,11 +137,11 @@ void DemoApp::handle_mouse() {
     return;
   }
   if (!over_scene) return;
-  if (io.MouseWheel != 0.0F) {
+  if (wheel_ != 0.0F) {
     if (io.KeyCtrl) {
-      blocks_->camera().zoom(std::pow(kZoom_per_step, io.MouseWheel));
+      blocks_->camera().zoom(std::pow(kZoom_per_step, wheel_));
     } else {
-      nudge_tool(*session_, -kWheelStep_m * static_cast<double>(io.MouseWheel));
+      nudge_tool(-kWheelStep_m * static_cast<double>(wheel_));
     }
   }
   if (!view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
@@ -146,9 +166,8 @@ void DemoApp::move_tool_to_mouse() {
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);
   const float below_px = mouse.y - area.at.y - surface.y;
-  tool->set_target(
-      static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size)),
-                   steady_now_s());
+  const auto wanted_m = static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size));
+  tool->set_target(limited_depth_m(wanted_m), steady_now_s());
 }
 
 }  // namespace palpate

@@ -12,7 +12,9 @@
 #include "rendering/app/demo_app.h"
 #include "rendering/app/stats_file.h"
 #include "rendering/app/study_app.h"
+#include "scenes/scene/user_folders.h"
 #include "scenes/study/prepare_strokes.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -33,6 +35,7 @@ struct Arguments {
   bool force = false;
   bool discriminates = false;
   std::string recording;  // to discriminate; empty: virtual
+  std::vector<std::string> files;
 };
 
 int fail(const std::string& message) {
@@ -49,6 +52,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--model", session.models,
                  "Models: files, or methods (palpate fit --list-methods names them) [the scene's]")
       ->type_name("FILE_OR_METHOD");
+  app.add_option("files", arguments.files, "Models, or a recording (CSV) to fit or to replay")->type_name("FILE");
   app.add_option_function<std::string>(
          "--discriminate",
          [&arguments](const std::string& recording) {
@@ -77,6 +81,19 @@ Status check_outputs(const Arguments& arguments) {
     if (const auto trial = AtomicFile::create(path, arguments.force); !trial) return trial.error();
   }
   return {};
+}
+
+// Recordings are offered in the window, all else is a model.
+void sort_files(Arguments& arguments) {
+  SessionRequest& session = arguments.demo.session;
+  for (const std::string& file : arguments.files) {
+    if (file.ends_with(".csv")) {
+      arguments.demo.recording = file;
+    } else {
+      session.models.push_back(file);
+    }
+  }
+  if (session.models.empty() && !arguments.demo.kiosk) session.line_up = line_ups().front().name;
 }
 
 // Frame after frame until closed, stopped, or so many seconds have passed. A first
@@ -113,6 +130,10 @@ Status run_demo(Arguments& arguments) {
   if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
+  // A picture is the same whoever takes it.
+  if (const auto folder = config_folder(); folder && arguments.screenshot.empty())
+    arguments.demo.settings_file = *folder + "/window.json";
+  sort_files(arguments);
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);

@@ -16,6 +16,10 @@
 namespace palpate {
 namespace {
 
+constexpr const char* kRehearsal =
+    "No force device: nobody can feel anything. This is a rehearsal; its answers are marked so and left out of the "
+    "analysis.";
+
 constexpr float kColumnShare = 0.62F;  // of the window's width
 constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
 constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
@@ -35,6 +39,7 @@ Result<std::unique_ptr<StudyApp>> StudyApp::create(const StudyRequest& request) 
   if (!window) return window.error();
   std::unique_ptr<StudyApp> app(new StudyApp(request));
   app->window_ = std::move(*window);
+  app->can_be_felt_ = study_can_be_felt(request.device);
   GLFWwindow* handle = app->window_->handle();
   glfwSetWindowUserPointer(handle, app.get());
   glfwSetKeyCallback(handle, [](GLFWwindow* from, int key, int, int action, int) {
@@ -138,7 +143,7 @@ void StudyApp::take_key(int key) {
 
 void StudyApp::draw() {
   const Framebuffer picture = window_->framebuffer();
-  style_.update(picture.height, picture.content_scale, true, kTheme);
+  style_.update(window_->ui_size(), kKioskText, kTheme);
   ui_->begin_frame();
   const Rgb& background = style_.colours().background;
   glViewport(0, 0, picture.width, picture.height);
@@ -190,6 +195,7 @@ void StudyApp::draw_entry() {
   button("Begin (Enter)", GLFW_KEY_ENTER);
   ImGui::PopFont();
   ImGui::TextDisabled("A code that has begun goes on after its last answer.");
+  if (!can_be_felt_) draw_trouble(kRehearsal);
   if (!problem_.empty()) draw_trouble(problem_);
 }
 
@@ -238,7 +244,7 @@ void StudyApp::draw_session() {
   if (const std::string words = study_->device_words(); !words.empty())
     ImGui::TextWrapped("%s", words.c_str());
   if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
-  if (!study_->device_pushes()) draw_trouble("No haptic device: nobody can feel this, it is a rehearsal.");
+  if (!study_->device_pushes()) draw_trouble(kRehearsal);
 }
 
 // Of strokes, beside what was predicted.
@@ -258,7 +264,7 @@ void StudyApp::draw_intervals(const StudyView& view) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImFont* font = style_.fonts().big;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float side = 2.4F * font->FontSize;
+  const float side = 2.4F * height_of(font);
   const int first = view.has_reminder ? 0 : 1;
   for (int interval = first; interval <= 2; ++interval) {
     const float x = at.x + 1.3F * side * static_cast<float>(interval - first);
@@ -266,8 +272,8 @@ void StudyApp::draw_intervals(const StudyView& view) {
     list.AddRectFilled({x, at.y}, {x + side, at.y + side},
                        ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
     const char text[2] = {interval == 0 ? 'R' : static_cast<char>('0' + interval), '\0'};
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
-    list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
+    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
+    list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
                  ink(style_.colours().text), text);
   }
   ImGui::Dummy({(view.has_reminder ? 3.6F : 2.3F) * side, side});

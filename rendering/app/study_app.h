@@ -78,6 +78,7 @@ class StudyApp {
   std::string code_;
   ProcedureKind procedure_ = ProcedureKind::constant;
   std::string problem_;
+  bool can_be_felt_ = false;  // the device renders force
 };
 
 }  // namespace palpate

@@ -108,8 +108,16 @@ bool Window::display_sets_pace() {
 Framebuffer Window::framebuffer() const noexcept {
   Framebuffer result;
   glfwGetFramebufferSize(window_, &result.width, &result.height);
+  glfwGetWindowSize(window_, &result.window_width, &result.window_height);
   glfwGetWindowContentScale(window_, &result.content_scale, nullptr);
   return result;
+}
+
+UiSize Window::ui_size() const noexcept {
+  const Framebuffer picture = framebuffer();
+  if (picture.width == 0 || picture.window_width == 0) return {};  // minimised
+  return {static_cast<float>(picture.window_width), static_cast<float>(picture.window_height), picture.content_scale,
+          static_cast<float>(picture.width) / static_cast<float>(picture.window_width)};
 }
 
 void Window::show_frame() {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/base/result.h"
+#include "rendering/ui/ui_style.h"
 
 struct GLFWwindow;
 
@@ -25,6 +26,8 @@ struct Framebuffer {
   int width = 0;  // pixels
   int height = 0;
   float content_scale = 1.0F;  // how much larger than usual the display wants its contents
+  int window_width = 0;        // the same in the window's own units
+  int window_height = 0;
 };
 
 class Window {
@@ -40,6 +43,7 @@ class Window {
 
   GLFWwindow* handle() const noexcept { return window_; }
   Framebuffer framebuffer() const noexcept;
+  UiSize ui_size() const noexcept;
   // Shows what was drawn and waits until the next frame is due: the display's own
   // pace where the driver waits for it, else 60 Hz.
   void show_frame();

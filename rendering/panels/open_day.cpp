@@ -4,10 +4,9 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <string>
+#include <utility>
 
 #include "rendering/panels/panel_health.h"
-#include "rendering/ui/plot.h"
 
 namespace palpate {
 namespace {
@@ -15,6 +14,8 @@ namespace {
 constexpr auto kVisitorWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                         ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
+// A device is always there: nobody is when it was not pressed for so long.
+constexpr double kAlone_s = 20.0;
 
 std::vector<TrialModel> ready_models(const LiveSession& session) {
   std::vector<TrialModel> ready;
@@ -25,24 +26,59 @@ std::vector<TrialModel> ready_models(const LiveSession& session) {
   return ready;
 }
 
+void wrapped(const std::string& text) { ImGui::TextWrapped("%s", text.c_str()); }
+
+// As wide as it may be, high enough for a finger.
+bool large_button(const UiStyle& style, const std::string& text, float width, bool down) {
+  if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
+  const bool pressed = ImGui::Button(text.c_str(), {width, 2.2F * height_of(style.fonts().heading)});
+  if (down) ImGui::PopStyleColor();
+  return pressed;
+}
+
 }  // namespace
 
-void OpenDay::update(LiveSession& session, ViewState& view) {
-  const bool visitor =
-      session.mouse() != nullptr ? !session.mouse()->hand_is_exploring() : trial_.state() != AbTrial::State::idle;
-  if (visitor && !visitor_) begin(session, view);
-  if (!visitor && visitor_) forget(session, view);
+void OpenDay::set_up(std::vector<ExhibitWords> languages, const std::string& tally_path) {
+  languages_ = std::move(languages);
+  tally_path_ = tally_path;
+  if (!tally_path.empty()) tally_ = read_tally(tally_path);
+}
+
+bool OpenDay::update(LiveSession& session, ViewState& view) {
+  const double now_s = session.newest().loop_time_s;
+  if (session.newest().tick.in_contact) last_contact_s_ = now_s;
+  const bool trying = trial_.state() != AbTrial::State::idle;
+  const bool visitor = session.mouse() != nullptr ? !session.mouse()->hand_is_exploring()
+                                                  : trying && now_s - last_contact_s_ < kAlone_s;
+  const bool left = visitor_ && !visitor;
+  if (visitor && !visitor_ && !trying) begin(session, view);
+  if (left) forget(session, view);
   visitor_ = visitor;
-  if (trial_.state() == AbTrial::State::exploring) {
-    trial_.see(session.models().view(trial_.slot_under(1)).force_N, session.models().view(trial_.slot_under(2)).force_N,
-               session.newest().tick.in_contact, session.jnd());
-  }
+  see_ticks(session);
   view.hidden_choice = trial_.state() == AbTrial::State::exploring ? trial_.pressed() : 0;
+  return left;
+}
+
+// Every tick counts, however slow the picture is.
+void OpenDay::see_ticks(const LiveSession& session) {
+  const ForceHistory& history = session.comparison().history();
+  if (trial_.state() == AbTrial::State::exploring) {
+    std::size_t next = history.first_at(seen_s_);
+    while (next < history.size() && history[next].loop_time_s <= seen_s_) ++next;
+    for (; next < history.size(); ++next) {
+      const HistoryPoint& point = history[next];
+      trial_.see(static_cast<double>(point.force_N[trial_.slot_under(1)]),
+                 static_cast<double>(point.force_N[trial_.slot_under(2)]), point.in_contact, session.jnd());
+    }
+  }
+  if (history.size() > 0) seen_s_ = history[history.size() - 1].loop_time_s;
 }
 
 void OpenDay::begin(LiveSession& session, ViewState& view) {
   if (trial_.state() == AbTrial::State::idle) home_ = session.models().selected();
   view.block_count = 1;
+  view.revealed.clear();
+  last_contact_s_ = session.newest().loop_time_s;
   if (trial_.begin(ready_models(session))) session.select(trial_.slot_under(1));
 }
 
@@ -50,17 +86,22 @@ void OpenDay::forget(LiveSession& session, ViewState& view) {
   trial_.reset();
   session.select(home_);
   session.reset_figures();
+  language_ = 0;
+  const double zero_s = view.time.zero_s;
   view = ViewState{};
+  view.time.zero_s = zero_s;
   view.kiosk = true;
+  view.block_count = 1;
   view.theme = Theme::dark;
 }
 
 void OpenDay::press_key(int key, LiveSession& session, ViewState& view) {
-  if (key == GLFW_KEY_1 || key == GLFW_KEY_2) try_model(key - GLFW_KEY_0, session, view);
-  if (trial_.state() == AbTrial::State::exploring && trial_.tried_both()) {
-    if (key == GLFW_KEY_D) trial_.answer(true);
-    if (key == GLFW_KEY_S) trial_.answer(false);
-  }
+  last_contact_s_ = session.newest().loop_time_s;
+  if (key == GLFW_KEY_L) language_ = (language_ + 1) % languages_.size();
+  if (trial_.state() != AbTrial::State::answered && (key == GLFW_KEY_1 || key == GLFW_KEY_2))
+    try_model(key - GLFW_KEY_0, session, view);
+  if (key == GLFW_KEY_D) answer(true, view);
+  if (key == GLFW_KEY_S) answer(false, view);
   if (trial_.state() == AbTrial::State::answered && key == GLFW_KEY_N) begin(session, view);
 }
 
@@ -71,77 +112,117 @@ void OpenDay::try_model(int number, LiveSession& session, ViewState& view) {
   session.select(trial_.slot_under(number));
 }
 
+void OpenDay::answer(bool different, ViewState& view) {
+  if (trial_.state() != AbTrial::State::exploring || !trial_.tried_both()) return;
+  trial_.answer(different);
+  view.revealed = {trial_.slot_under(1), trial_.slot_under(2)};
+  view.hidden_choice = 0;
+  if (!trial_.touched()) return;
+  ++tally_.answers;
+  if (different == trial_.predicts_difference()) ++tally_.as_expected;
+  // A tally that cannot be kept is no reason to stop.
+  if (!tally_path_.empty()) (void)write_tally(tally_path_, tally_);
+}
+
+std::string OpenDay::plain_name(const TrialModel& model) const {
+  return words()(model.method == "position" ? "knows_depth" : model.method == "direct" ? "learned_all" : "remembers");
+}
+
+std::vector<std::string> OpenDay::reveal() const {
+  if (trial_.state() != AbTrial::State::answered) return {};
+  const bool differ = trial_.predicts_difference();
+  std::vector<std::string> lines{words()(trial_.answered_different() ? "said_differ" : "said_same")};
+  if (!trial_.touched()) {
+    lines.push_back(words()("untouched"));
+  } else {
+    lines.push_back(words()(differ ? "truth_differ" : "truth_same"));
+    lines.push_back(words()(trial_.answered_different() == differ ? "right" : "wrong"));
+  }
+  for (const int key : {1, 2}) lines.push_back(words()("was", std::to_string(key), plain_name(trial_.under(key))));
+  return lines;
+}
+
 void OpenDay::draw(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& at,
                    const ImVec2& size) {
   ImGui::SetNextWindowPos(at);
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("visitor", nullptr, kVisitorWindow);
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float width = ImGui::GetContentRegionAvail().x;
-  ImGui::TextWrapped("A computer learned this block from one recording and pushes back as the block did.");
-  ImGui::Spacing();
-  curves_.draw_for_visitors(force_view(session), view, style, std::max(6.0F * line, 0.36F * size.y));
-  ImGui::TextDisabled("Inside the grey band a hand cannot tell.");
-  ImGui::Dummy({0.0F, 0.4F * line});
-  draw_trial(style, width);
-  const HealthWords health = health_words(health_view(session), 0.0);
-  if (health.problem) {
-    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().fault));
-    ImGui::TextWrapped("%s", health.text.c_str());
-    ImGui::PopStyleColor();
+  ImGui::PushFont(style.fonts().heading);
+  switch (trial_.state()) {
+    case AbTrial::State::idle: draw_nobody(session, style); break;
+    case AbTrial::State::exploring: draw_question(session, view, style); break;
+    case AbTrial::State::answered: draw_reveal(session, view, style, 0.34F * size.y); break;
   }
+  ImGui::PopFont();
+  draw_foot(session, style, at, size);
   ImGui::End();
 }
 
-void OpenDay::draw_trial(const UiStyle& style, float width) const {
-  ImGui::PushFont(style.fonts().heading);
-  switch (trial_.state()) {
-    case AbTrial::State::idle:
-      ImGui::TextWrapped("Move the mouse over the block.");
-      break;
-    case AbTrial::State::exploring:
-      ImGui::TextWrapped("Can you feel the difference?");
-      break;
-    case AbTrial::State::answered:
-      ImGui::TextWrapped(trial_.answered_different() ? "You felt a difference." : "You felt none.");
-      break;
-  }
-  ImGui::PopFont();
-  if (trial_.state() == AbTrial::State::idle) {
-    ImGui::TextWrapped(
-        "Slowly, and it gives way. Quickly, and it resists. Hold still, and the force fades: it remembers "
-        "what you did.");
-    ImGui::Spacing();
-    ImGui::TextDisabled("Until then a hand presses by itself.");
-    return;
-  }
-  draw_keys(style, width);
-  if (trial_.state() == AbTrial::State::answered) {
-    ImGui::TextWrapped("%s", trial_.verdict().c_str());
-    ImGui::TextDisabled("N: once more");
-  } else if (trial_.tried_both()) {
-    ImGui::TextWrapped("Press D if they differ, S if they feel the same.");
-  } else {
-    ImGui::TextWrapped("Keys 1 and 2 change the block. Press it with both.");
-  }
+void OpenDay::draw_nobody(const LiveSession& session, const UiStyle& style) const {
+  ImGui::Dummy({1.0F, 2.0F * height_of(style.fonts().heading)});
+  wrapped(words()("attract"));
+  ImGui::Dummy({1.0F, height_of(style.fonts().heading)});
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().quiet));
+  wrapped(words()(session.mouse() != nullptr ? "attract_mouse" : "attract_device"));
+  ImGui::PopStyleColor();
 }
 
-void OpenDay::draw_keys(const UiStyle& style, float width) const {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  ImFont* font = style.fonts().heading;
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float side = 1.7F * font->FontSize;
-  for (const int key : {1, 2}) {
-    const float x = at.x + (key == 1 ? 0.0F : side + 0.5F * font->FontSize);
-    const bool down = trial_.pressed() == key;
-    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
-                       ink(down ? style.colours().text : style.colours().raised), 8.0F);
-    const char text[2] = {static_cast<char>('0' + key), '\0'};
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6F, 0.0F, text);
-    list.AddText(font, font->FontSize, {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
-                 ink(down ? style.colours().panel : style.colours().text), text);
+void OpenDay::draw_question(LiveSession& session, ViewState& view, const UiStyle& style) {
+  const bool felt = session.renders_force();
+  wrapped(words()(felt ? "question_device" : "question_mouse"));
+  ImGui::PushFont(style.fonts().body);
+  wrapped(words()("try_both"));
+  if (!felt) {
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().quiet));
+    wrapped(words()("mouse_cannot"));
+    ImGui::PopStyleColor();
   }
-  ImGui::Dummy({width, side + 0.3F * font->FontSize});
+  ImGui::PopFont();
+  ImGui::Dummy({1.0F, 0.5F * height_of(style.fonts().heading)});
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - gap);
+  if (large_button(style, words()("block_1"), half, trial_.pressed() == 1)) try_model(1, session, view);
+  ImGui::SameLine();
+  if (large_button(style, words()("block_2"), half, trial_.pressed() == 2)) try_model(2, session, view);
+  if (!trial_.tried_both()) return;
+  ImGui::Dummy({1.0F, 0.8F * height_of(style.fonts().heading)});
+  if (large_button(style, words()("differ"), -1.0F, false)) answer(true, view);
+  if (trial_.state() == AbTrial::State::exploring && large_button(style, words()("same"), -1.0F, false))
+    answer(false, view);
+}
+
+void OpenDay::draw_reveal(LiveSession& session, ViewState& view, const UiStyle& style, float height) {
+  const std::vector<std::string> lines = reveal();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i == 1) ImGui::PushFont(style.fonts().body);
+    wrapped(lines[i]);
+  }
+  curves_.draw_for_visitors(force_view(session), view, style, height);
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().quiet));
+  wrapped(words()("band"));
+  wrapped(words()("tally", std::to_string(tally_.answers), std::to_string(tally_.as_expected)));
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+  if (large_button(style, words()("again"), -1.0F, false)) begin(session, view);
+}
+
+// The next language, and a dot for whoever looks after the exhibit: hollow when the log
+// has something to read.
+void OpenDay::draw_foot(const LiveSession& session, const UiStyle& style, const ImVec2& at, const ImVec2& size) {
+  const float line = ImGui::GetFrameHeight();
+  ImGui::SetCursorScreenPos({at.x + ImGui::GetStyle().WindowPadding.x, at.y + size.y - 1.6F * line});
+  if (languages_.size() > 1) {
+    const std::size_t next = (language_ + 1) % languages_.size();
+    if (ImGui::Button(languages_[next]("language").c_str())) language_ = next;
+  }
+  const ImVec2 dot(at.x + size.x - line, at.y + size.y - line);
+  const ImU32 quiet = ink(style.colours().grid);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (health_words(health_view(session), 0.0).problem) {
+    list.AddCircle(dot, 0.2F * line, quiet, 0, 2.0F);
+  } else {
+    list.AddCircleFilled(dot, 0.2F * line, quiet);
+  }
 }
 
 }  // namespace palpate

@@ -1,6 +1,8 @@
 #include "rendering/panels/panel.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <string>
 
 #include "rendering/panels/panel_errors.h"
 #include "rendering/panels/panel_health.h"
@@ -14,6 +16,48 @@ constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_N
                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                         ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
+void take(const TableAction& action, LiveSession& session) {
+  switch (action.kind) {
+    case TableAction::Kind::none: break;
+    case TableAction::Kind::select: session.select(action.slot); break;
+    case TableAction::Kind::rename: session.rename(action.slot, action.name); break;
+    case TableAction::Kind::remove: session.remove(action.slot); break;
+  }
+}
+
+std::string bins_words(const ModelsView& models) {
+  const SlotView* active = models.active();
+  if (active == nullptr || active->samples_out_of_domain == 0) return "mean + std, largest, JND line";
+  const auto outside = static_cast<double>(active->samples_out_of_domain);
+  const double share = outside / (outside + static_cast<double>(active->errors.samples()));
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f %% outside the data, not counted", 100.0 * share);
+  return text;
+}
+
+// How many centres the active model has, or all that have a number of them.
+void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("centres");
+  ImGui::SameLine();
+  int centres = models.active()->centres;
+  if (view.wanted_centres > 0 && (ImGui::IsMouseDown(ImGuiMouseButton_Left) || models.active()->refitting))
+    centres = view.wanted_centres;
+  ImGui::SetNextItemWidth(-9.0F * ImGui::GetFontSize());
+  if (ImGui::SliderInt("##centres", &centres, 1, 200, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    view.wanted_centres = centres;
+    for (const std::size_t slot : models.listed()) {
+      if (slot == models.selected || view.centres_together) session.refit(slot, centres);
+    }
+  }
+  tip("Fits the active model anew with so many centres; with \"all\", every model that has centres.\n"
+      "Drag to the left, and watch the curve leave its band.");
+  ImGui::SameLine();
+  ImGui::Checkbox("all", &view.centres_together);
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s", models.active()->refitting ? "fits ..." : "");
+}
+
 }  // namespace
 
 void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
@@ -26,19 +70,23 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // What has a fixed size first; the plots share the rest.
   const float health_height = line * static_cast<float>(health_lines(health, view));
-  const float rows = static_cast<float>(std::clamp<std::size_t>(errors.models.slots.size(), 2, 7)) + 1.0F;
+  const float rows = static_cast<float>(std::clamp<std::size_t>(errors.models.listed().size(), 2, 8)) + 1.0F;
   const float table =
-      rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 2.0F;
+      rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;
-  const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_height - table - titles);
+  const SlotView* active = errors.models.active();
+  const bool has_centres = active != nullptr && active->takes_centres;
+  const float centres = has_centres ? ImGui::GetFrameHeightWithSpacing() : 0.0F;
+  const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_height - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
-  curves_.draw(force_view(session), view, style, rest * (bins ? 0.42F : 0.65F), rest * (bins ? 0.24F : 0.35F));
-  if (const auto chosen = draw_model_table(errors.models, style, table)) session.select(*chosen);
+  curves_.draw(force_view(session), view, style, rest * (bins ? 0.32F : 0.48F), rest * (bins ? 0.36F : 0.52F));
+  take(draw_model_table(errors.models, view.table, style, table), session);
+  if (centres > 0.0F) draw_centres(session, errors.models, view);
   if (bins) {
     section_title(style, "ERROR AGAINST FORCE");
     ImGui::SameLine();
-    ImGui::TextDisabled("mean + std, largest, JND line");
-    draw_error_bins(errors, style, rest * 0.34F);
+    ImGui::TextDisabled("%s", bins_words(errors.models).c_str());
+    draw_error_bins(errors, style, rest * 0.32F);
   }
   draw_health(health, view, style, frames);
   ImGui::End();

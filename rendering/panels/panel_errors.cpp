@@ -31,9 +31,11 @@ Limits limits_of(const ErrorsView& errors) {
   return limits;
 }
 
-void draw_slot(const Plot& plot, const SlotView& slot, const JndLine& jnd, const UiStyle& style,
-               bool selected) {
-  const ImU32 colour = ink(method_colour(slot.method, style.theme()), selected ? 1.0F : 0.75F);
+void draw_slot(const Plot& plot, const ModelsView& models, std::size_t index, const JndLine& jnd,
+               const UiStyle& style) {
+  const bool selected = index == models.selected;
+  const SlotView& slot = *models.slots[index];
+  const ImU32 colour = ink(slot_colour(models, index, style.theme()), selected ? 1.0F : 0.75F);
   const float size = style.scale();
   std::vector<ImVec2> spread;
   for (const ForceBin& bin : slot.errors.bins(jnd)) {
@@ -53,8 +55,8 @@ void draw_slot(const Plot& plot, const SlotView& slot, const JndLine& jnd, const
 void draw_error_bins(const ErrorsView& errors, const UiStyle& style, float height) {
   const Limits limits = limits_of(errors);
   {
-    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height}, {0.0, limits.force_N},
-                    {0.0, limits.error_N}, "N", "N", true);
+    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height},
+                    {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N", true});
     const double ends[2] = {0.0, limits.force_N};
     std::vector<ImVec2> line;
     std::vector<ImVec2> floor;
@@ -66,9 +68,9 @@ void draw_error_bins(const ErrorsView& errors, const UiStyle& style, float heigh
     plot.line(line, ink(style.colours().text), 1.5F * style.scale());
     const ModelsView& models = errors.models;
     for (std::size_t i = 0; i < models.slots.size(); ++i) {
-      if (i != models.selected) draw_slot(plot, *models.slots[i], errors.jnd, style, false);
+      if (i != models.selected) draw_slot(plot, models, i, errors.jnd, style);
     }
-    if (!models.slots.empty()) draw_slot(plot, *models.slots[models.selected], errors.jnd, style, true);
+    if (!models.slots.empty()) draw_slot(plot, models, models.selected, errors.jnd, style);
     plot.caption(
         " JND", 0.0F,
         std::clamp((plot.y_px(errors.jnd.offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F,

@@ -1,12 +1,12 @@
-#include "rendering/panels/panel_force.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "engine/live/pacer.h"
+#include "rendering/panels/curve_drawing.h"
 #include "engine/base/text.h"
+#include "rendering/panels/panel_force.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/ui/plot.h"
+#include "rendering/panels/time_plot.h"
 
 namespace palpate {
 namespace {
@@ -16,87 +16,9 @@ constexpr float kModelLine_px = 1.4F;
 constexpr float kSelectedLine_px = 2.0F;
 // A column to two pixels: finer is hardly seen and costs time.
 constexpr float kColumn_px = 2.0F;
-
-
-// The loop time at the right edge of the curves.
-double end_time_s(const ViewState& view) {
-  return view.paused ? view.paused_at_s - view.scrolled_back_s : steady_now_s();
-}
-
-// The models' order of drawing: the active one on top.
-template <typename Draw>
-void for_each_slot(const ModelsView& models, const ViewState& view, Draw draw) {
-  for (std::size_t i = 0; i < models.slots.size() && !view.kiosk; ++i) {
-    if (i != models.selected && models.slots[i]->state == SlotState::ready) draw(i);
-  }
-  if (models.active() != nullptr) draw(models.selected);
-}
-
-ImU32 slot_ink(const ModelsView& models, const ViewState& view, std::size_t slot, const UiStyle& style) {
-  if (view.hidden_choice > 0) return ink(style.colours().text);
-  const bool selected = slot == models.selected;
-  return ink(method_colour(models.slots[slot]->method, style.theme()), selected ? 1.0F : 0.75F);
-}
-
-void draw_band(const Plot& plot, const std::vector<CurveColumn>& columns, const UiStyle& style) {
-  std::vector<ImVec2> upper;
-  std::vector<ImVec2> lower;
-  const auto flush = [&] {
-    plot.band(upper, lower, ink(style.colours().band));
-    upper.clear();
-    lower.clear();
-  };
-  for (const CurveColumn& column : columns) {
-    if (!column.any) continue;
-    if (!column.reference) {
-      flush();
-      continue;
-    }
-    upper.emplace_back(plot.x_px(column.time_s), plot.y_px(static_cast<double>(column.band_high_N)));
-    lower.emplace_back(plot.x_px(column.time_s), plot.y_px(static_cast<double>(column.band_low_N)));
-  }
-  flush();
-}
-
-// `value`: of a column, NaN where the curve is interrupted.
-template <typename Low, typename High>
-void draw_curve(const Plot& plot, const std::vector<CurveColumn>& columns, ImU32 colour, float thickness,
-                Low low, High high) {
-  std::vector<ImVec2> points;
-  for (const CurveColumn& column : columns) {
-    if (!column.any) continue;
-    const auto bottom = static_cast<double>(low(column));
-    const auto top = static_cast<double>(high(column));
-    if (std::isnan(bottom) || std::isnan(top)) {
-      plot.line(points, colour, thickness);
-      points.clear();
-      continue;
-    }
-    const float x = plot.x_px(column.time_s);
-    const float y_low = plot.y_px(bottom);
-    const float y_high = plot.y_px(top);
-    // In the direction of travel: a line that turns on the spot has no width there.
-    const bool falling = !points.empty() && y_low - points.back().y > points.back().y - y_high;
-    points.emplace_back(x, falling ? y_high : y_low);
-    if (y_low - y_high > 1.5F) points.emplace_back(x, falling ? y_low : y_high);
-  }
-  plot.line(points, colour, thickness);
-}
-
-// The timeline of faults along the upper edge: a tick for a missed deadline, a red
-// triangle for what the force path had to deal with.
-void draw_faults(const Plot& plot, const std::vector<CurveColumn>& columns, const UiStyle& style) {
-  const float size = 6.0F * style.scale();
-  for (const CurveColumn& column : columns) {
-    const float x = plot.x_px(column.time_s);
-    if (column.trouble == TickTrouble::late) {
-      plot.list().AddLine({x, plot.top()}, {x, plot.top() + size}, ink(style.colours().quiet));
-    } else if (column.trouble == TickTrouble::alarm) {
-      plot.list().AddTriangleFilled({x - size, plot.top()}, {x + size, plot.top()},
-                                    {x, plot.top() + 1.6F * size}, ink(style.colours().fault));
-    }
-  }
-}
+// JNDs to either side of 0 in the difference view: three times the band's own height.
+constexpr double kDifference_jnd = 3.0;
+constexpr float kLabelRoom = 7.4F;  // for names beside the curves, in heights of a line
 
 // Towards a nice number above what is shown, quickly up, slowly down.
 double eased_scale(double scale, double wanted) {
@@ -104,104 +26,200 @@ double eased_scale(double scale, double wanted) {
   return scale + (target > scale ? 0.25 : 0.03) * (target - scale);
 }
 
-void scroll_with_wheel(const Plot& plot, const ForceView& force, ViewState& view, double end_s) {
-  const float wheel = ImGui::GetIO().MouseWheel;
-  if (!plot.hovered() || wheel == 0.0F) return;
-  if (!view.paused) {
-    view.paused = true;
-    view.paused_at_s = end_s;
-    view.scrolled_back_s = 0.0;
-  }
-  const double oldest_s = force.history->size() > 0 ? (*force.history)[0].loop_time_s : end_s;
-  const double most_s = std::max(0.0, view.paused_at_s - kShown_s - oldest_s);
-  view.scrolled_back_s = std::clamp(view.scrolled_back_s + static_cast<double>(wheel), 0.0, most_s);
+// "voxel" of "voxel-25x11x11x11": what there is room for beside a curve.
+std::string short_name(const SlotView& slot) {
+  constexpr std::size_t kMost = 14;
+  return slot.name.size() <= kMost ? slot.name : slot.name.substr(0, std::min(kMost, slot.name.find('-')));
 }
 
 }  // namespace
 
+struct ForceCurves::Scene {
+  const ForceView& force;
+  ViewState& view;
+  const UiStyle& style;
+  double end_s = 0.0;
+
+  Rgb colour(std::size_t slot) const {
+    return view.hidden_choice > 0 ? style.colours().text : slot_colour(force.models, slot, style.theme());
+  }
+  bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
+  // The models in the order of drawing: the one in the hand on top.
+  template <typename Draw>
+  void for_each_slot(Draw draw) const {
+    const ModelsView& models = force.models;
+    for (std::size_t i = 0; i < models.slots.size() && !view.kiosk; ++i) {
+      if (i != models.selected && models.slots[i]->state == SlotState::ready) draw(i);
+    }
+    for (const std::size_t i : view.revealed) {
+      if (i < models.slots.size() && i != models.selected) draw(i);
+    }
+    if (models.active() != nullptr) draw(models.selected);
+  }
+  PlotAxes axes(const Range& y, const char* unit, bool x_numbers) const {
+    return {{end_s - view.time.shown_s - view.time.zero_s, end_s - view.time.zero_s}, y, "s", unit, x_numbers,
+            names() ? kLabelRoom : 0.6F};
+  }
+};
+
 void ForceCurves::draw(const ForceView& force, ViewState& view, const UiStyle& style, float force_height,
                        float error_height) {
-  const double end_s = end_time_s(view);
-  gather(force, view, end_s);
-  section_title(style, "FORCE");
-  ImGui::SameLine();
-  const double reference_N = force.reference_N;
-  ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
-  ImGui::SameLine();
-  ImGui::TextDisabled("%s", force.reference_words.c_str());
-  tip("What the models are compared with. F chooses another.\nThe grey band is one just noticeable "
-      "difference (JND) either way.");
-  draw_force(force, view, style, force_height, end_s);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip(
-        "Force of every model in the last 10 s, and the reference in green.\nThe grey band: what a hand "
-        "cannot tell from the reference.\nMarks at the top: missed deadlines, and in red faults (L lists "
-        "them).\nWheel: back in time. Space: stop and go.");
-  section_title(style, "ERROR / JND");
-  ImGui::SameLine();
-  if (force.models.out_of_domain()) {
-    ImGui::TextColored(paint(style.colours().fault), "away from the recorded data");
+  const Scene scene = begin(force, view, style);
+  draw_titles_of_force(scene);
+  draw_force(scene, force_height);
+  draw_titles_of_error(scene);
+  if (view.difference) {
+    draw_difference(scene, error_height);
   } else {
-    ImGui::TextDisabled(view.paused ? "stopped, Space goes on" : "above 1 a hand could tell");
+    draw_felt(scene, error_height);
   }
-  draw_error(force, view, style, error_height, end_s);
-  if (view.paused && ImGui::IsItemHovered())
-    ImGui::SetTooltip("%.1f s before the stop", view.scrolled_back_s);
+  if (!hovered_) view.time.hover_s = std::nan("");
 }
 
 void ForceCurves::draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style,
                                     float height) {
-  const double end_s = end_time_s(view);
-  gather(force, view, end_s);
-  draw_force(force, view, style, height, end_s);
+  draw_force(begin(force, view, style), height);
+  view.time.hover_s = std::nan("");
 }
 
-void ForceCurves::gather(const ForceView& force, ViewState& view, double end_s) {
+ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, const UiStyle& style) {
+  hovered_ = false;
+  const Scene scene{force, view, style, view.time.end_s(steady_now_s())};
   const auto columns =
       static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
-  curves_.gather(*force.history, force.jnd, force.models.slots.size(), end_s - kShown_s, end_s, columns);
+  curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
+                 columns);
   view.force_scale_N =
-      eased_scale(view.force_scale_N, std::max(1.0, 1.05 * static_cast<double>(curves_.highest_force_N())));
+      eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, 1.05 * static_cast<double>(curves_.highest_force_N())}));
   // Beyond 8 JND the line would only hide what is near 1.
   view.error_scale = eased_scale(
-      view.error_scale, std::clamp(1.1 * static_cast<double>(curves_.highest_error_over_jnd()), 1.5, 8.0));
+      view.error_scale, std::clamp(1.2 * static_cast<double>(curves_.highest_felt_over_jnd()), 1.5, 8.0));
+  return scene;
 }
 
-void ForceCurves::draw_force(const ForceView& force, ViewState& view, const UiStyle& style, float height,
-                             double end_s) {
+void ForceCurves::draw_titles_of_force(const Scene& scene) const {
+  const CurveTime& time = scene.view.time;
+  // What stands still is read where it stands.
+  const CurveColumn* last = time.paused ? curves_.last() : nullptr;
+  const double reference_N = !time.paused ? scene.force.reference_N
+                             : last != nullptr && last->reference ? static_cast<double>(last->reference_N)
+                                                                  : std::nan("");
+  section_title(scene.style, "FORCE");
+  ImGui::SameLine();
+  ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s", scene.force.reference_words.c_str());
+  tip("Force of every model, and in green what they are compared with (F chooses another).\n"
+      "The grey band is one just noticeable difference (JND) either way.\n"
+      "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
+      "On the curves: drag to zoom, wheel to go back, double click or Space to go on.");
+}
+
+void ForceCurves::draw_titles_of_error(const Scene& scene) const {
+  const bool difference = scene.view.difference;
+  section_title(scene.style, difference ? "DIFFERENCE / JND" : "FELT ERROR / JND");
+  ImGui::SameLine();
+  if (scene.force.models.out_of_domain()) {
+    ImGui::TextColored(paint(scene.style.colours().fault), "away from the recorded data");
+  } else if (scene.view.time.paused) {
+    ImGui::TextDisabled("stopped, Space goes on");
+  } else {
+    ImGui::TextDisabled(difference ? "outside the band a hand could tell" : "above 1 a hand could tell");
+  }
+  tip(difference ? "Model minus reference, in just noticeable differences: inside the band a hand cannot tell.\n"
+                   "V: what a hand feels of it, as one line."
+                 : "Mean difference over 50 ms, in just noticeable differences. Faint marks: the largest of a single "
+                   "tick.\nV: the difference in its band.");
+}
+
+// What all have: the mouse, its readings, names at the right.
+void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
+                              const char* unit) {
+  if (scene.view.kiosk) return;
+  CurveTime& time = scene.view.time;
+  if (handle_time_plot(plot, scene.style, *scene.force.history, time, scene.end_s)) hovered_ = true;
+  std::vector<CurveLabel> labels;
+  std::vector<Reading> readings;
+  const CurveColumn* under = curves_.at(time.hover_s);
+  const CurveColumn* last = curves_.last();
+  if (under != nullptr && under->reference)
+    readings.push_back({"reference  " + at_most_three_decimals(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
+  for (std::size_t i = 0; i < scene.force.models.slots.size(); ++i) {
+    if (scene.force.models.slots[i]->state != SlotState::ready) continue;
+    if (last != nullptr && !std::isnan(value(*last, i)))
+      labels.push_back({short_name(*scene.force.models.slots[i]), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
+    if (under != nullptr && !std::isnan(value(*under, i)))
+      readings.push_back({scene.force.models.slots[i]->name + "  " + at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
+                          scene.colour(i)});
+  }
+  if (scene.names()) draw_labels(plot, labels);
+  draw_readings(plot, scene.style, time, readings);
+}
+
+void ForceCurves::draw_force(const Scene& scene, float height) {
+  const double scale_N = scene.view.force_scale_N;
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
-  const Plot plot(style, size, {end_s - kShown_s, end_s}, {-0.04 * view.force_scale_N, view.force_scale_N},
-                  "", "N", false);
-  const float thin = style.scale();
-  draw_band(plot, curves_.columns(), style);
-  draw_curve(
-      plot, curves_.columns(), ink(kReferenceColour), kReferenceLine_px * thin,
-      [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; },
-      [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
-  for_each_slot(force.models, view, [&](std::size_t slot) {
-    draw_curve(
-        plot, curves_.columns(), slot_ink(force.models, view, slot, style),
-        (slot == force.models.selected ? kSelectedLine_px : kModelLine_px) * thin,
+  const Plot plot(scene.style, size, scene.axes({-0.04 * scale_N, scale_N}, "N", false));
+  const CurvePainter paint_on{plot, curves_.columns(), scene.view.time.zero_s};
+  const float thin = scene.style.scale();
+  const Palette& p = scene.style.colours();
+  paint_on.jnd_band(ink(p.band));
+  paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
+                 [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
+  scene.for_each_slot([&](std::size_t slot) {
+    const bool selected = slot == scene.force.models.selected;
+    paint_on.curve(
+        ink(scene.colour(slot), selected ? 1.0F : 0.75F), (selected ? kSelectedLine_px : kModelLine_px) * thin,
         [slot](const CurveColumn& c) { return c.low_N[slot]; },
         [slot](const CurveColumn& c) { return c.high_N[slot]; });
   });
-  draw_faults(plot, curves_.columns(), style);
-  scroll_with_wheel(plot, force, view, end_s);
+  paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
+  finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.high_N[slot]; }, " N");
 }
 
-void ForceCurves::draw_error(const ForceView& force, const ViewState& view, const UiStyle& style,
-                             float height, double end_s) {
+void ForceCurves::draw_difference(const Scene& scene, float height) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
-  const Plot plot(style, size, {end_s - kShown_s, end_s}, {0.0, view.error_scale}, "", "", false);
-  const float thin = style.scale();
-  plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()},
-                            ink(style.colours().band, 0.45F));
-  plot.level(1.0, ink(style.colours().text), 1.5F * thin);
-  for_each_slot(force.models, view, [&](std::size_t slot) {
-    const auto value = [slot](const CurveColumn& c) { return c.error_over_jnd[slot]; };
-    draw_curve(plot, curves_.columns(), slot_ink(force.models, view, slot, style),
-               (slot == force.models.selected ? kSelectedLine_px : kModelLine_px) * thin, value, value);
+  const Plot plot(scene.style, size, scene.axes({-kDifference_jnd, kDifference_jnd}, "", true));
+  const CurvePainter paint_on{plot, curves_.columns(), scene.view.time.zero_s};
+  const float thin = scene.style.scale();
+  const Palette& p = scene.style.colours();
+  plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
+  plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
+  scene.for_each_slot([&](std::size_t slot) {
+    const bool selected = slot == scene.force.models.selected;
+    const ImU32 colour = ink(scene.colour(slot), selected ? 1.0F : 0.75F);
+    paint_on.curve(
+        colour, (selected ? kSelectedLine_px : kModelLine_px) * thin,
+        [slot](const CurveColumn& c) { return c.low_over_jnd[slot]; },
+        [slot](const CurveColumn& c) { return c.high_over_jnd[slot]; });
   });
+  finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) {
+    const bool below = -c.low_over_jnd[slot] > c.high_over_jnd[slot];
+    return below ? c.low_over_jnd[slot] : c.high_over_jnd[slot];
+  }, " JND");
+}
+
+void ForceCurves::draw_felt(const Scene& scene, float height) {
+  const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
+  const Plot plot(scene.style, size, scene.axes({0.0, scene.view.error_scale}, "", true));
+  const CurvePainter paint_on{plot, curves_.columns(), scene.view.time.zero_s};
+  const float thin = scene.style.scale();
+  const Palette& p = scene.style.colours();
+  plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
+  plot.level(1.0, ink(p.text), 1.5F * thin);
+  scene.for_each_slot([&](std::size_t slot) {
+    const bool selected = slot == scene.force.models.selected;
+    for (const CurveColumn& column : curves_.columns()) {
+      if (!(column.error_over_jnd[slot] > 1.0F)) continue;
+      const ImVec2 at(plot.x_px(column.time_s - scene.view.time.zero_s),
+                      std::max(plot.y_px(static_cast<double>(column.error_over_jnd[slot])), plot.top() + thin));
+      plot.list().AddRectFilled({at.x - thin, at.y - thin}, {at.x + thin, at.y + thin}, ink(scene.colour(slot), 0.35F));
+    }
+    paint_on.curve(ink(scene.colour(slot), selected ? 1.0F : 0.75F),
+                   (selected ? kSelectedLine_px : kModelLine_px) * thin,
+                   [slot](const CurveColumn& c) { return c.felt_over_jnd[slot]; });
+  });
+  finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.felt_over_jnd[slot]; }, " JND");
 }
 
 }  // namespace palpate

@@ -1,11 +1,13 @@
-// The panel's curves: live force against time with the JND band, and the error over
-// the JND below.
+// The panel's curves: force against time with the JND band, and below it how far every
+// model is from the reference: the difference in a band of constant height, or what a
+// hand feels of it.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
 #include "rendering/panels/panel_views.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/ui/curves.h"
+#include "rendering/ui/plot.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {
@@ -18,12 +20,20 @@ class ForceCurves {
   // colour of its own while it is a secret.
   void draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style, float height);
 
+  const CurveColumns& columns() const noexcept { return curves_; }
+
  private:
-  void gather(const ForceView& force, ViewState& view, double end_s);
-  void draw_force(const ForceView& force, ViewState& view, const UiStyle& style, float height, double end_s);
-  void draw_error(const ForceView& force, const ViewState& view, const UiStyle& style, float height,
-                  double end_s);
+  struct Scene;  // what all plots of a frame share
+  Scene begin(const ForceView& force, ViewState& view, const UiStyle& style);
+  void draw_force(const Scene& scene, float height);
+  void draw_difference(const Scene& scene, float height);
+  void draw_felt(const Scene& scene, float height);
+  void draw_titles_of_force(const Scene& scene) const;
+  void draw_titles_of_error(const Scene& scene) const;
+  void finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
+                   const char* unit);
   CurveColumns curves_;
+  bool hovered_ = false;  // in this frame
 };
 
 }  // namespace palpate

@@ -100,14 +100,15 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
   }
   const double missed = health.missed_of_late;
   if (missed > kManyMissed) {
-    return {text_of("%.1f %% of the deadlines missed of late: close other programs, or allow real-time priority",
-                    100.0 * missed),
+    return {text_of("%.1f %% of the deadlines missed of late: close other programs", 100.0 * missed) +
+                (health.scheduling.realtime ? "" : ", or allow real-time priority"),
             true};
   }
   if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
+    // No fault: nothing that is felt is late.
     return {
         text_of("%.0f frames a second: the picture is slow, the force is not affected", recent_fps),
-        true};
+        false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) +
@@ -125,7 +126,9 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
     ImGui::TextWrapped("%s%s", words.text.c_str(), words.past ? ". C clears this." : "");
     ImGui::PopStyleColor();
   } else {
-    ImGui::TextDisabled("%s", words.text.c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().quiet));
+    ImGui::TextWrapped("%s", words.text.c_str());
+    ImGui::PopStyleColor();
   }
   if (ImGui::IsItemClicked()) view.details = !view.details;
   tip("How well the 1000 Hz loop keeps its time. L shows all figures and faults.");

@@ -1,11 +1,10 @@
-#include "rendering/panels/panel_models.h"
-
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
@@ -17,17 +16,18 @@ enum Column : int { kName, kForce, kError, kRatio, kWithin, kTime, kCentres, kCo
 struct Heading {
   const char* text;
   const char* tip;
-  float share;
+  const char* widest;  // what its column must hold
+  int dropped;         // where there is no room: 1 goes first; 0 stays
 };
 constexpr Heading kHeadings[kColumns] = {
-    {"model", "Click, or press its number, to make a model the active one.", 2.5F},
-    {"N", "Force now, newtons", 1.0F},
-    {"mN off", "Error now: model minus reference, millinewtons", 1.25F},
-    {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", 1.0F},
-    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset",
-     1.45F},
-    {"ns", "Time of one evaluation, nanoseconds, median of the last second in contact", 1.1F},
-    {"centres", "Centres of the radial basis functions; nodes of a grid", 1.35F}};
+    {"model", "Click, or press its number, to make a model the active one.", "      greedy-10 '09", 0},
+    {"N", "Force now, newtons", "12.34", 4},
+    {"mN off", "Error now: model minus reference, millinewtons", "+1234", 1},
+    {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", "12.34", 5},
+    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
+     "The same samples for all models: those inside the data of each.", "100.00", 0},
+    {"ns", "Time of one evaluation, nanoseconds, median of the last second in contact", "12,345", 3},
+    {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2}};
 
 double sort_value(const SlotView& slot, int column) {
   switch (column) {
@@ -48,20 +48,13 @@ double sort_value(const SlotView& slot, int column) {
   }
 }
 
-std::vector<std::size_t> sorted_slots(const ModelsView& models) {
-  std::vector<std::size_t> order(models.slots.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const ImGuiTableSortSpecs* specs = ImGui::TableGetSortSpecs();
-  if (specs == nullptr || specs->SpecsCount == 0) return order;
-  const int column = specs->Specs[0].ColumnIndex;
-  const bool rising = specs->Specs[0].SortDirection == ImGuiSortDirection_Ascending;
+std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState& sort) {
+  std::vector<std::size_t> order = models.listed();
+  if (sort.column < 0) return order;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (column == kName)
-      return rising ? models.slots[a]->name < models.slots[b]->name
-                    : models.slots[b]->name < models.slots[a]->name;
-    const double left = sort_value(*models.slots[a], column);
-    const double right = sort_value(*models.slots[b], column);
-    return rising ? left < right : right < left;
+    if (!sort.rising) std::swap(a, b);
+    if (sort.column == kName) return models.slots[a]->name < models.slots[b]->name;
+    return sort_value(*models.slots[a], sort.column) < sort_value(*models.slots[b], sort.column);
   });
   return order;
 }
@@ -76,17 +69,39 @@ void right_aligned(const std::string& text, const ImVec4* colour = nullptr) {
   }
 }
 
-// Over its numbers, which stand right; the header itself sorts.
-void draw_heading(int column) {
+// A small triangle over the middle of a heading that its column is sorted by.
+void draw_sort_sign(float middle_px, float top_px, bool rising, ImU32 colour) {
+  const float size = 0.22F * ImGui::GetFontSize();
+  const float tip_px = rising ? top_px : top_px + size;
+  const float base_px = rising ? top_px + size : top_px;
+  ImVec2 corners[3] = {{middle_px - size, base_px}, {middle_px + size, base_px}, {middle_px, tip_px}};
+  if (rising) std::swap(corners[0], corners[1]);
+  ImGui::GetWindowDrawList()->AddConvexPolyFilled(corners, 3, colour);
+}
+
+// Over its numbers, which stand right. A click sorts: falling, rising, as they were.
+void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float room = ImGui::GetContentRegionAvail().x;
-  const std::string id = "##" + std::string(kHeadings[column].text);
-  ImGui::TableHeader(column == kName ? kHeadings[column].text : id.c_str());
-  tip(kHeadings[column].tip);
-  if (column == kName) return;
+  const float sign = 0.28F * ImGui::GetFontSize();
   const float width = ImGui::CalcTextSize(kHeadings[column].text).x;
-  ImGui::GetWindowDrawList()->AddText({at.x + room - width, at.y}, ImGui::GetColorU32(ImGuiCol_Text),
-                                      kHeadings[column].text);
+  ImGui::PushID(column);
+  if (ImGui::InvisibleButton("sort", {std::max(room, 1.0F), ImGui::GetTextLineHeight() + sign})) {
+    if (sort.column != column) {
+      sort.column = column;
+      sort.rising = column == kName;
+    } else if (sort.rising == (column == kName)) {
+      sort.rising = !sort.rising;
+    } else {
+      sort.column = -1;
+    }
+  }
+  ImGui::PopID();
+  tip(kHeadings[column].tip);
+  const ImU32 colour = ImGui::GetColorU32(ImGuiCol_Text);
+  const float x = column == kName ? at.x : at.x + room - width;
+  ImGui::GetWindowDrawList()->AddText({x, at.y + sign}, colour, kHeadings[column].text);
+  if (sort.column == column) draw_sort_sign(x + 0.5F * width, at.y, sort.rising, colour);
 }
 
 std::string format(const char* pattern, double value) {
@@ -106,21 +121,40 @@ std::string grouped(int count) {
   return text;
 }
 
-// Whether it was clicked.
-bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style) {
+// A menu behind the right button.
+TableAction draw_menu(const ModelsView& models, std::size_t index, TableState& table) {
+  TableAction action;
+  if (!ImGui::BeginPopupContextItem()) return action;
+  if (ImGui::IsWindowAppearing()) {
+    table.name.fill('\0');
+    models.slots[index]->name.copy(table.name.data(), table.name.size() - 1);
+  }
+  ImGui::TextUnformatted("Name, then Enter:");
+  if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
+    action = {TableAction::Kind::rename, index, table.name.data()};
+    ImGui::CloseCurrentPopup();
+  }
+  if (ImGui::Selectable("Take it out of the comparison")) action = {TableAction::Kind::remove, index, {}};
+  ImGui::EndPopup();
+  return action;
+}
+
+TableAction draw_name(const ModelsView& models, std::size_t index, TableState& table, const UiStyle& style) {
   const SlotView& slot = *models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
   const ImU32 colour =
-      ink(method_colour(slot.method, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
+      ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
   // Too long for the column: without the numbers, which the last one and the tip have.
   std::string name = slot.name;
   if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
     name.erase(std::min(name.find('-'), name.size()));
-  const std::string label = "      " + name + "##slot" + std::to_string(index);
+  const std::string label = "      " + name + "###slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
   const bool clicked = ImGui::Selectable(label.c_str(), index == models.selected, flags);
+  TableAction action = draw_menu(models, index, table);
+  if (clicked) action = {TableAction::Kind::select, index, {}};
   tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
@@ -130,7 +164,7 @@ bool draw_name(const ModelsView& models, std::size_t index, const UiStyle& style
   } else {
     list.AddCircleFilled(middle, 0.27F * line, colour);
   }
-  return clicked;
+  return action;
 }
 
 // Over the columns of the figures that are not there yet.
@@ -146,18 +180,21 @@ void draw_waiting(const SlotView& slot) {
 void draw_figures(const SlotView& slot, const UiStyle& style) {
   const ImVec4 above = paint(kAboveJndColour);
   const ImVec4 quiet = paint(style.colours().quiet);
-  ImGui::TableNextColumn();
-  right_aligned(format("%.2f", slot.force_N));
-  ImGui::TableNextColumn();
-  right_aligned(format("%+.0f", 1e3 * slot.error_N), &quiet);
-  ImGui::TableNextColumn();
-  right_aligned(format("%.2f", slot.error_over_jnd), slot.error_over_jnd > 1.0 ? &above : nullptr);
-  ImGui::TableNextColumn();
-  right_aligned(slot.errors.samples() > 0 ? format("%.2f", 100.0 * slot.errors.within_jnd()) : "–");
-  ImGui::TableNextColumn();
-  right_aligned(slot.evaluation_ns > 0.0 ? grouped(static_cast<int>(slot.evaluation_ns)) : "–");
-  ImGui::TableNextColumn();
-  right_aligned(grouped(slot.centres));
+  // A column that is not shown takes no text.
+  const auto cell = [](int column, const std::string& text, const ImVec4* colour = nullptr) {
+    if (ImGui::TableSetColumnIndex(column)) right_aligned(text, colour);
+  };
+  cell(kForce, format("%.2f", slot.force_N));
+  cell(kError, format("%+.0f", 1e3 * slot.error_N), &quiet);
+  cell(kRatio, format("%.2f", slot.error_over_jnd), slot.error_over_jnd > 1.0 ? &above : nullptr);
+  cell(kWithin, slot.errors.samples() > 0 ? format("%.2f", 100.0 * slot.errors.within_jnd()) : "–");
+  cell(kTime, slot.evaluation_ns > 0.0 ? grouped(static_cast<int>(slot.evaluation_ns)) : "–");
+  cell(kCentres, grouped(slot.centres));
+}
+
+float column_width(int column) {
+  return std::max(ImGui::CalcTextSize(kHeadings[column].text).x, ImGui::CalcTextSize(kHeadings[column].widest).x) +
+         2.0F * ImGui::GetStyle().CellPadding.x;
 }
 
 }  // namespace
@@ -170,26 +207,47 @@ std::string waiting_words(const SlotView& slot) {
 std::string name_tip(const ModelsView& models, std::size_t slot) {
   const std::string& name = models.slots[slot]->name;
   if (slot == models.selected) return name + " is the active model";
-  return "Click, or press " + std::to_string(slot + 1) + ", to make " + name + " the active model";
+  return "Click, or press " + std::to_string(models.number_of(slot)) + ", to make " + name + " the active model";
 }
 
-std::optional<std::size_t> draw_model_table(const ModelsView& models, const UiStyle& style, float height) {
-  const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_SortTristate | ImGuiTableFlags_ScrollY |
-                     ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
-  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return std::nullopt;
-  std::optional<std::size_t> clicked;
-  ImGui::TableSetupScrollFreeze(0, 1);
-  for (const Heading& heading : kHeadings)
-    ImGui::TableSetupColumn(heading.text, ImGuiTableColumnFlags_WidthStretch, heading.share);
-  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+std::vector<int> shown_columns(float room, float (*width)(int)) {
+  std::vector<int> columns;
+  float needed = 0.0F;
   for (int column = 0; column < kColumns; ++column) {
-    ImGui::TableSetColumnIndex(column);
-    draw_heading(column);
+    columns.push_back(column);
+    needed += width(column);
   }
-  for (const std::size_t index : sorted_slots(models)) {
+  for (int drop = 1; needed > room && drop <= kColumns; ++drop) {
+    const auto gone = std::find_if(columns.begin(), columns.end(),
+                                   [&](int column) { return kHeadings[column].dropped == drop; });
+    if (gone == columns.end()) continue;
+    needed -= width(*gone);
+    columns.erase(gone);
+  }
+  return columns;
+}
+
+TableAction draw_model_table(const ModelsView& models, TableState& table, const UiStyle& style, float height) {
+  TableAction action;
+  const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
+  const std::vector<int> shown =
+      shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
+  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return action;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  for (int column = 0; column < kColumns; ++column) {
+    const bool hidden = std::find(shown.begin(), shown.end(), column) == shown.end();
+    ImGui::TableSetupColumn(kHeadings[column].text, ImGuiTableColumnFlags_WidthStretch, column_width(column));
+    ImGui::TableSetColumnEnabled(column, !hidden);
+  }
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const int column : shown) {
+    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, table);
+  }
+  for (const std::size_t index : sorted_slots(models, table)) {
     ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    if (draw_name(models, index, style)) clicked = index;
+    ImGui::TableSetColumnIndex(kName);
+    const TableAction done = draw_name(models, index, table, style);
+    if (done.kind != TableAction::Kind::none) action = done;
     if (models.slots[index]->state == SlotState::ready) {
       draw_figures(*models.slots[index], style);
     } else {
@@ -197,7 +255,7 @@ std::optional<std::size_t> draw_model_table(const ModelsView& models, const UiSt
     }
   }
   ImGui::EndTable();
-  return clicked;
+  return action;
 }
 
 }  // namespace palpate

@@ -3,16 +3,26 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "rendering/panels/panel_views.h"
+#include "rendering/panels/view_state.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {
 
-// Returns the slot that was clicked.
-std::optional<std::size_t> draw_model_table(const ModelsView& models, const UiStyle& style, float height);
+// What was done to a row; a right click offers to rename it and to take it out.
+struct TableAction {
+  enum class Kind { none, select, rename, remove } kind = Kind::none;
+  std::size_t slot = 0;
+  std::string name;
+};
+TableAction draw_model_table(const ModelsView& models, TableState& table, const UiStyle& style, float height);
+// The columns of that table that `room` holds, dropped in a fixed order: the error in
+// millinewtons first, then centres, time, force, error over the JND. Name and share
+// within the JND always stay.
+std::vector<int> shown_columns(float room, float (*width)(int column));
 
 // What a row says in place of figures: "waits", "fits 40 %", "failed".
 std::string waiting_words(const SlotView& slot);

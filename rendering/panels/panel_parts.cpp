@@ -2,14 +2,39 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace palpate {
 
 void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
 }
 
+Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
+  const std::string& method = models.slots[slot]->method;
+  const Rgb hue = method_colour(method, theme);
+  std::size_t which = 0;
+  for (const std::size_t i : models.listed()) {
+    if (i == slot) break;
+    if (method_colour(models.slots[i]->method, theme) == hue) ++which;
+  }
+  return method_colour(method, theme, which);
+}
+
 void tip(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+  if (!ImGui::IsItemHovered()) return;
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 high = ImGui::GetItemRectMax();
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float gap = 0.3F * ImGui::GetFontSize();
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  const float wide = size.x + 2.0F * padding.x;
+  const float tall = size.y + 2.0F * padding.y;
+  const float x = std::clamp(low.x, 0.0F, std::max(0.0F, all.x - wide));
+  const bool below = high.y + gap + tall <= all.y;
+  ImGui::SetNextWindowPos({x, below ? high.y + gap : low.y - gap - tall});
+  ImGui::SetTooltip("%s", text);
 }
 
 }  // namespace palpate

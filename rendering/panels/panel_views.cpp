@@ -1,8 +1,29 @@
 #include "rendering/panels/panel_views.h"
 
+#include <algorithm>
+
 #include "scenes/live/live_session.h"
 
 namespace palpate {
+namespace {
+
+// A hand that aims at the strongest press goes beyond it for a moment.
+constexpr double kUsualOverStrongest = 1.5;
+
+}  // namespace
+
+std::vector<std::size_t> ModelsView::listed() const {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i]->state != SlotState::hidden) list.push_back(i);
+  }
+  return list;
+}
+
+std::size_t ModelsView::number_of(std::size_t slot) const {
+  const std::vector<std::size_t> list = listed();
+  return static_cast<std::size_t>(std::find(list.begin(), list.end(), slot) - list.begin()) + 1;
+}
 
 const SlotView* ModelsView::active() const noexcept {
   if (selected >= slots.size() || slots[selected]->state != SlotState::ready) return nullptr;
@@ -24,7 +45,7 @@ ModelsView models_view(const LiveSession& session) {
 
 ForceView force_view(const LiveSession& session) {
   return {models_view(session), session.jnd(), &session.comparison().history(), session.comparison().reference_N(),
-          session.reference_words()};
+          session.reference_words(), kUsualOverStrongest * session.scene().strongest_press_N};
 }
 
 ErrorsView errors_view(const LiveSession& session) { return {models_view(session), session.jnd()}; }

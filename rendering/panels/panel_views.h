@@ -19,12 +19,19 @@ namespace palpate {
 
 class LiveSession;
 
+// In place of a slot: the block of what the models are compared with.
+inline constexpr std::size_t kReferenceBlock = static_cast<std::size_t>(-1);
+
 // The models in the order of their slots; the pointers live as long as the session.
 struct ModelsView {
   std::vector<const SlotView*> slots;
   std::size_t selected = 0;
   bool in_contact = false;
 
+  // The slots that are not hidden, in order: what keys and tables count.
+  std::vector<std::size_t> listed() const;
+  // 1 for the first of them.
+  std::size_t number_of(std::size_t slot) const;
   // The active model; null: none is ready.
   const SlotView* active() const noexcept;
   // Whether the active model is used where nothing was recorded.
@@ -37,6 +44,7 @@ struct ForceView {
   const ForceHistory* history = nullptr;  // never null when filled from a session
   double reference_N = kNoForce;
   std::string reference_words;
+  double usual_force_N = 0.0;  // the axis holds it always, so that it does not jump
 };
 
 struct ErrorsView {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "rendering/panels/layout.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/panels/panel_views.h"
 #include "rendering/ui/ui_style.h"
@@ -18,17 +19,16 @@
 
 namespace palpate {
 
-// Where the picture is, in ImGui's coordinates.
-struct SceneArea {
-  ImVec2 at;
-  ImVec2 size;
-  bool holds(const ImVec2& point) const {
-    return point.x >= at.x && point.y >= at.y && point.x < at.x + size.x && point.y < at.y + size.y;
-  }
-};
-
 // What can be asked for by button or key.
 enum class Command {
+  next_line_up,
+  exaggerate,
+  scene_list,
+  difference,
+  save_curves,
+  home_view,
+  larger_text,
+  smaller_text,
   next_block_count,
   pause_curves,
   reset_figures,
@@ -50,25 +50,39 @@ struct CommandEntry {
 };
 const std::vector<CommandEntry>& commands();
 
+// What the windows over the picture can ask of the program.
+struct OverlayActions {
+  std::function<void(Command)> run;
+  std::function<void(const std::string&)> use_scene;
+  std::function<void(const std::string&)> replay;
+};
+
 // The overlay's sentences; empty when there is nothing to tell.
 std::string data_warning(const ModelsView& models);
 std::string recording_words(const RecordingStatus& recording);
 // The big number: the recent peak error of the active model over the JND.
 std::string peak_error_words(const ModelsView& models, double reference_N);
 
+// What a scene without models and without a material says of itself; empty otherwise.
+std::string empty_scene_words(const LiveSession& session);
+
 // The slots that the blocks show: all there is room for, in order, the active one
-// always among them.
+// always among them; of several the last is the reference's own (kReferenceBlock), where
+// that is no model.
 std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count);
 
 class SceneOverlay {
  public:
-  // Controls call `run`.
+  // Controls call `actions`.
   void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
-            const SceneArea& area, const std::vector<Toast>& toasts, const std::function<void(Command)>& run);
+            const SceneArea& area, const std::vector<Toast>& toasts, const OverlayActions& actions);
 
   // The slot whose block or label is at `point`.
   std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks,
                                      const ViewState& view, const SceneArea& area, const ImVec2& point) const;
+
+ private:
+  float buttons_height_ = 0.0F;  // in the last frame
 };
 
 }  // namespace palpate

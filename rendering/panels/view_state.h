@@ -2,9 +2,10 @@
 // Thread guarantee: values of the window's thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,20 +14,59 @@
 
 namespace palpate {
 
-inline constexpr double kShown_s = 10.0;  // of the curves at a time
+inline constexpr double kShown_s = 10.0;     // of the curves at a time, as long as nobody zooms
+inline constexpr double kLeastShown_s = 0.02;  // of the curves, zoomed in
+
+inline constexpr float kSmallestText = 0.8F;  // times the usual size
+inline constexpr float kLargestText = 1.6F;
+
+// The part of the time that the curves show.
+struct CurveTime {
+  double zero_s = 0.0;   // loop time at which the axes' time begins
+  double shown_s = kShown_s;
+  // Curves stand still, and end so long before.
+  bool paused = false;
+  double paused_at_s = 0.0;  // loop time
+  double scrolled_back_s = 0.0;
+  // Loop time under the mouse, and where it began to drag; NaN: nothing of that.
+  double hover_s = std::numeric_limits<double>::quiet_NaN();
+  double drag_from_s = std::numeric_limits<double>::quiet_NaN();
+
+  // The loop time at the right edge of the curves; `now_s` while they run.
+  double end_s(double now_s) const noexcept { return paused ? paused_at_s - scrolled_back_s : now_s; }
+  void pause(double at_s) noexcept;
+  void run() noexcept { paused = false; scrolled_back_s = 0.0; shown_s = kShown_s; }
+  // Stops and shows what lies between two times, in either order.
+  void zoom(double one_s, double other_s) noexcept;
+  // While paused; not beyond `oldest_s`, the first there is.
+  void scroll_back(double by_s, double oldest_s) noexcept;
+};
+
+// The table of models: what it is sorted by, and the name that is being typed.
+struct TableState {
+  int column = -1;  // none: in the order in which they were asked for
+  bool rising = false;
+  std::array<char, 64> name{};
+};
 
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
+  float text_size = 1.0F;  // times the usual
   int hidden_choice = 0;        // above 0: which model is active is a secret, shown as this
-  std::size_t block_count = 1;  // 1, 2 or 4
+  std::size_t block_count = 4;  // 1, 2 or 4
+  TableState table;
+  bool exaggerated = false;       // arrows show ten times the difference
+  bool centres_together = true;   // the slider moves all models that have centres
+  int wanted_centres = 0;         // of the slider, as long as it is held
+  bool scene_list = false;        // scenes to choose from
+  std::string offered_recording;  // to fit or to replay; empty: none
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load
-  // Curves stand still, and end so long before now.
-  bool paused = false;
-  double paused_at_s = 0.0;  // loop time
-  double scrolled_back_s = 0.0;
+  std::vector<std::size_t> revealed;  // slots whose curves a visitor sees after the answer
+  CurveTime time;
+  bool difference = true;  // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot
 };

@@ -16,6 +16,8 @@ namespace {
 
 constexpr float kBetween = 1.32F;  // blocks side by side, in widths
 constexpr float kArrow_m_per_N = 0.006F;
+constexpr float kLongestArrow_m = 0.09F;
+constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
 
@@ -25,30 +27,40 @@ Rgb rgb(const Colour& colour) {
          255.0F;
 }
 
-// A ball, a neck, a handle; in units of the ball's radius, the tip at y = 0.
-std::vector<glm::vec2> tool_profile() {
+float arrow_length_m(const BlockPose& pose) { return std::min(kArrow_m_per_N * pose.force_N, kLongestArrow_m); }
+
+// In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
+// sensor's disc, and a dull handle.
+constexpr float kToolLength = 15.2F;
+std::vector<glm::vec2> ball_profile() {
   std::vector<glm::vec2> profile;
-  for (int i = 0; i <= 18; ++i) {
-    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / 18.0F * 0.86F - 0.5F);
+  for (int i = 0; i <= 20; ++i) {
+    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / 20.0F * 0.89F - 0.5F);
     profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
   }
-  for (const glm::vec2 point :
-       {glm::vec2(0.40F, 2.1F), glm::vec2(0.40F, 4.6F), glm::vec2(0.46F, 5.0F), glm::vec2(1.05F, 5.5F),
-        glm::vec2(1.20F, 5.9F), glm::vec2(1.28F, 9.0F), glm::vec2(1.20F, 12.4F)}) {
+  for (const glm::vec2 point : {glm::vec2(0.30F, 2.02F), glm::vec2(0.30F, 5.0F), glm::vec2(0.33F, 5.2F),
+                                glm::vec2(0.80F, 5.9F), glm::vec2(0.86F, 6.1F)}) {
     profile.push_back(point);
   }
-  for (int i = 1; i <= 8; ++i) {
+  return profile;
+}
+std::vector<glm::vec2> sensor_profile() {
+  return {{0.80F, 6.0F}, {1.36F, 6.001F}, {1.44F, 6.1F}, {1.44F, 6.9F}, {1.36F, 7.0F}, {0.9F, 7.001F}};
+}
+std::vector<glm::vec2> handle_profile() {
+  std::vector<glm::vec2> profile{{0.9F, 7.0F}, {1.02F, 7.3F}, {1.04F, 8.0F}, {0.98F, 9.4F}, {1.10F, 12.6F}};
+  for (int i = 0; i <= 8; ++i) {
     const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / 8.0F;
-    profile.emplace_back(std::max(1e-4F, 1.20F * std::cos(angle)), 12.4F + 1.20F * std::sin(angle));
+    profile.emplace_back(std::max(1e-4F, 1.12F * std::cos(angle)), kToolLength - 1.12F + 1.12F * std::sin(angle));
   }
   return profile;
 }
 
 // Flat shading of a corner: the same point twice would give no direction, so
 // corners are a hair apart.
-std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0016F, 1e-5F}, {0.0016F, 1.0F}}; }
+std::vector<glm::vec2> shaft_profile() { return {{1e-4F, 0.0F}, {0.0014F, 1e-5F}, {0.0014F, 1.0F}}; }
 std::vector<glm::vec2> tip_profile() {
-  return {{1e-4F, 0.0F}, {0.0042F, 1e-5F}, {0.0041F, 2e-4F}, {1e-4F, 0.0085F}};
+  return {{1e-4F, 0.0F}, {0.0038F, 1e-5F}, {0.0037F, 2e-4F}, {1e-4F, kArrowTip_m}};
 }
 
 }  // namespace
@@ -76,7 +88,9 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
       table_shader_(std::move(table)),
       block_(block_mesh(static_cast<float>(scene.block.width_m), static_cast<float>(scene.block.length_m),
                         static_cast<float>(scene.block.height_m))),
-      tool_(lathe_mesh(tool_profile(), 26)),
+      ball_(lathe_mesh(ball_profile(), 28)),
+      sensor_(lathe_mesh(sensor_profile(), 32)),
+      handle_(lathe_mesh(handle_profile(), 28)),
       shaft_(lathe_mesh(shaft_profile(), 14)),
       tip_(lathe_mesh(tip_profile(), 20)),
       square_(square_mesh()) {
@@ -96,7 +110,7 @@ void BlockView::show(std::size_t count, bool at_once) {
 glm::vec3 BlockView::place(std::size_t index, std::size_t count) const {
   const auto step = kBetween * static_cast<float>(geometry_.width_m);
   const float column = count == 1 ? 0.0F : index % 2 == 0 ? -0.5F : 0.5F;
-  const float row = count < 4 ? 0.0F : index < 2 ? -0.5F : 0.5F;
+  const float row = count < 3 ? 0.0F : index < 2 ? -0.5F : 0.5F;
   return {column * step, 0.0F, row * step};
 }
 
@@ -124,11 +138,23 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   view_projection_ =
       camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
   draw_backdrop(table_state(blocks, viewport, theme), viewport);
-  glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
-  glScissor(viewport.x, viewport.y, viewport.width, viewport.height);
-  glEnable(GL_SCISSOR_TEST);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  glDisable(GL_SCISSOR_TEST);
+  const Viewport part = standing(blocks, viewport);
+  if (part.width < 1 || part.height < 1) return;
+  const bool smooth = smooth_.begin(0, part.x, part.y, part);
+  if (smooth) {
+    glViewport(viewport.x - part.x, viewport.y - part.y, viewport.width, viewport.height);
+  } else {
+    glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
+    glScissor(viewport.x, viewport.y, viewport.width, viewport.height);
+    glEnable(GL_SCISSOR_TEST);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+  }
+  draw_blocks(blocks);
+  if (smooth) smooth_.end(part);
+}
+
+void BlockView::draw_blocks(const std::vector<BlockPose>& blocks) const {
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glDisable(GL_BLEND);
@@ -137,6 +163,37 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
+}
+
+Viewport BlockView::standing(const std::vector<BlockPose>& blocks, const Viewport& viewport) const {
+  const glm::vec2 size(viewport.width, viewport.height);
+  glm::vec2 low = size;
+  glm::vec2 high(0.0F);
+  const auto reach = [&](const glm::vec3& point) {
+    const glm::vec2 at = project(view_projection_, point, size);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  };
+  const glm::vec2 half = 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const glm::vec3 at = place(i, blocks.size());
+    const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
+                               arrow_length_m(blocks[i]) + kArrowTip_m);
+    for (const float x : {-1.0F, 1.0F}) {
+      for (const float z : {-1.0F, 1.0F}) {
+        reach(at + glm::vec3(x * half.x, 0.0F, z * half.y));
+        reach(at + glm::vec3(x * half.x, -geometry_.height_m, z * half.y));
+        // The tool, and the arrow beside it.
+        reach(at + glm::vec3(x * 0.022F, top, z * 0.022F));
+      }
+    }
+  }
+  low = glm::clamp(low - 2.0F, glm::vec2(0.0F), size);
+  high = glm::clamp(high + 2.0F, glm::vec2(0.0F), size);
+  const glm::ivec2 from(glm::floor(glm::vec2(low.x, size.y - high.y)));
+  const glm::ivec2 to(glm::ceil(glm::vec2(high.x, size.y - low.y)));
+  return {viewport.x + from.x, viewport.y + from.y, std::min(to.x, viewport.width) - from.x,
+          std::min(to.y, viewport.height) - from.y};
 }
 
 BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport,
@@ -200,7 +257,6 @@ void BlockView::draw_block(const BlockPose& pose, const glm::vec3& at) const {
   block_shader_.set("tool_radius", static_cast<float>(geometry_.tool_radius_m));
   block_shader_.set("rim", 0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m)));
   block_shader_.set("height", static_cast<float>(geometry_.height_m));
-  block_shader_.set("surface", at.y);
   block_shader_.set("colour", block_colour_);
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
   // Shallow dents have no colour yet: there is nothing to judge.
@@ -216,16 +272,25 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
   solid_shader_.set("colour", tool_colour_);
   solid_shader_.set("shininess", 1.0F);
-  tool_.draw();
-  if (pose.force_N < kShortestArrow_N) return;
-  // Beside the tool, as seen from the eye, so that neither hides the other.
+  ball_.draw();
+  solid_shader_.set("colour", 0.62F * tool_colour_);
+  solid_shader_.set("shininess", 0.6F);
+  sensor_.draw();
+  solid_shader_.set("colour", 0.44F * tool_colour_);
+  solid_shader_.set("shininess", 0.25F);
+  handle_.draw();
+  if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at);
+}
+
+// Beside the tool, as seen from the eye, so that neither hides the other.
+void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at) const {
   const glm::vec3 eye = camera_.eye();
   const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
   const glm::vec3 foot =
       at + 3.2F * static_cast<float>(geometry_.tool_radius_m) * right + glm::vec3(0.0F, 0.001F, 0.0F);
-  const float length_m = std::min(kArrow_m_per_N * pose.force_N, 0.09F);
+  const float length_m = arrow_length_m(pose);
   solid_shader_.set("colour", pose.arrow);
-  solid_shader_.set("shininess", 0.15F);
+  solid_shader_.set("shininess", 0.0F);
   solid_shader_.set("offset", foot);
   solid_shader_.set("stretch", glm::vec3(1.0F, length_m, 1.0F));
   shaft_.draw();

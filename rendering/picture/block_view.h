@@ -1,4 +1,4 @@
-// The picture: one, two or four blocks on a table, each under the same probe.
+// The picture: one to four blocks on a table, each under the same probe.
 // Draws what it is told and knows no model and no session.
 //
 // Thread guarantee: the thread of the OpenGL context.
@@ -16,6 +16,7 @@
 #include "rendering/ui/colours.h"
 #include "rendering/picture/mesh.h"
 #include "rendering/picture/shader.h"
+#include "rendering/picture/smooth_target.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -31,17 +32,12 @@ struct BlockPose {
   bool judged = true;   // the dent shows the error's colour
 };
 
-// In pixels of the framebuffer, from its lower left corner.
-struct Viewport {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
 class BlockView {
  public:
   // Errors: a shader is missing or is not taken by the driver.
   static Result<std::unique_ptr<BlockView>> create(const Scene& scene);
 
-  // `blocks`: 1, 2 or 4. Fills the viewport.
+  // `blocks`: 1 to 4. Fills the viewport.
   void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
 
   Camera& camera() noexcept { return camera_; }
@@ -73,17 +69,22 @@ class BlockView {
   TableState table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) const;
   void draw_backdrop(const TableState& state, const Viewport& viewport);
   void draw_table(const TableState& state) const;
+  // The part of the viewport that blocks, tools and arrows lie in.
+  Viewport standing(const std::vector<BlockPose>& blocks, const Viewport& viewport) const;
+  void draw_blocks(const std::vector<BlockPose>& blocks) const;
   void draw_block(const BlockPose& pose, const glm::vec3& place) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place) const;
+  void draw_arrow(const BlockPose& pose, const glm::vec3& place) const;
   void begin(const Shader& shader) const;
 
   BlockGeometry geometry_;
   Rgb block_colour_;
   Rgb tool_colour_;
   Shader block_shader_, solid_shader_, table_shader_;
-  GpuMesh block_, tool_, shaft_, tip_, square_;
+  GpuMesh block_, ball_, sensor_, handle_, shaft_, tip_, square_;
   Camera camera_;
   Backdrop backdrop_;
+  SmoothTarget smooth_;
   TableState backdrop_state_;
   glm::mat4 view_projection_{1.0F};
 };

@@ -21,20 +21,32 @@ constexpr float kFar_m = 6.0F;
 
 void Camera::frame(float radius_m, float yaw_rad, bool at_once) {
   radius_m_ = radius_m;
-  wanted_ = Pose{};
-  wanted_.yaw_rad = yaw_rad;
-  wanted_.distance_m = 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad);
+  framed_ = Pose{};
+  framed_.yaw_rad = yaw_rad;
+  framed_.distance_m = 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad);
+  aim();
   if (at_once) now_ = wanted_;
 }
 
-void Camera::orbit(float yaw_rad, float pitch_rad) {
-  wanted_.yaw_rad += yaw_rad;
-  wanted_.pitch_rad = std::clamp(wanted_.pitch_rad + pitch_rad, kLowest_rad, kHighest_rad);
+void Camera::turn(const CameraTurn& turn) {
+  turn_ = turn;
+  aim();
 }
 
-void Camera::zoom(float factor) {
-  wanted_.distance_m = std::clamp(wanted_.distance_m * factor, 1.6F * radius_m_, 12.0F * radius_m_);
+// What is beyond the limits is not remembered: the way back begins at once.
+void Camera::aim() {
+  wanted_.yaw_rad = framed_.yaw_rad + turn_.yaw_rad;
+  wanted_.pitch_rad = std::clamp(framed_.pitch_rad + turn_.pitch_rad, kLowest_rad, kHighest_rad);
+  wanted_.distance_m = std::clamp(framed_.distance_m * turn_.distance, 1.6F * radius_m_, 12.0F * radius_m_);
+  turn_.pitch_rad = wanted_.pitch_rad - framed_.pitch_rad;
+  turn_.distance = wanted_.distance_m / framed_.distance_m;
 }
+
+void Camera::orbit(float yaw_rad, float pitch_rad) {
+  turn({turn_.yaw_rad + yaw_rad, turn_.pitch_rad + pitch_rad, turn_.distance});
+}
+
+void Camera::zoom(float factor) { turn({turn_.yaw_rad, turn_.pitch_rad, turn_.distance * factor}); }
 
 void Camera::advance(float seconds) {
   const float share = 1.0F - std::exp(-std::max(0.0F, seconds) / kEasing_s);

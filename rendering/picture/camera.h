@@ -9,6 +9,15 @@
 
 namespace palpate {
 
+// How a person has turned a camera away from where it was put: what outlives a change
+// of what is framed.
+struct CameraTurn {
+  float yaw_rad = 0.0F;
+  float pitch_rad = 0.0F;
+  float distance = 1.0F;  // factor
+  bool operator==(const CameraTurn&) const = default;
+};
+
 class Camera {
  public:
   // To see blocks that together reach `radius_m` from the middle, from so far to
@@ -17,6 +26,10 @@ class Camera {
   void orbit(float yaw_rad, float pitch_rad);
   // Factor on the distance: below 1 nearer.
   void zoom(float factor);
+  // Back to where it was put.
+  void go_home() { turn({}); }
+  CameraTurn turned() const noexcept { return turn_; }
+  void turn(const CameraTurn& turn);
   // Eases, over about 0.2 s.
   void advance(float seconds);
 
@@ -31,8 +44,11 @@ class Camera {
     float distance_m = 0.4F;
     bool operator==(const Pose&) const = default;
   };
+  void aim();  // at `framed_`, turned
   Pose now_;
   Pose wanted_;
+  Pose framed_;  // as put
+  CameraTurn turn_;
   float radius_m_ = 0.1F;
 };
 

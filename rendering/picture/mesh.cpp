@@ -12,35 +12,41 @@
 namespace palpate {
 namespace {
 
-constexpr int kAround = 80;  // steps around the block
+constexpr int kOfCorner = 14;  // steps around each of the block's corners
+constexpr int kOfSide = 10;    // points on each of its sides, between the corners
+constexpr int kAround = 4 * (kOfCorner + 1 + kOfSide);
 constexpr int kRings = 32;    // rings on its top
-constexpr int kFillet = 6;    // steps over its edge
+constexpr int kFillet = 8;    // steps over its edge
 constexpr float kCorner_m = 0.012F;
 constexpr float kEdge_m = 0.004F;
 
 using Outline = std::vector<Vertex>;  // position on the rim, normal outward, both at y = 0
 
-// Distance to a rounded rectangle of `half` size.
-float rim_distance(const glm::vec2& place, const glm::vec2& half) {
-  const glm::vec2 q = glm::abs(place) - (half - kCorner_m);
-  return glm::length(glm::max(q, 0.0F)) + std::min(std::max(q.x, q.y), 0.0F) - kCorner_m;
-}
-
+// Round corners have many points, straight sides few: as seen from the middle, from
+// the corner at +x, +z on. Points of a side lie evenly in angle.
 Outline outline(const glm::vec2& half) {
+  constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
+  const glm::vec2 core = half - kCorner_m;
   Outline points;
-  for (int i = 0; i < kAround; ++i) {
-    const float angle = 2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kAround);
-    const glm::vec2 direction(std::cos(angle), std::sin(angle));
-    float inside = 0.0F;
-    float outside = glm::length(half);
-    for (int step = 0; step < 40; ++step) {  // bisection, to less than a nanometre
-      const float middle = 0.5F * (inside + outside);
-      (rim_distance(middle * direction, half) < 0.0F ? inside : outside) = middle;
+  for (int corner = 0; corner < 4; ++corner) {
+    const float sign_x = corner == 0 || corner == 3 ? 1.0F : -1.0F;
+    const float sign_z = corner < 2 ? 1.0F : -1.0F;
+    for (int i = 0; i <= kOfCorner; ++i) {
+      const float angle = kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(kOfCorner));
+      const glm::vec3 normal(std::cos(angle), 0.0F, std::sin(angle));
+      points.push_back({glm::vec3(sign_x * core.x, 0.0F, sign_z * core.y) + kCorner_m * normal, normal});
     }
-    const glm::vec2 place = inside * direction;
-    const glm::vec2 core = half - kCorner_m;
-    const glm::vec2 normal = glm::normalize(place - glm::clamp(place, -core, core));
-    points.push_back({{place.x, 0.0F, place.y}, {normal.x, 0.0F, normal.y}});
+    // The side that follows: +z, -x, -z, +x.
+    const bool along_x = corner % 2 == 0;
+    const float away = along_x ? half.y : half.x;
+    const float reach = std::atan2(along_x ? core.x : core.y, away);
+    const float turn = kQuarter * static_cast<float>(corner + 1);
+    const glm::vec3 normal(std::cos(turn), 0.0F, std::sin(turn));
+    const glm::vec3 onward(-std::sin(turn), 0.0F, std::cos(turn));
+    for (int i = 1; i <= kOfSide; ++i) {
+      const float angle = reach * (2.0F * static_cast<float>(i) / static_cast<float>(kOfSide + 1) - 1.0F);
+      points.push_back({away * normal + away * std::tan(angle) * onward, normal});
+    }
   }
   return points;
 }

@@ -17,14 +17,14 @@ constexpr Rgb hex(unsigned value) noexcept {
           static_cast<float>(value & 255U) / 255.0F};
 }
 
-const Palette kLight{hex(0xF4F5F6), hex(0xE4E6E9), hex(0xFFFFFF), hex(0xE6E9ED), hex(0x16191D),
+const Palette kLight{hex(0xF3F3F2), hex(0xE9E8E6), hex(0xFFFFFF), hex(0xE6E9ED), hex(0x16191D),
                      hex(0x5C6670), hex(0xDDE1E5), hex(0xC9CFD6), hex(0xC4161C)};
-const Palette kDark{hex(0x14171A), hex(0x262B30), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5),
+const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5),
                     hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F)};
 
-// Samples of viridis at 0, 0.25, 0.5, 0.75, 1.
-constexpr std::array<Rgb, 5> kScale{hex(0x440154), hex(0x3B528B), hex(0x21918C), hex(0x5EC962),
-                                    hex(0xFDE725)};
+// Even steps of lightness (CIELAB L* 96, 87, 78, 69, 60), from nearly white to the
+// green of viridis: nothing is no shadow, and what is large is dark.
+constexpr std::array<Rgb, 5> kScale{hex(0xFAF6D0), hex(0xD3E59C), hex(0x93D285), hex(0x50BA85), hex(0x1FA387)};
 
 }  // namespace
 
@@ -34,6 +34,15 @@ Rgb method_colour(std::string_view method, Theme theme) {
   const std::uint32_t colour = method_rgb(method);
   if (colour != 0) return hex(colour);
   return theme == Theme::light ? Rgb(0.0F) : Rgb(1.0F);
+}
+
+Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
+  // Shares of black, where negative, or white.
+  constexpr std::array<float, 4> kShades{-0.42F, 0.45F, -0.66F, 0.25F};
+  const Rgb colour = method_colour(method, theme);
+  if (which == 0) return colour;
+  const float shade = kShades[(which - 1) % kShades.size()] * (colour == Rgb(0.0F) ? -1.0F : 1.0F);
+  return glm::mix(colour, Rgb(shade < 0.0F ? 0.0F : 1.0F), std::abs(shade));
 }
 
 Rgb error_colour(double error_over_jnd) noexcept {

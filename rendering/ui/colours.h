@@ -1,9 +1,10 @@
 // Every colour that has a meaning, once: methods, reference, JND scale, themes.
-// Sources: Okabe & Ito (2008) for the methods; viridis (van der Walt & Smith
-// 2015, CC0) for the scale.
+// Sources: Okabe & Ito (2008) for the methods; the scale ends in a green of viridis
+// (van der Walt & Smith 2015, CC0).
 // Thread guarantee: pure functions.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <string_view>
 
@@ -29,11 +30,13 @@ const Palette& palette(Theme theme) noexcept;
 // Of a fitting method (scenes/scene/method_look.h); one without a hue is black or
 // white, and so is what is not known.
 Rgb method_colour(std::string_view method, Theme theme);
+// Of the `which`-th model of one method, 0 for the first: another shade of it.
+Rgb method_colour(std::string_view method, Theme theme, std::size_t which);
 // The measured or true force.
 inline constexpr Rgb kReferenceColour{0.0F, 0.62F, 0.45F};
 
-// Error over the JND: from 0 to 1 an even scale from dark blue to yellow, above
-// it magenta, which the scale does not have.
+// Error over the JND: from 0 to 1 an even scale from nearly white to green, above it
+// magenta, which neither the scale nor any block has.
 Rgb error_colour(double error_over_jnd) noexcept;
 inline constexpr Rgb kAboveJndColour{0.93F, 0.10F, 0.55F};
 

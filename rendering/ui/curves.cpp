@@ -17,57 +17,126 @@ float larger(float so_far, float value) noexcept {
   return value > so_far || std::isnan(so_far) ? value : so_far;
 }
 
+const CurveColumn& empty_column() {
+  static const CurveColumn empty = [] {
+    CurveColumn column;
+    for (auto* values : {&column.low_N, &column.high_N, &column.low_over_jnd, &column.high_over_jnd,
+                         &column.error_over_jnd, &column.felt_over_jnd}) {
+      values->fill(kNone);
+    }
+    return column;
+  }();
+  return empty;
+}
+
 }  // namespace
 
 void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::size_t slots, double from_s,
                           double to_s, std::size_t count) {
   const double width_s = (to_s - from_s) / static_cast<double>(count);
   const double first = std::floor(from_s / width_s);
-  CurveColumn empty;
-  empty.low_N.fill(kNone);
-  empty.high_N.fill(kNone);
-  empty.error_over_jnd.fill(kNone);
-  columns_.assign(count + 2, empty);
+  std::size_t next = 0;
+  if (scroll(width_s, first, slots, count)) {
+    next = history.first_at(taken_s_);
+    while (next < history.size() && history[next].loop_time_s <= taken_s_) ++next;
+  } else {
+    columns_.assign(count + 2, empty_column());
+    for (FeltError& felt : felt_) felt.reset();
+    // What is felt at the left edge began before it.
+    next = history.first_at(first * width_s - FeltError::kSpan_s);
+  }
   for (std::size_t i = 0; i < columns_.size(); ++i)
     columns_[i].time_s = (first + static_cast<double>(i) + 0.5) * width_s;
-  highest_force_N_ = highest_error_ = 0.0F;
-  for (std::size_t i = history.first_at(first * width_s); i < history.size(); ++i) {
-    const HistoryPoint& point = history[i];
+  for (; next < history.size(); ++next) {
+    const HistoryPoint& point = history[next];
     const double place = point.loop_time_s / width_s - first;
-    if (place < 0.0) continue;
-    const auto index = static_cast<std::size_t>(place);
-    if (index >= columns_.size()) break;
-    take(point, jnd, slots, columns_[index]);
+    if (place >= static_cast<double>(columns_.size())) break;
+    if (place < 0.0) {
+      CurveColumn before = empty_column();
+      take(point, jnd, before);
+    } else {
+      take(point, jnd, columns_[static_cast<std::size_t>(place)]);
+    }
+    taken_s_ = point.loop_time_s;
   }
+  find_highest();
 }
 
-void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, std::size_t slots,
-                        CurveColumn& column) {
+// Keeps the columns that both have; false: there are none that could be kept.
+bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::size_t count) {
+  const bool same = columns_.size() == count + 2 && slots == slots_ &&
+                    std::abs(width_s - width_s_) < 1e-9 * width_s && first >= first_ &&
+                    first - first_ < static_cast<double>(columns_.size());
+  if (same) {
+    const auto gone = static_cast<std::ptrdiff_t>(first - first_);
+    std::move(columns_.begin() + gone, columns_.end(), columns_.begin());
+    std::fill(columns_.end() - gone, columns_.end(), empty_column());
+  } else {
+    taken_s_ = -std::numeric_limits<double>::infinity();
+  }
+  slots_ = slots;
+  width_s_ = width_s;
+  first_ = first;
+  return same;
+}
+
+void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
   column.trouble = std::max(column.trouble, point.trouble);
   column.contact = column.contact || point.in_contact;
-  const bool known = !std::isnan(point.reference_N);
-  const auto jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));
-  if (known) {
-    const float low_N = point.reference_N - jnd_N;
-    const float high_N = point.reference_N + jnd_N;
+  const double jnd_N = jnd.at(static_cast<double>(point.reference_N));
+  if (!std::isnan(point.reference_N)) {
+    const float low_N = point.reference_N - static_cast<float>(jnd_N);
+    const float high_N = point.reference_N + static_cast<float>(jnd_N);
     column.band_low_N = column.reference ? std::min(column.band_low_N, low_N) : low_N;
     column.band_high_N = column.reference ? std::max(column.band_high_N, high_N) : high_N;
     column.reference_N = point.reference_N;
     column.reference = true;
-    highest_force_N_ = std::max(highest_force_N_, high_N);
   }
   column.any = true;
-  for (std::size_t i = 0; i < slots; ++i) {
-    const float force_N = point.force_N[i];
-    if (std::isnan(force_N)) continue;
-    column.low_N[i] = smaller(column.low_N[i], force_N);
-    column.high_N[i] = larger(column.high_N[i], force_N);
-    highest_force_N_ = std::max(highest_force_N_, force_N);
-    if (!known || !point.in_contact) continue;
-    const float ratio = std::abs(force_N - point.reference_N) / jnd_N;
-    column.error_over_jnd[i] = larger(column.error_over_jnd[i], ratio);
-    highest_error_ = std::max(highest_error_, ratio);
+  for (std::size_t i = 0; i < slots_; ++i) {
+    if (!std::isnan(point.force_N[i])) take_model(point, i, jnd_N, column);
   }
+}
+
+void CurveColumns::take_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column) {
+  const float force_N = point.force_N[slot];
+  column.low_N[slot] = smaller(column.low_N[slot], force_N);
+  column.high_N[slot] = larger(column.high_N[slot], force_N);
+  if (std::isnan(point.reference_N)) return;
+  const double difference =
+      point.in_contact ? static_cast<double>(force_N - point.reference_N) / jnd_N : 0.0;
+  const auto felt = static_cast<float>(felt_[slot].add(point.loop_time_s, difference));
+  column.low_over_jnd[slot] = smaller(column.low_over_jnd[slot], static_cast<float>(difference));
+  column.high_over_jnd[slot] = larger(column.high_over_jnd[slot], static_cast<float>(difference));
+  column.felt_over_jnd[slot] = larger(column.felt_over_jnd[slot], felt);
+  if (!point.in_contact) return;
+  column.error_over_jnd[slot] = larger(column.error_over_jnd[slot], static_cast<float>(std::abs(difference)));
+}
+
+void CurveColumns::find_highest() {
+  highest_force_N_ = highest_error_ = highest_felt_ = 0.0F;
+  for (const CurveColumn& column : columns_) {
+    if (column.reference) highest_force_N_ = std::max(highest_force_N_, column.band_high_N);
+    for (std::size_t i = 0; i < slots_; ++i) {
+      // A comparison with NaN is false.
+      if (column.high_N[i] > highest_force_N_) highest_force_N_ = column.high_N[i];
+      if (column.error_over_jnd[i] > highest_error_) highest_error_ = column.error_over_jnd[i];
+      if (column.felt_over_jnd[i] > highest_felt_) highest_felt_ = column.felt_over_jnd[i];
+    }
+  }
+}
+
+const CurveColumn* CurveColumns::at(double time_s) const noexcept {
+  if (columns_.empty()) return nullptr;
+  const double place = time_s / width_s_ - first_;
+  if (!(place >= 0.0) || place >= static_cast<double>(columns_.size())) return nullptr;
+  const CurveColumn& column = columns_[static_cast<std::size_t>(place)];
+  return column.any ? &column : nullptr;
+}
+
+const CurveColumn* CurveColumns::last() const noexcept {
+  const auto found = std::find_if(columns_.rbegin(), columns_.rend(), [](const CurveColumn& column) { return column.any; });
+  return found != columns_.rend() ? &*found : nullptr;
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
+#include "scenes/live/felt_error.h"
 #include "scenes/live/force_history.h"
 
 namespace palpate {
@@ -22,29 +23,52 @@ struct CurveColumn {
   float reference_N = 0.0F;                 // the last one
   float band_low_N = 0.0F;                  // reference -/+ JND, outermost
   float band_high_N = 0.0F;
-  std::array<float, kMaxModels> low_N{};  // NaN: no force
+  // Of each model; NaN: no force, or nothing to compare it with.
+  std::array<float, kMaxModels> low_N{};
   std::array<float, kMaxModels> high_N{};
-  std::array<float, kMaxModels> error_over_jnd{};  // largest, in contact; NaN: none
+  // (model - reference) / JND, signed; 0 out of contact.
+  std::array<float, kMaxModels> low_over_jnd{};
+  std::array<float, kMaxModels> high_over_jnd{};
+  std::array<float, kMaxModels> error_over_jnd{};  // the largest of a single tick, in contact
+  std::array<float, kMaxModels> felt_over_jnd{};   // the largest that a hand feels, see FeltError
 };
 
 class CurveColumns {
  public:
   // The ticks from `from_s` to `to_s` in `count` columns. The columns' borders are
-  // whole multiples of their width, so that curves scroll without shimmering.
+  // whole multiples of their width, so that curves scroll without shimmering. What was
+  // gathered before is kept as long as the columns stay the same: then a call costs as
+  // many ticks as are new.
   void gather(const ForceHistory& history, const JndLine& jnd, std::size_t slots, double from_s, double to_s,
               std::size_t count);
+  // For when slots change their meaning.
+  void forget() { columns_.clear(); }
 
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
+  // The column of a time; null: none, or one without ticks.
+  const CurveColumn* at(double time_s) const noexcept;
+  // The newest that has ticks; null: none has.
+  const CurveColumn* last() const noexcept;
   // Over all columns and slots; 0 without.
   float highest_force_N() const noexcept { return highest_force_N_; }
   float highest_error_over_jnd() const noexcept { return highest_error_; }
+  float highest_felt_over_jnd() const noexcept { return highest_felt_; }
 
  private:
-  void take(const HistoryPoint& point, const JndLine& jnd, std::size_t slots, CurveColumn& column);
+  bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
+  void take(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
+  void take_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column);
+  void find_highest();
 
   std::vector<CurveColumn> columns_;
+  std::array<FeltError, kMaxModels> felt_;
+  std::size_t slots_ = 0;
+  double width_s_ = 0.0;
+  double first_ = 0.0;    // number of the first column: its border, in widths
+  double taken_s_ = 0.0;  // loop time of the last tick that was taken
   float highest_force_N_ = 0.0F;
   float highest_error_ = 0.0F;
+  float highest_felt_ = 0.0F;
 };
 
 }  // namespace palpate

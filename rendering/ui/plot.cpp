@@ -25,56 +25,86 @@ double round_up(double value) noexcept {
   return 10.0 * decade;
 }
 
-Plot::Plot(const UiStyle& style, const ImVec2& size, const Range& x, const Range& y, const char* x_unit,
-           const char* y_unit, bool x_numbers)
-    : style_(style), list_(ImGui::GetWindowDrawList()), x_(x), y_(y) {
+std::vector<float> spread_labels(const std::vector<float>& wanted, float gap, float low, float high) {
+  std::vector<std::size_t> order(wanted.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return wanted[a] < wanted[b]; });
+  std::vector<float> places(wanted.size());
+  float next = low;
+  for (const std::size_t i : order) {
+    places[i] = std::max(next, std::min(wanted[i], high));
+    next = places[i] + gap;
+  }
+  // What was pushed out below goes back up, and pushes the others.
+  float room = high;
+  for (std::size_t k = order.size(); k-- > 0;) {
+    places[order[k]] = std::min(places[order[k]], room);
+    room = places[order[k]] - gap;
+  }
+  return places;
+}
+
+Plot::Plot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes)
+    : style_(style), list_(ImGui::GetWindowDrawList()), axes_(axes) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetFontSize();
   low_ = {at.x + 2.6F * line, at.y + 0.45F * line};
-  high_ = {at.x + size.x - 0.6F * line, at.y + size.y - (x_numbers ? 1.35F : 0.45F) * line};
+  high_ = {at.x + size.x - axes.right_room * line, at.y + size.y - (axes.x_numbers ? 1.35F : 0.45F) * line};
   ImGui::Dummy(size);
-  draw_axes(x_unit, y_unit, x_numbers);
+  draw_y_axis();
+  draw_x_axis();
   list_->PushClipRect(low_, high_, true);
 }
 
 Plot::~Plot() { list_->PopClipRect(); }
 
 float Plot::x_px(double x) const noexcept {
-  return low_.x + static_cast<float>((x - x_.from) / (x_.to - x_.from)) * (high_.x - low_.x);
+  return low_.x + static_cast<float>((x - axes_.x.from) / (axes_.x.to - axes_.x.from)) * (high_.x - low_.x);
 }
 
 float Plot::y_px(double y) const noexcept {
-  return high_.y - static_cast<float>((y - y_.from) / (y_.to - y_.from)) * (high_.y - low_.y);
+  return high_.y - static_cast<float>((y - axes_.y.from) / (axes_.y.to - axes_.y.from)) * (high_.y - low_.y);
 }
 
-bool Plot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_); }
+double Plot::x_at(float px) const noexcept {
+  return axes_.x.from + static_cast<double>((px - low_.x) / (high_.x - low_.x)) * (axes_.x.to - axes_.x.from);
+}
 
-void Plot::draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) const {
-  const Palette& p = style_.colours();
+bool Plot::hovered() const noexcept {
+  return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered();
+}
+
+void Plot::draw_y_axis() const {
+  const Range& y_range = axes_.y;
   const float line = ImGui::GetFontSize();
-  const ImU32 grid = ink(p.grid);
-  const ImU32 words = ink(p.quiet);
   char text[48];
   const int rows = std::max(1, static_cast<int>((high_.y - low_.y) / (1.7F * line)));
-  const double y_step = tick_step(y_.to - y_.from, rows);
-  for (double y = std::ceil(y_.from / y_step - 1e-9) * y_step; y <= y_.to + 1e-9 * y_step; y += y_step) {
-    list_->AddLine({low_.x, std::round(y_px(y))}, {high_.x, std::round(y_px(y))}, grid);
-    const bool last = y + y_step > y_.to + 1e-9 * y_step;
+  const double y_step = tick_step(y_range.to - y_range.from, rows);
+  for (double y = std::ceil(y_range.from / y_step - 1e-9) * y_step; y <= y_range.to + 1e-9 * y_step; y += y_step) {
+    list_->AddLine({low_.x, std::round(y_px(y))}, {high_.x, std::round(y_px(y))}, ink(style_.colours().grid));
+    const bool last = y + y_step > y_range.to + 1e-9 * y_step;
     std::snprintf(text, sizeof text, "%g%s%s", std::abs(y) < 1e-9 ? 0.0 : y,
-                  last && *y_unit != '\0' ? " " : "", last ? y_unit : "");
+                  last && *axes_.y_unit != '\0' ? " " : "", last ? axes_.y_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
-    list_->AddText({low_.x - size.x - 0.3F * line, y_px(y) - 0.55F * line}, words, text);
+    list_->AddText({low_.x - size.x - 0.3F * line, y_px(y) - 0.55F * line}, ink(style_.colours().quiet), text);
   }
-  const double x_step = tick_step(x_.to - x_.from, std::max(1, static_cast<int>(width() / (4.0F * line))));
-  for (double x = std::ceil(x_.from / x_step - 1e-9) * x_step; x <= x_.to + 1e-9 * x_step; x += x_step) {
-    list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, grid);
-    if (!x_numbers) continue;
-    const bool last = x + x_step > x_.to + 1e-9 * x_step;
-    std::snprintf(text, sizeof text, "%g%s%s", std::abs(x) < 1e-9 ? 0.0 : x, last ? " " : "",
-                  last ? x_unit : "");
+}
+
+void Plot::draw_x_axis() const {
+  const Range& x_range = axes_.x;
+  const float line = ImGui::GetFontSize();
+  char text[48];
+  const int columns = std::max(1, static_cast<int>(width() / (4.0F * line)));
+  const double x_step = tick_step(x_range.to - x_range.from, columns);
+  for (double x = std::ceil(x_range.from / x_step - 1e-9) * x_step; x <= x_range.to + 1e-9 * x_step; x += x_step) {
+    list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, ink(style_.colours().grid));
+    if (!axes_.x_numbers) continue;
+    const bool last = x + x_step > x_range.to + 1e-9 * x_step;
+    std::snprintf(text, sizeof text, "%.7g%s%s", std::abs(x) < 1e-9 ? 0.0 : x, last ? " " : "",
+                  last ? axes_.x_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
-    const float at = std::min(x_px(x) - 0.5F * size.x, high_.x + 0.6F * line - size.x);
-    list_->AddText({at, high_.y + 0.15F * line}, words, text);
+    const float at = std::clamp(x_px(x) - 0.5F * size.x, low_.x - 1.5F * line, high_.x + 0.6F * line - size.x);
+    list_->AddText({at, high_.y + 0.15F * line}, ink(style_.colours().quiet), text);
   }
 }
 

@@ -21,12 +21,22 @@ double tick_step(double span, int most) noexcept;
 // The next such number of "1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten" at or above.
 double round_up(double value) noexcept;
 
+// Where labels of height `gap` go that want to stand at `wanted`: in the same order, none
+// over another, between `low` and `high` as long as there is room.
+std::vector<float> spread_labels(const std::vector<float>& wanted, float gap, float low, float high);
+
+struct PlotAxes {
+  Range x, y;
+  const char* x_unit = "";  // these end the last label
+  const char* y_unit = "";
+  bool x_numbers = false;    // whether to label the x axis
+  float right_room = 0.6F;   // for labels beside the frame, in heights of a line
+};
+
 class Plot {
  public:
   // Takes `size` at the cursor and draws frame, grid and numbers.
-  // `x_numbers`: whether to label the x axis; `x_unit`, `y_unit` end the last label.
-  Plot(const UiStyle& style, const ImVec2& size, const Range& x, const Range& y, const char* x_unit,
-       const char* y_unit, bool x_numbers);
+  Plot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes);
   // Ends the clipping.
   ~Plot();
   Plot(const Plot&) = delete;
@@ -34,6 +44,7 @@ class Plot {
 
   float x_px(double x) const noexcept;
   float y_px(double y) const noexcept;
+  double x_at(float px) const noexcept;
   float left() const noexcept { return low_.x; }
   float right() const noexcept { return high_.x; }
   float top() const noexcept { return low_.y; }
@@ -50,12 +61,13 @@ class Plot {
   void caption(const std::string& text, float x, float y, ImU32 colour) const;
 
  private:
-  void draw_axes(const char* x_unit, const char* y_unit, bool x_numbers) const;
+  void draw_y_axis() const;
+  void draw_x_axis() const;
 
   const UiStyle& style_;
   ImDrawList* list_;
   ImVec2 low_, high_;
-  Range x_, y_;
+  PlotAxes axes_;
 };
 
 }  // namespace palpate

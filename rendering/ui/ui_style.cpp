@@ -14,11 +14,12 @@ namespace {
 constexpr float kBody_px = 18.0F;
 constexpr float kHeading_px = 28.0F;
 constexpr float kBig_px = 54.0F;
-constexpr float kDesignHeight_px = 1080.0F;
+constexpr float kDesignHeight = 1080.0F;
+// In a tall window the width decides.
+constexpr float kDesignWidth = 1500.0F;
 // Smaller is not legible, whatever the window.
 constexpr float kSmallestScale = 0.78F;
 constexpr float kLargestScale = 4.0F;
-constexpr float kKiosk = 1.5F;
 // The scale goes in steps, so that dragging a corner does not rebuild fonts in
 // every frame.
 constexpr float kScaleStep = 0.04F;
@@ -50,14 +51,19 @@ std::string find_font() {
   return {};
 }
 
-void UiStyle::update(int height_px, float content_scale, bool large, Theme theme) {
-  const float by_height = static_cast<float>(height_px) / kDesignHeight_px;
-  float wanted =
-      std::clamp(by_height, kSmallestScale * content_scale, kLargestScale) * (large ? kKiosk : 1.0F);
-  wanted = kScaleStep * std::round(wanted / kScaleStep);
-  if (wanted != scale_) {
+float ui_scale(const UiSize& size, float larger) noexcept {
+  const float unit = size.content_scale / size.pixels_per_unit;
+  const float fit = std::min(size.height / kDesignHeight, size.width / kDesignWidth) / unit;
+  const float scale = std::clamp(fit, kSmallestScale, kLargestScale) * larger;
+  return unit * kScaleStep * std::round(scale / kScaleStep);
+}
+
+void UiStyle::update(const UiSize& size, float larger, Theme theme) {
+  const float wanted = ui_scale(size, larger);
+  if (wanted != scale_ || size.pixels_per_unit != pixels_per_unit_) {
     scale_ = wanted;
-    build_fonts();
+    pixels_per_unit_ = size.pixels_per_unit;
+    build_fonts(pixels_per_unit_);
     coloured_ = false;
   }
   if (theme != theme_ || !coloured_) {
@@ -66,13 +72,19 @@ void UiStyle::update(int height_px, float content_scale, bool large, Theme theme
   }
 }
 
-void UiStyle::build_fonts() {
+// In the framebuffer's pixels, so that they are sharp, and drawn in the window's units.
+void UiStyle::build_fonts(float pixels_per_unit) {
   ImGuiIO& io = ImGui::GetIO();
   const std::string path = find_font();
   io.Fonts->Clear();
-  fonts_.body = add_font(path, std::round(kBody_px * scale_));
-  fonts_.heading = add_font(path, std::round(kHeading_px * scale_));
-  fonts_.big = add_font(path, std::round(kBig_px * scale_));
+  const auto add = [&](float size_px) {
+    ImFont* font = add_font(path, std::round(size_px * scale_ * pixels_per_unit));
+    font->Scale = 1.0F / pixels_per_unit;
+    return font;
+  };
+  fonts_.body = add(kBody_px);
+  fonts_.heading = add(kHeading_px);
+  fonts_.big = add(kBig_px);
   io.FontDefault = fonts_.body;
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();

@@ -102,12 +102,6 @@ std::string check_relaxation(const std::string& text) {
   return "found \"" + text + "\", expected scene, auto, or one to six times in seconds such as 0.17,1.27";
 }
 
-std::string check_features(const std::string& text) {
-  if (text == "auto" || text == "scene") return "";
-  const auto list = parse_feature_list(text);
-  return list ? "" : list.error().message + "; or auto, or scene";
-}
-
 std::string check_grid(const std::string& text) {
   return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
 }
@@ -304,6 +298,17 @@ Status list_methods() {
   return {};
 }
 
+// A grid is asked for before anybody knows how many features the recording supports:
+// the first size is the depth's, sizes beyond the features are left out, and the last
+// one serves every feature that has none.
+void fit_grid_to(std::vector<int>& grid, std::size_t features, std::vector<std::string>& notes) {
+  if (grid.empty() || grid.size() == features) return;
+  grid.resize(features, grid.back());
+  std::string sizes;
+  for (const int size : grid) sizes += (sizes.empty() ? "" : "x") + std::to_string(size);
+  notes.push_back("the recording supports " + std::to_string(features) + " features; the grid is " + sizes);
+}
+
 Status run_fit(const FitArguments& arguments) {
   if (arguments.list_methods) return list_methods();
   const auto scene = load_scene(arguments.scene);
@@ -311,11 +316,11 @@ Status run_fit(const FitArguments& arguments) {
   // A name that cannot be written is told now and not after the fit.
   if (const auto trial = AtomicFile::create(arguments.out, arguments.force); !trial) return trial.error();
   const auto start = std::chrono::steady_clock::now();
-  ProgressLine line("fitting " + arguments.method);
+  std::optional<ProgressLine> line("fitting " + arguments.method);
   FitControl prepare;
-  prepare.progress = [&](double fraction) { return line.update(fraction); };
+  prepare.progress = [&](double fraction) { return line->update(fraction); };
   FitControl method;
-  method.progress = [&](double fraction) { return line.update(0.3 + 0.7 * fraction); };
+  method.progress = [&](double fraction) { return line->update(0.3 + 0.7 * fraction); };
 
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
@@ -325,12 +330,18 @@ Status run_fit(const FitArguments& arguments) {
     inputs.push_back({file.path, file.whole ? std::make_shared<const Recording>(std::move(file.recording)) : nullptr});
   }
   MotionSource source(std::move(inputs));
-  const auto prepared = prepare_training(source, training_request(arguments, *scene), prepare);
+  const TrainingRequest training = training_request(arguments, *scene);
+  const auto prepared = prepare_training(source, training, prepare);
   if (!prepared) return prepared.error();
-  const auto fit = fit_method(*prepared, method_request(arguments), method);
+  MethodRequest asked = method_request(arguments);
+  std::vector<std::string> notes;
+  if (training.choice == FeatureChoice::automatic) fit_grid_to(asked.grid, prepared->common.features.size(), notes);
+  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
+  const auto fit = fit_method(*prepared, asked, method);
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;
+  line.reset();  // what follows goes onto a line of its own
   if (arguments.json) {
     print_json(*fit, *prepared, arguments, seconds);
   } else {

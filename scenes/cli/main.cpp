@@ -25,6 +25,7 @@ void add_all_verbs(CLI::App& app, Verbs& verbs) {
   add_check(app, verbs);
   add_fit(app, verbs);
   add_replay(app, verbs);
+  add_export(app, verbs);
   add_report(app, verbs);
   add_scenes(app, verbs);
   add_devices(app, verbs);

@@ -33,6 +33,7 @@ struct StudyOptions {
   std::string out;
   bool force = false;
   std::vector<std::string> files;  // analyse
+  bool rehearsals = false;         // also answers that nobody could feel
   std::string procedure = "constant";
   int subjects = 12;
   std::uint64_t seed = 1;
@@ -136,8 +137,15 @@ Status run_analyse(const StudyOptions& options) {
   for (const std::string& path : options.files) {
     Result<StudyData> data = read_study(path);
     if (!data) return data.error();
+    const std::size_t left_out = options.rehearsals ? 0 : remove_rehearsals(*data);
+    if (left_out > 0) {
+      std::fprintf(stderr, "%s: %zu answers left out, given without a force device (--rehearsals takes them)\n",
+                   path.c_str(), left_out);
+      if (data->records.empty()) continue;
+    }
     files.push_back(std::move(*data));
   }
+  if (files.empty()) return Error{"all answers are rehearsals, given without a force device; pass --rehearsals to take them"};
   return analyse_files(files, options);
 }
 
@@ -151,7 +159,10 @@ SubjectTraits drawn_subject(const StudyOptions& options, RandomStream& random) {
 
 std::string file_text(const StudyHeader& header, const std::vector<StudyRecord>& records) {
   std::string text = study_header_text(header) + "# consent accepted, simulated\n" + study_columns(header.procedure) + "\n";
-  for (const StudyRecord& record : records) text += study_row(record, header.procedure);
+  for (StudyRecord record : records) {
+    record.device = "simulated";
+    text += study_row(record, header.procedure);
+  }
   return text;
 }
 
@@ -241,6 +252,7 @@ void add_analyse(CLI::App& study, Verbs& verbs) {
   auto options = std::make_shared<StudyOptions>();
   CLI::App* verb = study.add_subcommand("analyse", "From the files of the subjects to the JND line, its file and figure, or to who told strokes apart");
   verb->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
+  verb->add_flag("--rehearsals", options->rehearsals, "Also answers that were given without a force device");
   add_output_options(verb, *options);
   verbs.emplace_back(verb, [options] { return run_analyse(*options); });
 }

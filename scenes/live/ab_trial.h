@@ -45,6 +45,9 @@ class AbTrial {
   State state() const noexcept { return state_; }
   // The slot under key 1 or 2, to put into the hand; only in a trial.
   std::size_t slot_under(int key) const noexcept { return pair_[key == 2 ? 1 : 0].slot; }
+  const TrialModel& under(int key) const noexcept { return pair_[key == 2 ? 1 : 0]; }
+  // Whether the block was pressed at all in this trial.
+  bool touched() const noexcept { return samples_ > 0; }
   // A key was pressed: remembered while exploring. Other numbers are ignored.
   void press(int key) noexcept;
   // The key pressed last; 1 at the beginning.

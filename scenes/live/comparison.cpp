@@ -17,7 +17,10 @@ void Comparison::use_reference(ReferenceKind kind) {
 }
 
 void Comparison::forget_errors() {
-  for (std::size_t i = 0; i < slots_.size(); ++i) slots_.view(i).errors = {};
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    slots_.view(i).errors = {};
+    slots_.view(i).samples_out_of_domain = 0;
+  }
 }
 
 void Comparison::fit_slots() {
@@ -52,23 +55,28 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
       add_to_slot(i, set->slots[i], snapshot, reference_N);
     }
   }
-  for (Figures& figures : figures_) figures.dent.step(snapshot.tick.depth_m, figures.error_over_jnd, step_s);
+  for (Figures& figures : figures_) figures.dent.step(snapshot.tick.depth_m, figures.felt_over_jnd, step_s);
   history_.append(point);
 }
 
 void Comparison::add_to_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot,
                              double reference_N) {
   Figures& figures = figures_[slot];
-  figures.error_over_jnd = 0.0;
   const bool counts = seen_out_of_contact_ && snapshot.samples > 0 && snapshot.tick.in_contact &&
                       (snapshot.tick.fault == TickFault::none || snapshot.tick.fault == TickFault::force_not_finite);
-  if (!counts) return;
-  figures.time.add(snapshot.evaluation_ns[index]);
-  if (!std::isfinite(reference_N)) return;
+  if (counts) figures.time.add(snapshot.evaluation_ns[index]);
+  const bool compared = counts && std::isfinite(reference_N);
   const double force_N = snapshot.tick.force_N[index];
-  const bool out_of_domain = (snapshot.tick.out_of_domain_mask >> index & 1U) != 0;
-  figures.error_over_jnd = jnd_.error_over_jnd(force_N, reference_N);
-  slots_.view(slot).errors.add(force_N, reference_N, out_of_domain, jnd_);
+  const double difference = compared ? (force_N - reference_N) / jnd_.at(reference_N) : 0.0;
+  figures.felt_over_jnd = figures.felt.add(snapshot.loop_time_s, difference);
+  if (!compared) return;
+  SlotView& view = slots_.view(slot);
+  // Where one model knows nothing, none is judged.
+  if (snapshot.tick.out_of_domain_mask != 0) {
+    ++view.samples_out_of_domain;
+  } else {
+    view.errors.add(force_N, reference_N, false, jnd_);
+  }
 }
 
 void Comparison::show(const LoopSnapshot& newest) {

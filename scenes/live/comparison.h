@@ -16,6 +16,7 @@
 #include "scenes/live/dent.h"
 #include "scenes/live/evaluation_time.h"
 #include "scenes/live/fault_log.h"
+#include "scenes/live/felt_error.h"
 #include "scenes/live/force_history.h"
 #include "scenes/live/model_slots.h"
 
@@ -54,7 +55,8 @@ class Comparison {
   struct Figures {
     EvaluationTime time;
     Dent dent;
-    double error_over_jnd = 0.0;  // in the last snapshot; 0 without a comparison
+    FeltError felt;
+    double felt_over_jnd = 0.0;  // in the last snapshot; 0 without a comparison
   };
   // `index`: the slot's model in the set that made the snapshot.
   void add_to_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot, double reference_N);

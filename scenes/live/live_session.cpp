@@ -39,7 +39,9 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   Result<Scene> scene = load_scene(request.scene);
   if (!scene) return scene.error();
-  const Result<std::vector<SlotPlan>> plans = plan_slots(*scene, request.models, request.position_only);
+  const LineUp* line_up = request.models.empty() && scene->material ? find_line_up(request.line_up) : nullptr;
+  const Result<std::vector<SlotPlan>> plans =
+      plan_slots(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
   if (!plans) return plans.error();
   DeviceRequest device_request;
   device_request.seed = request.seed + 1;  // other gestures than those of the training recording
@@ -49,6 +51,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   Result<std::unique_ptr<Device>> device = open_device(request.device, device_request);
   if (!device) return device.error();
   std::unique_ptr<LiveSession> session(new LiveSession(request, std::move(*scene), std::move(*device)));
+  if (line_up == nullptr) session->request_.line_up.clear();
   if (const Status status = session->begin(*plans); !status) return status.error();
   return session;
 }
@@ -101,8 +104,28 @@ void LiveSession::update_models() {
   const std::vector<std::size_t> ready = models_.update();
   if (ready.empty()) return;
   for (const std::size_t slot : ready) comparison_.begin_slot(slot);
+  publish();
+}
+
+// All begin to be judged together: the same samples for each.
+void LiveSession::publish() {
+  comparison_.forget_errors();
   loop_->publish_models(models_.make_set(device_->sensor(), truth_));
   send_controls();
+}
+
+void LiveSession::remove(std::size_t slot) {
+  models_.remove(slot);
+  publish();
+}
+
+void LiveSession::use_line_up(const std::string& name) {
+  const LineUp* line_up = find_line_up(name);
+  if (line_up == nullptr || !scene_.material) return;
+  const auto plans = plan_slots(scene_, line_up->models, false);
+  if (!plans) return;
+  request_.line_up = name;
+  if (models_.use_plans(*plans)) publish();
 }
 
 void LiveSession::read_snapshots() {
@@ -121,12 +144,13 @@ void LiveSession::check_faults() {
   save_fault_ticks();
 }
 
-// The last second before a fault, in a file beside wherever the program runs.
+// The last second before a fault, in a file.
 void LiveSession::save_fault_ticks() {
   const auto ticks = loop_->take_fault_ticks();
   if (!ticks || fault_files_ == kMostFaultFiles) return;
   ++fault_files_;
-  const std::string path = local_time_text("fault-%Y%m%d-%H%M%S-") + std::to_string(fault_files_) + ".csv";
+  const std::string path = (request_.data_folder.empty() ? "" : request_.data_folder + "/") +
+                           local_time_text("fault-%Y%m%d-%H%M%S-") + std::to_string(fault_files_) + ".csv";
   const Status status = write_fault_file(path, *ticks);
   notices_.add(status ? "the last second before the fault is in " + path : status.error().message, !status);
 }
@@ -161,7 +185,7 @@ void LiveSession::use_reference(ReferenceKind kind) {
 std::string LiveSession::reference_words() const {
   switch (comparison_.reference()) {
     case ReferenceKind::measured: return "force in the recording";
-    case ReferenceKind::truth: return "true force of the virtual " + *scene_.material;
+    case ReferenceKind::truth: return "true force of the virtual material, " + *scene_.material;
     case ReferenceKind::direct:
       return has_reference(ReferenceKind::direct) ? "direct interpolant" : "no reference";
   }

@@ -31,10 +31,12 @@ class HidBus;
 struct SessionRequest {
   std::string scene = "silicone_block";
   std::string device = "auto";
-  std::vector<std::string> models;  // methods or model files; empty: the scene's default
+  std::vector<std::string> models;  // methods or model files; empty: the line-up
+  std::string line_up;              // of line_ups(); empty, or not of the scene's: the scene's default
   std::uint64_t seed = 1;           // of the hand, the training recording, the fits
   bool position_only = false;  // one more slot: a model that knows the depth alone
   bool realtime = true;
+  std::string data_folder;  // for files about faults; empty: where the program runs
   HidBus* bus = nullptr;  // outlives the session; null: the machine's own
 };
 
@@ -63,6 +65,14 @@ class LiveSession {
   const ModelSlots& models() const noexcept { return models_; }
   void select(std::size_t slot);  // makes its model the active one; ignored unless ready
   void load_file(const std::string& path) { models_.load_file(path); }
+  void fit_recording(const std::string& path) { models_.fit_recording(path); }
+  void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
+  void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
+  void remove(std::size_t slot);
+  // The line-up that is shown; empty: models that were asked for one by one. Ignored in
+  // a scene without a material.
+  const std::string& line_up() const noexcept { return request_.line_up; }
+  void use_line_up(const std::string& name);
 
   // What they are compared with, and how that went.
   const Comparison& comparison() const noexcept { return comparison_; }
@@ -81,6 +91,7 @@ class LiveSession {
   // empty when nothing; the tool is at its rest position.
   const std::string& device_name() const noexcept { return device_->name(); }
   std::string device_words() const;
+  bool renders_force() const noexcept { return device_->renders_force(); }
   void start_zeroing() { device_->start_zeroing(); }
   // What it can be asked for beside: null when it cannot.
   ToolInput* mouse() const noexcept { return device_->mouse(); }
@@ -109,6 +120,7 @@ class LiveSession {
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
   Status begin(const std::vector<SlotPlan>& plans);
   void update_models();
+  void publish();
   void read_snapshots();
   void check_faults();
   void save_fault_ticks();

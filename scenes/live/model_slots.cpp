@@ -1,6 +1,7 @@
 #include "scenes/live/model_slots.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "models/model/fitted_model.h"
@@ -18,7 +19,18 @@ constexpr std::size_t kNoSlot = static_cast<std::size_t>(-1);
 struct ModelSlots::Slot {
   SlotView view;
   SlotPlan plan;
+  int asked_centres = 0;  // of the plan, before it was changed by hand
   std::shared_ptr<const FittedModel> model;  // null until ready
+  bool hidden = false;
+  bool removed = false;
+  bool wanted = false;  // becomes the active one when it is ready
+
+  bool takes_part() const { return model != nullptr && !hidden; }
+  bool is(const SlotPlan& other) const {
+    SlotPlan asked = plan;
+    asked.centres = asked_centres;
+    return !removed && asked.same_as(other);
+  }
 };
 
 std::optional<std::size_t> PublishedSet::place_of(std::size_t slot) const noexcept {
@@ -37,7 +49,9 @@ Status ModelSlots::start(const std::vector<SlotPlan>& plans) {
     auto slot = std::make_unique<Slot>();
     slot->view.name = distinct_name(plan_name(plan), nullptr);
     slot->view.method = plan_method(plan);
+    slot->view.takes_centres = plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres);
     slot->plan = plan;
+    slot->asked_centres = plan.centres;
     slots_.push_back(std::move(slot));
     worker_->add_job(slots_.size() - 1, plan);
   }
@@ -51,9 +65,13 @@ std::vector<std::size_t> ModelSlots::update() {
   show_progress();
   std::vector<std::size_t> ready;
   for (FinishedModel& finished : worker_->take_finished()) {
-    --outstanding_;
     const bool file = finished.job_id == kNoSlot;
+    // Asked for again while it was made: the newer one counts.
+    const bool old = !file && slots_[finished.job_id]->view.refitting &&
+                     finished.plan.centres != slots_[finished.job_id]->plan.centres;
+    if (!old) --outstanding_;
     const bool joined = file ? add_file(finished) : join(finished.job_id, finished);
+    if (old) slots_[finished.job_id]->view.refitting = true;
     if (joined) ready.push_back(file ? slots_.size() - 1 : finished.job_id);
   }
   return ready;
@@ -82,25 +100,138 @@ bool ModelSlots::add_file(FinishedModel& finished) {
 
 bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
   Slot& slot = *slots_[index];
+  slot.view.refitting = false;
   if (finished.model == nullptr) {
+    notices_.add(slot.view.name + ": " + finished.problem, true);
+    if (slot.model != nullptr) return false;  // the old one stays
     slot.view.state = SlotState::failed;
     slot.view.problem = finished.problem;
-    notices_.add(slot.view.name + ": " + finished.problem, true);
     return false;
   }
-  const bool first = std::none_of(slots_.begin(), slots_.end(),
-                                  [](const auto& other) { return other->view.state == SlotState::ready; });
+  const bool first = std::none_of(slots_.begin(), slots_.end(), [](const auto& other) { return other->takes_part(); });
   slot.model = finished.model;
-  slot.view.state = SlotState::ready;
+  slot.view.state = slot.hidden ? SlotState::hidden : SlotState::ready;
   slot.view.progress = 1.0;
   slot.view.centres = slot.model->centre_count();
   if (slot.plan.origin != ModelOrigin::position) {
     slot.view.method = slot.model->method();
-    slot.view.name = distinct_name(slot.model->name(), &slot);
+    std::string name = slot.plan.origin == ModelOrigin::recording ? plan_name(slot.plan) : slot.model->name();
+    if (slot.plan.paper) name += kPaperMark;
+    slot.view.name = distinct_name(name, &slot);
   }
-  if (!direct_ && slot.view.method == "direct") direct_ = index;
-  if (first || (index == 0 && !user_chose_)) selected_ = index;
+  if (!direct_ && slot.view.method == "direct" && !slot.plan.paper) direct_ = index;
+  if (slot.hidden) return true;
+  if (first || slot.wanted || (index == 0 && !user_chose_)) selected_ = index;
+  slot.wanted = false;
   return true;
+}
+
+bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
+  for (const auto& slot : slots_) {
+    const bool own = slot->plan.origin == ModelOrigin::file || slot->plan.origin == ModelOrigin::recording;
+    slot->hidden = slot->removed || !own;
+  }
+  std::optional<std::size_t> first;
+  for (const SlotPlan& plan : plans) {
+    const auto same = std::find_if(slots_.begin(), slots_.end(),
+                                   [&](const auto& slot) { return slot->is(plan); });
+    auto index = static_cast<std::size_t>(same - slots_.begin());
+    if (same == slots_.end()) {
+      if (!has_room("show " + plan_name(plan))) continue;
+      slots_.push_back(std::make_unique<Slot>());
+      Slot& slot = *slots_.back();
+      slot.plan = plan;
+      slot.asked_centres = plan.centres;
+      slot.view.name = distinct_name(plan_name(plan), nullptr);
+      slot.view.method = plan_method(plan);
+      slot.view.takes_centres = plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres);
+      index = slots_.size() - 1;
+      ++outstanding_;
+      worker_->add_job(index, plan);
+    }
+    slots_[index]->hidden = false;
+    if (!first) first = index;
+  }
+  for (const auto& slot : slots_) {
+    if (slot->hidden) {
+      slot->view.state = SlotState::hidden;
+    } else if (slot->view.state == SlotState::hidden) {
+      slot->view.state = slot->model != nullptr ? SlotState::ready : SlotState::waiting;
+    }
+  }
+  if (slots_[selected_]->hidden && first) selected_ = *first;
+  select_what_is_there();
+  return true;
+}
+
+// The active model must be one that takes part, as soon as there is one.
+void ModelSlots::select_what_is_there() {
+  if (slots_.empty() || slots_[selected_]->takes_part()) return;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!slots_[i]->takes_part()) continue;
+    selected_ = i;
+    return;
+  }
+}
+
+void ModelSlots::remove(std::size_t index) {
+  if (index >= slots_.size()) return;
+  Slot& slot = *slots_[index];
+  const auto others = std::count_if(slots_.begin(), slots_.end(),
+                                    [&](const auto& other) { return other.get() != &slot && other->takes_part(); });
+  if (others == 0) {
+    notices_.add("the last model stays: there must be one to press", false);
+    return;
+  }
+  slot.removed = slot.hidden = true;
+  slot.view.state = SlotState::hidden;
+  select_what_is_there();
+}
+
+void ModelSlots::rename(std::size_t slot, const std::string& name) {
+  if (slot < slots_.size() && !name.empty()) slots_[slot]->view.name = distinct_name(name, slots_[slot].get());
+}
+
+void ModelSlots::refit(std::size_t index, int centres) {
+  if (index >= slots_.size() || !slots_[index]->view.takes_centres || centres < 1) return;
+  Slot& slot = *slots_[index];
+  if (slot.model == nullptr || slot.plan.centres == centres) return;
+  slot.plan.centres = centres;
+  if (!slot.view.refitting) ++outstanding_;
+  slot.view.refitting = true;
+  worker_->add_job(index, slot.plan);
+}
+
+void ModelSlots::fit_recording(const std::string& path) {
+  if (!has_room("fit " + path)) return;
+  slots_.push_back(std::make_unique<Slot>());
+  Slot& slot = *slots_.back();
+  slot.plan.origin = ModelOrigin::recording;
+  slot.plan.path = path;
+  slot.view.name = distinct_name(plan_name(slot.plan), &slot);
+  slot.view.method = plan_method(slot.plan);
+  slot.wanted = true;
+  ++outstanding_;
+  worker_->add_job(slots_.size() - 1, slot.plan);
+}
+
+double ModelSlots::trained_depth_m() const noexcept {
+  double depth_m = std::numeric_limits<double>::infinity();
+  for (const auto& slot : slots_) {
+    if (!slot->takes_part()) continue;
+    const ModelData& data = slot->model->data();
+    for (std::size_t i = 0; i < data.features.size(); ++i) {
+      if (data.features[i].kind == FeatureKind::depth) depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  return depth_m;
+}
+
+bool ModelSlots::has_room(const std::string& what) {
+  if (slots_.size() + outstanding_files_ < kMaxModels) return true;
+  notices_.add("cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; start again with fewer",
+               true);
+  return false;
 }
 
 std::unique_ptr<LiveModels> ModelSlots::make_set(const SensorSpec& sensor,
@@ -109,7 +240,8 @@ std::unique_ptr<LiveModels> ModelSlots::make_set(const SensorSpec& sensor,
   set.id = sets_.empty() ? 1 : sets_.back().id + 1;
   std::vector<std::shared_ptr<const ForceModel>> models;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i]->view.state != SlotState::ready) continue;
+    // The reference stays, also where it is not shown.
+    if (!slots_[i]->takes_part() && !(direct_ == i && slots_[i]->model != nullptr)) continue;
     models.push_back(slots_[i]->model);
     set.slots.push_back(i);
   }
@@ -158,12 +290,7 @@ bool ModelSlots::select(std::size_t slot) {
 }
 
 void ModelSlots::load_file(const std::string& path) {
-  if (slots_.size() + outstanding_files_ >= kMaxModels) {
-    notices_.add("cannot load " + path + ": there are " + std::to_string(kMaxModels) +
-                     " models already; start again with fewer",
-                 true);
-    return;
-  }
+  if (!has_room("load " + path)) return;
   ++outstanding_;
   ++outstanding_files_;
   SlotPlan plan;

@@ -74,6 +74,22 @@ class ModelSlots {
   // The first slot of the direct interpolant that is ready.
   std::optional<std::size_t> direct() const noexcept { return direct_; }
 
+  // Shows the models of these plans and hides all others but those of files and
+  // recordings; what is not there yet is fitted. What is active stays so if it is shown,
+  // else the first is. Whether the set has changed at once.
+  bool use_plans(const std::vector<SlotPlan>& plans);
+  // Takes a model out for good.
+  void remove(std::size_t slot);
+  // A name that another one has gets a number.
+  void rename(std::size_t slot, const std::string& name);
+  // Fits a model anew with so many centres, in the background; ignored for one that has
+  // no number of centres or comes from a file.
+  void refit(std::size_t slot, int centres);
+  // Fits a recording in the background into a new slot, which becomes the active one.
+  void fit_recording(const std::string& path);
+  // Greatest depth that all shown models were trained with, metres; infinite without any.
+  double trained_depth_m() const noexcept;
+
   // Reads a model file in the background into a new slot. Trouble becomes a
   // notice, and no slot.
   void load_file(const std::string& path);
@@ -86,6 +102,8 @@ class ModelSlots {
   void show_progress();
   bool add_file(FinishedModel& finished);
   bool join(std::size_t index, FinishedModel& finished);
+  bool has_room(const std::string& what);
+  void select_what_is_there();
   std::string distinct_name(const std::string& name, const Slot* but) const;
 
   const Scene& scene_;

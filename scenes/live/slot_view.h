@@ -8,7 +8,13 @@
 
 namespace palpate {
 
-enum class SlotState : std::uint8_t { waiting, fitting, ready, failed };
+enum class SlotState : std::uint8_t {
+  waiting,
+  fitting,
+  ready,
+  failed,
+  hidden,  // of a line-up that is not shown, or removed: not evaluated, not listed
+};
 
 struct SlotView {
   std::string name;    // distinct among the slots
@@ -23,12 +29,17 @@ struct SlotView {
   double error_over_jnd = 0.0;
   bool out_of_domain = false;
   double evaluation_ns = 0.0;  // median over about the last second in contact
-  // Since the last reset, over samples in contact.
+  bool refitting = false;   // with another number of centres; the old one is there until then
+  bool takes_centres = false;
+  // Since the last reset, over samples in contact and inside the data of all models
+  // that are compared: the same samples for each.
   ErrorFigures errors;
+  std::uint64_t samples_out_of_domain = 0;  // left out for being outside the data of one
   // For drawing. Depth of the dent: the tool's while it presses, behind it the
   // surface's slow return, which follows the model's own relaxation times.
   double dent_m = 0.0;
-  // Colours the dent: the largest recent error over the JND, fading within 0.3 s.
+  // Colours the dent: the largest recent error over the JND that a hand feels
+  // (scenes/live/felt_error.h), fading within 0.3 s.
   double recent_peak_error_over_jnd = 0.0;
 };
 

@@ -7,12 +7,14 @@ TrainingRequest training_request(const Scene& scene) {
   request.scene = scene.name;
   request.features = scene.features;
   request.jnd = scene.jnd;
+  request.choice = FeatureChoice::automatic;
   return request;
 }
 
 TrainingRequest position_request(const Scene& scene) {
   TrainingRequest request = training_request(scene);
   request.features = {FeatureSpec{}};
+  request.choice = FeatureChoice::scene;
   return request;
 }
 

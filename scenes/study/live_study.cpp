@@ -19,16 +19,35 @@ class LiveStudy::Presented final : public ForceSource {
   StudySession& session_;
 };
 
+namespace {
+
+Result<std::unique_ptr<Device>> open_study_device(const std::string& name) {
+  DeviceRequest request;
+  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
+  return open_device(name, request);
+}
+
+}  // namespace
+
+bool study_can_be_felt(const std::string& device) {
+  const auto opened = open_study_device(device);
+  if (!opened) return false;
+  const bool felt = (*opened)->renders_force();
+  (*opened)->close();
+  return felt;
+}
+
 Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& request) {
   if (Status status = check_subject_code(request.header.subject); !status) return status.error();
-  auto file = StudyFile::open(request.path, request.header);
-  if (!file) return file.error();
-  auto session = StudySession::create(request.header, std::move(*file));
-  if (!session) return session.error();
-  DeviceRequest device_request;
-  if (const auto assets = find_assets()) device_request.calibrations = *assets + "/devices";
-  auto device = open_device(request.device, device_request);
+  auto device = open_study_device(request.device);
   if (!device) return device.error();
+  StudyHeader header = request.header;
+  header.device = (*device)->name();
+  header.rendered = (*device)->renders_force();
+  auto file = StudyFile::open(request.path, header);
+  if (!file) return file.error();
+  auto session = StudySession::create(header, std::move(*file));
+  if (!session) return session.error();
   std::unique_ptr<LiveStudy> study(new LiveStudy(std::move(*device), std::move(*session)));
   LoopSettings settings;
   settings.realtime = request.realtime;

@@ -20,6 +20,10 @@ struct LiveStudyRequest {
   bool realtime = true;
 };
 
+// Whether this device, as a request names it, renders force: else a study with it is a
+// rehearsal. Opens it for a moment. Slow side.
+bool study_can_be_felt(const std::string& device);
+
 class LiveStudy {
  public:
   // Errors: the device cannot be opened; the file is in use or of another study; a

@@ -91,13 +91,14 @@ std::string study_header_text(const StudyHeader& header) {
          " jnd_weber_fraction " + number_text(strokes.jnd.weber_fraction) + "\n";
 }
 
-std::string study_columns(ProcedureKind procedure) {
+std::string study_columns(ProcedureKind procedure, bool has_device) {
   std::string columns(kStudyColumns);
   if (procedure == ProcedureKind::discriminate) columns += kStrokeColumns;
+  if (has_device) columns += kDeviceColumns;
   return columns;
 }
 
-std::string study_row(const StudyRecord& record, ProcedureKind procedure) {
+std::string study_row(const StudyRecord& record, ProcedureKind procedure, bool has_device) {
   std::string row = record.training ? "training," : "study,";
   row += std::to_string(record.number) + "," + number_text(record.trial.reference_N) + "," +
          number_text(record.trial.comparison_N) + (record.trial.comparison_first ? ",1," : ",0,") +
@@ -107,7 +108,12 @@ std::string study_row(const StudyRecord& record, ProcedureKind procedure) {
     row += ',';
     row += number_text(record.reminder_rendered_N) + "," + number_text(record.worst_N);
   }
+  if (has_device) row.append(",").append(record.device).append(record.rendered ? ",true" : ",false");
   return row + "\n";
+}
+
+std::size_t remove_rehearsals(StudyData& data) {
+  return std::erase_if(data.records, [](const StudyRecord& record) { return !record.rendered; });
 }
 
 Result<std::unique_ptr<StudyFile>> StudyFile::open(const std::string& path, const StudyHeader& header) {
@@ -146,6 +152,10 @@ Status StudyFile::take_up() {
   if (is_cut_header(*text, study_header_text(header_), study_columns(header_.procedure))) return {};
   const Result<StudyData> data = parse_study(*text, path_);
   if (!data) return data.error();
+  if (!data->has_device && !header_.rendered) {
+    return Error{path_ + ": found a study whose answers do not say on what they were given, expected a new file for a "
+                         "rehearsal; take another folder or subject code"};
+  }
   const StudyHeader& found = data->header;
   if (found.subject != header_.subject || found.procedure != header_.procedure || !(found.timing == header_.timing)) {
     return Error{path_ + ": found a study of subject " + found.subject + ", procedure " +
@@ -162,6 +172,7 @@ Status StudyFile::take_up() {
     return failure(errno);
   }
   size_ = data->whole_bytes;
+  has_device_ = data->has_device;
   consented_ = true;
   records_ = data->records;
   return {};
@@ -200,10 +211,13 @@ Status StudyFile::consent(const std::string& text, const std::string& when) {
 
 Status StudyFile::append(const StudyRecord& record) {
   if (!consented_) return Error{"cannot write " + path_ + ": there is no consent yet"};
+  StudyRecord on_device = record;
+  on_device.device = header_.device;
+  on_device.rendered = header_.rendered;
   // What a refused row may have left behind.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
-  if (const Status written = write_whole(study_row(record, header_.procedure)); !written) return written;
-  records_.push_back(record);
+  if (const Status written = write_whole(study_row(on_device, header_.procedure, has_device_)); !written) return written;
+  records_.push_back(on_device);
   return {};
 }
 

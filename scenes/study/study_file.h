@@ -5,8 +5,8 @@
 //   # procedure constant
 //   # timing_ms lead_in 400 ramp 100 hold 900 pause 500
 //   # consent accepted, text 8c1f2a9d, 2024-05-06 10:20
-//   part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,response_ms
-//   training,1,0.3,0.18,1,0.18,0.3,0,second,731
+//   part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,response_ms,device,rendered
+//   training,1,0.3,0.18,1,0.18,0.3,0,second,731,paddle,true
 //
 // With strokes (procedure discriminate) five more lines stand behind the timing and two
 // more columns at the end; the forces and which is which:
@@ -15,7 +15,8 @@
 //   # stroke from_s 12.3 to_s 14.1 of silicone_2
 //   # forces reference_mean_N 1.2 comparison_mean_N 1.21 checksum 2350029213
 //   # predicted mean_over_jnd 0.1 max_over_jnd 0.6 jnd_offset_N 0.065 jnd_weber_fraction 0.0633
-//   part,...,response_ms,reminder_rendered_N,worst_N
+//   part,...,response_ms,reminder_rendered_N,worst_N,device,rendered
+// Files of before the last two columns are read and continued without them.
 //
 // The consent's text is named by a checksum (FNV-1a), the time is the caller's word.
 // Nothing is written before the consent. A row is appended in one go and flushed to
@@ -39,11 +40,13 @@ inline constexpr std::string_view kStudyColumns =
     "response_ms";
 
 inline constexpr std::string_view kStrokeColumns = ",reminder_rendered_N,worst_N";
+inline constexpr std::string_view kDeviceColumns = ",device,rendered";
 
 struct StudyData {
   StudyHeader header;
   std::string consent;  // "text 8c1f2a9d, 2024-05-06 10:20"
   std::vector<StudyRecord> records;
+  bool has_device = true;       // the last two columns
   std::size_t whole_bytes = 0;  // up to the end of the last whole row
 };
 
@@ -53,9 +56,11 @@ Result<StudyData> read_study(const std::string& path);
 
 // The lines above the consent, and the columns' names.
 std::string study_header_text(const StudyHeader& header);
-std::string study_columns(ProcedureKind procedure);
+std::string study_columns(ProcedureKind procedure, bool has_device = true);
 // One row of the table, with its line end.
-std::string study_row(const StudyRecord& record, ProcedureKind procedure);
+std::string study_row(const StudyRecord& record, ProcedureKind procedure, bool has_device = true);
+// Takes out the answers that nobody could feel; returns how many.
+std::size_t remove_rehearsals(StudyData& data);
 
 class StudyFile final : public StudyStore {
  public:
@@ -84,6 +89,7 @@ class StudyFile final : public StudyStore {
   int descriptor_ = -1;
   std::size_t size_ = 0;  // of what is confirmed
   bool consented_ = false;
+  bool has_device_ = true;
   std::vector<StudyRecord> records_;
 };
 

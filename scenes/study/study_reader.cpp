@@ -15,7 +15,9 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kColumnCount = 10;
-constexpr std::size_t kMostColumns = 12;  // with strokes
+constexpr std::size_t kStrokeCount = 2;  // more with strokes
+constexpr std::size_t kDeviceCount = 2;  // more since rows say on what they were given
+constexpr std::size_t kMostColumns = kColumnCount + kStrokeCount + kDeviceCount;
 
 template <typename T>
 bool read_number(std::string_view text, T& value) {
@@ -40,12 +42,15 @@ class StudyReader {
     const bool strokes = *procedure == ProcedureKind::discriminate;
     if (strokes) {
       if (const Status read = read_strokes(); !read) return read.error();
-      columns_ = kMostColumns;
+      columns_ += kStrokeCount;
     }
     data_.consent = take_line("# consent accepted, ");
     if (failed_) return refuse("\"# consent accepted, \" and which text");
-    const std::string columns = study_columns(*procedure);
-    if (take_line(columns) != "") return refuse("the columns " + columns);
+    const std::string columns = study_columns(*procedure, false);
+    const std::string more = take_line(columns);
+    if (more != "" && more != kDeviceColumns) return refuse("the columns " + study_columns(*procedure));
+    data_.has_device = !more.empty();
+    if (data_.has_device) columns_ += kDeviceCount;
     data_.whole_bytes = next_;
     while (text_.find('\n', next_) != std::string_view::npos) {
       if (const Status row = read_row(); !row) return row.error();
@@ -133,7 +138,7 @@ class StudyReader {
       const std::size_t comma = text_.find(',', at);
       const std::size_t stop = comma == std::string_view::npos || comma > end ? end : comma;
       if ((stop == end) != (i + 1 == columns_)) {
-        return refuse_at(next_, text_.substr(next_, end - next_), columns_ == kColumnCount ? "a row of ten fields" : "a row of twelve fields");
+        return refuse_at(next_, text_.substr(next_, end - next_), "a row of " + std::string(columns_ == kColumnCount ? "ten" : columns_ == kMostColumns ? "fourteen" : "twelve") + " fields");
       }
       fields[i] = text_.substr(at, stop - at);
       offsets[i] = at;
@@ -172,9 +177,14 @@ class StudyReader {
     record.limited = flag(7, "0", "1", "0 or 1");
     record.answered_second = flag(8, "first", "second", "first or second");
     check(9, read_number(fields[9], record.response_ms), "a whole number of ms");
-    if (columns_ == kMostColumns) {
+    if (data_.header.strokes != nullptr) {
       record.reminder_rendered_N = force(10, 0.0);
       record.worst_N = force(11, 0.0);
+    }
+    if (data_.has_device) {
+      record.device = fields[columns_ - 2];
+      check(columns_ - 2, !record.device.empty(), "the name of a device");
+      record.rendered = flag(columns_ - 1, "false", "true", "true or false");
     }
     if (wrong < kMostColumns) return refuse_at(offsets[wrong], fields[wrong], expected);
     data_.records.push_back(record);

@@ -23,6 +23,10 @@ struct StudyHeader {
   ProcedureKind procedure = ProcedureKind::constant;
   StudyTiming timing;
   std::shared_ptr<const StrokePair> strokes = nullptr;  // of ProcedureKind::discriminate
+  // What new answers are given on, and whether it renders force; of each row, for a study
+  // may go on with another device.
+  std::string device = "unknown";
+  bool rendered = true;
 };
 
 // One answered trial.
@@ -37,6 +41,9 @@ struct StudyRecord {
   std::uint32_t response_ms = 0;  // from the end of the second force
   double reminder_rendered_N = 0.0;  // these two with strokes only
   double worst_N = 0.0;              // at any tick away from what it should be, to 0.1 mN
+
+  std::string device = "unknown";  // of a file of before these two were written: unknown, true
+  bool rendered = true;            // false: a rehearsal, nobody could feel anything
 
   bool comparison_judged_larger() const noexcept { return answered_second != trial.comparison_first; }
   bool found_larger() const noexcept { return answered_second == (trial.second_N() > trial.first_N()); }

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"
@@ -31,6 +32,7 @@ double expected_cost_s(const SlotPlan& plan) {
   if (plan.origin == ModelOrigin::file) return 0.0;
   MethodRequest request;
   request.method = plan.method;
+  if (plan.centres > 0) request.centres = plan.centres;
   return expected_seconds(request) + (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
@@ -45,9 +47,10 @@ ModelWorker::~ModelWorker() {
   cancel();
   {
     const std::lock_guard lock(mutex_);
-    wake_.notify_one();
+    wake_.notify_all();
   }
   if (thread_.joinable()) thread_.join();
+  if (reader_.joinable()) reader_.join();
 }
 
 Status ModelWorker::start() {
@@ -55,6 +58,10 @@ Status ModelWorker::start() {
     thread_ = std::thread([this] {
       lower_thread_priority();
       work();
+    });
+    reader_ = std::thread([this] {
+      lower_thread_priority();
+      read_files();
     });
   } catch (const std::system_error& error) {
     return Error{std::string("cannot start the thread that fits models: ") + error.what() + "; close other programs"};
@@ -64,10 +71,16 @@ Status ModelWorker::start() {
 
 void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan) {
   const std::lock_guard lock(mutex_);
-  const auto slower = std::find_if(jobs_.begin(), jobs_.end(),
-                                   [&](const Job& other) { return expected_cost_s(other.plan) > expected_cost_s(plan); });
-  jobs_.insert(slower, {job_id, plan});
-  wake_.notify_one();
+  if (plan.origin == ModelOrigin::file && plan.loaded == nullptr) {
+    files_.push_back({job_id, plan});
+  } else {
+    std::erase_if(jobs_, [&](const Job& other) { return other.job_id == job_id; });
+    const auto slower = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) {
+      return expected_cost_s(other.plan) > expected_cost_s(plan);
+    });
+    jobs_.insert(slower, {job_id, plan});
+  }
+  wake_.notify_all();
 }
 
 std::vector<FinishedModel> ModelWorker::take_finished() {
@@ -97,6 +110,20 @@ void ModelWorker::work() {
   while (const std::optional<Job> job = next_job()) {
     FinishedModel model = make(*job);
     const std::lock_guard lock(mutex_);
+    finished_.push_back(std::move(model));
+  }
+}
+
+void ModelWorker::read_files() {
+  while (true) {
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [this] { return !files_.empty() || cancelled_.load(std::memory_order_relaxed); });
+    if (cancelled_.load(std::memory_order_relaxed)) return;
+    const Job job = std::move(files_.front());
+    files_.pop_front();
+    lock.unlock();
+    FinishedModel model = make(job);
+    lock.lock();
     finished_.push_back(std::move(model));
   }
 }
@@ -156,23 +183,56 @@ Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const Tra
   return {};
 }
 
+namespace {
+
+// 50 mN steps and rows weighted 1/f, together.
+TrainingRequest paper_request(const Scene& scene) {
+  TrainingRequest request = training_request(scene);
+  request.reduction = Reduction::force;
+  request.weighting = Weighting::relative;
+  request.choice = FeatureChoice::scene;
+  return request;
+}
+
+}  // namespace
+
+// All as `palpate fit` does it by itself.
+Result<ModelData> ModelWorker::fit_recording(const SlotPlan& plan) {
+  Result<Recording> recording = read_recording(plan.path);
+  if (!recording) return recording.error();
+  MotionSource source({{plan.path, std::make_shared<const Recording>(std::move(*recording))}});
+  Result<PreparedTraining> prepared = prepare_training(source, training_request(scene_), control(0.0, kPrepared));
+  if (!prepared) return prepared.error();
+  MethodRequest request;
+  request.method = plan.method;
+  request.seed = seed_;
+  Result<MethodFit> fitted = fit_method(*prepared, request, control(kPrepared, 1.0));
+  if (!fitted) return fitted.error();
+  return std::move(fitted->data);
+}
+
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
-  const bool prepared_before = plan.origin == ModelOrigin::method && prepared_.has_value();
+  if (plan.origin == ModelOrigin::recording) return fit_recording(plan);
   std::optional<PreparedTraining> of_position;
   const bool position = plan.origin == ModelOrigin::position;
-  std::optional<PreparedTraining>& prepared = position ? of_position : prepared_;
-  if (const Status status = prepare(prepared, position ? position_request(scene_) : training_request(scene_));
+  std::optional<PreparedTraining>& prepared = position ? of_position : plan.paper ? prepared_as_paper_ : prepared_;
+  const bool prepared_before = prepared.has_value();
+  if (const Status status = prepare(prepared, position     ? position_request(scene_)
+                                              : plan.paper ? paper_request(scene_)
+                                                           : training_request(scene_));
       !status) {
     return status.error();
   }
   MethodRequest request;
   request.method = plan.method;
   request.seed = seed_;
-  const auto base = position ? bases_.end() : bases_.find(plan.method->base);
+  if (plan.centres > 0) request.centres = plan.centres;
+  const bool own = position || plan.paper;  // prepared in another way than the bases
+  const auto base = own ? bases_.end() : bases_.find(plan.method->base);
   Result<MethodFit> fitted = fit_method(*prepared, request, control(prepared_before ? 0.0 : kPrepared, 1.0),
                                         base == bases_.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
-  if (!position) bases_.insert_or_assign(plan.method, *fitted);
+  if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
 

@@ -50,7 +50,8 @@ class ModelWorker {
 
   // What is asked for before this is made the quickest first. Errors: no thread.
   Status start();
-  // `job_id`: comes back with the model.
+  // `job_id`: comes back with the model. One that is asked for again before it was begun
+  // is made once, as asked last. Files do not wait behind fits.
   void add_job(std::size_t job_id, const SlotPlan& plan);
   // What was finished since the last call.
   std::vector<FinishedModel> take_finished();
@@ -71,10 +72,12 @@ class ModelWorker {
     SlotPlan plan;
   };
   void work();
+  void read_files();
   std::optional<Job> next_job();
   FinishedModel make(const Job& job);
   Result<ModelData> fit(const SlotPlan& plan);
   Status prepare_recording();
+  Result<ModelData> fit_recording(const SlotPlan& plan);
   Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
   FitControl control(double from, double to);
 
@@ -83,15 +86,18 @@ class ModelWorker {
   // The worker's own.
   std::shared_ptr<const Recording> recording_;
   std::optional<PreparedTraining> prepared_;
+  std::optional<PreparedTraining> prepared_as_paper_;
   std::map<const Method*, MethodFit> bases_;  // fitted already, for methods that start from one
 
   std::thread thread_;
+  std::thread reader_;
   std::atomic<bool> cancelled_{false};
   std::atomic<double> share_{0.0};
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   // By mutex_.
   std::deque<Job> jobs_;
+  std::deque<Job> files_;
   std::vector<FinishedModel> finished_;
   std::optional<std::size_t> working_on_;
 };

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "engine/tick/haptics_tick.h"
 #include "models/model/file/model_io.h"
@@ -20,10 +23,30 @@ Error unknown_model(const std::string& asked) {
                ") or a model file that exists"};
 }
 
+// "paper:greedy-10"; nothing: it is no method.
+std::optional<SlotPlan> plan_method_of(std::string asked) {
+  SlotPlan plan;
+  constexpr std::string_view kPaper = "paper:";
+  if (asked.rfind(kPaper, 0) == 0) {
+    plan.paper = true;
+    asked.erase(0, kPaper.size());
+  }
+  plan.method = find_method(asked);
+  if (plan.method != nullptr) return plan;
+  const std::size_t dash = asked.rfind('-');
+  if (dash == std::string::npos) return std::nullopt;
+  const std::string count = asked.substr(dash + 1);
+  plan.method = find_method(asked.substr(0, dash));
+  const bool number = !count.empty() && count.size() <= 4 && count.find_first_not_of("0123456789") == std::string::npos;
+  if (plan.method == nullptr || !number || !plan.method->can_take(kTakesCentres)) return std::nullopt;
+  plan.centres = std::max(1, std::stoi(count));
+  return plan;
+}
+
 Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
-  if (const Method* method = find_method(asked)) {
+  if (auto plan = plan_method_of(asked)) {
     if (!scene.material) return needs_files(scene);
-    return SlotPlan{ModelOrigin::method, method, "", nullptr};
+    return std::move(*plan);
   }
   std::error_code missing;
   if (!std::filesystem::exists(asked, missing)) return unknown_model(asked);
@@ -36,17 +59,47 @@ Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
 
 std::string plan_name(const SlotPlan& plan) {
   switch (plan.origin) {
-    case ModelOrigin::method: return plan.method->name;
+    case ModelOrigin::method: {
+      std::string name = plan.method->name;
+      if (plan.centres > 0) name.append("-").append(std::to_string(plan.centres));
+      if (plan.paper) name += kPaperMark;
+      return name;
+    }
     case ModelOrigin::position: return "position only";
+    case ModelOrigin::recording:
     case ModelOrigin::file: return std::filesystem::path(plan.path).stem().string();
   }
   return {};
+}
+
+bool SlotPlan::same_as(const SlotPlan& other) const {
+  return origin == other.origin && path == other.path && centres == other.centres && paper == other.paper &&
+         (origin == ModelOrigin::file || origin == ModelOrigin::position || method == other.method);
+}
+
+const std::vector<LineUp>& line_ups() {
+  static const std::vector<LineUp> all = {
+      {"Ladder", "few centres beside many: the paper's recipe with 10 centres, and this program's own",
+       {"paper:random-10", "greedy", "paper:greedy-10", "paper:kdtree-10", "voxel", "direct", "trend"}},
+      {"2009", "the paper's recipe: few centres, the grid and all sites",
+       {"paper:random-10", "paper:kdtree-10", "paper:greedy-10", "paper:voxel", "paper:direct"}},
+      {"Palpate", "this program's own fits of every method",
+       {"greedy", "kdtree", "random", "voxel", "direct", "trend"}}};
+  return all;
+}
+
+const LineUp* find_line_up(const std::string& name) {
+  for (const LineUp& one : line_ups()) {
+    if (name == one.name) return &one;
+  }
+  return nullptr;
 }
 
 std::string plan_method(const SlotPlan& plan) {
   switch (plan.origin) {
     case ModelOrigin::method: return plan.method->name;
     case ModelOrigin::position: return "position";
+    case ModelOrigin::recording: return plan.method->name;
     case ModelOrigin::file: return {};
   }
   return {};
@@ -55,6 +108,8 @@ std::string plan_method(const SlotPlan& plan) {
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
                                          bool position_only) {
   std::vector<SlotPlan> plans;
+  // Nothing to fit to, and nothing asked for: a session that waits for a file.
+  if (models.empty() && !scene.material) return plans;
   for (const std::string& asked : models.empty() ? scene.default_models : models) {
     Result<SlotPlan> plan = plan_one(scene, asked);
     if (!plan) return plan.error();
@@ -62,7 +117,7 @@ Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<s
   }
   if (position_only && scene.material) plans.push_back({ModelOrigin::position, &kGreedyMethod, "", nullptr});
   const bool has_direct = std::any_of(plans.begin(), plans.end(), [](const SlotPlan& plan) {
-    return plan.origin == ModelOrigin::method && plan.method == &kDirectMethod;
+    return plan.origin == ModelOrigin::method && plan.method == &kDirectMethod && !plan.paper;
   });
   if (scene.material && !has_direct) plans.push_back({ModelOrigin::method, &kDirectMethod, "", nullptr});
   if (plans.size() <= kMaxModels) return plans;

@@ -28,7 +28,7 @@ RigSettings short_recording() {
 std::vector<ModelPtr> fitted_anew() {
   RigSettings settings = short_recording();
   settings.rate_Hz = 250.0;
-  return fit_all(test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block")));
+  return fit_all(test::prepare({test::rig_recording(settings)}, test::default_request("silicone_block")));
 }
 
 const std::vector<ModelPtr>& fitted() {

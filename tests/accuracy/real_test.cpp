@@ -18,7 +18,7 @@ using test::ModelPtr;
 using test::prepare;
 using test::real_recording;
 using test::RecordingPtr;
-using test::scene_request;
+using test::default_request;
 
 class RealAccuracy : public testing::Test {
  protected:
@@ -36,7 +36,7 @@ std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::s
 }
 
 TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
-  const PreparedTraining prepared = prepare(skin("train", {"250", "600", "1000"}), scene_request("skin"));
+  const PreparedTraining prepared = prepare(skin("train", {"250", "600", "1000"}), default_request("skin"));
   const ModelPtr greedy = fit(prepared, &kGreedyMethod);
   double squares = 0.0;
   double within = 0.0;
@@ -60,7 +60,7 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
   for (const char* trial : {"3", "4", "7", "10", "12"}) {
     training.push_back(real_recording(std::string("zwick_silicone/train_trial") + trial + ".csv"));
   }
-  const ModelPtr greedy = fit(prepare(training, scene_request("silicone_block")), &kGreedyMethod);
+  const ModelPtr greedy = fit(prepare(training, default_request("silicone_block")), &kGreedyMethod);
   const ErrorSummary summary =
       judge_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
   std::cout << test::figures("trial 9", summary) << "\n";
@@ -72,7 +72,7 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
 // out of domain.
 TEST_F(RealAccuracy, PressOnItsSecondCycle) {
   const PreparedTraining prepared =
-      prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block"));
+      prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block"));
   const RecordingPtr recording = real_recording("ur3e_press_mit/test_cycle2.csv");
   for (const ModelPtr& model : fit_all(prepared)) {
     const ErrorSummary summary = judge_moved(*recording, {model}).front();

@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "models/fit/fit.h"
+#include "models/model/grid/voxel_grid.h"
+#include "models/model/rbf/rbf_function.h"
 
 namespace palpate::bench {
 

@@ -18,7 +18,10 @@ double typical_size(FeatureKind kind) {
     case FeatureKind::depth: return kDepth_m;
     case FeatureKind::velocity: return kVelocity_m_per_s;
     case FeatureKind::lowpass_velocity: return 0.5 * kVelocity_m_per_s;
-    case FeatureKind::maxwell_branch: return 1.0;
+    case FeatureKind::maxwell_branch:
+    case FeatureKind::maxwell_spectrum:
+    case FeatureKind::stops: return 1.0;
+    case FeatureKind::fading_peak: return kDepth_m;
   }
   return 1.0;
 }

@@ -49,8 +49,12 @@ RecordingPtr real_recording(const std::string& file) {
   return std::make_shared<const Recording>(must(read_recording((real_data() / file).string())));
 }
 
+TrainingRequest default_request(const std::string& scene) { return training_request(must(load_scene(scene))); }
+
 TrainingRequest scene_request(const std::string& scene) {
-  return training_request(must(load_scene(scene)));
+  TrainingRequest request = default_request(scene);
+  request.choice = FeatureChoice::scene;
+  return request;
 }
 
 TrainingRequest position_request() { return scene_request("elastic_block"); }

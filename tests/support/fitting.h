@@ -39,7 +39,8 @@ RecordingPtr encoder_only(const RecordingPtr& recording);
 std::filesystem::path real_data();
 RecordingPtr real_recording(const std::string& file);
 
-// What `palpate fit --scene scene` asks for.
+// What `palpate fit --scene scene` asks for, by itself and with `--features scene`.
+TrainingRequest default_request(const std::string& scene);
 TrainingRequest scene_request(const std::string& scene);
 // The same for a model of position alone.
 TrainingRequest position_request();

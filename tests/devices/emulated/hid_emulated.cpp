@@ -115,9 +115,9 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
 [[noreturn]] void push_until_ended(HidBus& bus, int ready) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
   const StopListener listener;
-  Result<HidOpened> opened = open_first(bus, {HidKind::paddle});
+  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
   if (!opened) _exit(3);
-  HidDevice device(bus, test::patient(test::example_calibration(HidKind::paddle)), std::move(*opened));
+  HidDevice device(bus, test::patient(test::example_calibration(&kPaddleDriver)), std::move(*opened));
   if (!device.open()) _exit(4);
   device.start_zeroing();
   tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });

@@ -132,10 +132,10 @@ TEST(HapticsTick, ModelsOfTheSameFeaturesShareAFilter) {
   Models models;
   for (const ModelData& data : test::example_models()) models.push_back(fitted(data));
   const HapticsTick tick({}, models);
-  EXPECT_EQ(tick.model_count(), 8u);
+  EXPECT_EQ(tick.model_count(), 9u);
   EXPECT_EQ(tick.filter_count(), 3u) << "paper's four, Maxwell's four, position alone";
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(1));
-  EXPECT_EQ(&tick.features_of(0), &tick.features_of(7));
+  EXPECT_EQ(&tick.features_of(0), &tick.features_of(8));
   EXPECT_NE(&tick.features_of(0), &tick.features_of(3));
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "models/model/file/model_io.h"
+#include "models/model/file/model_json.h"
+#include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
 
@@ -34,7 +36,7 @@ std::vector<RegisteredSurface> registered(const std::vector<RecordingPtr>& recor
 
 // Longer recordings come first in a MotionSource: seed 3, 2, 1.
 TEST(SurfaceRegistration, FindsEveryShiftAndZeroOfASet) {
-  for (const char* material : {"silicone", "foam", "gel"}) {
+  for (const char* material : {"maxwell", "foam"}) {
     for (const double shift_m : {-0.5e-3, -0.05e-3, 0.05e-3, 0.2e-3, 0.5e-3}) {
       const auto surfaces = registered({rig(material, 1), rig(material, 2, shift_m, -0.05), rig(material, 3)});
       ASSERT_EQ(surfaces.size(), 3u);
@@ -47,12 +49,33 @@ TEST(SurfaceRegistration, FindsEveryShiftAndZeroOfASet) {
   }
 }
 
+// What the trend cannot follow of these materials looks like a shift of up to some 0.03 mm.
+TEST(SurfaceRegistration, FindsLargerShiftsOfMaterialsThatTheTrendDoesNotFollow) {
+  for (const char* material : {"silicone", "gel", "tissue"}) {
+    const auto surfaces = registered({rig(material, 1), rig(material, 2, 0.3e-3), rig(material, 3)});
+    EXPECT_NEAR(surfaces[1].offset_m - surfaces[0].offset_m, 0.3e-3, 0.05e-3) << material;
+  }
+}
+
 TEST(SurfaceRegistration, InventsNothing) {
-  for (const char* material : {"silicone", "foam", "gel", "elastic"}) {
-    for (const RegisteredSurface& surface : registered({rig(material, 4), rig(material, 5)})) {
-      EXPECT_EQ(surface.offset_m, 0.0) << material;
-      EXPECT_EQ(surface.force_zero_N, 0.0) << material;
+  for (const Material& material : materials()) {
+    const std::string name(material.name);
+    for (const RegisteredSurface& surface : registered({rig(name, 4), rig(name, 5)})) {
+      EXPECT_EQ(surface.offset_m, 0.0) << name;
+      EXPECT_EQ(surface.force_zero_N, 0.0) << name;
     }
+  }
+}
+
+// Of a recording alone, and of what all have in common, only where the model's zero
+// lies depends on it: below a quarter of a millimetre it stays where it was recorded.
+TEST(SurfaceRegistration, SmallShiftsOfAllStayAsRecorded) {
+  EXPECT_EQ(registered({rig("maxwell", 1, 0.2e-3)})[0].offset_m, 0.0);
+  for (const RegisteredSurface& surface : registered({rig("maxwell", 1, 0.2e-3), rig("maxwell", 2, 0.2e-3)})) {
+    EXPECT_EQ(surface.offset_m, 0.0);
+  }
+  for (const RegisteredSurface& surface : registered({rig("maxwell", 1, 0.5e-3), rig("maxwell", 2, 0.5e-3)})) {
+    EXPECT_NEAR(surface.offset_m, 0.5e-3, 0.02e-3);
   }
 }
 
@@ -74,10 +97,10 @@ TEST(SurfaceRegistration, TheOrderOfRecordingsChangesNoByteOfTheModel) {
 }
 
 TEST(SurfaceRegistration, AModelSaysWhereTheSurfacesWere) {
-  const auto prepared = test::prepare({rig("silicone", 2, 0.2e-3)}, test::scene_request("silicone_block"));
+  const auto prepared = test::prepare({rig("maxwell", 2, 0.5e-3)}, test::scene_request("silicone_block"));
   const auto& surfaces = prepared.common.provenance.surfaces;
   ASSERT_EQ(surfaces.size(), 1u);
-  EXPECT_NEAR(surfaces[0].offset_m, 0.2e-3, 0.02e-3);
+  EXPECT_NEAR(surfaces[0].offset_m, 0.5e-3, 0.02e-3);
   const auto model = test::fit(prepared, &kRandomMethod);
   const ModelData back = test::must(read_model_text(test::must(write_model_text(model->data())), "m.json"));
   ASSERT_EQ(back.provenance.surfaces.size(), 1u);
@@ -91,11 +114,11 @@ TEST(SurfaceRegistration, AModelSaysWhereTheSurfacesWere) {
 TEST(SurfaceRegistration, RecordedSwitchesItOff) {
   TrainingRequest request = test::scene_request("silicone_block");
   request.surface = Surface::recorded;
-  const RecordingPtr shifted = rig("silicone", 2, 0.2e-3);
+  const RecordingPtr shifted = rig("maxwell", 2, 0.5e-3);
   const auto prepared = test::prepare({shifted}, request);
   EXPECT_TRUE(prepared.common.provenance.surfaces.empty());
   const auto registered = test::prepare({shifted}, test::scene_request("silicone_block"));
-  EXPECT_NEAR(prepared.common.upper(0) - registered.common.upper(0), 0.2e-3, 0.02e-3);
+  EXPECT_NEAR(prepared.common.upper(0) - registered.common.upper(0), 0.5e-3, 0.02e-3);
 }
 
 }  // namespace

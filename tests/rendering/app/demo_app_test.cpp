@@ -7,9 +7,11 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
+#include <imgui_internal.h>
 #include <png.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -59,6 +61,7 @@ class DemoAppTest : public ::testing::Test {
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
+    app_->view().block_count = 1;
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 
@@ -185,8 +188,7 @@ TEST_F(DemoAppTest, SwitchingWhilePressingFadesTheForce) {
 }
 
 TEST_F(DemoAppTest, ClosingWhileRecordingLeavesTheFileWhole) {
-  const auto here = std::filesystem::current_path();
-  std::filesystem::current_path(folder_.path());
+  setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);
   const std::string replayed = folder_.file("strokes.csv");
   ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
   open("replay:" + replayed);
@@ -196,8 +198,8 @@ TEST_F(DemoAppTest, ClosingWhileRecordingLeavesTheFileWhole) {
   ASSERT_TRUE(until([&] { return app_->session().recording().rows > 300; }));
   EXPECT_FALSE(std::filesystem::exists(path)) << "not before it is whole";
   app_.reset();
+  EXPECT_EQ(path.rfind(folder_.file("palpate/session-"), 0), 0u) << path;
   const auto recording = read_recording(path);
-  std::filesystem::current_path(here);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_GT(recording->rows.size(), 300u);
 }
@@ -209,7 +211,7 @@ TEST_F(DemoAppTest, KeysDoWhatTheHelpSays) {
   press(GLFW_KEY_B);
   EXPECT_EQ(app_->view().block_count, 2u);
   press(GLFW_KEY_SPACE);
-  EXPECT_TRUE(app_->view().paused);
+  EXPECT_TRUE(app_->view().time.paused);
   press(GLFW_KEY_H);
   press(GLFW_KEY_L);
   press(GLFW_KEY_M);
@@ -219,6 +221,114 @@ TEST_F(DemoAppTest, KeysDoWhatTheHelpSays) {
   EXPECT_FALSE(app_->closing());
   press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
   EXPECT_TRUE(app_->closing());
+}
+
+TEST_F(DemoAppTest, TheWheelMovesTheProbeAndWithCtrlTheCamera) {
+  open("mouse");
+  GLFWwindow* window = app_->window().handle();
+  const auto scroll = [&](double steps) {
+    const GLFWscrollfun callback = glfwSetScrollCallback(window, nullptr);
+    glfwSetScrollCallback(window, callback);
+    callback(window, 0.0, steps);
+    app_->frame();
+  };
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 380.0);
+  frames(5);
+  const double before_m = app_->session().newest().tick.position_m;
+  for (int i = 0; i < 6; ++i) scroll(-1.0);
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 0.001; }));
+}
+
+TEST_F(DemoAppTest, TheKeysAreListedInsideTheSmallestWindow) {
+  open("hand");
+  app_->run(Command::help);
+  app_->run(Command::file_list);
+  for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
+    glfwSetWindowSize(app_->window().handle(), width, height);
+    frames(8);
+    for (const char* name : {"Keys", "Load a model", "buttons", "title"}) {
+      const ImGuiWindow* window = ImGui::FindWindowByName(name);
+      ASSERT_NE(window, nullptr) << name;
+      EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
+      EXPECT_GE(window->Pos.y, 0.0F) << name << " " << width;
+      EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << name;
+      EXPECT_LE(window->Pos.y + window->Size.y, static_cast<float>(height)) << name;
+    }
+  }
+}
+
+TEST_F(DemoAppTest, SavesWhatTheCurvesShow) {
+  setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);
+  open("hand");
+  frames(30);
+  press(GLFW_KEY_S);
+  ASSERT_TRUE(told("saved"));
+  std::size_t figures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
+    figures += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
+  EXPECT_EQ(figures, 2u);
+}
+
+TEST_F(DemoAppTest, StandsStillAsAWholeAndSaysWhatItShows) {
+  open("hand");
+  frames(20);
+  press(GLFW_KEY_SPACE);
+  const CurveTime time = app_->view().time;
+  frames(10);
+  EXPECT_EQ(app_->view().time.end_s(1e9), time.end_s(0.0));
+  press(GLFW_KEY_SPACE);
+  EXPECT_FALSE(app_->view().time.paused);
+}
+
+TEST_F(DemoAppTest, SaysWhatThereIsNotForAKey) {
+  open("hand");
+  press(GLFW_KEY_D);
+  EXPECT_EQ(app_->session().dead_man(), DeadMan::off);
+  EXPECT_TRUE(told("no device that pushes"));
+  press(GLFW_KEY_B);
+  press(GLFW_KEY_B);
+  EXPECT_EQ(app_->view().block_count, 4u);
+  EXPECT_TRUE(told("2 of 4 blocks"));
+}
+
+TEST_F(DemoAppTest, ADroppedRecordingIsOfferedAndReplayed) {
+  open("hand");
+  const std::string strokes = folder_.file("strokes.csv");
+  ASSERT_TRUE(write_recording(strokes, test::example_recording(2000, 1000.0), {}, false).ok());
+  drop(strokes);
+  EXPECT_EQ(app_->view().offered_recording, strokes);
+  frames(3);
+  press(GLFW_KEY_ESCAPE);
+  EXPECT_EQ(app_->view().offered_recording, "");
+}
+
+TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
+  open("hand");
+  LiveSession& session = app_->session();
+  session.rename(1, "mine");
+  EXPECT_EQ(session.models().view(1).name, "mine");
+  session.rename(0, "mine");
+  EXPECT_EQ(session.models().view(0).name, "mine-2") << "names stay distinct";
+  session.remove(0);
+  EXPECT_EQ(session.models().view(0).state, SlotState::hidden);
+  EXPECT_EQ(session.models().selected(), 1u) << "the active model is one that is there";
+  frames(10);
+  press(GLFW_KEY_1);
+  EXPECT_EQ(session.models().selected(), 1u) << "keys count what is listed";
+}
+
+TEST_F(DemoAppTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
+  open("mouse");
+  const double known_m = app_->session().models().trained_depth_m();
+  ASSERT_LT(known_m, 0.1);
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 360.0);
+  frames(5);
+  glfwSetCursorPos(window, 384.0, 560.0);
+  frames(60);
+  EXPECT_LT(app_->session().newest().tick.position_m, 1.1 * known_m);
 }
 
 TEST_F(DemoAppTest, AKioskHasOneWayOut) {
@@ -239,10 +349,14 @@ TEST_F(DemoAppTest, AVisitorsChoiceStaysASecretUntilTheAnswer) {
   open("hand", true);
   press(GLFW_KEY_1);
   EXPECT_EQ(app_->view().hidden_choice, 1);
+  EXPECT_TRUE(app_->view().revealed.empty()) << "no curve gives it away";
+  press(GLFW_KEY_D);
+  EXPECT_EQ(app_->view().hidden_choice, 1) << "both have to be tried";
   press(GLFW_KEY_2);
   EXPECT_EQ(app_->view().hidden_choice, 2);
   press(GLFW_KEY_D);
   EXPECT_EQ(app_->view().hidden_choice, 0);
+  EXPECT_EQ(app_->view().revealed.size(), 2u);
 }
 
 TEST_F(DemoAppTest, SaysWhenTheProbeIsAwayFromTheData) {

@@ -48,11 +48,12 @@ TEST(Colours, MethodsDifferFromEachOtherAndFromTheReference) {
   }
 }
 
-TEST(Colours, TheScaleBrightensEvenlyAndEndsAtOne) {
-  double last = -1.0;
+TEST(Colours, TheScaleDarkensFromLightAndEndsAtOne) {
+  double last = 1.0;
+  EXPECT_GT(luminance(error_colour(0.0)), 0.8) << "no error is no shadow";
   for (double error = 0.0; error <= 1.0; error += 0.05) {
     const double now = luminance(error_colour(error));
-    EXPECT_GT(now, last) << error;
+    EXPECT_LT(now, last) << error;
     last = now;
   }
   EXPECT_EQ(error_colour(1.001), kAboveJndColour);

@@ -64,6 +64,49 @@ TEST(CurveColumns, StandOnAGridOfTheirOwnSoThatCurvesDoNotShimmer) {
   EXPECT_FLOAT_EQ(find(other, 100.33).high_N[0], 3.0F);
 }
 
+// Frame after frame, as the window does it, and all at once.
+TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
+  ForceHistory growing;
+  CurveColumns scrolled;
+  const ForceHistory all = example();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    growing.append(all[i]);
+    if (i % 17 == 0 || i + 1 == all.size()) {
+      const double end_s = all[i].loop_time_s;
+      scrolled.gather(growing, {}, 2, end_s - 0.5, end_s, 40);
+    }
+  }
+  const double end_s = all[all.size() - 1].loop_time_s;
+  CurveColumns fresh;
+  fresh.gather(all, {}, 2, end_s - 0.5, end_s, 40);
+  ASSERT_EQ(scrolled.columns().size(), fresh.columns().size());
+  for (std::size_t i = 0; i < fresh.columns().size(); ++i) {
+    const CurveColumn& a = scrolled.columns()[i];
+    const CurveColumn& b = fresh.columns()[i];
+    EXPECT_EQ(a.any, b.any) << i;
+    EXPECT_DOUBLE_EQ(a.time_s, b.time_s);
+    if (!a.any || i == 0) continue;  // the first may have lost its beginning with the history
+    EXPECT_EQ(a.high_N[0], b.high_N[0]) << i;
+    EXPECT_NEAR(a.felt_over_jnd[0], b.felt_over_jnd[0], 1e-5F) << i;
+  }
+}
+
+// One tick at 2 N off among ticks at 0.1 N off: a mark, and hardly anything to feel.
+TEST(CurveColumns, ASingleTickIsAMarkAndNotFelt) {
+  const ForceHistory history = example();
+  CurveColumns curves;
+  const JndLine jnd;
+  curves.gather(history, jnd, 2, 100.0, 101.0, 50);
+  const CurveColumn* peak = curves.at(100.333);
+  ASSERT_NE(peak, nullptr);
+  const double lasting = 0.1 / jnd.at(1.0);
+  EXPECT_NEAR(peak->error_over_jnd[0], 2.0 / jnd.at(1.0), 1e-4);
+  // The peak is one of the 50 or 51 samples in 50 ms.
+  EXPECT_NEAR(peak->felt_over_jnd[0], lasting + 1.9 / jnd.at(1.0) / 50.0, 0.02 * lasting);
+  EXPECT_EQ(curves.at(99.0), nullptr);
+  EXPECT_EQ(curves.at(102.0), nullptr);
+}
+
 TEST(CurveColumns, HaveNothingToShowOfAnEmptyHistory) {
   CurveColumns curves;
   curves.gather(ForceHistory{}, {}, 3, 0.0, 10.0, 100);

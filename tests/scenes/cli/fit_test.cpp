@@ -138,15 +138,27 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
     expect_model(fit(option));
   }
   expect_model(fit({"--solver", "tsvd", "--reduction", "force", "--force"}, "direct"));
-  expect_model(fit({"--grid", "4x3x3x3", "--force"}, "voxel"));
+  expect_model(fit({"--grid", "4x3x3x3", "--features", "scene", "--force"}, "voxel"));
   EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
 }
 
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
-  const ProgramRun run = run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out",
+  Recording other = example_recording(4000, 1000.0);
+  for (RecordingRow& row : other.rows) row.force_N *= 1.001;
+  const std::string second = recording() + ".second.csv";
+  ASSERT_TRUE(write_recording(second, other, {}, false).ok());
+  const ProgramRun run = run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out",
                                       out(), "--json"});
   expect_model(run);
-  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 2000);
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 5000);
+}
+
+TEST_F(FitVerb, TheSameRecordingTwiceIsTold) {
+  const ProgramRun run = run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out",
+                                      out(), "--json"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "warning: " + recording() + ": repeated: it has the same rows as " + recording() +
+                         "; name every recording once: a repeated one counts twice, and errors on it say nothing\n");
 }
 
 TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
@@ -168,8 +180,8 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
 
 TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
   expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
-  expect_refused(fit({"--features", "scene", "--grid", "25"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
-  expect_refused(fit({"--grid", "1000x1000x1000x1000"}, "voxel"), 1, "at most 1e7");
+  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
+  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--features", "scene"}, "voxel"), 1, "at most 1e7");
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
 }
@@ -193,7 +205,7 @@ TEST_F(FitVerb, NoContactIsToldInOneLine) {
   Recording air = example_recording(100, 1000.0);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3;
   ASSERT_TRUE(write_recording(recording(), air, {}, true).ok());
-  expect_refused(fit({}), 1, "in contact");
+  expect_refused(fit({}), 1, "no_force: ");
 }
 
 // Starts `palpate fit` and waits until it reads its recording, which is after

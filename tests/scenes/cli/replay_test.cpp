@@ -69,7 +69,7 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   for (const Json& model : object["models"]) {
     EXPECT_EQ(keys(model), (std::vector<std::string>{"name", "method", "centres", "rms_error_N", "max_error_N",
                                                      "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
-                                                     "out_of_domain_samples", "evaluation_ns", "surface_moved", "bins"}));
+                                                     "out_of_domain_samples", "evaluation_ns", "surface_moved", "predicted_error", "bins"}));
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
     EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));
@@ -200,23 +200,15 @@ TEST_F(ReplayVerb, ModelsOfOneNameAreToldApart) {
             "time_s,position_m,force_N,depth_m,feature_depth_m,greedy-cubic-6_N,greedy-cubic-6-2_N,greedy-cubic-6-3_N");
 }
 
-TEST_F(ReplayVerb, ARecordingWithoutContactGivesNulls) {
+TEST_F(ReplayVerb, ARecordingWithoutContactIsRefused) {
   Recording air = test::example_recording(100, 1000.0);
   for (RecordingRow& row : air.rows) row.position_m = -1e-3 - 1e-6 * row.time_s;
   recording_ = folder_.file("air.csv");
   ASSERT_TRUE(write_recording(recording_, air, {}, false).ok());
   const auto ran = run({models_[0]}, {"--json"});
-  ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  const Json model = Json::parse(ran.out)["models"][0];
-  for (const char* key : {"rms_error_N", "max_error_N", "within_jnd", "p99_error_over_jnd", "max_error_over_jnd"}) {
-    EXPECT_TRUE(model[key].is_null()) << key;
-  }
-  EXPECT_TRUE(model["evaluation_ns"]["median"].is_null());
-  EXPECT_EQ(model["out_of_domain_samples"], 0);
-  EXPECT_EQ(model["bins"], Json::array());
-  const auto table = run({models_[0]});
-  EXPECT_EQ(table.exit_code, 0);
-  EXPECT_EQ(table.out.find("nan"), std::string::npos);
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_EQ(ran.err.rfind("error: " + recording_ + ": no_", 0), 0u) << ran.err;
 }
 
 TEST_F(ReplayVerb, SaysWhatCannotBeDone) {

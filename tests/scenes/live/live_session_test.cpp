@@ -79,7 +79,11 @@ TEST(LiveSession, RefusesWhatCannotBeOpened) {
   EXPECT_EQ(error_of(request).rfind("unknown device \"brush\"", 0), 0u);
   request = {};
   request.scene = "skin";
+  request.models = {"greedy"};
   EXPECT_EQ(error_of(request).rfind("the scene \"skin\" has no virtual material", 0), 0u);
+  request.models.clear();
+  request.device = "hand";
+  EXPECT_EQ(error_of(request), "opened") << "a session that waits for a file";
 }
 
 // The loop and replay give the same bits for the same samples. The models join
@@ -264,7 +268,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   const Session session = must(LiveSession::open(request));
   ASSERT_EQ(session->models().size(), 3u);
   EXPECT_EQ(session->models().view(2).name, "direct") << "the reference, always";
-  EXPECT_EQ(session->reference_words(), "true force of the virtual elastic");
+  EXPECT_EQ(session->reference_words(), "true force of the virtual material, elastic");
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).state == SlotState::ready; }));
   EXPECT_EQ(session->models().view(1).state, SlotState::ready) << "the quickest first";
   EXPECT_EQ(session->models().selected(), 0u) << "the first asked for";
@@ -285,6 +289,61 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   EXPECT_TRUE(recording->columns.velocity);
   const PreparedTraining prepared = test::prepare({recording}, test::scene_request("elastic_block"));
   EXPECT_GT(test::judge(*recording, test::fit(prepared, &kRandomMethod)).within_jnd, 0.95);
+}
+
+// One after the other, as somebody drags: the last one counts.
+TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.models = {"random-10"};
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_EQ(session->models().view(0).centres, 10);
+  for (const int centres : {12, 14, 20}) session->refit(0, centres);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).centres == 20; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  EXPECT_FALSE(session->models().view(0).refitting);
+  EXPECT_EQ(session->models().view(0).name, "random-20");
+}
+
+TEST(LiveSession, ARecordingIsFittedAndBecomesTheActiveModel) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("mine.csv");
+  ASSERT_TRUE(write_recording(path, *test::rig_recording(test::train_settings("elastic")), {}, false).ok());
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.models = {"trend"};
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  session->fit_recording(path);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  const std::size_t newest = session->models().size() - 1;
+  EXPECT_EQ(session->models().view(newest).name, "mine");
+  EXPECT_EQ(session->models().selected(), newest);
+}
+
+TEST(LiveSession, LineUpsShareTheModelsThatBothHave) {
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.device = "hand";
+  request.line_up = "Palpate";
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  EXPECT_EQ(session->line_up(), "Palpate");
+  const std::size_t before = session->models().size();
+  session->use_line_up("Ladder");
+  // Three by the paper's recipe are new; direct, voxel, greedy and trend are there.
+  EXPECT_EQ(session->models().size(), before + 3);
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < session->models().size(); ++i)
+    hidden += session->models().view(i).state == SlotState::hidden ? 1 : 0;
+  EXPECT_EQ(hidden, 2u) << "random and kdtree";
+  session->use_line_up("no such");
+  EXPECT_EQ(session->line_up(), "Ladder");
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ TEST(StudyFile, WritesNothingBeforeTheConsentThenRowByRow) {
             "# timing_ms lead_in 5 ramp 60 hold 20 pause 5\n"
             "# consent accepted, text bf1f2dac, 2024-05-06 10:20\n"
             "part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,"
-            "answer,response_ms\n"
-            "training,1,0.3,0.18,1,0.18,0.2999,0,second,731\n");
+            "answer,response_ms,device,rendered\n"
+            "training,1,0.3,0.18,1,0.18,0.2999,0,second,731,unknown,true\n");
 }
 
 TEST(StudyFile, IsTakenUpWhereItEnded) {

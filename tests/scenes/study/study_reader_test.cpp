@@ -35,7 +35,8 @@ TEST(StudyReader, ReadsEveryField) {
   EXPECT_FALSE(record.comparison_judged_larger());
   EXPECT_FALSE(record.found_larger());
   EXPECT_DOUBLE_EQ(record.rendered_difference(), 1.1 / 2.4);
-  EXPECT_EQ(study_row(record, ProcedureKind::constant), "study,1,2.5,3.5,0,2.4,3.5,1,first,20\n");
+  // Files of before the last two columns are read; what they did not say is unknown.
+  EXPECT_EQ(study_row(record, ProcedureKind::constant), "study,1,2.5,3.5,0,2.4,3.5,1,first,20,unknown,true\n");
 }
 
 TEST(StudyReader, IgnoresALastRowWithoutItsEnd) {
@@ -59,7 +60,7 @@ TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
             "S01.csv:5:1: found \"# consent refused, text 811c9dc5\", expected \"# consent accepted, \" and which text");
   EXPECT_EQ(complaint_after(",response_ms", ""),
             "S01.csv:6:1: found \"part,trial,reference_N,comparison_N,comparison_first,firs...\", expected the "
-            "columns " + std::string(kStudyColumns));
+            "columns " + std::string(kStudyColumns) + std::string(kDeviceColumns));
   EXPECT_EQ(complaint_after("training,1", "practice,1"),
             "S01.csv:7:1: found \"practice\", expected training or study");
   EXPECT_EQ(complaint_after("study,1,", "study,0,"), "S01.csv:8:7: found \"0\", expected a whole number above 0");
@@ -84,11 +85,11 @@ TEST(StudyReader, EveryTruncationIsReadOrRefused) {
 TEST(StudyReader, RefusesWhatIsNotAPairOfStrokes) {
   const StudyHeader header = test::discrimination_header(0.8);
   const std::string good = study_header_text(header) + "# consent accepted, text 1\n" + study_columns(header.procedure) +
-                           "\nstudy,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001\n";
+                           "\nstudy,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001,paddle,true\n";
   const auto data = parse_study(good, "S01.csv");
   ASSERT_TRUE(data.ok()) << data.error().message;
   EXPECT_EQ(data->records.front().worst_N, 0.001);
-  EXPECT_EQ(study_row(data->records.front(), header.procedure), "study,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001\n");
+  EXPECT_EQ(study_row(data->records.front(), header.procedure), "study,1,1.7,1.36,0,1.7,1.36,0,first,20,1.7,0.001,paddle,true\n");
   EXPECT_EQ(data->header.strokes->recording, "silicone 2");
   const auto complaint = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -103,12 +104,27 @@ TEST(StudyReader, RefusesWhatIsNotAPairOfStrokes) {
             "S01.csv:8:1: found \"# forces reference_mean_N 1.695 comparison_mean_N 1.356 c...\", expected \"# forces "
             "reference_mean_N 1.2 comparison_mean_N 1.3 checksum 4711\" or such");
   EXPECT_NE(complaint("jnd_offset_N", "offset_N"), "accepted");
-  EXPECT_EQ(complaint(",1.7,0.001", ""), "S01.csv:12:1: found \"study,1,1.7,1.36,0,1.7,1.36,0,first,20\", expected a row of twelve fields");
-  EXPECT_EQ(complaint(",0.001\n", ",-1\n"), "S01.csv:12:44: found \"-1\", expected a force from 0 to 10 N");
+  EXPECT_EQ(complaint(",1.7,0.001,paddle,true", ""), "S01.csv:12:1: found \"study,1,1.7,1.36,0,1.7,1.36,0,first,20\", expected a row of fourteen fields");
+  EXPECT_EQ(complaint(",0.001,", ",-1,"), "S01.csv:12:44: found \"-1\", expected a force from 0 to 10 N");
   for (std::size_t length = 0; length < good.size(); ++length) {
     const auto cut = parse_study(std::string_view(good).substr(0, length), "S01.csv");
     EXPECT_TRUE(!cut.ok() || cut->whole_bytes <= length) << length;
   }
+}
+
+TEST(StudyReader, RowsSayOnWhatTheyWereGivenAndRehearsalsAreTakenOut) {
+  const std::string text = "# palpate-study 1\n# subject S01\n# procedure constant\n"
+                           "# timing_ms lead_in 400 ramp 100 hold 900 pause 500\n# consent accepted, text 8c1f2a9d\n" +
+                           std::string(kStudyColumns) + std::string(kDeviceColumns) +
+                           "\nstudy,1,2.5,3.5,0,2.4,3.5,0,first,20,paddle,true\n"
+                           "study,2,2.5,3.5,0,2.4,3.5,0,first,20,mouse,false\n";
+  auto data = parse_study(text, "s.csv");
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  EXPECT_EQ(data->records[0].device, "paddle");
+  EXPECT_FALSE(data->records[1].rendered);
+  EXPECT_EQ(remove_rehearsals(*data), 1u);
+  ASSERT_EQ(data->records.size(), 1u);
+  EXPECT_EQ(data->records[0].device, "paddle");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(SlotPlan, FilesNeedNoMaterial) {
   const std::string refused =
       "error: the scene \"skin\" has no virtual material to fit models to; pass model files, made by "
       "palpate fit --scene skin";
-  EXPECT_EQ(names(plan_slots(scene("skin"), {}, false)), refused);
+  EXPECT_EQ(names(plan_slots(scene("skin"), {}, false)), "") << "a session that waits for a file";
   EXPECT_EQ(names(plan_slots(scene("skin"), {file, "greedy"}, false)), refused);
   EXPECT_EQ(names(plan_slots(scene("skin"), {file}, true)), "mine") << "nothing to fit one of position alone to";
   const std::string broken = folder.with_file("broken.json", "{}");
@@ -47,6 +47,21 @@ TEST(SlotPlan, RefusesWhatItDoesNotKnow) {
             "model file that exists");
   EXPECT_EQ(names(plan_slots(scene("silicone_block"), std::vector<std::string>(16, "random"), false)),
             "error: found 17 models, the direct reference included, expected at most 16; leave some out");
+}
+
+TEST(SlotPlan, CentresAndThePapersRecipeCanBeAskedFor) {
+  EXPECT_EQ(names(plan_slots(scene("silicone_block"), {"greedy-10", "paper:random-20", "paper:voxel"}, false)),
+            "greedy-10, random-20 '09, voxel '09, direct");
+  for (const char* wrong : {"voxel-10", "greedy-", "greedy-x", "paper:", "paper:lazy-3"})
+    EXPECT_FALSE(plan_slots(scene("silicone_block"), {wrong}, false).ok()) << wrong;
+}
+
+TEST(SlotPlan, EveryLineUpCanBePlanned) {
+  for (const LineUp& line_up : line_ups()) {
+    EXPECT_TRUE(plan_slots(scene("silicone_block"), line_up.models, false).ok()) << line_up.name;
+    EXPECT_EQ(find_line_up(line_up.name), &line_up);
+  }
+  EXPECT_EQ(find_line_up("nothing"), nullptr);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ VoxelGrid uneven_grid(int dimension, int size, std::uint64_t seed) {
 // Both interpolate between the same values of size 1; a node's coordinate is
 // off by rounding, over the narrowest cell: 1e-16 / 1e-4.
 TEST(VoxelLookup, AgreesWithThePlainGridInsideAndOutsideTheBox) {
-  for (int d = 1; d <= kMaxFeatures; ++d) {
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d) {
     const VoxelGrid grid = uneven_grid(d, d <= 4 ? 9 : 3, 5);
     const VoxelLookup lookup(grid);
     const Eigen::MatrixXd queries = 1.3 * random_points(d, 300, 2);

@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Targets, RbfEvaluatorOnTarget, ::testing::ValuesIn(simd
 TEST_P(RbfEvaluatorOnTarget, AgreesWithALongDoubleReferenceForEveryKernelAndDimension) {
   EXPECT_EQ(simd::target_name(), GetParam());
   for (const KernelKind kernel : kKernelKinds)
-    for (int d = 1; d <= kMaxFeatures; ++d)
+    for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
       for (const int n : {0, 1, 7, 8, 9, 16, 100}) {
         const RbfFunction f = random_function(kernel, d, n, static_cast<std::uint64_t>(100 * d + n));
         const RbfEvaluator evaluator(f);
@@ -165,7 +165,7 @@ TEST_P(RbfEvaluatorOnTarget, KernelProductAgreesWithTheMatrix) {
 }
 
 TEST_P(RbfEvaluatorOnTarget, NearestDistanceIsThatOfABruteForceSearch) {
-  for (int d = 1; d <= kMaxFeatures; ++d)
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
     for (const int count : {1, 15, 16, 17, 200}) {
       const Eigen::MatrixXd points = random_points(d, count, 1);
       const NearestDistance nearest(points);

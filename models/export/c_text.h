@@ -1,0 +1,54 @@
+// C99 text of numbers and tables, in the precision of the exported file.
+// Thread guarantee: one thread per object; slow side (allocates).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+// What one tick does in contact, counted as written: the upper bound of a path.
+struct TickOperations {
+  std::size_t arithmetic = 0;  // additions, multiplications, comparisons
+  std::size_t divisions = 0;
+  std::size_t roots = 0;
+  std::size_t exponentials = 0;
+  std::size_t logarithms = 0;  // of the file's own: 30 operations each
+
+  TickOperations& operator+=(const TickOperations& more);
+};
+
+// Collects the text of the file, and counts what it needs.
+class CText {
+ public:
+  explicit CText(bool single_precision) : single_(single_precision) {}
+
+  void add(std::string_view text) { text_ += text; }
+  void count(const TickOperations& more) { operations_ += more; }
+
+  // The shortest decimal that reads back as the same number, as a literal of `real`.
+  std::string number(double value) const;
+  // "static const real NAME[ROWS][COLUMNS] = {...};", one column of `values` a row.
+  void table(const std::string& name, const Eigen::MatrixXd& values);
+  // The same in single precision, whatever that of the file.
+  void float_table(const std::string& name, const Eigen::MatrixXd& values);
+  // "static const real NAME[SIZE] = {...};"
+  void list(const std::string& name, const Eigen::VectorXd& values);
+
+  bool single() const { return single_; }
+  const std::string& text() const { return text_; }
+  std::size_t table_bytes() const { return table_bytes_; }
+  const TickOperations& operations() const { return operations_; }
+
+ private:
+  void rows(const std::string& declaration, const Eigen::MatrixXd& values, bool single);
+
+  bool single_;
+  std::string text_;
+  std::size_t table_bytes_ = 0;
+  TickOperations operations_;
+};
+
+}  // namespace palpate

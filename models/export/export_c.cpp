@@ -1,0 +1,165 @@
+#include "models/export/export_c.h"
+
+#include "models/export/correction_c.h"
+#include "models/export/feature_c.h"
+#include "models/export/motion_c.h"
+
+namespace palpate {
+namespace {
+
+// Of kMotionC on a quantised sample, counted with a type that counts.
+constexpr TickOperations kMotionOperations{.arithmetic = 1500, .divisions = 60, .roots = 3, .exponentials = 20,
+                                           .logarithms = 6};
+// Filters, their mixture, features and the last sample.
+constexpr std::size_t kMotionNumbers = 2 * 3 * 13 + 8;
+
+// Text that may stand in a C comment.
+std::string in_comment(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    const bool plain = c >= ' ' && c <= '~' && c != '*' && c != '?' && c != '\\';
+    safe += plain ? c : '_';
+  }
+  return safe;
+}
+
+std::string head(const ModelData& data, const ExportRequest& request) {
+  const std::string real = request.single_precision ? "float" : "double";
+  const CText exact(false);
+  std::string features;
+  for (const FeatureSpec& spec : data.features) features += (features.empty() ? "" : ", ") + feature_name(spec);
+  return "/* Force model " + in_comment(data.name) + ", written by palpate export. C99; needs sqrt and exp.\n"
+         " * Features: " + features + "\n"
+         " *\n"
+         " * " + real + " palpate_force(" + real + " time_s, " + real + " position_m): the force in N, positive out of the\n"
+         " *   material. position_m: 0 at the undisturbed surface, positive inside. A value that is\n"
+         " *   not finite, or a time that is not later than the last one: 0, and nothing changes.\n"
+         " * " + real + " palpate_force_after(" + real + " step_s, " + real + " position_m): the same, `step_s` after the last\n"
+         " *   call; better in single precision, where a large time has coarse steps.\n"
+         " * int palpate_out_of_domain(void): the last motion was unlike the recordings.\n"
+         " * void palpate_reset(void): the next sample begins a new contact.\n"
+         " *\n"
+         " * One tool, one thread: the state is static. For two models in one program compile one\n"
+         " * with -Dpalpate_force=other_force and so on.\n"
+         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M may be defined when compiling: the\n"
+         " * step that positions come in, 0 where there is none, and the deviation beside it.\n"
+         " */\n"
+         "#include <stdint.h>\n\n"
+         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " + exact.number(request.encoder_step_m) +
+         "\n#endif\n#ifndef PALPATE_POSITION_NOISE_M\n#define PALPATE_POSITION_NOISE_M " +
+         exact.number(request.position_noise_m) + "\n#endif\n\n";
+}
+
+constexpr const char* kDoubleC = R"C(typedef double real;
+typedef uint64_t Bits;
+extern double sqrt(double x);
+extern double exp(double x);
+#define SQRT sqrt
+#define EXP exp
+#define MANTISSA_BITS 52
+#define MANTISSA_MASK UINT64_C(0x000fffffffffffff)
+#define EXPONENT_OF_ONE UINT64_C(0x3ff0000000000000)
+#define EXPONENT_BIAS 1023
+#define NOISE_FLOOR_M2 R(1e-18) /* (1 nm)^2 */
+)C";
+
+// The floor of the noise keeps a variance positive whose digits are few.
+constexpr const char* kFloatC = R"C(typedef float real;
+typedef uint32_t Bits;
+extern float sqrtf(float x);
+extern float expf(float x);
+#define SQRT sqrtf
+#define EXP expf
+#define MANTISSA_BITS 23
+#define MANTISSA_MASK UINT32_C(0x007fffff)
+#define EXPONENT_OF_ONE UINT32_C(0x3f800000)
+#define EXPONENT_BIAS 127
+#define NOISE_FLOOR_M2 R(1e-14) /* (0.1 um)^2 */
+)C";
+
+constexpr const char* kTickC = R"C(
+static int is_out_of_domain;
+
+static real model_force(void) {
+  real u[FEATURES];
+  real trust, force_N;
+  int k;
+  for (k = 0; k < FEATURES; ++k) u[k] = (value[k] - offset[k]) * inverse_scale[k];
+  force_N = trend_of();
+  trust = trust_in(u);
+  is_out_of_domain = trust < R(0.5);
+  if (trust > R(0.0)) {
+    const real correction_N = correction_of(u) - CORRECTED_SHARE * force_N;
+    force_N += trust * clamped(correction_N, -CORRECTION_LIMIT_N, CORRECTION_LIMIT_N);
+  }
+  if (!(force_N > R(0.0))) force_N = R(0.0);
+  return smaller(force_N, LARGEST_FORCE_N);
+}
+
+static real force_of(real step_s, real position_m) {
+  if (started) {
+    update_motion(step_s, position_m);
+  } else {
+    start_motion(position_m);
+  }
+  update_features(step_s, !started);
+  last_position_m = position_m;
+  started = 1;
+  is_out_of_domain = 0;
+  return position_m > R(0.0) ? model_force() : R(0.0);
+}
+
+void palpate_reset(void) {
+  started = 0;
+  is_out_of_domain = 0;
+}
+
+int palpate_out_of_domain(void) { return is_out_of_domain; }
+
+real palpate_force_after(real step_s, real position_m) {
+  if (!finite_number(step_s) || !finite_number(position_m) || (started && !(step_s > R(0.0)))) return R(0.0);
+  last_time_s += step_s;
+  return force_of(step_s, position_m);
+}
+
+real palpate_force(real time_s, real position_m) {
+  const real step_s = time_s - last_time_s;
+  if (!finite_number(time_s) || !finite_number(position_m) || (started && !(step_s > R(0.0)))) return R(0.0);
+  last_time_s = time_s;
+  return force_of(step_s, position_m);
+}
+)C";
+
+void write_constants(CText& out, const ModelData& data) {
+  out.add("\n/* ---- the force ---- */\n\n#define CORRECTED_SHARE " +
+          std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") + "\n#define CORRECTION_LIMIT_N " +
+          out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
+          out.number(kForceMargin * data.largest_force_N) + "\n");
+  out.list("offset", data.offset);
+  out.list("inverse_scale", data.scale.cwiseInverse());
+}
+
+}  // namespace
+
+Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request) {
+  CText out(request.single_precision);
+  out.add(head(data, request));
+  out.add(request.single_precision ? kFloatC : kDoubleC);
+  out.add("#define R(x) ((real)(x))\n#define FEATURES " + std::to_string(data.features.size()) +
+          "\n\nreal palpate_force(real time_s, real position_m);\n"
+          "real palpate_force_after(real step_s, real position_m);\n"
+          "void palpate_reset(void);\nint palpate_out_of_domain(void);\n");
+  out.add(kMotionC);
+  out.count(kMotionOperations);
+  if (Status status = write_features(out, data.features); !status) return status.error();
+  write_trend(out, data.trend, data.features);
+  if (Status status = write_correction(out, data.correction); !status) return status.error();
+  write_trust(out, data.cover);
+  write_constants(out, data);
+  out.add(kTickC);
+  const std::size_t numbers = kMotionNumbers + 3 * data.features.size();
+  const std::size_t size = request.single_precision ? sizeof(float) : sizeof(double);
+  return ExportedC{out.text(), out.table_bytes(), numbers * size, out.operations()};
+}
+
+}  // namespace palpate

@@ -1,0 +1,49 @@
+// How functions of the C interface report what went wrong: as text in the caller's
+// buffer, and never as an exception.
+// Thread guarantee: pure functions, any thread.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <new>
+#include <string_view>
+
+namespace palpate::library {
+
+// The caller's buffer for one error; may be none.
+struct Place {
+  char* text = nullptr;
+  std::size_t size = 0;
+
+  // Writes as much of `message` as fits, in whole UTF-8 characters, and its end.
+  // Returns null, for functions that return handles.
+  std::nullptr_t fail(std::string_view message) const noexcept {
+    if (text == nullptr || size == 0) return nullptr;
+    std::size_t count = message.size() < size ? message.size() : size - 1;
+    if (count < message.size()) {
+      while (count > 0 && (static_cast<unsigned char>(message[count]) & 0xC0U) == 0x80U) --count;
+    }
+    message.copy(text, count);
+    text[count] = '\0';
+    return nullptr;
+  }
+};
+
+// What `work` returns; `failed`, with a text at `place`, when it throws. The text
+// is empty when nothing was wrong.
+template <typename T, typename Work>
+T guarded(T failed, Place place, Work&& work) noexcept {
+  place.fail("");
+  try {
+    return work(place);
+  } catch (const std::bad_alloc&) {
+    place.fail("out of memory");
+  } catch (const std::exception& error) {
+    place.fail(error.what());
+  } catch (...) {
+    place.fail("unexpected: something that is no std::exception");
+  }
+  return failed;
+}
+
+}  // namespace palpate::library

@@ -1,0 +1,235 @@
+// The C interface of models/library/palpate/palpate.h: handles around a fitted model, a
+// haptics tick with that one model, and a force limiter. No exception leaves a function.
+#include "models/library/palpate/palpate.h"
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "engine/base/result.h"
+#include "engine/live/force_limiter.h"
+#include "engine/recording/recording.h"
+#include "engine/tick/haptics_tick.h"
+#include "engine/tick/sensor_identification.h"
+#include "models/library/error_text.h"
+#include "models/library/model_handle.h"
+#include "models/model/file/model_io.h"
+
+struct palpate_stream {
+  palpate_stream(const palpate::SensorSpec& spec, std::shared_ptr<const palpate::ForceModel> model)
+      : sensor(spec), tick(spec, {std::move(model)}) {}
+
+  palpate::SensorSpec sensor;
+  palpate::HapticsTick tick;
+  // Of the last sample that was taken.
+  bool out_of_domain = false;
+  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct palpate_limiter {
+  explicit palpate_limiter(const palpate::ForceLimits& limits) : limiter(limits) {}
+
+  palpate::ForceLimiter limiter;
+  bool stop = false;
+};
+
+namespace palpate::library {
+namespace {
+
+Status check_at_least_zero(const char* name, double value) {
+  if (value >= 0.0 && std::isfinite(value)) return {};
+  return Error{std::string(name) + ": found " + std::to_string(value) + ", expected a finite number of 0 or more"};
+}
+
+Status check_positive(const char* name, double value) {
+  if (value > 0.0) return {};
+  return Error{std::string(name) + ": found " + std::to_string(value) + ", expected more than 0"};
+}
+
+Result<SensorSpec> sensor_spec(const palpate_sensor& sensor) {
+  SensorSpec spec;
+  spec.encoder_step_m = sensor.encoder_step_m;
+  spec.position_noise_m = sensor.position_noise_m;
+  spec.has_velocity = sensor.has_velocity != 0;
+  spec.has_acceleration = sensor.has_acceleration != 0;
+  if (spec.has_velocity) spec.velocity_noise_m_per_s = sensor.velocity_noise_m_per_s;
+  if (spec.has_acceleration) spec.acceleration_noise_m_per_s2 = sensor.acceleration_noise_m_per_s2;
+  if (Status status = check_at_least_zero("encoder_step_m", spec.encoder_step_m); !status) return status.error();
+  if (Status status = check_at_least_zero("position_noise_m", spec.position_noise_m); !status) return status.error();
+  for (const auto& [has, name, value] :
+       {std::tuple{spec.has_velocity, "velocity_noise_m_per_s", spec.velocity_noise_m_per_s},
+        std::tuple{spec.has_acceleration, "acceleration_noise_m_per_s2", spec.acceleration_noise_m_per_s2}}) {
+    if (!has) continue;
+    if (Status status = check_at_least_zero(name, value); !status) return status.error();
+    if (Status status = check_positive(name, value); !status) return status.error();
+  }
+  return spec;
+}
+
+Result<SensorSpec> sensor_of_recording(const std::string& path) {
+  Result<RecordingReader> reader = RecordingReader::open(path);
+  if (!reader) return reader.error();
+  return identify_sensor(*reader);
+}
+
+Result<ForceLimits> force_limits(const palpate_limits& limits) {
+  for (const auto& [name, value] :
+       {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
+        std::pair{"continuous_N", limits.continuous_N}, std::pair{"thermal_time_s", limits.thermal_time_s},
+        std::pair{"stale_after_s", limits.stale_after_s}}) {
+    if (Status status = check_positive(name, value); !status) return status.error();
+  }
+  for (const auto& [name, value] :
+       {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
+        std::pair{"ramp_s", limits.ramp_s}, std::pair{"thermal_time_s", limits.thermal_time_s},
+        std::pair{"stop_s", limits.stop_s}}) {
+    if (Status status = check_at_least_zero(name, value); !status) return status.error();
+  }
+  return ForceLimits{limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s, limits.continuous_N,
+                     limits.thermal_time_s, limits.stale_after_s,   limits.stop_s};
+}
+
+double step(palpate_stream& stream, const ToolSample& sample) noexcept {
+  const TickSnapshot& snapshot = stream.tick.step(sample);
+  if (snapshot.fault == TickFault::bad_sample || snapshot.fault == TickFault::time_not_later) return 0.0;
+  stream.out_of_domain = (snapshot.out_of_domain_mask & 1U) != 0;
+  return snapshot.force_N[0];
+}
+
+}  // namespace
+}  // namespace palpate::library
+
+using palpate::library::guarded;
+using palpate::library::Place;
+
+int palpate_abi_version(void) { return PALPATE_ABI_VERSION; }
+
+palpate_model* palpate_model_load(const char* path, char* error, size_t error_size) {
+  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](Place place) -> palpate_model* {
+    if (path == nullptr) return place.fail("found no path, expected that of a model file");
+    auto model = palpate::load_model(path);
+    if (!model) return place.fail(model.error().message);
+    return new palpate_model{std::move(*model)};
+  });
+}
+
+void palpate_model_free(palpate_model* model) { delete model; }
+
+const char* palpate_model_name(const palpate_model* model) {
+  return model == nullptr ? "" : model->model->name().c_str();
+}
+
+palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error,
+                                   size_t error_size) {
+  palpate_sensor sensor{};
+  sensor.encoder_step_m = encoder_step_m;
+  return palpate_stream_new_with_sensor(model, &sensor, error, error_size);
+}
+
+palpate_stream* palpate_stream_new_with_sensor(const palpate_model* model, const palpate_sensor* sensor, char* error,
+                                               size_t error_size) {
+  return guarded<palpate_stream*>(nullptr, {error, error_size}, [&](Place place) -> palpate_stream* {
+    if (model == nullptr) return place.fail("found no model, expected one that palpate_model_load gave");
+    if (sensor == nullptr) return place.fail("found no sensor, expected a palpate_sensor");
+    const auto spec = palpate::library::sensor_spec(*sensor);
+    if (!spec) return place.fail(spec.error().message);
+    return new palpate_stream(*spec, model->model);
+  });
+}
+
+int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* error, size_t error_size) {
+  return guarded<int>(-1, {error, error_size}, [&](Place place) -> int {
+    if (path == nullptr || sensor == nullptr) {
+      place.fail("found no path or no sensor to fill, expected both");
+      return -1;
+    }
+    const auto spec = palpate::library::sensor_of_recording(path);
+    if (!spec) {
+      place.fail(spec.error().message);
+      return -1;
+    }
+    *sensor = {spec->encoder_step_m,
+               spec->position_noise_m,
+               spec->velocity_noise_m_per_s,
+               spec->acceleration_noise_m_per_s2,
+               spec->has_velocity ? 1 : 0,
+               spec->has_acceleration ? 1 : 0};
+    return 0;
+  });
+}
+
+void palpate_stream_free(palpate_stream* stream) { delete stream; }
+
+void palpate_stream_reset(palpate_stream* stream) {
+  if (stream == nullptr) return;
+  stream->tick.reset();
+  stream->out_of_domain = false;
+  stream->predicted_error_N = std::numeric_limits<double>::quiet_NaN();
+}
+
+double palpate_stream_force(palpate_stream* stream, double time_s, double position_m) {
+  return palpate_stream_force_with_motion(stream, time_s, position_m, 0.0, 0.0);
+}
+
+double palpate_stream_force_with_motion(palpate_stream* stream, double time_s, double position_m,
+                                        double velocity_m_per_s, double acceleration_m_per_s2) {
+  if (stream == nullptr) return 0.0;
+  return palpate::library::step(*stream, {time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
+                                          stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
+}
+
+int palpate_stream_out_of_domain(const palpate_stream* stream) {
+  return stream != nullptr && stream->out_of_domain ? 1 : 0;
+}
+
+double palpate_stream_predicted_error(const palpate_stream* stream) {
+  return stream == nullptr ? std::numeric_limits<double>::quiet_NaN() : stream->predicted_error_N;
+}
+
+void palpate_limits_default(palpate_limits* limits) {
+  if (limits == nullptr) return;
+  const palpate::ForceLimits by_default;
+  *limits = {by_default.largest_N,      by_default.fastest_N_per_s, by_default.ramp_s, by_default.continuous_N,
+             by_default.thermal_time_s, by_default.stale_after_s,   by_default.stop_s};
+}
+
+palpate_limiter* palpate_limiter_new(const palpate_limits* limits, char* error, size_t error_size) {
+  return guarded<palpate_limiter*>(nullptr, {error, error_size}, [&](Place place) -> palpate_limiter* {
+    palpate_limits chosen;
+    palpate_limits_default(&chosen);
+    if (limits != nullptr) chosen = *limits;
+    const auto checked = palpate::library::force_limits(chosen);
+    if (!checked) return place.fail(checked.error().message);
+    return new palpate_limiter(*checked);
+  });
+}
+
+void palpate_limiter_free(palpate_limiter* limiter) { delete limiter; }
+
+double palpate_limiter_force(palpate_limiter* limiter, double commanded_N, double step_s, double sample_age_s) {
+  if (limiter == nullptr) return 0.0;
+  palpate::ForceConditions conditions;
+  conditions.sample_age_s = sample_age_s;
+  conditions.device_fault = limiter->stop;
+  limiter->stop = false;
+  return limiter->limiter.limit(commanded_N, step_s, conditions);
+}
+
+void palpate_limiter_stop(palpate_limiter* limiter) {
+  if (limiter != nullptr) limiter->stop = true;
+}
+
+unsigned palpate_limiter_flags(const palpate_limiter* limiter) {
+  return limiter == nullptr ? 0U : limiter->limiter.flags();
+}
+
+static_assert(PALPATE_LIMIT_NOT_FINITE == palpate::force_limit::kNotFinite);
+static_assert(PALPATE_LIMIT_CLAMPED == palpate::force_limit::kClamped);
+static_assert(PALPATE_LIMIT_SLEWED == palpate::force_limit::kSlewed);
+static_assert(PALPATE_LIMIT_RAMPING == palpate::force_limit::kRamping);
+static_assert(PALPATE_LIMIT_THERMAL == palpate::force_limit::kThermal);
+static_assert(PALPATE_LIMIT_STALE == palpate::force_limit::kStale);
+static_assert(PALPATE_LIMIT_STOPPED == palpate::force_limit::kDeviceFault);

@@ -1,0 +1,240 @@
+// Palpate's models in a C++ program (C++17 or later): the C interface of palpate.h with
+// owners, defaults and exceptions.
+//
+//   palpate::Model model("block.json");
+//   palpate::Stream stream(model, 30e-6);                  // encoder step in metres
+//   palpate::Limiter limiter({.largest_N = 5.0});          // C++20; or set the field
+//   for (;;) render(limiter.force(stream.force(time_s, position_m), step_s));
+//
+// With palpate::fit linked also
+//   palpate::import_table("lab.txt", "press.csv");
+//   palpate::fit({"press.csv"}, "block.json");
+//
+// Everything here is inline around functions with C linkage, so that a program may be
+// built by another compiler, or with other options, than the library.
+//
+// Errors: constructors throw Failure, whose text says what was found, what was expected
+// and what to do. Functions marked noexcept never fail, and may run in a haptics loop.
+// Thread guarantee: a Model may be shared by threads; all others one thread at a time.
+#ifndef PALPATE_PALPATE_HPP
+#define PALPATE_PALPATE_HPP
+
+#include <palpate/palpate.h>
+#include <palpate/palpate_fit.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace palpate {
+// So that no name here is one of the library's own, whose sources use namespace palpate.
+inline namespace api {
+
+// Something from outside was not as it must be.
+class Failure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+namespace detail {
+
+// Calls `make(error, size)`; throws what it said when it gave nothing.
+template <typename Make>
+auto checked(Make&& make) {
+  char error[1024];
+  const auto made = make(error, sizeof error);
+  if (!made) throw Failure(error);
+  return made;
+}
+
+struct Free {
+  void operator()(palpate_model* model) const noexcept { palpate_model_free(model); }
+  void operator()(palpate_stream* stream) const noexcept { palpate_stream_free(stream); }
+  void operator()(palpate_limiter* limiter) const noexcept { palpate_limiter_free(limiter); }
+  void operator()(palpate_recording* recording) const noexcept { palpate_recording_free(recording); }
+};
+
+}  // namespace detail
+
+// A fitted model, read from a file of `palpate fit`. Copies share it.
+class Model {
+ public:
+  // Throws: no such file, not a model, damaged; a library of another ABI version.
+  explicit Model(const std::string& path)
+      : model_(detail::checked([&](char* error, std::size_t size) {
+                 if (palpate_abi_version() != PALPATE_ABI_VERSION) {
+                   throw Failure("found ABI version " + std::to_string(palpate_abi_version()) +
+                                 " of the palpate library, expected " + std::to_string(PALPATE_ABI_VERSION) +
+                                 "; build the program again");
+                 }
+                 return palpate_model_load(path.c_str(), error, size);
+               }),
+               detail::Free{}) {}
+
+  // E.g. "greedy-100".
+  std::string name() const { return palpate_model_name(model_.get()); }
+  const palpate_model* handle() const noexcept { return model_.get(); }
+
+ private:
+  std::shared_ptr<palpate_model> model_;
+};
+
+// What is known of the sensor behind the positions; fields as in palpate.h, all 0 at first.
+struct Sensor : palpate_sensor {
+  Sensor() noexcept : palpate_sensor{} {}
+  // Positions in steps of this many metres; 0: exact.
+  Sensor(double step_m) noexcept : palpate_sensor{} { encoder_step_m = step_m; }
+
+  // As `palpate replay` finds it from the recording. Throws: not a recording.
+  static Sensor of_recording(const std::string& path) {
+    Sensor sensor;
+    detail::checked([&](char* error, std::size_t size) {
+      return palpate_sensor_of_recording(path.c_str(), &sensor, error, size) == 0;
+    });
+    return sensor;
+  }
+};
+
+// One tool in one material. Movable; the model may go out of scope before it.
+class Stream {
+ public:
+  // Throws: a number of the sensor is negative or not finite.
+  Stream(const Model& model, const Sensor& sensor)
+      : stream_(detail::checked([&](char* error, std::size_t size) {
+          return palpate_stream_new_with_sensor(model.handle(), &sensor, error, size);
+        })) {}
+
+  // The force of the next sample in N; 0 when a value is not finite or the time is not
+  // later than the last one. Wait-free.
+  double force(double time_s, double position_m) noexcept {
+    return palpate_stream_force(stream_.get(), time_s, position_m);
+  }
+  // With what the sensor measures beside the position.
+  double force(double time_s, double position_m, double velocity_m_per_s, double acceleration_m_per_s2) noexcept {
+    return palpate_stream_force_with_motion(stream_.get(), time_s, position_m, velocity_m_per_s,
+                                            acceleration_m_per_s2);
+  }
+  // Of the last sample: its motion is unlike the recordings.
+  bool out_of_domain() const noexcept { return palpate_stream_out_of_domain(stream_.get()) != 0; }
+  // Of the last sample, N: 95 of 100 errors stay below; NaN when the model does not know.
+  double predicted_error_N() const noexcept { return palpate_stream_predicted_error(stream_.get()); }
+  // The next sample begins a new contact. Wait-free.
+  void reset() noexcept { palpate_stream_reset(stream_.get()); }
+
+ private:
+  std::unique_ptr<palpate_stream, detail::Free> stream_;
+};
+
+// As in palpate.h, with its defaults.
+struct Limits {
+  double largest_N = defaults().largest_N;
+  double fastest_N_per_s = defaults().fastest_N_per_s;
+  double ramp_s = defaults().ramp_s;
+  double continuous_N = defaults().continuous_N;
+  double thermal_time_s = defaults().thermal_time_s;
+  double stale_after_s = defaults().stale_after_s;
+  double stop_s = defaults().stop_s;
+
+ private:
+  static palpate_limits defaults() noexcept {
+    palpate_limits limits;
+    palpate_limits_default(&limits);
+    return limits;
+  }
+};
+
+// The last word on a force before an actuator gets it.
+class Limiter {
+ public:
+  // Throws: a limit is out of its range.
+  explicit Limiter(const Limits& limits = {})
+      : limiter_(detail::checked([&](char* error, std::size_t size) {
+          const palpate_limits plain = {limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s,
+                                        limits.continuous_N,   limits.thermal_time_s,  limits.stale_after_s,
+                                        limits.stop_s};
+          return palpate_limiter_new(&plain, error, size);
+        })) {}
+
+  // The force to render, finite. `step_s`: since the last call. Wait-free.
+  double force(double commanded_N, double step_s, double sample_age_s = 0.0) noexcept {
+    return palpate_limiter_force(limiter_.get(), commanded_N, step_s, sample_age_s);
+  }
+  // The next force goes to 0; once per tick while a fault lasts. Wait-free.
+  void stop() noexcept { palpate_limiter_stop(limiter_.get()); }
+  // PALPATE_LIMIT_... bits of the last force.
+  unsigned flags() const noexcept { return palpate_limiter_flags(limiter_.get()); }
+
+ private:
+  std::unique_ptr<palpate_limiter, detail::Free> limiter_;
+};
+
+// ---- with palpate::fit: slow side, read and write files ----
+
+// A recording in memory. Copies share it.
+class Recording {
+ public:
+  // Throws: not a recording; says file, line and column.
+  explicit Recording(const std::string& path)
+      : recording_(detail::checked([&](char* error, std::size_t size) {
+                     return palpate_recording_load(path.c_str(), error, size);
+                   }),
+                   detail::Free{}) {}
+
+  std::size_t size() const noexcept { return palpate_recording_row_count(recording_.get()); }
+  const palpate_row* begin() const noexcept { return palpate_recording_rows(recording_.get()); }
+  const palpate_row* end() const noexcept { return begin() + size(); }
+
+ private:
+  std::shared_ptr<palpate_recording> recording_;
+};
+
+// The forces of a model along a recording, one a row: `palpate replay`. Throws: as Stream.
+inline std::vector<double> replay(const Model& model, const Recording& recording, const Sensor& sensor) {
+  Stream stream(model, sensor);
+  std::vector<double> forces_N;
+  for (const palpate_row& row : recording) {
+    forces_N.push_back(stream.force(row.time_s, row.position_m, row.velocity_m_per_s, row.acceleration_m_per_s2));
+  }
+  return forces_N;
+}
+
+// `palpate import`. Throws: what cannot be guessed; the recording exists.
+inline void import_table(const std::string& table, const std::string& recording, bool overwrite = false) {
+  detail::checked([&](char* error, std::size_t size) {
+    return palpate_import(table.c_str(), recording.c_str(), overwrite, error, size) == 0;
+  });
+}
+
+// `palpate check`. Throws: not a recording.
+struct Check : palpate_check_result {
+  std::string findings;  // one line each
+
+  explicit Check(const std::string& recording) : palpate_check_result{}, findings(8192, '\0') {
+    detail::checked([&](char* error, std::size_t size) {
+      return palpate_check(recording.c_str(), this, findings.data(), findings.size(), error, size) == 0;
+    });
+    findings.resize(findings.find('\0'));
+  }
+};
+
+// Fields as in palpate_fit.h, with its defaults.
+struct FitOptions : palpate_fit_options {
+  FitOptions() noexcept { palpate_fit_options_default(this); }
+};
+
+// `palpate fit`: one model of all recordings, written to a file. Throws: a recording that is
+// not usable; an option out of its range; the file exists; stopped.
+inline void fit(const std::vector<std::string>& recordings, const std::string& model,
+                const FitOptions& options = {}) {
+  std::vector<const char*> paths;
+  for (const std::string& path : recordings) paths.push_back(path.c_str());
+  detail::checked([&](char* error, std::size_t size) {
+    return palpate_fit(paths.data(), paths.size(), &options, model.c_str(), error, size) == 0;
+  });
+}
+
+}  // namespace api
+}  // namespace palpate
+
+#endif

@@ -1,0 +1,37 @@
+#include "rendering/panels/curve_drawing.h"
+
+namespace palpate {
+
+void CurvePainter::jnd_band(ImU32 colour) const {
+  std::vector<ImVec2> upper;
+  std::vector<ImVec2> lower;
+  const auto flush = [&] {
+    plot.band(upper, lower, colour);
+    upper.clear();
+    lower.clear();
+  };
+  for (const CurveColumn& column : columns) {
+    if (!column.any) continue;
+    if (!column.reference) {
+      flush();
+      continue;
+    }
+    upper.emplace_back(plot.x_px(column.time_s - zero_s), plot.y_px(static_cast<double>(column.band_high_N)));
+    lower.emplace_back(plot.x_px(column.time_s - zero_s), plot.y_px(static_cast<double>(column.band_low_N)));
+  }
+  flush();
+}
+
+void CurvePainter::troubles(ImU32 late, ImU32 alarm, float size_px) const {
+  for (const CurveColumn& column : columns) {
+    const float x = plot.x_px(column.time_s - zero_s);
+    if (column.trouble == TickTrouble::late) {
+      plot.list().AddLine({x, plot.top()}, {x, plot.top() + size_px}, late);
+    } else if (column.trouble == TickTrouble::alarm) {
+      plot.list().AddTriangleFilled({x - size_px, plot.top()}, {x + size_px, plot.top()},
+                                    {x, plot.top() + 1.6F * size_px}, alarm);
+    }
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,55 @@
+// Curves of the columns of a plot over time.
+// Thread guarantee: the window's thread, inside a frame.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "rendering/ui/curves.h"
+#include "rendering/ui/plot.h"
+
+namespace palpate {
+
+// x of the plot is the columns' time less `zero_s`.
+struct CurvePainter {
+  const Plot& plot;
+  const std::vector<CurveColumn>& columns;
+  double zero_s = 0.0;
+
+  // A curve between two values of a column, the same for a line; NaN interrupts it.
+  template <typename Low, typename High>
+  void curve(ImU32 colour, float thickness, Low low, High high) const;
+  template <typename Value>
+  void curve(ImU32 colour, float thickness, Value value) const {
+    curve(colour, thickness, value, value);
+  }
+  // The reference with one JND to either side.
+  void jnd_band(ImU32 colour) const;
+  // Along the upper edge: a tick for a missed deadline, a triangle for a fault.
+  void troubles(ImU32 late, ImU32 alarm, float size_px) const;
+};
+
+template <typename Low, typename High>
+void CurvePainter::curve(ImU32 colour, float thickness, Low low, High high) const {
+  std::vector<ImVec2> points;
+  for (const CurveColumn& column : columns) {
+    if (!column.any) continue;
+    const auto bottom = static_cast<double>(low(column));
+    const auto top = static_cast<double>(high(column));
+    if (std::isnan(bottom) || std::isnan(top)) {
+      plot.line(points, colour, thickness);
+      points.clear();
+      continue;
+    }
+    const float x = plot.x_px(column.time_s - zero_s);
+    const float y_low = plot.y_px(bottom);
+    const float y_high = plot.y_px(top);
+    // In the direction of travel: a line that turns on the spot has no width there.
+    const bool falling = !points.empty() && y_low - points.back().y > points.back().y - y_high;
+    points.emplace_back(x, falling ? y_high : y_low);
+    if (y_low - y_high > 1.5F) points.emplace_back(x, falling ? y_low : y_high);
+  }
+  plot.line(points, colour, thickness);
+}
+
+}  // namespace palpate

@@ -1,0 +1,108 @@
+// What stands over the blocks and beside them: labels, the big number.
+#include <algorithm>
+#include <cmath>
+
+#include "rendering/panels/overlay_parts.h"
+#include "engine/base/text.h"
+#include "rendering/panels/panel_parts.h"
+#include "rendering/ui/plot.h"
+
+namespace palpate::overlay {
+namespace {
+
+// Top left corner of block `index`'s label: at its foot; of a block with another one
+// before it, over its tool; of a single block, in the picture's upper right corner,
+// where nothing else is.
+ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area,
+                   const ImVec2& size) {
+  if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
+  const bool behind = count > 2 && index < 2;
+  if (behind) {
+    // The tool's length and a little more, for it is lifted between presses.
+    const auto above = 16.0F * static_cast<float>(blocks.geometry().tool_radius_m);
+    const glm::vec2 top = blocks.on_screen(index, count, {0.0F, above, 0.0F}, {area.size.x, area.size.y});
+    const float x = std::clamp(top.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
+    return {area.at.x + x, area.at.y + std::max(3.0F * size.y, top.y - 1.9F * size.y)};
+  }
+  const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
+  const auto height = static_cast<float>(blocks.geometry().height_m);
+  // Before the block's front side, on the table's edge of it.
+  const glm::vec2 front = blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half},
+                                           {area.size.x, area.size.y});
+  const float x = std::clamp(front.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
+  const float y = std::clamp(front.y + 0.25F * size.y, 4.0F, area.size.y - size.y - 4.0F);
+  return {area.at.x + x, area.at.y + y};
+}
+
+std::string label_text(const LiveSession& session, std::size_t slot) {
+  if (slot == kReferenceBlock)
+    return session.comparison().reference() == ReferenceKind::truth ? "the true material" : "as recorded";
+  return std::to_string(models_view(session).number_of(slot)) + "  " + session.models().view(slot).name;
+}
+
+}  // namespace
+
+void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
+                 const UiStyle& style, const SceneArea& area) {
+  const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
+  ImFont* font = style.fonts().heading;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const bool secret = view.hidden_choice > 0;
+    const std::string text =
+        secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
+    const ImVec2 size = text_size(font, text);
+    const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
+    const bool chosen = slots[i] == session.models().selected();
+    const Rgb colour = secret ? style.colours().text : (slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme()));
+    const float pad = 0.25F * height_of(font);
+    ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
+                         {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
+                         ink(style.colours().panel, 0.88F), 6.0F);
+    ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
+                         {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
+    text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
+    if (slots.size() < 2 || !chosen) continue;
+    const std::string active = "active model";
+    const ImVec2 below = text_size(style.fonts().body, active);
+    text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad},
+            ink(style.colours().text), active);
+  }
+}
+
+// The big number, in words, and the scale that its colour is from.
+void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift) {
+  const Palette& p = style.colours();
+  ImFont* big = style.fonts().big;
+  ImFont* body = style.fonts().body;
+  const float line = height_of(body);
+  const ImVec2 corner(area.at.x + 1.1F * line, area.at.y + area.size.y - lift);
+  const ModelsView models = models_view(session);
+  const SlotView* active = models.active();
+  const double error = active != nullptr && !std::isnan(session.comparison().reference_N())
+                           ? active->recent_peak_error_over_jnd
+                           : 0.0;
+  const std::string number = peak_error_words(models, session.comparison().reference_N());
+  const ImVec2 size = text_size(big, "0.00");
+  const float y = corner.y - size.y - 1.9F * line;
+  text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);
+  const float beside = corner.x + size.x + 0.7F * line;
+  text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), "of what a hand can notice:");
+  text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet),
+          "the error of the active model");
+  const float width = 11.0F * line;
+  const float top = y + size.y + 0.35F * line;
+  const float high = 0.55F * line;
+  for (int i = 0; i < 40; ++i) {
+    const float from = static_cast<float>(i) / 40.0F;
+    ImGui::GetBackgroundDrawList()->AddRectFilled({corner.x + from * width, top},
+                         {corner.x + (from + 0.025F) * width + 0.5F, top + high},
+                         ink(error_colour(static_cast<double>(from))));
+  }
+  ImGui::GetBackgroundDrawList()->AddRectFilled({corner.x + width + 3.0F, top}, {corner.x + 1.3F * width, top + high},
+                       ink(kAboveJndColour));
+  text_at(body, {corner.x, top + high + 1.0F}, ink(p.quiet), "0");
+  text_at(body, {corner.x + width - 0.3F * line, top + high + 1.0F}, ink(p.quiet), "1");
+  text_at(body, {corner.x + width + 1.0F * line, top + high + 1.0F}, ink(p.quiet), "error / JND");
+}
+
+}  // namespace palpate::overlay

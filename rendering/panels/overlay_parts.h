@@ -1,0 +1,48 @@
+// The parts of the overlay over the picture that have files of their own. Internal to
+// rendering/panels.
+#pragma once
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "rendering/panels/scene_overlay.h"
+
+namespace palpate::overlay {
+
+inline constexpr auto kFloating = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                  ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
+                                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                                  ImGuiWindowFlags_NoNav;
+
+inline ImVec2 text_size(ImFont* font, const std::string& text, float wrap = 0.0F) {
+  return font->CalcTextSizeA(height_of(font), 1e6F, wrap, text.c_str());
+}
+inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& text, float wrap = 0.0F) {
+  ImGui::GetBackgroundDrawList()->AddText(font, height_of(font), at, colour, text.c_str(), nullptr, wrap);
+}
+
+// Over the blocks.
+void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
+                 const UiStyle& style, const SceneArea& area);
+// The error of the model in the hand as one number, in words, and the scale that its
+// colour is from; so far above the lower edge.
+void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift);
+
+// All .json files in these folders, sorted.
+std::vector<std::string> model_files(const std::vector<std::string>& folders);
+
+// Windows in the middle.
+void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area);
+void draw_help(ViewState& view, const UiStyle& style);
+void draw_file_list(LiveSession& session, ViewState& view);
+void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
+// What to do with a recording: fit it, replay it.
+void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions);
+// Notices at the top.
+void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area);
+void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area);
+
+}  // namespace palpate::overlay

@@ -1,0 +1,186 @@
+// Windows and notices over the picture: the keys, model files, what the device wants.
+#include <cctype>
+#include <filesystem>
+
+#include "rendering/panels/overlay_parts.h"
+#include "rendering/panels/panel_parts.h"
+#include "scenes/scene/assets.h"
+#include "scenes/scene/scene.h"
+
+namespace palpate::overlay {
+namespace {
+
+// In the middle of the window and never larger than it.
+void begin_in_the_middle() {
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float margin = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({0.5F * all.x, 0.5F * all.y}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {all.x - margin, all.y - margin});
+}
+
+constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
+                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
+
+struct HelpLine {
+  const char* key;
+  const char* text;
+};
+
+std::vector<HelpLine> help_lines() {
+  std::vector<HelpLine> lines = {{"mouse", "moves the probe, over the block; down is deeper"},
+                                 {"wheel, Up, Down", "move the probe step by step"},
+                                 {"right button", "turns the view; Ctrl + wheel comes nearer"},
+                                 {"1 ... 9", "make a model the active one; a click on its block too"}};
+  for (const CommandEntry& entry : commands()) lines.push_back({entry.key, entry.help});
+  lines.push_back({"a row, right button", "renames a model, takes it out"});
+  lines.push_back({"on the curves", "drag zooms, the wheel goes back, double click goes on"});
+  lines.push_back({"Left, Right", "scroll back and forth while the curves stand still"});
+  lines.push_back({"P [ ] , .", "pause, seek, speed of a replayed recording"});
+  lines.push_back({"drop a file", "loads a model; of a recording: fits or replays it"});
+  lines.push_back({"Ctrl+Q", "ends the program"});
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> model_files(const std::vector<std::string>& folders) {
+  std::vector<std::string> files;
+  for (const std::string& folder : folders) {
+    std::error_code missing;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
+  float y = area.at.y + 6.2F * height_of(style.fonts().heading);
+  ImFont* font = style.fonts().body;
+  const float pad = 0.6F * height_of(font);
+  const float wrap = 0.86F * area.size.x;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  for (const Toast& toast : toasts) {
+    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, wrap, toast.text.c_str());
+    const float x = area.at.x + 0.5F * (area.size.x - size.x);
+    list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised),
+                       6.0F);
+    list.AddRectFilled({x - pad, y - pad}, {x - 0.6F * pad, y + size.y + pad},
+                       ink(toast.problem ? style.colours().fault : kReferenceColour), 3.0F);
+    list.AddText(font, height_of(font), {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
+    y += size.y + 2.6F * pad;
+  }
+}
+
+void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
+  const std::string text = data_warning(models_view(session));
+  if (text.empty()) return;
+  const float wrap = 0.8F * area.size.x;
+  const ImVec2 size = text_size(style.fonts().body, text, wrap);
+  const float pad = 0.4F * height_of(style.fonts().body);
+  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.3F * height_of(style.fonts().heading));
+  ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - pad},
+                                                {at.x + size.x + 2.0F * pad, at.y + size.y + pad},
+                                                ink(style.colours().raised), 6.0F);
+  text_at(style.fonts().body, at, ink(style.colours().text), text, wrap);
+}
+
+// What the device wants of whoever holds it, large and in the middle.
+void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
+  std::string words = empty_scene_words(session);
+  if (words.empty()) words = session.device_words();
+  if (words.empty()) return;
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  ImGui::SetNextWindowPos({area.at.x + 0.5F * area.size.x, area.at.y + 0.32F * area.size.y}, ImGuiCond_Always,
+                          {0.5F, 0.5F});
+  ImGui::SetNextWindowSize({0.8F * area.size.x, 0.0F});
+  ImGui::Begin("device", nullptr, kFloating & ~ImGuiWindowFlags_NoBackground);
+  ImGui::PushFont(style.fonts().heading);
+  ImGui::TextWrapped("%s", words.c_str());
+  ImGui::PopFont();
+  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)"))
+    session.start_zeroing();
+  ImGui::End();
+}
+
+void draw_help(ViewState& view, const UiStyle& style) {
+  if (!view.help) return;
+  const std::vector<HelpLine> lines = help_lines();
+  float keys = 0.0F;
+  for (const HelpLine& line : lines) keys = std::max(keys, ImGui::CalcTextSize(line.key).x);
+  begin_in_the_middle();
+  ImGui::SetNextWindowFocus();
+  ImGui::Begin("Keys", &view.help, kDialog);
+  const float all = ImGui::GetIO().DisplaySize.x;
+  const float from = ImGui::GetCursorPosX() + keys + ImGui::GetFontSize();
+  const float room = all - from - 3.0F * ImGui::GetFontSize();
+  for (const HelpLine& line : lines) {
+    ImGui::TextColored(paint(style.colours().text), "%s", line.key);
+    ImGui::SameLine(from);
+    ImGui::PushTextWrapPos(from + room);
+    ImGui::TextUnformatted(line.text);
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
+void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
+  if (!view.scene_list) return;
+  begin_in_the_middle();
+  ImGui::Begin("Scenes", &view.scene_list, kDialog);
+  const auto names = scene_names();
+  for (const std::string& name : names ? *names : std::vector<std::string>{}) {
+    const auto scene = load_scene(name);
+    // A study is no scene to press.
+    if (!scene || name == "jnd_study") continue;
+    if (ImGui::Selectable((scene->title + "###" + name).c_str(), name == session.scene().name)) {
+      view.scene_list = false;
+      actions.use_scene(name);
+    }
+    tip(scene->description.c_str());
+  }
+  ImGui::End();
+}
+
+void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions) {
+  if (view.offered_recording.empty()) return;
+  const std::string path = view.offered_recording;
+  bool open = true;
+  begin_in_the_middle();
+  ImGui::Begin("Recording", &open, kDialog);
+  ImGui::TextUnformatted(std::filesystem::path(path).filename().c_str());
+  if (ImGui::Button("Fit it, and put it in my hand")) {
+    session.fit_recording(path);
+    open = false;
+  }
+  tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
+  if (ImGui::Button("Replay it")) {
+    open = false;
+    actions.replay(path);
+  }
+  tip("Moves the probe as it was recorded; the models are compared with the recorded force");
+  ImGui::TextDisabled("%s", path.c_str());
+  ImGui::End();
+  if (!open) view.offered_recording.clear();
+}
+
+void draw_file_list(LiveSession& session, ViewState& view) {
+  if (!view.file_list) return;
+  begin_in_the_middle();
+  ImGui::Begin("Load a model", &view.file_list, kDialog);
+  ImGui::TextUnformatted("Drop a model file onto the window, or choose one:");
+  const auto assets = find_assets();
+  const std::vector<std::string> files =
+      model_files({assets ? *assets + "/models" : std::string("assets/models"), ".", "build/run"});
+  for (const std::string& file : files) {
+    if (!ImGui::Selectable(file.c_str())) continue;
+    session.load_file(file);
+    view.file_list = false;
+  }
+  if (files.empty())
+    ImGui::TextDisabled("no .json file in assets/models, here or in build/run; `palpate fit` makes one");
+  ImGui::End();
+}
+
+}  // namespace palpate::overlay

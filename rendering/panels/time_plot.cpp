@@ -1,0 +1,96 @@
+#include "rendering/panels/time_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace palpate {
+namespace {
+
+constexpr float kDrag_px = 6.0F;  // less is a click
+constexpr double kWheelShare = 0.1;  // of what is shown, a step of the wheel
+
+double time_under_mouse(const Plot& plot, const CurveTime& time) {
+  const float px = std::clamp(ImGui::GetIO().MousePos.x, plot.left(), plot.right());
+  return plot.x_at(px) + time.zero_s;
+}
+
+void drag(const Plot& plot, const UiStyle& style, CurveTime& time) {
+  if (plot.hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) time.drag_from_s = time_under_mouse(plot, time);
+  if (std::isnan(time.drag_from_s)) return;
+  const double to_s = time_under_mouse(plot, time);
+  const float from_px = plot.x_px(time.drag_from_s - time.zero_s);
+  const float to_px = plot.x_px(to_s - time.zero_s);
+  const bool dragged = std::abs(to_px - from_px) > kDrag_px;
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    if (dragged) time.zoom(time.drag_from_s, to_s);
+    time.drag_from_s = std::nan("");
+  } else if (dragged) {
+    plot.list().AddRectFilled({std::min(from_px, to_px), plot.top()}, {std::max(from_px, to_px), plot.bottom()},
+                              ink(style.colours().text, 0.10F));
+  }
+}
+
+}  // namespace
+
+bool handle_time_plot(const Plot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
+                      double end_s) {
+  const double oldest_s = history.size() > 0 ? history[0].loop_time_s : end_s;
+  drag(plot, style, time);
+  if (plot.hovered()) {
+    time.hover_s = time_under_mouse(plot, time);
+    if (const float wheel = ImGui::GetIO().MouseWheel; wheel != 0.0F) {
+      time.pause(end_s);
+      time.scroll_back(kWheelShare * time.shown_s * static_cast<double>(wheel), oldest_s);
+    }
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+      time.run();
+      time.drag_from_s = std::nan("");
+    }
+  }
+  if (!std::isnan(time.hover_s)) {
+    const float x = plot.x_px(time.hover_s - time.zero_s);
+    plot.list().AddLine({x, plot.top()}, {x, plot.bottom()}, ink(style.colours().quiet));
+  }
+  return plot.hovered();
+}
+
+void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time,
+                   const std::vector<Reading>& readings) {
+  if (!plot.hovered() || std::isnan(time.hover_s)) return;
+  char heading[48];
+  std::snprintf(heading, sizeof heading, "at %.3f s", time.hover_s - time.zero_s);
+  const float line = ImGui::GetTextLineHeight();
+  float width = ImGui::CalcTextSize(heading).x;
+  for (const Reading& reading : readings) width = std::max(width, ImGui::CalcTextSize(reading.text.c_str()).x + line);
+  const float pad = 0.4F * line;
+  const float high = line * static_cast<float>(readings.size() + 1) + 2.0F * pad;
+  const float mouse_px = plot.x_px(time.hover_s - time.zero_s);
+  // On the side where there is more room, so that the curve under the mouse is seen.
+  const bool left = mouse_px > 0.5F * (plot.left() + plot.right());
+  const float x = left ? mouse_px - width - 3.0F * pad : mouse_px + pad;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  list.AddRectFilled({x, plot.top()}, {x + width + 2.0F * pad, plot.top() + high}, ink(style.colours().panel, 0.92F), 4.0F);
+  list.AddRect({x, plot.top()}, {x + width + 2.0F * pad, plot.top() + high}, ink(style.colours().grid), 4.0F);
+  float y = plot.top() + pad;
+  list.AddText({x + pad, y}, ink(style.colours().text), heading);
+  for (const Reading& reading : readings) {
+    y += line;
+    list.AddRectFilled({x + pad, y + 0.3F * line}, {x + pad + 0.5F * line, y + 0.8F * line}, ink(reading.colour), 2.0F);
+    list.AddText({x + pad + line, y}, ink(style.colours().text), reading.text.c_str());
+  }
+}
+
+void draw_labels(const Plot& plot, const std::vector<CurveLabel>& labels) {
+  const float line = ImGui::GetTextLineHeight();
+  std::vector<float> wanted;
+  for (const CurveLabel& label : labels) wanted.push_back(label.y_px - 0.5F * line);
+  const std::vector<float> places = spread_labels(wanted, 0.9F * line, plot.top() - 0.5F * line, plot.bottom() - 0.5F * line);
+  ImDrawList& list = plot.list();
+  list.PushClipRectFullScreen();
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    list.AddText({plot.right() + 0.3F * line, places[i]}, ink(labels[i].colour), labels[i].text.c_str());
+  list.PopClipRect();
+}
+
+}  // namespace palpate

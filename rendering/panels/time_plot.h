@@ -1,0 +1,37 @@
+// A plot over time in the hand: the mouse reads values, zooms, goes back and forth.
+// Thread guarantee: the window's thread, inside a frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rendering/panels/view_state.h"
+#include "rendering/ui/plot.h"
+#include "scenes/live/force_history.h"
+
+namespace palpate {
+
+// x of the plot: seconds since `time.zero_s`.
+// Wheel: back in time. Drag: shows what was dragged over, standing still. Double click:
+// runs again. Draws what is dragged over, and the time under the mouse. Whether the
+// mouse is over it.
+bool handle_time_plot(const Plot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
+                      double end_s);
+
+struct Reading {
+  std::string text;
+  Rgb colour{0.0F};
+};
+// Beside the time under the mouse, on the plot that the mouse is over.
+void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time,
+                   const std::vector<Reading>& readings);
+
+struct CurveLabel {
+  std::string text;
+  Rgb colour{0.0F};
+  float y_px = 0.0F;  // where its curve ends
+};
+// At the right of the frame, none over another.
+void draw_labels(const Plot& plot, const std::vector<CurveLabel>& labels);
+
+}  // namespace palpate

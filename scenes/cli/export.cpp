@@ -1,0 +1,103 @@
+// palpate export: a model as one self-contained C99 file.
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/base/atomic_file.h"
+#include "engine/tick/sensor_identification.h"
+#include "models/export/export_c.h"
+#include "models/model/file/model_io.h"
+#include "scenes/cli/verbs.h"
+
+namespace palpate::cli {
+namespace {
+
+struct ExportArguments {
+  std::string model;
+  std::string out;
+  std::string sensor;
+  double encoder_step_m = 0.0;
+  bool single_precision = false;
+  bool json = false;
+  bool force = false;
+};
+
+Result<ExportRequest> export_request(const ExportArguments& arguments) {
+  ExportRequest request;
+  request.single_precision = arguments.single_precision;
+  request.encoder_step_m = arguments.encoder_step_m;
+  if (arguments.sensor.empty()) return request;
+  Result<RecordingReader> reader = RecordingReader::open(arguments.sensor);
+  if (!reader) return reader.error();
+  const Result<SensorSpec> sensor = identify_sensor(*reader);
+  if (!sensor) return sensor.error();
+  request.encoder_step_m = sensor->encoder_step_m;
+  request.position_noise_m = sensor->position_noise_m;
+  return request;
+}
+
+void print_json(const ExportArguments& arguments, const ModelData& data, const ExportedC& file) {
+  const nlohmann::ordered_json object = {
+      {"file", arguments.out},
+      {"model", data.name},
+      {"precision", arguments.single_precision ? "float" : "double"},
+      {"text_bytes", file.text.size()},
+      {"table_bytes", file.table_bytes},
+      {"state_bytes", file.state_bytes},
+      {"operations",
+       {{"arithmetic", file.operations.arithmetic},
+        {"divisions", file.operations.divisions},
+        {"roots", file.operations.roots},
+        {"exponentials", file.operations.exponentials},
+        {"logarithms", file.operations.logarithms}}}};
+  std::printf("%s\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportedC& file) {
+  const TickOperations& counted = file.operations;
+  std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
+              arguments.single_precision ? "single" : "double", file.text.size());
+  std::printf("tables %zu bytes, state %zu bytes\n", file.table_bytes, file.state_bytes);
+  std::printf("a tick in contact, at most: %zu additions and multiplications, %zu divisions, %zu square roots, "
+              "%zu exponentials, %zu logarithms\n",
+              counted.arithmetic, counted.divisions, counted.roots, counted.exponentials, counted.logarithms);
+}
+
+Status run_export(const ExportArguments& arguments) {
+  const auto model = load_model(arguments.model);
+  if (!model) return model.error();
+  const Result<ExportRequest> request = export_request(arguments);
+  if (!request) return request.error();
+  const ModelData& data = (*model)->data();
+  const Result<ExportedC> file = export_c(data, *request);
+  if (!file) return Error{arguments.model + ": " + file.error().message};
+  if (Status status = write_file_atomically(arguments.out, file->text, arguments.force); !status) return status;
+  if (arguments.json) {
+    print_json(arguments, data, *file);
+  } else {
+    print_summary(arguments, data, *file);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Verbs& verbs) {
+  CLI::App* command = app.add_subcommand("export", "Write a model as one self-contained C99 file");
+  const auto arguments = std::make_shared<ExportArguments>();
+  command->add_option("model", arguments->model, "Model file (JSON)")->required();
+  command->add_option("--c", arguments->out, "C file to write")->required();
+  command->add_flag("--float", arguments->single_precision, "Single precision");
+  CLI::Option* step = command->add_option("--encoder-step", arguments->encoder_step_m,
+                                          "Steps that positions come in, metres; 0: none")
+                          ->check(CLI::Range(0.0, 0.1))->capture_default_str();
+  command->add_option("--sensor", arguments->sensor, "Recording whose encoder step and position noise to take (CSV)")
+      ->excludes(step);
+  command->add_flag("--json", arguments->json, "Print one JSON object");
+  command->add_flag("--force", arguments->force, "Write over an existing file");
+  verbs.emplace_back(command, [arguments] { return run_export(*arguments); });
+}
+
+}  // namespace palpate::cli

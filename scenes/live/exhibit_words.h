@@ -1,0 +1,42 @@
+// What the exhibit says, in several languages: one text file each in assets/exhibit,
+// lines "key = text", "#" begins a comment. And how visitors answered so far.
+// Thread guarantee: slow side; values.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace palpate {
+
+class ExhibitWords {
+ public:
+  // Errors: a line without "=", a key twice, as "path:line: ...".
+  static Result<ExhibitWords> parse(std::string_view text, const std::string& path);
+
+  // The text of a key, with %1 and %2 replaced; the key itself where there is none, so
+  // that what is missing is seen.
+  std::string operator()(const std::string& key, const std::string& one = "", const std::string& two = "") const;
+  std::vector<std::string> keys() const;
+
+ private:
+  std::map<std::string, std::string> texts_;
+};
+
+// All languages of a folder, in their order ("order = 1"). Errors: no file; those above.
+Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder);
+
+// Answers of all visitors, kept across restarts.
+struct ExhibitTally {
+  std::uint64_t answers = 0;
+  std::uint64_t as_expected = 0;
+};
+// A file that is not there, or cannot be read, is a tally that begins.
+ExhibitTally read_tally(const std::string& path);
+Status write_tally(const std::string& path, const ExhibitTally& tally);
+
+}  // namespace palpate

@@ -1,0 +1,34 @@
+// What a hand feels of a model's error: the mean of (model - reference) / JND over the
+// last 50 ms. A difference of a single millisecond moves no hand and no skin; one that
+// lasts does. Out of contact the difference is 0.
+//
+// Thread guarantee: value type; constant time and memory.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace palpate {
+
+class FeltError {
+ public:
+  static constexpr double kSpan_s = 0.05;
+
+  // `difference_over_jnd`: signed, finite. `time_s` rises; a gap of more than the span
+  // begins anew. Returns |mean|, 0 or more.
+  double add(double time_s, double difference_over_jnd) noexcept;
+  void reset() noexcept { count_ = 0; }
+
+ private:
+  struct Sample {
+    double time_s = 0.0;
+    double difference = 0.0;
+  };
+  // More than a span of a loop of 1 kHz; of a faster one the newest.
+  std::array<Sample, 64> samples_{};
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  double sum_ = 0.0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,201 @@
+// The exported C file: compiled as a microcontroller's compiler would, and compared
+// with replay sample by sample.
+#include "models/export/export_c.h"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "engine/tick/replay.h"
+#include "engine/tick/sensor_identification.h"
+#include "tests/support/example_model.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+// A compiled file; Real as in the export.
+template <typename Real>
+class CompiledModel {
+ public:
+  CompiledModel(const ModelData& data, ExportRequest request) {
+    request.single_precision = sizeof(Real) == sizeof(float);
+    const Result<ExportedC> file = export_c(data, request);
+    EXPECT_TRUE(file.ok()) << data.name;
+    if (!file) return;
+    const std::string source = folder_.with_file("model.c", file->text);
+    const std::string library = folder_.file("model.so");
+    const auto run = test::run_program({PALPATE_C_COMPILER, "-std=c99", "-ffreestanding", "-O1", "-Wall", "-Wextra",
+                                        "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC",
+                                        "-shared", source, "-o", library, "-lm"});
+    EXPECT_EQ(run.exit_code, 0) << data.name << "\n" << run.err;
+    library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
+    EXPECT_NE(library_, nullptr) << data.name;
+    if (library_ == nullptr) return;
+    force = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
+    force_after = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force_after"));
+    reset = reinterpret_cast<void (*)()>(dlsym(library_.get(), "palpate_reset"));
+    out_of_domain = reinterpret_cast<int (*)()>(dlsym(library_.get(), "palpate_out_of_domain"));
+  }
+
+  Real (*force)(Real, Real) = nullptr;
+  Real (*force_after)(Real, Real) = nullptr;
+  void (*reset)() = nullptr;
+  int (*out_of_domain)() = nullptr;
+
+ private:
+  struct Close {
+    void operator()(void* library) const { dlclose(library); }
+  };
+  test::TemporaryFolder folder_;
+  std::unique_ptr<void, Close> library_;
+};
+
+using Compare = std::function<void(const RecordingRow& row, double force_N, bool out_of_domain)>;
+
+ExportRequest request_for(const Recording& recording) {
+  const SensorSpec sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
+  return {false, sensor.encoder_step_m, sensor.position_noise_m};
+}
+
+void for_each_force(const Recording& recording, const ModelData& data, const Compare& compare) {
+  const auto summary = replay(recording, {std::make_shared<FittedModel>(data)},
+                              [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+                                compare(row, snapshot.force_N[0], (snapshot.out_of_domain_mask & 1U) != 0);
+                              });
+  EXPECT_TRUE(summary.ok());
+}
+
+const std::vector<Recording>& recordings() {
+  static const std::vector<Recording> list = {test::example_recording(4000, 1000.0, 30e-6),
+                                              test::example_recording(2000, 700.0)};
+  return list;
+}
+
+// Of every feature kind and term of the trend, beside what example_models() has.
+std::vector<ModelData> all_models() {
+  std::vector<ModelData> models = test::example_models();
+  FeatureSpec spectrum;
+  spectrum.kind = FeatureKind::maxwell_spectrum;
+  spectrum.part_count = 3;
+  FeatureSpec stops;
+  stops.kind = FeatureKind::stops;
+  stops.part_count = 2;
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double size = static_cast<double>(p + 1);
+    spectrum.parts[p].relaxation_time_s = 0.03 * size * size;
+    spectrum.parts[p].drive = {6e-3, {0.3, 0.1 * size, 0.0, 0.05}};
+    stops.parts[p].threshold_m = 2e-4 * size;
+    stops.parts[p].drive = {6e-3, {0.2, 0.0, 0.1 * size, 0.0}};
+  }
+  stops.parts[2] = {};
+  FeatureSpec peak;
+  peak.kind = FeatureKind::fading_peak;
+  peak.relaxation_time_s = 0.9;
+  FeatureSpec velocity;
+  velocity.kind = FeatureKind::velocity;
+  models.push_back(test::example_model("greedy", KernelKind::cubic, {FeatureSpec{}, velocity, spectrum, stops, peak}, 21));
+  for (std::size_t j = 0; j < models.back().trend.softening.size(); ++j) {
+    models.back().trend.softening[j] = {6e-3, {0.1, 0.05 * static_cast<double>(j), 0.1, 0.0}};
+  }
+  return models;
+}
+
+TEST(ExportC, InDoublePrecisionItGivesReplaysForcesToANanonewton) {
+  for (const ModelData& data : all_models()) {
+    for (const Recording& recording : recordings()) {
+      const CompiledModel<double> compiled(data, request_for(recording));
+      ASSERT_NE(compiled.force, nullptr);
+      double worst_N = 0.0;
+      double largest_N = 0.0;
+      for_each_force(recording, data, [&](const RecordingRow& row, double force_N, bool out_of_domain) {
+        worst_N = std::max(worst_N, std::abs(compiled.force(row.time_s, row.position_m) - force_N));
+        largest_N = std::max(largest_N, force_N);
+        EXPECT_EQ(compiled.out_of_domain(), out_of_domain ? 1 : 0);
+      });
+      EXPECT_LT(worst_N, 1e-9) << data.name;
+      EXPECT_GT(largest_N, 0.5) << data.name;
+    }
+  }
+}
+
+// 1 mN, or a fiftieth of what can be felt.
+TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
+  const Recording& recording = recordings().front();
+  const JndLine jnd;
+  for (const ModelData& data : all_models()) {
+    const CompiledModel<float> compiled(data, request_for(recording));
+    ASSERT_NE(compiled.force, nullptr);
+    double worst = 0.0;
+    for_each_force(recording, data, [&](const RecordingRow& row, double force_N, bool) {
+      const double exported_N = compiled.force(static_cast<float>(row.time_s), static_cast<float>(row.position_m));
+      worst = std::max(worst, std::abs(exported_N - force_N) / std::max(1e-3, 0.02 * jnd.at(force_N)));
+    });
+    EXPECT_LT(worst, 1.0) << data.name;
+  }
+}
+
+TEST(ExportC, StepsGiveTheSameAsTimes) {
+  const Recording& recording = recordings().front();
+  const ModelData data = test::example_models().front();
+  const CompiledModel<double> by_time(data, request_for(recording));
+  const CompiledModel<double> by_step(data, request_for(recording));
+  double before_s = recording.rows.front().time_s;
+  for (const RecordingRow& row : recording.rows) {
+    const double expected_N = by_time.force(row.time_s, row.position_m);
+    EXPECT_NEAR(by_step.force_after(row.time_s - before_s, row.position_m), expected_N, 1e-9);
+    before_s = row.time_s;
+  }
+}
+
+TEST(ExportC, ASampleThatIsNoneChangesNothingAndAResetBeginsAgain) {
+  const Recording& recording = recordings().front();
+  const ModelData data = test::example_models().front();
+  const CompiledModel<double> compiled(data, request_for(recording));
+  std::vector<double> forces;
+  for (int pass = 0; pass < 2; ++pass) {
+    std::size_t i = 0;
+    for (const RecordingRow& row : recording.rows) {
+      const double force_N = compiled.force(row.time_s, row.position_m);
+      if (pass == 0) {
+        forces.push_back(force_N);
+      } else {
+        ASSERT_EQ(force_N, forces[i++]);
+      }
+      EXPECT_EQ(compiled.force(NAN, row.position_m), 0.0);
+      EXPECT_EQ(compiled.force(row.time_s + 1.0, INFINITY), 0.0);
+      EXPECT_EQ(compiled.force(row.time_s, 0.001), 0.0);
+      EXPECT_EQ(compiled.force_after(0.0, 0.001), 0.0);
+    }
+    compiled.reset();
+  }
+}
+
+TEST(ExportC, TheSameModelGivesTheSameBytesAndCountsItsTables) {
+  for (const ModelData& data : all_models()) {
+    const Result<ExportedC> once = export_c(data, {});
+    const Result<ExportedC> again = export_c(data, {});
+    const Result<ExportedC> single = export_c(data, {true, 0.0, 0.0});
+    ASSERT_TRUE(once.ok() && again.ok() && single.ok());
+    EXPECT_EQ(once->text, again->text);
+    EXPECT_GT(once->table_bytes, single->table_bytes);
+    const bool rbf = rbf_of(data.correction) != nullptr;
+    if (!rbf) continue;
+    EXPECT_GE(once->operations.roots + once->operations.logarithms, 4U + static_cast<std::size_t>(data.correction->size()));
+  }
+}
+
+TEST(ExportC, ANameCannotLeaveItsComment) {
+  ModelData data = test::example_models().front();
+  data.name = "a*/ int x; /* \\";
+  const CompiledModel<double> compiled(data, {});
+  EXPECT_NE(compiled.force, nullptr);
+}
+
+}  // namespace
+}  // namespace palpate

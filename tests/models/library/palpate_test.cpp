@@ -1,0 +1,258 @@
+// The C interface: replay's forces to the last bit, its errors, and what it must not do.
+#include "models/library/palpate/palpate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <sstream>
+
+#include "engine/live/force_limiter.h"
+#include "engine/tick/replay.h"
+#include "models/model/file/model_io.h"
+#include "tests/support/example_model.h"
+#include "tests/support/rt_guard.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using StreamPtr = std::unique_ptr<palpate_stream, decltype(&palpate_stream_free)>;
+using ModelHandle = std::unique_ptr<palpate_model, decltype(&palpate_model_free)>;
+
+class LibraryC : public ::testing::Test {
+ protected:
+  std::string save(const ModelData& data) {
+    const std::string path = folder_.file(data.name + ".json");
+    EXPECT_TRUE(save_model(path, data, true).ok());
+    return path;
+  }
+
+  ModelHandle load(const std::string& path) {
+    ModelHandle model(palpate_model_load(path.c_str(), error_, sizeof error_), &palpate_model_free);
+    EXPECT_NE(model, nullptr) << error_;
+    return model;
+  }
+
+  StreamPtr stream(const ModelHandle& model, const palpate_sensor& sensor) {
+    return {palpate_stream_new_with_sensor(model.get(), &sensor, error_, sizeof error_), &palpate_stream_free};
+  }
+
+  std::string save(const Recording& recording) {
+    EXPECT_TRUE(write_recording(folder_.file("rec.csv"), recording, {}, true).ok());
+    return folder_.file("rec.csv");
+  }
+
+  palpate_sensor sensor_of(const Recording& recording) {
+    palpate_sensor sensor;
+    EXPECT_EQ(palpate_sensor_of_recording(save(recording).c_str(), &sensor, error_, sizeof error_), 0) << error_;
+    return sensor;
+  }
+
+  test::TemporaryFolder folder_;
+  char error_[500] = "";
+};
+
+// Replays in process and through a stream; every force and flag must be equal.
+void compare(const Recording& recording, const ModelHandle& handle, palpate_stream* stream) {
+  const auto path_model = std::string(palpate_model_name(handle.get()));
+  std::size_t row = 0;
+  for (const ModelData& data : test::example_models()) {
+    if (data.name != path_model) continue;
+    const auto summary = replay(recording, {std::make_shared<FittedModel>(data)},
+                                [&](const RecordingRow& r, const TickSnapshot& snapshot, const HapticsTick&) {
+      const double force_N = palpate_stream_force_with_motion(stream, r.time_s, r.position_m, r.velocity_m_per_s,
+                                                              r.acceleration_m_per_s2);
+      ASSERT_EQ(force_N, snapshot.force_N[0]) << data.name << " row " << row;
+      ASSERT_EQ(palpate_stream_out_of_domain(stream), static_cast<int>(snapshot.out_of_domain_mask & 1U));
+      ++row;
+    });
+    EXPECT_TRUE(summary.ok());
+  }
+  EXPECT_EQ(row, recording.rows.size());
+}
+
+Recording with_channels(Recording recording) {
+  recording.columns = {true, true};
+  for (std::size_t i = 1; i < recording.rows.size(); ++i) {
+    RecordingRow& row = recording.rows[i];
+    row.velocity_m_per_s = 0.02 * std::sin(0.01 * static_cast<double>(i));
+    row.acceleration_m_per_s2 = 0.2 * std::cos(0.01 * static_cast<double>(i));
+  }
+  return recording;
+}
+
+TEST_F(LibraryC, AStreamGivesReplaysForcesToTheLastBit) {
+  const std::vector<Recording> recordings = {test::example_recording(1500, 1000.0, 30e-6),
+                                             test::example_recording(1500, 700.0),
+                                             with_channels(test::example_recording(1500, 1000.0, 30e-6))};
+  for (const Recording& recording : recordings) {
+    const palpate_sensor sensor = sensor_of(recording);
+    for (const ModelData& data : test::example_models()) {
+      const ModelHandle model = load(save(data));
+      const StreamPtr one = stream(model, sensor);
+      ASSERT_NE(one, nullptr) << error_;
+      compare(recording, model, one.get());
+    }
+  }
+}
+
+TEST_F(LibraryC, AnEncoderStepAloneIsEnoughWhenPositionsHaveNoOtherNoise) {
+  const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
+  const palpate_sensor sensor = sensor_of(recording);
+  ASSERT_EQ(sensor.position_noise_m, 0.0);
+  const ModelHandle model = load(save(test::example_models().front()));
+  const StreamPtr one(palpate_stream_new(model.get(), sensor.encoder_step_m, error_, sizeof error_),
+                      &palpate_stream_free);
+  compare(recording, model, one.get());
+}
+
+TEST_F(LibraryC, ASampleThatIsNoneGivesNoForceAndChangesNothing) {
+  const Recording recording = test::example_recording(1200, 1000.0, 30e-6);
+  const ModelHandle model = load(save(test::example_models().front()));
+  const palpate_sensor sensor = sensor_of(recording);
+  const StreamPtr plain = stream(model, sensor);
+  const StreamPtr disturbed = stream(model, sensor);
+  for (const RecordingRow& row : recording.rows) {
+    const double expected_N = palpate_stream_force(plain.get(), row.time_s, row.position_m);
+    ASSERT_EQ(palpate_stream_force(disturbed.get(), row.time_s, row.position_m), expected_N);
+    const int out_of_domain = palpate_stream_out_of_domain(plain.get());
+    EXPECT_EQ(palpate_stream_force(disturbed.get(), NAN, row.position_m), 0.0);
+    EXPECT_EQ(palpate_stream_force(disturbed.get(), row.time_s + 1.0, NAN), 0.0);
+    EXPECT_EQ(palpate_stream_force(disturbed.get(), row.time_s, row.position_m), 0.0);
+    EXPECT_EQ(palpate_stream_force(disturbed.get(), row.time_s - 1.0, 1.0), 0.0);
+    EXPECT_EQ(palpate_stream_out_of_domain(disturbed.get()), out_of_domain);
+  }
+}
+
+TEST_F(LibraryC, AResetBeginsANewStream) {
+  const Recording recording = test::example_recording(800, 1000.0, 30e-6);
+  const ModelHandle model = load(save(test::example_models().front()));
+  const StreamPtr one = stream(model, sensor_of(recording));
+  for (const RecordingRow& row : recording.rows) palpate_stream_force(one.get(), row.time_s, row.position_m);
+  palpate_stream_reset(one.get());
+  EXPECT_EQ(palpate_stream_out_of_domain(one.get()), 0);
+  compare(recording, model, one.get());
+}
+
+TEST_F(LibraryC, AStreamOutlivesItsModel) {
+  ModelHandle model = load(save(test::example_models().front()));
+  const StreamPtr one(palpate_stream_new(model.get(), 0.0, error_, sizeof error_), &palpate_stream_free);
+  model.reset();
+  palpate_stream_force(one.get(), 0.0, 0.001);
+  EXPECT_GT(palpate_stream_force(one.get(), 0.001, 0.003), 0.0);
+}
+
+TEST_F(LibraryC, AForceAllocatesAndLocksNothing) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  const Recording recording = test::example_recording(2000, 1000.0, 30e-6);
+  const palpate_sensor sensor = sensor_of(recording);
+  for (const ModelData& data : test::example_models()) {
+    const ModelHandle model = load(save(data));
+    const StreamPtr one = stream(model, sensor);
+    test::RtGuard guard;
+    for (const RecordingRow& row : recording.rows) {
+      palpate_stream_force(one.get(), row.time_s, row.position_m);
+      palpate_stream_out_of_domain(one.get());
+      palpate_stream_predicted_error(one.get());
+    }
+    palpate_stream_reset(one.get());
+    EXPECT_EQ(guard.stop().total(), 0) << data.name;
+  }
+}
+
+TEST_F(LibraryC, TheLimiterIsTheProgramsOwn) {
+  palpate_limits limits;
+  palpate_limits_default(&limits);
+  limits.largest_N = 2.0;
+  std::unique_ptr<palpate_limiter, decltype(&palpate_limiter_free)> limiter(
+      palpate_limiter_new(&limits, error_, sizeof error_), &palpate_limiter_free);
+  ForceLimits same;
+  same.largest_N = 2.0;
+  ForceLimiter expected(same);
+  for (int i = 0; i < 2000; ++i) {
+    const double commanded_N = i == 700 ? NAN : 3.0 * std::sin(0.01 * i);
+    const double age_s = i == 900 ? 0.1 : 0.0;
+    ForceConditions conditions;
+    conditions.sample_age_s = age_s;
+    if (i == 1100) {
+      palpate_limiter_stop(limiter.get());
+      conditions.device_fault = true;
+    }
+    ASSERT_EQ(palpate_limiter_force(limiter.get(), commanded_N, 1e-3, age_s),
+              expected.limit(commanded_N, 1e-3, conditions));
+    ASSERT_EQ(palpate_limiter_flags(limiter.get()), expected.flags());
+  }
+  limits.fastest_N_per_s = -1.0;
+  EXPECT_EQ(palpate_limiter_new(&limits, error_, sizeof error_), nullptr);
+  EXPECT_STREQ(error_, "fastest_N_per_s: found -1.000000, expected more than 0");
+}
+
+TEST_F(LibraryC, AnErrorIsCutBetweenCharacters) {
+  const std::string name = folder_.path() + "/\xc3\xa9\xc3\xa9\xc3\xa9.json";  // three characters of two bytes
+  char whole[300];
+  ASSERT_EQ(palpate_model_load(name.c_str(), whole, sizeof whole), nullptr);
+  for (std::size_t size = 1; size < std::string(whole).size(); ++size) {
+    char cut[300];
+    ASSERT_EQ(palpate_model_load(name.c_str(), cut, size), nullptr);
+    const std::string text(cut);
+    EXPECT_LT(text.size(), size);
+    EXPECT_GE(text.size() + 2, size);
+    EXPECT_EQ(std::string(whole).rfind(text, 0), 0U);
+    EXPECT_NE(static_cast<unsigned char>(whole[text.size()]) & 0xC0U, 0x80U) << "cut inside a character";
+  }
+}
+
+// A C99 program, built with every warning an error, linked to the shared library.
+TEST_F(LibraryC, ACProgramGivesReplaysForces) {
+  const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
+  const std::string path = save(recording);
+  const ModelData data = test::example_models().front();
+  std::string input;
+  for (const RecordingRow& row : recording.rows) {
+    char line[100];
+    std::snprintf(line, sizeof line, "%.17g %.17g\n", row.time_s, row.position_m);
+    input += line;
+  }
+  const std::string command = std::string(PALPATE_C_PROGRAM) + " " + save(data) + " " + path + " " + path + " < " +
+                              folder_.with_file("motion.txt", input);
+  const auto run = test::run_program({"/bin/sh", "-c", command});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::istringstream forces(run.out);
+  std::size_t rows = 0;
+  const auto summary = replay(recording, {std::make_shared<FittedModel>(data)},
+                              [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+    std::string line;
+    ASSERT_TRUE(std::getline(forces, line));
+    EXPECT_EQ(std::strtod(line.c_str(), nullptr), snapshot.force_N[0]);
+    ++rows;
+  });
+  EXPECT_TRUE(summary.ok());
+  EXPECT_EQ(rows, recording.rows.size());
+}
+
+TEST_F(LibraryC, PythonReplaysARecordingBitForBit) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc, and with it what Python may load";
+  const std::string recording = save(with_channels(test::example_recording(3000, 1000.0, 30e-6)));
+  std::vector<std::string> arguments = {"replay", "--recording", recording, "--out", folder_.file("forces.csv")};
+  std::vector<std::string> command = {"/usr/bin/env", "python3",
+                                      PALPATE_SOURCE_DIR "/tests/models/library/replay_by_ctypes.py",
+                                      PALPATE_SHARED_LIBRARY, recording, folder_.file("forces.csv")};
+  const std::vector<ModelData> models = test::example_models();
+  for (std::size_t i = 0; i < models.size() && i < 16; ++i) {
+    const std::string path = save(models[i]);
+    arguments.insert(arguments.end(), {"--model", path});
+    command.push_back(path);
+  }
+  ASSERT_EQ(test::run_palpate(arguments).exit_code, 0);
+  const auto run = test::run_program(command);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, std::to_string(3000 * std::min<std::size_t>(models.size(), 16)) + "\n");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,41 @@
+#include "scenes/live/exhibit_words.h"
+
+#include <gtest/gtest.h>
+
+#include "scenes/scene/assets.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+TEST(ExhibitWords, AllLanguagesSayTheSameThings) {
+  const auto languages = read_exhibit_words(find_assets().value() + "/exhibit");
+  ASSERT_TRUE(languages.ok()) << languages.error().message;
+  ASSERT_GE(languages->size(), 2u);
+  EXPECT_EQ((*languages)[0]("language"), "English");
+  EXPECT_EQ((*languages)[1]("language"), "Deutsch");
+  for (const ExhibitWords& words : *languages) EXPECT_EQ(words.keys(), languages->front().keys());
+}
+
+TEST(ExhibitWords, FillInNumbersAndShowWhatIsMissing) {
+  const auto words = ExhibitWords::parse("# a comment\n\nwas = Block %1: %2\r\n", "x.txt");
+  ASSERT_TRUE(words.ok());
+  EXPECT_EQ((*words)("was", "1", "soft"), "Block 1: soft");
+  EXPECT_EQ((*words)("nothing"), "nothing");
+  EXPECT_EQ(ExhibitWords::parse("a = b\nno sign\n", "x.txt").error().message, "x.txt:2: found \"no sign\", expected key = text");
+  EXPECT_EQ(ExhibitWords::parse("a = b\na = c", "x.txt").error().message,
+            "x.txt:2: found \"a\" a second time, expected each key once");
+}
+
+TEST(ExhibitTally, OutlivesARestart) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("tally");
+  EXPECT_EQ(read_tally(path).answers, 0u);
+  ASSERT_TRUE(write_tally(path, {12, 9}).ok());
+  EXPECT_EQ(read_tally(path).answers, 12u);
+  EXPECT_EQ(read_tally(path).as_expected, 9u);
+  EXPECT_EQ(read_tally(folder.with_file("broken", "3 7")).answers, 0u);
+}
+
+}  // namespace
+}  // namespace palpate

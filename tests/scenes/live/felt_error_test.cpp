@@ -1,0 +1,34 @@
+#include "scenes/live/felt_error.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+TEST(FeltError, IsTheMeanOfTheLast50Milliseconds) {
+  FeltError felt;
+  double last = 0.0;
+  for (int i = 0; i < 200; ++i) last = felt.add(1e-3 * i, 2.0);
+  EXPECT_NEAR(last, 2.0, 1e-12);
+  for (int i = 200; i < 225; ++i) last = felt.add(1e-3 * i, 0.0);
+  EXPECT_NEAR(last, 1.0, 0.05) << "half of it is over";
+  for (int i = 225; i < 260; ++i) last = felt.add(1e-3 * i, 0.0);
+  EXPECT_NEAR(last, 0.0, 1e-12);
+}
+
+TEST(FeltError, WhatChangesItsSignIsNotFelt) {
+  FeltError felt;
+  double last = 1.0;
+  for (int i = 0; i < 100; ++i) last = felt.add(1e-3 * i, i % 2 == 0 ? 3.0 : -3.0);
+  EXPECT_LT(last, 0.1);
+}
+
+TEST(FeltError, AGapBeginsAnew) {
+  FeltError felt;
+  for (int i = 0; i < 100; ++i) felt.add(1e-3 * i, 5.0);
+  EXPECT_NEAR(felt.add(3.0, 0.5), 0.5, 1e-12);
+  EXPECT_NEAR(felt.add(1.0, 0.25), 0.25, 1e-12) << "time that starts over does too";
+}
+
+}  // namespace
+}  // namespace palpate
