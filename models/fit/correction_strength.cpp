@@ -16,7 +16,7 @@ namespace palpate {
 namespace {
 
 constexpr Eigen::Index kCentres = 200;
-constexpr Eigen::Index kMostSites = 6000;  // of each Gram matrix: more tell the same
+constexpr Eigen::Index kMostSites = 4000;  // of each Gram matrix: more tell the same
 constexpr int kLowestDecade = -9;          // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};

@@ -44,7 +44,6 @@ struct StrengthInput {
   KernelKind kernel = KernelKind::cubic;
   JndLine jnd;
   double correction_limit_N = 0.0;
-  double force_floor_N = 0.0;
   double least_radius = 0.0;  // of the guard, so that every site is inside
   double outer_to_inner = 3.0;
 };

@@ -99,9 +99,11 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
     if (!solve_by_truncation(kernel, solution)) return failed;
     return solution;
   }
-  double smoothing = options.smoothing.value_or(sites.smoothing.value_or(0.0));
+  const std::optional<double> given =
+      options.smoothing || options.kernel != KernelKind::cubic ? options.smoothing : sites.smoothing;
+  double smoothing = given.value_or(0.0);
   double criterion = 0.0;
-  if (!options.smoothing && !sites.smoothing) {
+  if (!given) {
     const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel, options.by_group);
     if (!choice) return choice.error();
     smoothing = choice->smoothing;

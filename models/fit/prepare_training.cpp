@@ -2,9 +2,10 @@
 #include <cmath>
 #include <utility>
 
-#include "models/fit/calibrate_bound.h"
+#include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
 #include "models/fit/fit_random.h"
+#include "models/training/feature_list.h"
 #include "models/training/relaxation.h"
 #include "models/training/surface_registration.h"
 
@@ -22,17 +23,11 @@ constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumJudged = 100000;
 // Of the way in: with less way out in contact the tool never turns round.
 constexpr double kLeastWayOut = 0.1;
-constexpr std::size_t kLeftOutSamples = 4000;
 // Where the error on strokes left out stays above these, other lists of features are
 // tried beside the selected one.
 constexpr double kLittleIsLeft_jnd = 0.1;
 constexpr double kMuchIsLeft_jnd = 0.3;
 constexpr int kLadderTimes = 6;
-// How much larger the error on a new recording is, of which the trend has seen nothing:
-// this power of how much worse the trend is on strokes left out than on its own data.
-// Measured: with 1.5 the bounds hold 92 to 99 % on materials and real recordings.
-constexpr double kSpreadPower = 1.5;
-constexpr double kUnknownSpread = 1.25;
 // As a hand moves.
 constexpr double kLadderFrom_s = 0.01;
 constexpr double kLadderTo_s = 3.0;
@@ -62,41 +57,6 @@ FeatureList scene_list(const std::vector<FeatureSpec>& scene, const std::vector<
   list.velocity = has_velocity(scene);
   for (const double time_s : times_s) list.relaxation_times_s.push_back({time_s});
   return list;
-}
-
-std::vector<double> all_times(const FeatureList& list) {
-  std::vector<double> times_s;
-  for (const auto& group : list.relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
-  return times_s;
-}
-
-// One feature of several branches; a branch alone is the older kind.
-FeatureSpec spectrum_of(const FeatureSpec* branches, std::size_t count) {
-  if (count == 1) return branches[0];
-  FeatureSpec spec;
-  spec.kind = FeatureKind::maxwell_spectrum;
-  spec.part_count = count;
-  for (std::size_t p = 0; p < count; ++p) spec.parts[p] = {branches[p].relaxation_time_s, 0.0, branches[p].drive};
-  return spec;
-}
-
-std::vector<FeatureSpec> features_of(const FeatureList& list, const FittedTrend& fitted) {
-  std::vector<FeatureSpec> features{FeatureSpec{}};
-  if (list.velocity) features.push_back({FeatureKind::velocity});
-  std::size_t next = 0;
-  for (const auto& group : list.relaxation_times_s) {
-    features.push_back(spectrum_of(fitted.branches.data() + next, group.size()));
-    next += group.size();
-  }
-  if (!fitted.stops.empty()) {
-    FeatureSpec stops;
-    stops.kind = FeatureKind::stops;
-    stops.part_count = fitted.stops.size();
-    std::copy(fitted.stops.begin(), fitted.stops.end(), stops.parts.begin());
-    features.push_back(stops);
-  }
-  for (const double time_s : list.peak_times_s) features.push_back({FeatureKind::fading_peak, time_s});
-  return features;
 }
 
 // The scene's features with its low-passes replaced by `filters`.
@@ -269,48 +229,6 @@ Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, con
   }, control, 0.28);
 }
 
-std::vector<LeftOutSample> left_out_samples(const PreparedTraining& prepared) {
-  const ModelData& common = prepared.common;
-  const auto d = static_cast<Eigen::Index>(common.features.size());
-  const std::size_t stride = prepared.judge_force_N.size() / kLeftOutSamples + 1;
-  std::vector<LeftOutSample> samples;
-  for (std::size_t i = 0; i < prepared.judge_force_N.size(); i += stride) {
-    const double* features = prepared.judge_features[i].data();
-    LeftOutSample sample;
-    sample.point = (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
-    sample.trend_N = common.trend.at(features, common.features);
-    sample.force_N = prepared.judge_force_N[i];
-    sample.depth_m = features[0];
-    sample.fold = prepared.judge_fold[i];
-    samples.push_back(std::move(sample));
-  }
-  return samples;
-}
-
-void decide_strength(PreparedTraining& prepared, const TrainingRequest& request, const FoldDealer& dealer,
-                     double no_force_N) {
-  ModelData& common = prepared.common;
-  const std::vector<LeftOutSample> samples = left_out_samples(prepared);
-  StrengthInput input{prepared.sites, samples, dealer.folds(), KernelKind::cubic, request.jnd};
-  input.correction_limit_N = common.correction_limit_N;
-  input.force_floor_N = no_force_N;
-  input.least_radius = common.cover.inner_radius;
-  input.outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
-  prepared.strength = choose_strength(input);
-  prepared.sites.smoothing = prepared.strength->smoothing;
-  prepared.sites.strength = prepared.strength->strength;
-  const FeatureSelection& selection = prepared.selection;
-  const double spread = selection.training_error_over_jnd > 0.0
-                            ? std::pow(selection.left_out_error_over_jnd / selection.training_error_over_jnd, kSpreadPower)
-                            : kUnknownSpread;
-  common.error_bound = calibrate_bound(prepared.strength->predictions, prepared.strength->inner_radius, request.jnd,
-                                       common.largest_force_N, spread);
-  prepared.trend_bound = calibrate_bound(prepared.strength->trend_predictions, prepared.strength->inner_radius,
-                                         request.jnd, common.largest_force_N, spread);
-  common.cover.inner_radius = prepared.strength->inner_radius;
-  common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
-}
-
 // The relaxation times of the scene, given ones instead, or identified ones.
 Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequest& request, const Extent& extent,
                                         double no_force_N, Provenance& provenance, const FitControl& control) {
@@ -370,7 +288,7 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
   if (Status status = make_sites(prepared, request); !status) return status;
   common.cover = make_cover(prepared.sites.points);
   if (Status status = keep_judged_samples(prepared, ground.source, ground.dealer, control); !status) return status;
-  if (!papers) decide_strength(prepared, request, ground.dealer, ground.no_force_N);
+  if (!papers) decide_strength(prepared, request.jnd, ground.dealer.folds(), ground.extent.strokes);
   return {};
 }
 

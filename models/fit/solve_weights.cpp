@@ -160,7 +160,9 @@ bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& cen
 
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
                                 const FitControl& control, Ridge ridge, double truncation) {
-  if (ridge == Ridge::by_evidence && sites.smoothing) return penalised_weights(sites, kernel, centres, control);
+  if (ridge == Ridge::by_evidence && sites.smoothing && kernel == KernelKind::cubic) {
+    return penalised_weights(sites, kernel, centres, control);
+  }
   if (const Status status = validate_sites(sites); !status) return status.error();
   if (centres.rows() != sites.points.rows() || !centres.allFinite())
     return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
@@ -176,6 +178,10 @@ Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eig
   FittedRbf fitted;
   fitted.function = {kernel, centres, solution.unknowns.head(centres.cols()),
                      solution.unknowns.tail(solution.unknowns.size() - centres.cols())};
+  if (ridge == Ridge::by_evidence) {
+    fitted.function.weights *= sites.strength;
+    fitted.function.tail *= sites.strength;
+  }
   FitReport& report = fitted.report;
   report.centres_asked = report.centres_used = centres.cols();
   report.columns = solution.unknowns.size();

@@ -28,6 +28,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
+#include "models/training/feature_list.h"
 #include "models/training/fold_dealer.h"
 #include "models/training/motion_source.h"
 #include "models/training/trend_rows.h"
@@ -42,15 +43,6 @@ struct FeatureWorth {
   bool taken = false;
   double error_with = 0.0;
   double error_without = 0.0;
-};
-
-// Features besides the depth.
-struct FeatureList {
-  bool velocity = false;
-  // One inner list per feature: the times (seconds) whose branches it sums.
-  std::vector<std::vector<double>> relaxation_times_s;
-  std::vector<double> stop_thresholds_m;  // of one feature, their sum
-  std::vector<double> peak_times_s;       // none or one
 };
 
 struct FeatureSelection {

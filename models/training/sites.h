@@ -26,7 +26,7 @@ struct Sites {
   // What was decided about the correction by leaving groups out
   // (models/fit/correction_strength.h): the penalty on its roughness, in place of
   // what a method would choose itself, and the share of it that the model gets.
-  std::optional<double> smoothing;
+  std::optional<double> smoothing;  // of the cubic kernel; others choose their own
   double strength = 1.0;
 
   Eigen::Index count() const { return points.cols(); }
