@@ -21,7 +21,7 @@ HardCaseResult refused(HardCaseResult result, const std::string& message) {
 
 void OutcomeCounter::add(double value_N, double truth_N, double low_N, double high_N) {
   add_bounded(value_N, low_N, high_N);
-  ++judged_;
+  ++known_;
   if (!std::isfinite(value_N)) return;
   const double over_jnd = JndLine{}.error_over_jnd(value_N, truth_N);
   worst_over_jnd_ = std::max(worst_over_jnd_, over_jnd);
@@ -41,14 +41,14 @@ void OutcomeCounter::add_bounded(double value_N, double low_N, double high_N) {
 
 HardCaseResult OutcomeCounter::finish(HardCaseResult result) const {
   result.worst_over_jnd = worst_over_jnd_;
-  result.within_jnd = judged_ > 0 ? static_cast<double>(within_) / static_cast<double>(judged_) : 0.0;
+  result.within_jnd = known_ > 0 ? static_cast<double>(within_) / static_cast<double>(known_) : 0.0;
   result.safe = not_finite_ == 0 && unbounded_ == 0;
   char text[160];
   if (not_finite_ > 0) {
     std::snprintf(text, sizeof text, "%zu of %zu values are not finite", not_finite_, count_);
   } else if (unbounded_ > 0) {
     std::snprintf(text, sizeof text, "%zu of %zu values out of bounds, up to %.3g N", unbounded_, count_, farthest_N_);
-  } else if (judged_ == 0) {
+  } else if (known_ == 0) {
     std::snprintf(text, sizeof text, "finite and within bounds, %zu values", count_);
   } else if (worst_over_jnd_ <= 1.0) {
     std::snprintf(text, sizeof text, "within the JND, worst error %.2g JND", worst_over_jnd_);

@@ -26,7 +26,7 @@ class OutcomeCounter {
 
  private:
   std::size_t count_ = 0;
-  std::size_t judged_ = 0;  // with a truth
+  std::size_t known_ = 0;  // with a truth
   std::size_t within_ = 0;
   std::size_t not_finite_ = 0;
   std::size_t unbounded_ = 0;

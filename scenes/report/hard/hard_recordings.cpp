@@ -119,7 +119,7 @@ std::vector<RecordingCase> recording_cases() {
 using ModelPtr = std::shared_ptr<const FittedModel>;
 
 // Every tick of `press` in contact, for every model.
-void judge_press(const Press& press, const std::vector<ModelPtr>& models, std::vector<OutcomeCounter>& counters) {
+void evaluate_press(const Press& press, const std::vector<ModelPtr>& models, std::vector<OutcomeCounter>& counters) {
   std::size_t row = 0;
   (void)replay(press.recording, ForceModels(models.begin(), models.end()),
                [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
@@ -172,7 +172,7 @@ void run_recording_case(const RecordingCase& one, std::vector<HardCaseResult>& r
     models.push_back(std::make_shared<const FittedModel>(fitted->data));
   }
   std::vector<OutcomeCounter> counters(models.size());
-  judge_press(one.held_out, models, counters);
+  evaluate_press(one.held_out, models, counters);
   for (std::size_t i = 0; i < models.size(); ++i) results[at[i]] = counters[i].finish(std::move(results[at[i]]));
 }
 
@@ -258,7 +258,7 @@ std::vector<HardCaseResult> run_hard_motions() {
   };
   for (const MotionCase& one : motion_cases()) {
     std::vector<OutcomeCounter> counters(models.size());
-    judge_press(press_along(one.path, even_times(one.seconds, kJudgedRate_Hz)), models, counters);
+    evaluate_press(press_along(one.path, even_times(one.seconds, kJudgedRate_Hz)), models, counters);
     finish(one.name, counters);
   }
   for (const bool weights : {false, true}) {

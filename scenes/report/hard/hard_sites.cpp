@@ -187,7 +187,7 @@ std::string compare_with_reference(const SiteCase& one, double smoothing, const 
   return text + ", " + short_number(worst) + " JND from its solution in long double";
 }
 
-HardCaseResult judge_site_case(const SiteCase& one, const Method& method) {
+HardCaseResult evaluate_site_case(const SiteCase& one, const Method& method) {
   HardCaseResult result;
   result.name = one.name;
   result.method = method.name;
@@ -226,7 +226,7 @@ HardCaseResult judge_site_case(const SiteCase& one, const Method& method) {
 std::vector<HardCaseResult> run_hard_sites() {
   std::vector<HardCaseResult> results;
   for (const SiteCase& one : site_cases())
-    for (const Method* method : methods()) results.push_back(judge_site_case(one, *method));
+    for (const Method* method : methods()) results.push_back(evaluate_site_case(one, *method));
   return results;
 }
 
