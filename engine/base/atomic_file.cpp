@@ -87,6 +87,7 @@ void flush_folder(const std::string& folder) {
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
+  if (path == "-") return Error{"found - as the file to write, expected a name: standard output has the results; ./- is a file"};
   if (const Status target = check_target(path, overwrite); !target) return target.error();
   AtomicFile file;
   file.path_ = path;

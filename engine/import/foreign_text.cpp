@@ -18,10 +18,16 @@ namespace {
 // As much as decides about the encoding; names of columns stand at the beginning.
 constexpr std::size_t kEncodingSampleBytes = 64 * 1024;
 
-struct FileMapping {
-  void* bytes = nullptr;
-  std::size_t size = 0;
-  ~FileMapping() { ::munmap(bytes, size); }
+class FileMapping {
+ public:
+  FileMapping(void* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
+  FileMapping(const FileMapping&) = delete;
+  FileMapping& operator=(const FileMapping&) = delete;
+  ~FileMapping() { ::munmap(bytes_, size_); }
+
+ private:
+  void* bytes_;
+  std::size_t size_;
 };
 
 void append_utf8(std::string& out, unsigned code) {

@@ -41,7 +41,7 @@ double normal_between(double a, double b) noexcept {
 }  // namespace
 
 MotionEstimator::MotionEstimator(const SensorSpec& sensor) noexcept
-    : sensor_(sensor), states_(sensor.has_acceleration ? 4 : 3) {
+    : sensor_(sensor) {
   static_assert(kJerkDensity.size() == kFilters);
 }
 
@@ -64,6 +64,7 @@ void MotionEstimator::start(const ToolSample& sample) noexcept {
 
 // Interaction step: each filter starts from the mixture of all, weighted by the
 // chance that the hand changed to its regime.
+template <std::size_t n>
 void MotionEstimator::mix(double step_s) noexcept {
   const double stay = std::exp(-step_s / kDwell_s);
   const double change = (1.0 - stay) / (kFilters - 1);
@@ -77,7 +78,6 @@ void MotionEstimator::mix(double step_s) noexcept {
       total += weight[from];
     }
     mixed.probability = total;
-    const auto n = static_cast<std::size_t>(states_);
     for (std::size_t from = 0; from < kFilters; ++from) {
       weight[from] /= total;
       for (std::size_t i = 0; i < n; ++i) mixed.mean[i] += weight[from] * filters_[from].mean[i];
@@ -99,6 +99,7 @@ void MotionEstimator::mix(double step_s) noexcept {
 }
 
 // Exact discretisation of a white-jerk motion over `step_s`.
+template <std::size_t n>
 void MotionEstimator::predict(Filter& filter, double jerk_density, double step_s) const noexcept {
   const double h = step_s;
   Vector& x = filter.mean;
@@ -106,7 +107,6 @@ void MotionEstimator::predict(Filter& filter, double jerk_density, double step_s
   x[1] += h * x[2];
   // P <- F P F^T with F = [1 h h^2/2; 0 1 h; 0 0 1], rows then columns.
   Matrix& p = filter.covariance;
-  const auto n = static_cast<std::size_t>(states_);
   for (std::size_t j = 0; j < n; ++j) {
     p[0][j] += h * (p[1][j] + 0.5 * h * p[2][j]);
     p[1][j] += h * p[2][j];
@@ -127,9 +127,10 @@ void MotionEstimator::predict(Filter& filter, double jerk_density, double step_s
   p[1][0] = p[0][1];
   p[2][0] = p[0][2];
   p[2][1] = p[1][2];
-  if (states_ == 4) p[3][3] += square(kBiasWalk) * h;
+  if constexpr (n == 4) p[3][3] += square(kBiasWalk) * h;
 }
 
+template <std::size_t n>
 double MotionEstimator::measure_position(Filter& filter, double position_m, double share) const noexcept {
   const double edge_noise_m = kEdgeNoiseFraction * sensor_.encoder_step_m;
   const double noise_variance =
@@ -164,7 +165,6 @@ double MotionEstimator::measure_position(Filter& filter, double position_m, doub
   shift *= share;
   shrink *= share;
   Vector column{};
-  const auto n = static_cast<std::size_t>(states_);
   for (std::size_t i = 0; i < n; ++i) column[i] = filter.covariance[i][0];
   for (std::size_t i = 0; i < n; ++i) {
     filter.mean[i] += column[i] * shift;
@@ -173,9 +173,9 @@ double MotionEstimator::measure_position(Filter& filter, double position_m, doub
   return share * log_likelihood;
 }
 
+template <std::size_t n>
 double MotionEstimator::measure_scalar(Filter& filter, const Vector& row, double value,
                                        double variance) const noexcept {
-  const auto n = static_cast<std::size_t>(states_);
   Vector column{};
   double total = variance;
   double innovation = value;
@@ -201,24 +201,34 @@ MotionEstimate MotionEstimator::update(const ToolSample& sample) noexcept {
   const double step_s = sample.time_s - time_s_;
   if (!(step_s > 0.0)) return estimate_;
   time_s_ = sample.time_s;
-  mix(step_s);
+  if (sensor_.has_acceleration) {
+    advance<4>(sample, step_s);
+  } else {
+    advance<3>(sample, step_s);
+  }
+  return estimate_;
+}
+
+template <std::size_t n>
+void MotionEstimator::advance(const ToolSample& sample, double step_s) noexcept {
+  mix<n>(step_s);
   const bool repeated = sensor_.encoder_step_m > 0.0 && sample.position_m == position_m_;
   const double share = repeated ? kRepeatedShare * std::min(1.0, step_s / kRepeatedStep_s) : 1.0;
   position_m_ = sample.position_m;
   std::array<double, kFilters> log_weight{};
   for (std::size_t f = 0; f < kFilters; ++f) {
     Filter& filter = filters_[f];
-    predict(filter, kJerkDensity[f], step_s);
+    predict<n>(filter, kJerkDensity[f], step_s);
     double log_likelihood = 0.0;
-    if (sensor_.has_acceleration) {
-      log_likelihood += measure_scalar(filter, {0.0, 0.0, 1.0, 1.0}, sample.acceleration_m_per_s2,
+    if constexpr (n == 4) {
+      log_likelihood += measure_scalar<n>(filter, {0.0, 0.0, 1.0, 1.0}, sample.acceleration_m_per_s2,
                                        square(sensor_.acceleration_noise_m_per_s2));
     }
     if (sensor_.has_velocity) {
-      log_likelihood += measure_scalar(filter, {0.0, 1.0, 0.0, 0.0}, sample.velocity_m_per_s,
+      log_likelihood += measure_scalar<n>(filter, {0.0, 1.0, 0.0, 0.0}, sample.velocity_m_per_s,
                                        square(sensor_.velocity_noise_m_per_s));
     }
-    log_likelihood += measure_position(filter, sample.position_m, share);
+    log_likelihood += measure_position<n>(filter, sample.position_m, share);
     log_weight[f] = std::log(filter.probability) + log_likelihood;
   }
   const double largest = *std::max_element(log_weight.begin(), log_weight.end());
@@ -233,7 +243,6 @@ MotionEstimate MotionEstimator::update(const ToolSample& sample) noexcept {
     estimate_.position_m += filter.probability * filter.mean[0];
     estimate_.velocity_m_per_s += filter.probability * filter.mean[1];
   }
-  return estimate_;
 }
 
 }  // namespace palpate

@@ -22,6 +22,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "engine/tick/tool_sample.h"
 
@@ -58,15 +59,22 @@ class MotionEstimator {
   };
 
   void start(const ToolSample& sample) noexcept;
+  // `n`: the states that there are, 4 with an accelerometer, else 3; known to the
+  // compiler, which unrolls every loop over them.
+  template <std::size_t n>
+  void advance(const ToolSample& sample, double step_s) noexcept;
+  template <std::size_t n>
   void mix(double step_s) noexcept;
+  template <std::size_t n>
   void predict(Filter& filter, double jerk_density, double step_s) const noexcept;
   // Each returns the logarithm of the likelihood of the measurement.
   // `share`: how much of an observation it counts for, 0 to 1.
+  template <std::size_t n>
   double measure_position(Filter& filter, double position_m, double share) const noexcept;
+  template <std::size_t n>
   double measure_scalar(Filter& filter, const Vector& row, double value, double variance) const noexcept;
 
   SensorSpec sensor_;
-  int states_;
   std::array<Filter, kFilters> filters_{};
   std::array<Filter, kFilters> mixed_{};
   MotionEstimate estimate_;

@@ -8,7 +8,7 @@
 namespace palpate {
 
 Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control) {
-  constexpr std::size_t kBatch = 8192;
+  constexpr std::size_t kGridBatch = 8192;
   const std::size_t dimension = grid.nodes.size();
   std::size_t count = 1;
   for (const std::vector<double>& axis : grid.nodes) {
@@ -18,9 +18,9 @@ Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitContro
   }
   grid.values_N.resize(count);
   Eigen::VectorXd out;
-  for (std::size_t first = 0; first < count; first += kBatch) {
+  for (std::size_t first = 0; first < count; first += kGridBatch) {
     if (!control.go_on(static_cast<double>(first) / static_cast<double>(count))) return interrupted();
-    const std::size_t batch = std::min(kBatch, count - first);
+    const std::size_t batch = std::min(kGridBatch, count - first);
     Eigen::MatrixXd points(static_cast<Eigen::Index>(dimension), static_cast<Eigen::Index>(batch));
     for (std::size_t i = 0; i < batch; ++i) {
       std::size_t rest = first + i;

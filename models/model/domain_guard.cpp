@@ -46,11 +46,14 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   return cover;
 }
 
-DomainGuard::DomainGuard(DomainCover cover) : cover_(std::move(cover)), nearest_(cover_.points) {}
+DomainGuard::DomainGuard(DomainCover cover)
+    : cover_(std::move(cover)),
+      inner_squared_(cover_.inner_radius * cover_.inner_radius),
+      nearest_(cover_.points) {}
 
 double DomainGuard::trust_at(double squared) const noexcept {
+  if (squared <= inner_squared_) return 1.0;
   if (!(squared < cover_.outer_radius * cover_.outer_radius)) return 0.0;
-  if (squared <= cover_.inner_radius * cover_.inner_radius) return 1.0;
   const double t = (cover_.outer_radius - std::sqrt(squared)) / (cover_.outer_radius - cover_.inner_radius);
   return t * t * (3.0 - 2.0 * t);
 }

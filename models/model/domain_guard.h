@@ -39,17 +39,19 @@ class DomainGuard {
   explicit DomainGuard(DomainCover cover);
 
   // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
-  double trust(const double* x) const noexcept { return trust_at(nearest_.nearest_squared(x)); }
+  double trust(const double* x) const noexcept { return trust_at(squared_distance(x)); }
 
   // The squared distance to the cover, infinite when x is not finite, and the trust
-  // that goes with it.
-  double squared_distance(const double* x) const noexcept { return nearest_.nearest_squared(x); }
+  // that goes with it. Within the inner radius it is that of some point near enough,
+  // not of the nearest: a tick on known ground looks at one leaf of the points.
+  double squared_distance(const double* x) const noexcept { return nearest_.nearest_squared(x, inner_squared_); }
   double trust_at(double squared_distance) const noexcept;
 
   const DomainCover& cover() const noexcept { return cover_; }
 
  private:
   DomainCover cover_;
+  double inner_squared_ = 0.0;
   NearestDistance nearest_;
 };
 

@@ -124,9 +124,11 @@ Status validate_model(const ModelData& data) {
   return data.correction->validate(static_cast<int>(n));
 }
 
-FittedModel::FittedModel(ModelData data) : data_(std::move(data)), guard_(data_.cover) {
+FittedModel::FittedModel(ModelData data)
+    : data_(std::move(data)), trend_inputs_(data_.features), guard_(data_.cover), dimension_(data_.features.size()) {
   if (!data_.correction->is_none()) correction_ = data_.correction.get();
-  for (std::size_t i = 0; i < data_.features.size(); ++i) {
+  for (std::size_t i = 0; i < dimension_; ++i) {
+    offset_[i] = data_.offset(static_cast<Eigen::Index>(i));
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
 }
@@ -135,10 +137,8 @@ int FittedModel::centre_count() const noexcept { return data_.correction->size()
 
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   std::array<double, kMaxFeatures> u{};
-  for (std::size_t i = 0; i < data_.features.size(); ++i) {
-    u[i] = (features[i] - data_.offset(static_cast<Eigen::Index>(i))) * inverse_scale_[i];
-  }
-  const double trend_N = data_.trend.at(features, data_.features);
+  for (std::size_t i = 0; i < dimension_; ++i) u[i] = (features[i] - offset_[i]) * inverse_scale_[i];
+  const double trend_N = data_.trend.at(features, trend_inputs_);
   const double squared_distance = guard_.squared_distance(u.data());
   const double trust = guard_.trust_at(squared_distance);
   double force_N = trend_N;

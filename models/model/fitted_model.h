@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -101,8 +102,11 @@ class FittedModel final : public ForceModel {
 
  private:
   ModelData data_;
+  TrendInputs trend_inputs_;
   DomainGuard guard_;
   const Correction* correction_ = nullptr;  // of data_; null when the trend stands alone
+  std::size_t dimension_ = 0;
+  std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};
 };
 

@@ -20,28 +20,28 @@ double elastic_force_N(const Trend& trend, double u) noexcept {
 
 }  // namespace
 
-double Trend::at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept {
-  double depth_m = 0.0;
-  double velocity_m_per_s = 0.0;
-  double branches_N = 0.0;
-  double peak_m = 0.0;
-  bool softens = false;
+TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
+    const auto index = static_cast<std::uint8_t>(i);
     switch (specs[i].kind) {
-      case FeatureKind::depth: depth_m = features[i]; break;
-      case FeatureKind::velocity: velocity_m_per_s = features[i]; break;
+      case FeatureKind::depth: depth = index; break;
+      case FeatureKind::velocity: velocity = index; break;
       case FeatureKind::maxwell_branch:
       case FeatureKind::maxwell_spectrum:
-      case FeatureKind::stops: branches_N += features[i]; break;
-      case FeatureKind::fading_peak:
-        peak_m = features[i];
-        softens = true;
-        break;
+      case FeatureKind::stops: force[force_count++] = index; break;
+      case FeatureKind::fading_peak: peak = index; break;
       case FeatureKind::lowpass_velocity: break;  // the paper's features carry no stiffness
     }
   }
-  if (softens) {
-    const auto shares = softening_shares(depth_m, peak_m);
+}
+
+double Trend::at(const double* features, const TrendInputs& inputs) const noexcept {
+  const double depth_m = inputs.depth != TrendInputs::kNone ? features[inputs.depth] : 0.0;
+  const double velocity_m_per_s = inputs.velocity != TrendInputs::kNone ? features[inputs.velocity] : 0.0;
+  double branches_N = 0.0;
+  for (std::size_t b = 0; b < inputs.force_count; ++b) branches_N += features[inputs.force[b]];
+  if (inputs.peak != TrendInputs::kNone) {
+    const auto shares = softening_shares(depth_m, features[inputs.peak]);
     for (std::size_t j = 0; j < shares.size(); ++j) branches_N += softening[j].at(depth_m) * shares[j];
   }
   const double u = depth_m / reference_depth_m;

@@ -28,6 +28,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/tick/features.h"
@@ -38,6 +39,19 @@ inline constexpr std::size_t kElasticCoefficients = 6;
 inline constexpr std::size_t kViscosityCoefficients = 3;
 inline constexpr std::array kSofteningPowers{1, 4, 12};
 
+// Where the trend finds its terms among the features: made once, so that a tick does
+// not go through their specifications.
+struct TrendInputs {
+  explicit TrendInputs(const std::vector<FeatureSpec>& specs) noexcept;
+
+  static constexpr std::uint8_t kNone = 255;
+  std::uint8_t depth = kNone;
+  std::uint8_t velocity = kNone;
+  std::uint8_t peak = kNone;
+  std::uint8_t force_count = 0;
+  std::array<std::uint8_t, kMaxFeatures> force{};  // features that are forces, in order
+};
+
 struct Trend {
   double reference_depth_m = 1.0;  // greatest recorded depth; u = d / reference_depth_m
   std::array<double, kElasticCoefficients> elastic_N{};             // E = sum e_k u^(k+1)
@@ -47,8 +61,11 @@ struct Trend {
   double velocity_limit_m_per_s = 0.0;
   std::array<DriveCurve, kSofteningPowers.size()> softening{};  // S_j; counts with a fading_peak feature
 
-  // `features` as `specs` names them. Returns newtons, any sign.
-  double at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept;
+  // `features` as `inputs`, or `specs`, name them. Returns newtons, any sign.
+  double at(const double* features, const TrendInputs& inputs) const noexcept;
+  double at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept {
+    return at(features, TrendInputs(specs));
+  }
 };
 
 // v / (1 + |v| / v_0).

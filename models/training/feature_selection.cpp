@@ -24,9 +24,6 @@ constexpr int kPressesForPeak = 3;  // of each recording
 // A candidate that lowers the error by less ends the forward selection.
 constexpr double kLeastGain = 0.003;
 
-// Of the way in: with less way out in contact the recording is one way in.
-constexpr double kLeastWayOut = 0.1;
-
 enum class Family { velocity, relaxation, stops, peak };
 
 struct Candidate {
@@ -39,8 +36,6 @@ struct Candidate {
 struct TimeScales {
   double sample_s = 0.0;
   double longest_recording_s = 0.0;
-  double way_in_m = 0.0;  // in contact, over all recordings
-  double way_out_m = 0.0;
   int strokes = 0;
   int recordings = 0;
 };
@@ -48,7 +43,6 @@ struct TimeScales {
 Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction) {
   double start_s = 0.0;
   double last_s = 0.0;
-  double last_m = 0.0;
   double duration_s = 0.0;
   std::size_t steps = 0;
   TimeScales scales;
@@ -60,11 +54,8 @@ Result<TimeScales> measure_times(MotionSource& source, const FitControl& control
     } else {
       duration_s += row.sample.time_s - last_s;
       ++steps;
-      const double way_m = row.motion.position_m - last_m;
-      if (row.sample.position_m > 0.0) (way_m > 0.0 ? scales.way_in_m : scales.way_out_m) += std::abs(way_m);
     }
     last_s = row.sample.time_s;
-    last_m = row.motion.position_m;
     scales.longest_recording_s = std::max(scales.longest_recording_s, last_s - start_s);
     return true;
   }, control, fraction);
@@ -316,7 +307,7 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
 
   std::vector<Search::Judged> path{search.judge(Search::Set(search.candidates().size(), 0), nullptr)};
   FeatureSelection selection;
-  selection.turns_round = scales->way_out_m > kLeastWayOut * scales->way_in_m;
+  selection.turns_round = input.turns_round;
   while (selection.turns_round) {
     auto more = search.best_with_one_more(path.back());
     if (!more) break;

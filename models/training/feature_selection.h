@@ -69,6 +69,7 @@ struct SelectionInput {
   double reference_depth_m = 0.0;
   double rms_velocity_m_per_s = 0.0;
   double force_floor_N = 0.0;  // at or below it there is no measured force
+  bool turns_round = true;     // the tool comes back in contact
   Weighting weighting = Weighting::jnd;
   JndLine jnd;
 };

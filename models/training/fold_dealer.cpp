@@ -10,11 +10,14 @@ constexpr std::size_t kStrokeFolds = 5;
 // Pieces of one long stroke: two for every fold, so that a fold is never one
 // phase of it alone.
 constexpr std::size_t kPieces = 10;
+constexpr std::size_t kPiecesOneWay = 50;
 
 }  // namespace
 
-FoldDealer::FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples)
-    : folds_(0), by_recording_(recordings >= kFewestRecordings), longest_piece_(contact_samples / kPieces + 1) {
+FoldDealer::FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool turns_round)
+    : folds_(0),
+      by_recording_(recordings >= kFewestRecordings),
+      longest_piece_(contact_samples / (turns_round ? kPieces : kPiecesOneWay) + 1) {
   const std::size_t pieces = by_recording_ ? recordings : std::max(strokes, kStrokeFolds);
   folds_ = static_cast<int>(std::min(pieces, by_recording_ ? static_cast<std::size_t>(kMaximumFolds) : kStrokeFolds));
 }

@@ -3,7 +3,8 @@
 // predicted error. Neighbouring samples of a stroke share their errors, so single
 // samples are never left out: with three recordings or more a fold is made of
 // whole recordings, otherwise of whole strokes (contacts); a stroke that holds
-// more than a tenth of the contact is cut into pieces in time.
+// more than a tenth of the contact is cut into pieces in time. A recording that only
+// goes in has no second sample at any depth, and is cut into many small pieces.
 // Thread guarantee: a value type, slow side.
 #pragma once
 
@@ -18,7 +19,8 @@ inline constexpr int kMaximumFolds = 6;
 class FoldDealer {
  public:
   // `contact_samples`, `strokes`: over all recordings.
-  FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples);
+  // `turns_round`: whether the tool comes back in contact.
+  FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool turns_round = true);
 
   int folds() const noexcept { return folds_; }
   // The fold of a row; every row of every recording in order, from the beginning.

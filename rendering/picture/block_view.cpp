@@ -276,7 +276,7 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("colour", 0.62F * tool_colour_);
   solid_shader_.set("shininess", 0.6F);
   sensor_.draw();
-  solid_shader_.set("colour", 0.30F * tool_colour_);
+  solid_shader_.set("colour", 0.44F * tool_colour_);
   solid_shader_.set("shininess", 0.25F);
   handle_.draw();
   if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at);

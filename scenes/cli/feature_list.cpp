@@ -90,4 +90,10 @@ Result<FeatureList> parse_feature_list(const std::string& text) {
   return list;
 }
 
+std::string check_features(const std::string& text) {
+  if (text == "auto" || text == "scene") return "";
+  const auto list = parse_feature_list(text);
+  return list ? "" : list.error().message + "; or auto, or scene";
+}
+
 }  // namespace palpate::cli

@@ -21,4 +21,7 @@ inline constexpr const char* kFeatureListExample = "depth,velocity,maxwell:0.17,
 // Errors: the item, what was found and what was expected.
 Result<FeatureList> parse_feature_list(const std::string& text);
 
+// For --features: nothing for "auto", "scene" or a list as above, what is wrong otherwise.
+std::string check_features(const std::string& text);
+
 }  // namespace palpate::cli

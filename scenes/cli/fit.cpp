@@ -102,12 +102,6 @@ std::string check_relaxation(const std::string& text) {
   return "found \"" + text + "\", expected scene, auto, or one to six times in seconds such as 0.17,1.27";
 }
 
-std::string check_features(const std::string& text) {
-  if (text == "auto" || text == "scene") return "";
-  const auto list = parse_feature_list(text);
-  return list ? "" : list.error().message + "; or auto, or scene";
-}
-
 std::string check_grid(const std::string& text) {
   return parse_grid(text).empty() ? "found \"" + text + "\", expected sizes such as 25x11x11x11" : "";
 }
@@ -322,11 +316,11 @@ Status run_fit(const FitArguments& arguments) {
   // A name that cannot be written is told now and not after the fit.
   if (const auto trial = AtomicFile::create(arguments.out, arguments.force); !trial) return trial.error();
   const auto start = std::chrono::steady_clock::now();
-  ProgressLine line("fitting " + arguments.method);
+  std::optional<ProgressLine> line("fitting " + arguments.method);
   FitControl prepare;
-  prepare.progress = [&](double fraction) { return line.update(fraction); };
+  prepare.progress = [&](double fraction) { return line->update(fraction); };
   FitControl method;
-  method.progress = [&](double fraction) { return line.update(0.3 + 0.7 * fraction); };
+  method.progress = [&](double fraction) { return line->update(0.3 + 0.7 * fraction); };
 
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
@@ -347,6 +341,7 @@ Status run_fit(const FitArguments& arguments) {
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;
+  line.reset();  // what follows goes onto a line of its own
   if (arguments.json) {
     print_json(*fit, *prepared, arguments, seconds);
   } else {

@@ -9,6 +9,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/cli/check_recordings.h"
+#include "scenes/cli/replay_plot.h"
 #include "scenes/cli/replayed_recording.h"
 #include "scenes/cli/verbs.h"
 
@@ -20,23 +21,25 @@ using OrderedJson = nlohmann::ordered_json;
 struct Options {
   std::vector<std::string> recordings;
   std::vector<std::string> models;
+  std::vector<std::string> names;
   std::string out;
+  std::string plot;
   bool json = false;
   bool force = false;
 };
 
 // The output must not replace what is being read, --force or not.
-Status check_output(const Options& options) {
+Status check_output(const Options& options, const std::string& option, const std::string& out) {
   if (options.recordings.size() > 1) {
     return Error{"found " + std::to_string(options.recordings.size()) +
-                 " recordings with --out, expected one; replay them in several runs"};
+                 " recordings with " + option + ", expected one; replay them in several runs"};
   }
   std::vector<std::string> inputs = options.models;
   inputs.push_back(options.recordings.front());
   for (const std::string& input : inputs) {
     std::error_code missing;
-    if (std::filesystem::equivalent(options.out, input, missing)) {
-      return Error{options.out + " is the file to read from, expected another one for --out; name a new file"};
+    if (std::filesystem::equivalent(out, input, missing)) {
+      return Error{out + " is the file to read from, expected another one for " + option + "; name a new file"};
     }
   }
   return {};
@@ -156,18 +159,31 @@ void print_table(const ReplayedRecording& replayed, const std::vector<LoadedMode
 
 Status run(const Options& options) {
   if (!options.out.empty()) {
-    if (const Status status = check_output(options); !status) return status;
+    if (const Status status = check_output(options, "--out", options.out); !status) return status;
   }
-  const auto models = load_models(options.models);
+  if (!options.plot.empty()) {
+    if (const Status status = check_output(options, "--plot", options.plot); !status) return status;
+    if (const Status status = check_plot_path(options.plot, options.force); !status) return status;
+  }
+  const auto models = load_models(options.models, options.names);
   if (!models) return models.error();
   CheckRequest request;
   request.jnd = models->front().model->data().jnd;
   if (const auto checked = check_before_use(options.recordings, request); !checked) return checked.error();
   std::vector<ReplayedRecording> all;
+  ReplayPlot plot(*models);
+  ReplayVisitor also;
+  if (!options.plot.empty()) {
+    also = [&plot](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) { plot.add(row, snapshot); };
+  }
   for (const std::string& recording : options.recordings) {
-    auto replayed = replay_recording(recording, *models, options.out, options.force);
+    auto replayed = replay_recording(recording, *models, options.out, options.force, also);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
+  }
+  if (!options.plot.empty()) {
+    const std::string name = std::filesystem::path(options.recordings.front()).filename().string();
+    if (const Status status = plot.draw(options.plot, name, options.force); !status) return status;
   }
   if (options.json) {
     print_json(all, *models);
@@ -186,6 +202,8 @@ void add_replay(CLI::App& app, Verbs& verbs) {
       ->required()->type_name("CSV");
   command->add_option("--model", options->models, "Model file (JSON); up to 16, repeat the option or list them")
       ->required();
+  command->add_option("--name", options->names, "What to call the models, one for each, in their order");
+  command->add_option("--plot", options->plot, "Draw force, differences in the JND band and errors (.svg or .png)");
   command->add_option("--out", options->out, "Write features and forces, row by row, to this file (CSV)");
   command->add_flag("--json", options->json, "Print one JSON object instead of a table");
   command->add_flag("--force", options->force, "Write over an existing file");

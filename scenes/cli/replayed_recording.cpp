@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -63,28 +64,49 @@ Result<ReplaySummary> run_pass(const std::string& path, const ForceModels& model
   return replay(*reader, models, visitor, surface_offset_m);
 }
 
+bool is_recording(const std::string& path) { return RecordingReader::open(path).ok(); }
+
+Error recording_as_model(const std::string& path) {
+  return Error{path + " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording"};
+}
+
+// Models of one name by their files.
+std::vector<std::string> told_apart(const std::vector<std::string>& names, const std::vector<std::string>& paths) {
+  std::vector<std::string> result = names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::count(names.begin(), names.end(), names[i]) > 1) result[i] = std::filesystem::path(paths[i]).stem().string();
+  }
+  return result;
+}
+
 }  // namespace
 
-Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths) {
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& given) {
   if (paths.size() > kMaxModels) {
     return Error{"found " + std::to_string(paths.size()) + " models, expected at most " +
                  std::to_string(kMaxModels) + "; replay them in several runs"};
+  }
+  if (!given.empty() && given.size() != paths.size()) {
+    return Error{"found " + std::to_string(given.size()) + " names for " + std::to_string(paths.size()) +
+                 " models, expected one each; give --name once for every --model"};
   }
   std::vector<LoadedModel> models;
   std::vector<std::string> names;
   for (const std::string& path : paths) {
     auto model = load_model(path);
-    if (!model) return model.error();
+    if (!model) return is_recording(path) ? recording_as_model(path) : model.error();
     names.push_back((*model)->name());
     models.push_back({"", *model});
   }
-  names = distinct_names(names);
+  names = distinct_names(given.empty() ? told_apart(names, paths) : given);
   for (std::size_t i = 0; i < names.size(); ++i) models[i].name = names[i];
   return models;
 }
 
 Result<ReplayedRecording> replay_recording(const std::string& path, const std::vector<LoadedModel>& models,
-                                           const std::string& forces_path, bool overwrite) {
+                                           const std::string& forces_path, bool overwrite,
+                                           const ReplayVisitor& also) {
   ForceModels force_models;
   std::vector<std::string> names;
   for (const LoadedModel& one : models) {
@@ -103,6 +125,7 @@ Result<ReplayedRecording> replay_recording(const std::string& path, const std::v
     if (forces) forces->add(row, snapshot, tick);
     rows.add({{row.time_s, row.position_m, row.velocity_m_per_s, row.acceleration_m_per_s2}, tick.motion(), row.force_N});
     as_recorded.add(row, snapshot, tick);
+    if (also) also(row, snapshot, tick);
   }, 0.0);
   if (!summary) return summary.error();
   if (forces) {

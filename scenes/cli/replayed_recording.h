@@ -47,13 +47,17 @@ struct ReplayedRecording {
   std::vector<ModelErrors> models;  // one for each model
 };
 
-// Errors: too many models; a file that is no model.
-Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths);
+// `names`: one for each file, or none; models that then have one name are named by
+// their files. Errors: too many models; a file that is no model, or a recording.
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& names = {});
 
-// `forces_path`: where FORCES.csv goes, as recorded; empty: nowhere. Errors:
-// those of the recording; the file exists and `overwrite` is false.
+// `forces_path`: where FORCES.csv goes, as recorded; empty: nowhere. `also` sees every
+// row as recorded. Errors: those of the recording; the file exists and `overwrite` is
+// false.
 Result<ReplayedRecording> replay_recording(const std::string& path, const std::vector<LoadedModel>& models,
-                                           const std::string& forces_path, bool overwrite);
+                                           const std::string& forces_path, bool overwrite,
+                                           const ReplayVisitor& also = {});
 
 // What moving the surface changed, in words; empty where it changes nothing
 // that matters (a tenth of the RMS error, or half a percent within the JND).

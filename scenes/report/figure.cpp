@@ -5,6 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
+
+#include "engine/base/whole_file.h"
+#include "scenes/scene/assets.h"
 
 namespace palpate {
 namespace {
@@ -22,21 +26,6 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
     result.append(text, at, next - at).append(to);
   }
   return result.append(text, at, std::string::npos);
-}
-
-std::string style() {
-  std::string text = R"(set key off
-set samples 200
-set border 3 linecolor rgb "INK" linewidth 1
-set tics nomirror textcolor rgb "INK" scale 0.6,0.3
-set xlabel textcolor rgb "INK" offset 0,0.3
-set ylabel textcolor rgb "INK"
-set grid xtics ytics mxtics mytics linetype 1 linecolor rgb "GRID" linewidth 1, linetype 1 linecolor rgb "MINOR" linewidth 1
-set grid back
-)";
-  text = replaced(text, "INK", kInk);
-  text = replaced(text, "GRID", kGrid);
-  return replaced(text, "MINOR", kMinorGrid);
 }
 
 // The ways in which gnuplot writes "#d8d8d8".
@@ -70,19 +59,34 @@ double round_up(double value) {
 
 }  // namespace
 
-std::string figure_script(const Figure& figure) {
-  const std::string w = std::to_string(figure.width);
-  const std::string h = std::to_string(figure.height);
-  const std::string w2 = std::to_string(2 * figure.width);
-  const std::string h2 = std::to_string(2 * figure.height);
-  const std::string paper(kPaper);
-  const std::string plot = style() + figure.commands + "unset output\nreset\n";
-  return "# " + figure.title + "\nreset session\nset encoding utf8\n" + figure.data +
-         "set terminal svg size " + w + "," + h + " font \"sans-serif,15\" background \"" + paper +
-         "\" rounded\nset output \"" + figure.name + ".svg\"\n" + plot +
-         "set terminal pngcairo size " + w2 + "," + h2 +
-         " font \"DejaVu Sans,13\" fontscale 1.7 linewidth 2 pointscale 2 background \"#ffffff\" rounded\nset output \"" +
-         figure.name + ".png\"\n" + plot;
+void Figure::set_number(const std::string& variable, double value) {
+  settings.append(variable).append(" = ").append(number(value)).append("\n");
+}
+
+void Figure::set_text(const std::string& variable, const std::string& text) {
+  settings.append(variable).append(" = ").append(quoted(text)).append("\n");
+}
+
+Result<std::map<std::string, std::string>> figure_files(const std::vector<Figure>& figures) {
+  const auto assets = find_assets();
+  if (!assets) return assets.error();
+  const std::string folder = *assets + "/figures/report/";
+  std::map<std::string, std::string> files;
+  const auto add_script = [&](const std::string& name, const std::string& source) -> Status {
+    auto text = read_whole_file(folder + source);
+    if (!text) return Error{"cannot read " + folder + source + ", the plot script of a figure; check the assets folder"};
+    files[name] = replaced(std::move(*text), "FIGURE", name.substr(0, name.rfind('.')));
+    return {};
+  };
+  if (const Status status = add_script("style.gp", "style.gp"); !status) return status.error();
+  for (const Figure& figure : figures) {
+    const std::string source = (figure.script.empty() ? figure.name : figure.script) + ".gp";
+    if (const Status status = add_script(figure.name + ".gp", source); !status) return status.error();
+    files[figure.name + ".set"] = "width = " + std::to_string(figure.width) + "\nheight = " +
+                                  std::to_string(figure.height) + "\n" + figure.settings;
+    for (const Table& table : figure.data) files[table.name + ".csv"] = table_csv(table);
+  }
+  return files;
 }
 
 std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title) {
@@ -109,28 +113,16 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
   return "<svg viewBox=\"" + view + "\" role=\"img\" aria-label=\"" + escape_html(title) + "\">" + body;
 }
 
-std::string method_colour(const Method& method) {
-  if (method.colour == kNeutralColour) return std::string(kDirect);
-  char text[16];
-  std::snprintf(text, sizeof text, "#%06X", static_cast<unsigned>(method.colour));
-  return text;
+double model_colour(const PlannedModel& model) {
+  constexpr double kBlackOrWhite = 0x000001;  // kDirect
+  const std::uint32_t colour = model.request.method->colour;
+  return model.rung == Rung::no_force || colour == kNeutralColour ? kBlackOrWhite : static_cast<double>(colour);
 }
 
 std::string model_label(const PlannedModel& model) {
-  const bool few = model.request.candidates < MethodRequest{}.candidates;
+  if (model.rung == Rung::no_force) return "0 N";
+  const bool few = model.few_candidates();
   return model.request.method->label + (few ? ", " + std::to_string(model.request.candidates) + " tried" : std::string());
-}
-
-std::string data_block(const std::string& name, const std::vector<std::vector<double>>& rows) {
-  std::string text("$");
-  text.append(name).append(" << EOD\n");
-  for (const std::vector<double>& row : rows) {
-    for (const double value : row) text.append(number(value)).push_back(' ');
-    text.push_back('\n');
-  }
-  // A block without a row is an error in a plot command.
-  if (rows.empty()) text.append("NaN NaN NaN NaN\n");
-  return text.append("EOD\n");
 }
 
 double AxisRange::fraction(double value) const {
@@ -138,9 +130,8 @@ double AxisRange::fraction(double value) const {
   return std::log(std::max(value, 1e-300) / low) / std::log(high / low);
 }
 
-std::string AxisRange::text() const {
-  std::string text("[");
-  return text.append(number(low)).append(":").append(number(high)).append("]");
+double AxisRange::value(double fraction) const {
+  return logarithmic ? low * std::pow(high / low, fraction) : low + fraction * (high - low);
 }
 
 std::string AxisRange::tics(const std::string& axis) const {
@@ -185,26 +176,20 @@ AxisRange zero_range(const std::vector<double>& values) {
   return {0.0, step * std::ceil(1.05 * high / step), false};
 }
 
-std::string side_labels(std::vector<SideLabel> labels, const std::string& x, double gap, int first_tag) {
-  std::stable_sort(labels.begin(), labels.end(),
-                   [](const SideLabel& a, const SideLabel& b) { return a.fraction < b.fraction; });
-  for (SideLabel& label : labels) label.fraction = std::clamp(label.fraction, 0.02, 0.98);
+std::vector<double> spread_labels(const std::vector<double>& wanted, double gap) {
+  std::vector<std::size_t> order(wanted.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return wanted[a] < wanted[b]; });
+  std::vector<double> at = wanted;
+  for (double& height : at) height = std::clamp(height, 0.02, 0.98);
   // Up past each other, then back down from the top where that went too far.
-  for (std::size_t i = 1; i < labels.size(); ++i) {
-    labels[i].fraction = std::max(labels[i].fraction, labels[i - 1].fraction + gap);
-  }
+  for (std::size_t i = 1; i < order.size(); ++i) at[order[i]] = std::max(at[order[i]], at[order[i - 1]] + gap);
   double highest = 0.98;
-  for (std::size_t i = labels.size(); i-- > 0;) {
-    labels[i].fraction = std::min(labels[i].fraction, highest);
-    highest = labels[i].fraction - gap;
+  for (std::size_t i = order.size(); i-- > 0;) {
+    at[order[i]] = std::min(at[order[i]], highest);
+    highest = at[order[i]] - gap;
   }
-  std::string text;
-  for (const SideLabel& label : labels) {
-    text.append("set label ").append(std::to_string(first_tag++)).append(" ").append(quoted(label.text));
-    text.append(" at ").append(x).append(", graph ").append(number(label.fraction));
-    text.append(" left noenhanced textcolor rgb \"").append(label.colour).append("\"\n");
-  }
-  return text;
+  return at;
 }
 
 std::string quoted(const std::string& text) {

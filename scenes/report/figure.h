@@ -1,39 +1,49 @@
-// A figure of the report as gnuplot commands, and the style that all share.
+// A figure of the report: tables and settings for a gnuplot script of
+// assets/figures/report, which stands beside them in the report's folder, so that a
+// reader can redraw it.
 //
-// Thread guarantee: value types and pure functions.
+// Thread guarantee: value types and pure functions; figure_files reads the assets.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "scenes/report/report_data.h"
+#include "scenes/report/table.h"
 
 namespace palpate {
 
 struct Figure {
-  std::string name;     // of its files, without ending
+  std::string name;     // of its files, without ending; of its script in the assets
   std::string title;
   std::string caption;  // what to conclude; escaped by the page
   bool has_times = false;
   int width = 640;
   int height = 420;
-  std::string data;      // gnuplot data blocks
-  std::string commands;  // from a fresh state; run once for SVG, once for PNG
+  std::vector<Table> data;   // name.csv, name_labels.csv ...; a row without cells breaks a line
+  std::string settings;      // gnuplot assignments, name.set; by set_number and set_text
+  std::string script;        // another figure's script; empty: its own
+
+  void set_number(const std::string& variable, double value);
+  void set_text(const std::string& variable, const std::string& text);
 };
 
 // All of them, in the order of the page.
 std::vector<Figure> make_figures(const ReportData& data);
 
-// A whole gnuplot script that writes NAME.svg and NAME.png into the current folder.
-std::string figure_script(const Figure& figure);
+// Every file that the figures need in their folder, by name. Errors: a script is missing
+// in the assets.
+Result<std::map<std::string, std::string>> figure_files(const std::vector<Figure>& figures);
 
 // An SVG as gnuplot writes it made ready to stand in an HTML page: no prologue, no
 // fixed size, ids made its own with `name`, and the neutral colours replaced by the
 // page's variables so that it follows light and dark.
 std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title);
 
-// Neutral colours; the page has a variable for each.
+// Neutral colours; the page has a variable for each, style.gp the same values.
 inline constexpr std::string_view kInk = "#222222";
 inline constexpr std::string_view kMuted = "#6e6e6e";
 inline constexpr std::string_view kGrid = "#d8d8d8";
@@ -41,17 +51,10 @@ inline constexpr std::string_view kMinorGrid = "#ececec";
 inline constexpr std::string_view kBand = "#e3e3e3";
 inline constexpr std::string_view kPaper = "#fefefe";
 inline constexpr std::string_view kDirect = "#000001";
-inline constexpr std::string_view kMeasured = "#009E73";
-// Two kinds of points that are no methods.
-inline constexpr std::string_view kBlue = "#0072B2";
-inline constexpr std::string_view kVermilion = "#D55E00";
 
-// The method's colour, the same as in the window.
-std::string method_colour(const Method& method);
+// The model's colour, that of its method in the window: 0xRRGGBB.
+double model_colour(const PlannedModel& model);
 std::string model_label(const PlannedModel& model);
-
-// "$NAME << EOD ... EOD" with one line of numbers a row.
-std::string data_block(const std::string& name, const std::vector<std::vector<double>>& rows);
 
 // An axis from `low` to `high`.
 struct AxisRange {
@@ -60,7 +63,7 @@ struct AxisRange {
   bool logarithmic = false;
 
   double fraction(double value) const;
-  std::string text() const;  // "[low:high]"
+  double value(double fraction) const;
   // "set ytics (...)" of a logarithmic axis: 1, 2 and 5 labelled where there is room,
   // the rest as minor tics. Nothing for a linear one.
   std::string tics(const std::string& axis) const;
@@ -70,15 +73,9 @@ AxisRange log_range(const std::vector<double>& values);
 // From 0 to just beyond the largest.
 AxisRange zero_range(const std::vector<double>& values);
 
-// Text in a colour, wanted at some height of a plot.
-struct SideLabel {
-  double fraction = 0.0;  // of the axis, 0 to 1
-  std::string text;
-  std::string colour;
-};
-// The labels in a column at `x` ("graph 1.02", "first 5000"), moved apart by at least
-// `gap` of the axis so that none overlaps another. Tags count from `first_tag`.
-std::string side_labels(std::vector<SideLabel> labels, const std::string& x, double gap, int first_tag);
+// Heights of labels, fractions of an axis, moved apart by at least `gap` so that none
+// overlaps another; in the order given.
+std::vector<double> spread_labels(const std::vector<double>& wanted, double gap);
 
 // Quoted for gnuplot, without its markup.
 std::string quoted(const std::string& text);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/report/binned_errors.h"
 #include "scenes/report/figures.h"
 
 namespace palpate {
@@ -10,60 +11,103 @@ namespace {
 struct Curve {
   const char* name;
   const char* title;
-  const char* caption;
   bool largest;   // the maximum instead of mean + standard deviation
-  bool relative;  // to the force at the middle of the bin
+  bool over_jnd;  // sample by sample
 };
 
-double middle(const ErrorBin& bin) { return 0.5 * (bin.force_from_N + bin.force_to_N); }
-
 double value(const ErrorBin& bin, const Curve& curve) {
-  const double error_N = curve.largest ? bin.max_abs_error_N : bin.mean_abs_error_N + bin.std_abs_error_N;
-  return curve.relative ? 100.0 * error_N / middle(bin) : 1e3 * error_N;
+  if (curve.over_jnd) return curve.largest ? bin.max_error_over_jnd : bin.mean_error_over_jnd + bin.std_error_over_jnd;
+  return 1e3 * (curve.largest ? bin.max_abs_error_N : bin.mean_abs_error_N + bin.std_abs_error_N);
+}
+
+// Which bins leave the band, in words from the data.
+std::string conclusion(const ReportData& data, const Curve& curve) {
+  const ModelResult* model = nullptr;
+  for (const ModelResult& one : data.models) {
+    if (one.plan.main && !one.bins.empty()) model = &one;
+  }
+  if (model == nullptr) return {};
+  const ErrorBin* worst = nullptr;
+  for (const ErrorBin& bin : model->bins) {
+    const Curve ratio{"", "", curve.largest, true};
+    if (worst == nullptr || value(bin, ratio) > value(*worst, ratio)) worst = &bin;
+  }
+  const double most = value(*worst, {"", "", curve.largest, true});
+  return model->plan.name + " is worst from " + three_digits(worst->force_from_N) + " to " +
+         three_digits(worst->force_to_N) + " N, with " + three_digits(most) + " JND over " +
+         std::to_string(worst->count) + " samples.";
 }
 
 Figure force_figure(const ReportData& data, const Curve& curve) {
   Figure figure;
   figure.name = curve.name;
+  figure.script = "error_force";
   figure.title = curve.title;
-  figure.caption = curve.caption;
+  figure.caption = std::string(curve.over_jnd
+                                   ? "Error over the JND, sample by sample; below the line at 1 a hand cannot tell. "
+                                   : "In the grey band a hand cannot tell the model from the material. ") +
+                   conclusion(data, curve);
+  figure.width = 760;
+  figure.height = 370;
+  Table table{figure.name, "", false,
+              {{"panel", ""}, {"model", ""}, {"force_N", ""}, {"error", ""}, {"count", ""}, {"few", ""}, {"colour", ""}},
+              {}};
+  Table labels{figure.name + "_labels", "", false, {{"panel", ""}, {"force_N", ""}, {"error", ""}, {"colour", ""}, {"label", ""}}, {}};
+  Table counts{figure.name + "_counts", "", false, {{"force_from_N", ""}, {"force_to_N", ""}, {"force_N", ""}, {"count", ""}}, {}};
   std::vector<double> heights;
   double highest_N = 0.0;
   for (const ModelResult& model : data.models) {
+    if (model.plan.rung == Rung::no_force) continue;
     for (const ErrorBin& bin : model.bins) {
       heights.push_back(value(bin, curve));
-      heights.push_back(curve.relative ? 100.0 * data.jnd.at(middle(bin)) / middle(bin) : 1e3 * data.jnd.at(middle(bin)));
+      heights.push_back(curve.over_jnd ? 1.0 : 1e3 * data.jnd.at(bin.mean_force_N));
       highest_N = std::max(highest_N, bin.force_to_N);
     }
   }
   const AxisRange axis = log_range(heights);
-  std::vector<SideLabel> labels;
-  std::string plots;
-  for (const ModelResult& model : data.models) {
-    if (model.bins.empty()) continue;
-    std::vector<std::vector<double>> rows;
-    for (const ErrorBin& bin : model.bins) rows.push_back({middle(bin), value(bin, curve)});
-    const std::string block = "model" + std::to_string(labels.size());
-    const std::string colour = method_colour(*model.plan.request.method);
-    figure.data += data_block(block, rows);
-    plots += ", \\\n  $" + block + " with linespoints pointtype 7 pointsize 0.4 linewidth 1.5 linecolor rgb \"" + colour +
-             "\"" + (model.plan.request.candidates < 100 ? " dashtype 2" : "");
-    labels.push_back({axis.fraction(rows.back()[1]), model_label(model.plan), colour});
+  const Rung rungs[] = {Rung::paper, Rung::palpate};
+  std::uint64_t panel = 0;
+  std::string titles[2];
+  for (const Rung rung : rungs) {
+    std::vector<double> wanted;
+    std::vector<std::pair<double, std::string>> ends;  // colour and label
+    for (const ModelResult& model : data.models) {
+      if (model.bins.empty() || (model.plan.rung != rung && model.plan.rung != Rung::trend)) continue;
+      for (const ErrorBin& bin : model.bins) {
+        table.rows.push_back({panel, model.plan.name, std::max(bin.mean_force_N, 0.0), value(bin, curve), bin.count,
+                              static_cast<std::uint64_t>(bin.count < kFewSamples ? 1 : 0), model_colour(model.plan)});
+      }
+      table.rows.push_back({});
+      wanted.push_back(axis.fraction(value(model.bins.back(), curve)));
+      ends.emplace_back(model_colour(model.plan), model_label(model.plan));
+    }
+    if (ends.size() < 2) continue;
+    const std::vector<double> at = spread_labels(wanted, 0.075);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      labels.rows.push_back({panel, highest_N, axis.value(at[i]), ends[i].first, ends[i].second});
+    }
+    titles[panel++] = rung_name(rung);
   }
-  const std::string jnd = std::to_string(data.jnd.offset_N) + " + " + std::to_string(data.jnd.weber_fraction) + " * x";
-  const std::string line = curve.relative ? "100 * (" + jnd + ") / x" : "1000 * (" + jnd + ")";
-  const double last_N = labels.empty() ? 1.0 : highest_N;
-  const double end = 1e3 * data.jnd.at(last_N) / (curve.relative ? 10.0 * last_N : 1.0);
-  labels.push_back({axis.fraction(end), "JND", std::string(kMuted)});
-  figure.commands = "set rmargin 17\nset logscale y\nset xrange [0:" + std::to_string(last_N) + "]\nset yrange " + axis.text() +
-                    "\n" + axis.tics("y") + "set xlabel \"Measured force [N]\"\nset ylabel \"" +
-                    (curve.largest ? "Largest error [" : "Mean + standard deviation [") +
-                    (curve.relative ? "%" : "mN") + "]\"\njnd(x) = " + line + "\n" +
-                    side_labels(labels, "graph 1.02", 0.07, 1) +
-                    "plot [x=" + std::to_string(last_N / 400.0) + ":" + std::to_string(last_N) + "] '+' using 1:(" +
-                    std::to_string(axis.low) + "):(jnd($1)) with filledcurves fillcolor rgb \"" + std::string(kBand) +
-                    "\" fillstyle solid noborder, jnd(x) with lines linewidth 1.5 dashtype 2 linecolor rgb \"" +
-                    std::string(kMuted) + "\"" + plots + "\n";
+  for (const ModelResult& model : data.models) {
+    if (!counts.rows.empty()) break;
+    for (const ErrorBin& bin : model.bins) {
+      counts.rows.push_back({bin.force_from_N, bin.force_to_N, 0.5 * (bin.force_from_N + bin.force_to_N), bin.count});
+    }
+  }
+  figure.data = {std::move(table), std::move(labels), std::move(counts)};
+  figure.set_number("panel_count", static_cast<double>(panel));
+  figure.set_text("title_0", titles[0]);
+  figure.set_text("title_1", titles[1]);
+  figure.set_number("force_high", highest_N > 0.0 ? highest_N : 1.0);
+  figure.set_number("y_low", axis.low);
+  figure.set_number("y_high", axis.high);
+  figure.set_number("over_jnd", curve.over_jnd ? 1.0 : 0.0);
+  figure.set_number("jnd_offset_N", data.jnd.offset_N);
+  figure.set_number("jnd_fraction", data.jnd.weber_fraction);
+  figure.set_number("few", static_cast<double>(kFewSamples));
+  figure.set_text("y_label", std::string(curve.largest ? "Largest error [" : "Mean + std of error [") +
+                                 (curve.over_jnd ? "JND]" : "mN]"));
+  figure.settings += axis.tics("y");
   return figure;
 }
 
@@ -71,16 +115,10 @@ Figure force_figure(const ReportData& data, const Curve& curve) {
 
 std::vector<Figure> force_figures(const ReportData& data) {
   const Curve curves[] = {
-      {"error_mean_absolute", "Error against force, mean + standard deviation (figure 4 of the paper)",
-       "Inside the grey band a hand cannot tell the model from the material. Bins of measured force over all test "
-       "samples in contact.",
-       false, false},
-      {"error_mean_relative", "The same, relative to the force (figure 5)",
-       "Relative errors grow towards small forces, and so does what a hand tolerates there.", false, true},
-      {"error_max_absolute", "Largest error against force (figure 6)",
-       "The worst single sample of every bin: one outlier is enough to leave the band.", true, false},
-      {"error_max_relative", "The same, relative to the force (figure 7)",
-       "The worst single sample of every bin over the force at its middle.", true, true}};
+      {"error_mean_absolute", "Error against force, mean + standard deviation (figure 4 of the paper)", false, false},
+      {"error_mean_jnd", "The same over the JND (figure 5)", false, true},
+      {"error_max_absolute", "Largest error against force (figure 6)", true, false},
+      {"error_max_jnd", "The same over the JND (figure 7)", true, true}};
   std::vector<Figure> figures;
   for (const Curve& curve : curves) figures.push_back(force_figure(data, curve));
   return figures;
@@ -94,41 +132,30 @@ Figure jnd_figure(const ReportData& data) {
   Figure figure;
   figure.name = "jnd";
   figure.title = "The just noticeable difference (figure 3)";
-  figure.caption = "The conservative line of Hoever & Harders (2009), below all that was measured, is what errors are "
-                   "divided by everywhere here. The two points are those that their text gives in numbers.";
-  if (data.jnd.offset_N != JndLine{}.offset_N || data.jnd.weber_fraction != JndLine{}.weber_fraction) {
-    figure.caption = "The scene's own line, which errors are divided by everywhere here. The two points are those that "
-                     "Hoever & Harders (2009) give in numbers.";
-  }
-  figure.height = 320;
-  figure.data = data_block("own", {{kPointForce_N, 1e3 * kOwnPoint * kPointForce_N, 100.0 * kOwnPoint}}) +
-                data_block("earlier", {{kPointForce_N, 1e3 * kEarlierPoint * kPointForce_N, 100.0 * kEarlierPoint}});
-  const std::string jnd = std::to_string(data.jnd.offset_N) + " + " + std::to_string(data.jnd.weber_fraction) + " * x";
-  const std::string line = " with lines linewidth 2 dashtype 2 linecolor rgb \"" + std::string(kInk) + "\", ";
-  const std::string points = std::string(" with points pointtype 7 pointsize 0.9 linecolor rgb \"") + std::string(kInk) +
-                             "\", $earlier";
-  const std::string hollow = " with points pointtype 6 pointsize 0.9 linewidth 1.5 linecolor rgb \"" + std::string(kInk) + "\"\n";
-  // Beside their points, away from the line: `earlier` above it or below it.
-  const auto labels = [](const std::string& own, const std::string& earlier) {
-    const std::string colour = " textcolor rgb \"" + std::string(kInk) + "\"\n";
-    return "set label 1 \"12 people, pen\" at " + own + colour + "set label 2 \"earlier, pinch\" at " + earlier +
-           colour;
-  };
-  figure.commands =
-      "set multiplot layout 1,2\nset xrange [0.1:5]\nset xtics 1\nset xlabel \"Force [N]\"\n"
-      "set ylabel \"JND [mN]\"\nset yrange [0:500]\n" +
-      labels("2.35, 375 center", "2.75, 190 left") + "plot 1000 * (" + jnd + ")" + line + "$own using 1:2" + points +
-      " using 1:2" + hollow + "set ylabel \"JND [%]\"\nset yrange [0:50]\n" +
-      labels("2.5, 17 center", "2.5, 4.5 center") + "plot 100 * (" + jnd + ") / x" + line + "$own using 1:3" + points +
-      " using 1:3" + hollow + "unset multiplot\n";
+  const bool papers = data.jnd.offset_N == JndLine{}.offset_N && data.jnd.weber_fraction == JndLine{}.weber_fraction;
+  figure.caption = papers ? "The conservative line of Hoever & Harders (2009), below all that was measured, is what "
+                            "errors are divided by everywhere here. The two points are those that their text gives in "
+                            "numbers."
+                          : "The scene's own line, which errors are divided by everywhere here. The two points are "
+                            "those that Hoever & Harders (2009) give in numbers.";
+  figure.width = 760;
+  figure.height = 270;
+  Table points{"jnd", "", false, {{"own", ""}, {"force_N", ""}, {"jnd_N", ""}}, {}};
+  points.rows.push_back({std::uint64_t{1}, kPointForce_N, kOwnPoint * kPointForce_N});
+  points.rows.push_back({std::uint64_t{0}, kPointForce_N, kEarlierPoint * kPointForce_N});
+  figure.data = {std::move(points)};
+  figure.set_number("jnd_offset_N", data.jnd.offset_N);
+  figure.set_number("jnd_fraction", data.jnd.weber_fraction);
   return figure;
 }
 
 std::vector<Figure> make_figures(const ReportData& data) {
   std::vector<Figure> figures = speed_figures(data);
-  for (const auto& more : {force_figures(data), data_figures(data), cost_figures(data)}) {
+  figures.push_back(evidence_figure(data));
+  for (auto& more : {force_figures(data), std::vector<Figure>{trace_figure(data)}, data_figures(data), cost_figures(data)}) {
     figures.insert(figures.end(), more.begin(), more.end());
   }
+  if (!data.facts.depth.empty()) figures.push_back(facts_figure(data));
   figures.push_back(jnd_figure(data));
   return figures;
 }

@@ -1,7 +1,7 @@
-// Speed against error, and what fits cost (figures 2 and 8 of the paper).
+// Speed against error and its twin, fit time against error.
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <set>
 
 #include "scenes/report/figures.h"
 #include "scenes/report/tables.h"
@@ -9,270 +9,242 @@
 namespace palpate {
 namespace {
 
-struct Point {
+constexpr std::size_t kMostPanels = 4;
+
+struct Panel {
+  std::string title;
+  std::size_t recording = 0;  // of test_names
+  bool pooled = false;
+  double floor = 0.0;
+};
+
+const Evidence& errors_of(const ModelResult& model, const Panel& panel) {
+  return panel.pooled ? model.pooled : model.per_recording[panel.recording];
+}
+
+// One recording, or all together and then those that are hardest for the last main model.
+std::vector<Panel> panels_of(const ReportData& data) {
+  std::vector<Panel> panels;
+  if (data.test_names.size() == 1) return {{data.test_names[0], 0, false, data.floors.empty() ? 0.0 : data.floors[0].p99_error_over_jnd}};
+  panels.push_back({"all " + std::to_string(data.test_names.size()) + " tests", 0, true, data.pooled_floor.p99_error_over_jnd});
+  const std::size_t reference = main_models(data) - 1;
+  std::vector<std::size_t> order(data.test_names.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const auto& all = data.models[reference].per_recording;
+    return all[a].p99_error_over_jnd > all[b].p99_error_over_jnd;
+  });
+  for (const std::size_t i : order) {
+    if (panels.size() == kMostPanels) break;
+    panels.push_back({data.test_names[i], i, false, i < data.floors.size() ? data.floors[i].p99_error_over_jnd : 0.0});
+  }
+  return panels;
+}
+
+using TimeOf = double (*)(const ModelResult&);
+double evaluation_ns(const ModelResult& model) { return model.time.measured ? model.time.median_ns : 0.0; }
+double fit_seconds(const ModelResult& model) { return model.fit_seconds; }
+
+// A line of the figure: one method of one recipe, by size.
+std::vector<const ModelResult*> series(const ReportData& data, Rung rung, const Method& method, TimeOf time) {
+  std::vector<const ModelResult*> list;
+  std::set<int> sizes;
+  for (const ModelResult& model : data.models) {
+    const bool few = model.plan.few_candidates();
+    if (model.plan.rung != rung || model.plan.request.method != &method || few || !(time(model) > 0.0)) continue;
+    if (sizes.insert(model.size).second) list.push_back(&model);
+  }
+  std::sort(list.begin(), list.end(), [](const ModelResult* a, const ModelResult* b) { return a->size < b->size; });
+  return list;
+}
+
+std::string size_text(int size) {
+  return size >= 1000 && size % 1000 == 0 ? std::to_string(size / 1000) + "k" : std::to_string(size);
+}
+
+// Models that no other one beats in both.
+std::vector<const ModelResult*> pareto_front(const ReportData& data, const Panel& panel, TimeOf time) {
+  std::vector<const ModelResult*> all;
+  for (const ModelResult& model : data.models) {
+    if (time(model) > 0.0 && errors_of(model, panel).samples > 0) all.push_back(&model);
+  }
+  std::sort(all.begin(), all.end(), [&](const ModelResult* a, const ModelResult* b) { return time(*a) < time(*b); });
+  std::vector<const ModelResult*> front;
+  double best = HUGE_VAL;
+  for (const ModelResult* model : all) {
+    const double error = errors_of(*model, panel).p99_error_over_jnd;
+    if (error >= best) continue;
+    best = error;
+    front.push_back(model);
+  }
+  return front;
+}
+
+struct End {
   double x = 0.0;
   double y = 0.0;
-  int size = 0;
-  bool good = false;  // 99.9 % within the JND
+  double colour = 0.0;
+  std::string label;
 };
 
-using Measure = std::function<double(const ModelResult&)>;
+struct Builder {
+  Figure figure;
+  Table points;
+  Table front;
+  Table labels;
+  Table panels;
+  AxisRange x;
+  AxisRange y;
+};
 
-// A method's models by size; the paper's greedy with few candidates stays out.
-std::vector<Point> curve(const ReportData& data, const Method& method, const Measure& x, const Measure& y) {
-  std::vector<Point> points;
+void add_panel(Builder& b, const ReportData& data, const Panel& panel, std::uint64_t number, TimeOf time) {
+  std::vector<End> ends;
+  for (const Rung rung : {Rung::trend, Rung::paper, Rung::palpate}) {
+    for (const Method* method : methods()) {
+      const auto line = series(data, rung, *method, time);
+      for (const ModelResult* model : line) {
+        const Evidence& errors = errors_of(*model, panel);
+        b.points.rows.push_back({number, model->plan.name, std::string(rung_key(rung)), time(*model),
+                                 errors.p99_error_over_jnd, errors.p99_interval.low, errors.p99_interval.high,
+                                 model_colour(model->plan), static_cast<std::uint64_t>(model->size)});
+      }
+      if (line.empty()) continue;
+      b.points.rows.push_back({});
+      const ModelResult& last = *line.back();
+      std::string label = model_label(last.plan);
+      if (line.size() > 1) label += " " + size_text(line.front()->size) + "–" + size_text(last.size);
+      if (rung == Rung::paper) {
+        // The hollow line's partner carries the name; alone it needs its own.
+        if (!series(data, Rung::palpate, *method, time).empty()) continue;
+      }
+      ends.push_back({time(last), errors_of(last, panel).p99_error_over_jnd, model_colour(last.plan), label});
+    }
+  }
+  std::vector<double> wanted;
+  for (const End& end : ends) wanted.push_back(b.y.fraction(end.y));
+  const std::vector<double> at = spread_labels(wanted, 0.055);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    b.labels.rows.push_back({number, ends[i].x, b.y.value(at[i]), ends[i].colour, ends[i].label});
+  }
+  for (const ModelResult* model : pareto_front(data, panel, time)) {
+    b.front.rows.push_back({number, model->plan.name, time(*model), errors_of(*model, panel).p99_error_over_jnd});
+  }
+  b.front.rows.push_back({});
+  b.panels.rows.push_back({number, panel.title, panel.floor});
+}
+
+// Beyond the data by a share of a decade, so that nothing sits on the frame.
+AxisRange cropped(const std::vector<double>& values, double below, double above) {
+  double low = HUGE_VAL;
+  double high = 0.0;
+  for (const double value : values) {
+    if (!(value > 0.0) || !std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (high <= 0.0) return {0.1, 10.0, true};
+  return {low / below, high * above, true};
+}
+
+Figure make_figure(const ReportData& data, const std::string& name, TimeOf time) {
+  const std::vector<Panel> panels = panels_of(data);
+  Builder b{{}, {name, "", true, {{"panel", ""}, {"model", ""}, {"recipe", ""}, {"time", ""}, {"p99_error_over_jnd", ""},
+                                  {"p99_low", ""}, {"p99_high", ""}, {"colour", ""}, {"size", ""}}, {}},
+            {name + "_front", "", true, {{"panel", ""}, {"model", ""}, {"time", ""}, {"p99_error_over_jnd", ""}}, {}},
+            {name + "_labels", "", true, {{"panel", ""}, {"time", ""}, {"p99_error_over_jnd", ""}, {"colour", ""}, {"label", ""}}, {}},
+            {name + "_panels", "", true, {{"panel", ""}, {"title", ""}, {"floor", ""}}, {}}, {}, {}};
+  std::vector<double> errors{1.0};
+  std::vector<double> times;
   for (const ModelResult& model : data.models) {
-    if (model.plan.request.method != &method || model.plan.request.candidates < 100 || !model.time.measured) continue;
-    points.push_back({x(model), y(model), model.size, model.pooled.within_jnd >= kGoodShare});
-  }
-  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.size < b.size; });
-  return points;
-}
-
-struct Scatter {
-  std::string data;
-  std::string plots;  // elements of a plot command
-  std::vector<SideLabel> labels;
-  double rightmost = 0.0;
-};
-
-std::string short_count(int count) {
-  return count >= 1000 && count % 1000 == 0 ? std::to_string(count / 1000) + "k" : std::to_string(count);
-}
-
-Scatter scatter(const ReportData& data, const Measure& x, const Measure& y, const AxisRange& y_axis) {
-  Scatter result;
-  for (const Method* method : methods()) {
-    const std::vector<Point> points = curve(data, *method, x, y);
-    if (points.empty()) continue;
-    const std::string name(method->name);
-    const std::string colour = method_colour(*method);
-    std::vector<std::vector<double>> all;
-    std::vector<std::vector<double>> good;
-    for (const Point& point : points) {
-      all.push_back({point.x, point.y});
-      if (point.good) good.push_back(all.back());
-      result.rightmost = std::max(result.rightmost, point.x);
+    if (!(time(model) > 0.0)) continue;
+    times.push_back(time(model));
+    for (const Panel& panel : panels) {
+      errors.push_back(errors_of(model, panel).p99_error_over_jnd);
+      errors.push_back(panel.floor);
     }
-    result.data += data_block(name, all) + data_block(name + "_good", good);
-    const std::string paint = " linecolor rgb \"" + colour + "\"";
-    result.plots += (result.plots.empty() ? "plot " : ", \\\n  ") + ("$" + name) + " with lines linewidth 1.5" + paint +
-                    ", $" + name + " with points pointtype 7 pointsize 0.75 linecolor rgb \"" + std::string(kPaper) +
-                    "\", $" + name + " with points pointtype 6 pointsize 0.75 linewidth 1.5" + paint + ", $" + name +
-                    "_good with points pointtype 7 pointsize 0.75" + paint;
-    PlannedModel any;
-    any.request.method = method;
-    std::string label = model_label(any);
-    if (points.size() > 1) label += ", " + short_count(points.front().size) + "–" + short_count(points.back().size);
-    if (method->can_take(kTakesGrid) && points.size() > 1) label += " nodes";
-    result.labels.push_back({y_axis.fraction(points.back().y), label, colour});
   }
-  return result;
-}
-
-std::vector<double> values(const ReportData& data, const Measure& of) {
-  std::vector<double> list;
-  for (const ModelResult& model : data.models) list.push_back(of(model));
-  return list;
-}
-
-const Measure kEvaluation = [](const ModelResult& model) { return model.time.median_ns; };
-const Measure kFit = [](const ModelResult& model) { return model.fit_seconds; };
-const Measure kRms = [](const ModelResult& model) { return 1e3 * model.pooled.rms_error_N; };
-const Measure kWorst = [](const ModelResult& model) { return model.pooled.max_error_over_jnd; };
-
-// Ends at `to`, before the labels of the curves begin.
-std::string horizontal(double y, const std::string& text, double to, int tag) {
-  const std::string at = std::to_string(y);
-  return "set arrow " + std::to_string(tag) + " from graph 0, first " + at + " to first " + std::to_string(to) +
-         ", first " + at + " nohead linewidth 1.5 dashtype 2 linecolor rgb \"" + std::string(kMuted) + "\"\nset label " +
-         std::to_string(tag) + " " + quoted(text) + " at graph 0.015, first " + at +
-         " left offset 0,0.55 noenhanced textcolor rgb \"" + std::string(kMuted) + "\"\n";
-}
-
-std::string budget_line() {
-  return "set arrow 90 from first 1e6, graph 0 to first 1e6, graph 1 nohead linewidth 1.5 dashtype 2 linecolor rgb \"" +
-         std::string(kMuted) + "\"\nset label 90 \"1 ms: one tick\" at first 1e6, graph 0.02 rotate by 90 left "
-         "offset -0.8,0 textcolor rgb \"" + std::string(kMuted) + "\"\n";
-}
-
-std::string time_tics() {
-  std::string text =
-      "set xtics (\"10 ns\" 10, \"100 ns\" 100, \"1 µs\" 1e3, \"10 µs\" 1e4, \"100 µs\" 1e5, \"1 ms\" 1e6";
-  for (int decade = 1; decade < 6; ++decade) {
-    for (int step = 2; step < 10; ++step) text += ", \"\" " + std::to_string(step) + "e" + std::to_string(decade) + " 1";
-  }
-  return text + ")\n";
-}
-
-Figure against_time(const ReportData& data, const std::string& name, const Measure& y, AxisRange axis,
-                    const std::string& y_label, double line, const std::string& line_text) {
-  Figure figure;
+  // To the right there must be room for the labels.
+  b.x = cropped(times, 1.5, panels.size() > 1 ? 12.0 : 5.0);
+  b.y = cropped(errors, 1.2, 1.3);
+  for (std::size_t p = 0; p < panels.size(); ++p) add_panel(b, data, panels[p], p, time);
+  Figure& figure = b.figure;
   figure.name = name;
+  figure.script = "speed_error";
   figure.has_times = true;
-  std::vector<double> times = values(data, kEvaluation);
-  times.push_back(90.0);  // so that the axis begins with a labelled decade or before it
-  const AxisRange time = log_range(times);
-  const Scatter plot = scatter(data, kEvaluation, y, axis);
-  figure.data = plot.data;
-  figure.commands = "set logscale xy\nset xrange [" + std::to_string(time.low) + ":2e6]\nset yrange " + axis.text() +
-                    "\n" + axis.tics("y") + time_tics() + "set xlabel \"One evaluation, median\"\nset ylabel \"" + y_label + "\"\n" +
-                    horizontal(line, line_text, 1.35 * plot.rightmost, 91) + budget_line() +
-                    side_labels(plot.labels, "first " + std::to_string(1.5 * plot.rightmost), 0.075, 1) +
-                    plot.plots + "\n";
-  return figure;
+  figure.width = 760;
+  figure.height = panels.size() == 1 ? 470 : 760;
+  figure.data = {b.points, b.front, b.labels, b.panels};
+  figure.set_number("panel_count", static_cast<double>(panels.size()));
+  figure.set_number("x_low", b.x.low);
+  figure.set_number("x_high", b.x.high);
+  figure.set_number("y_low", b.y.low);
+  figure.set_number("y_high", b.y.high);
+  figure.settings += b.y.tics("y");
+  return std::move(b.figure);
 }
 
-std::vector<double> with(std::vector<double> list, double value) {
-  list.push_back(value);
-  return list;
-}
-
-Figure rms_figure(const ReportData& data) {
-  const double jnd_mN = 1e3 * data.jnd.at(0.0);
-  Figure figure = against_time(data, "pareto", kRms, log_range(with(values(data, kRms), jnd_mN)), "RMS error [mN]",
-                               jnd_mN,
-                               "JND at no force, " + three_digits(jnd_mN) + " mN");
-  figure.title = "Evaluation time against RMS error";
-  figure.caption = "Further left is faster, further down is more accurate. Numbers: fewest and most centres (or grid "
-                   "nodes). Filled: at least 99.9 % of the samples within the JND. Everything left "
-                   "of the dashed line at 1 ms fits a tick of the loop; below the other one the typical error is less "
-                   "than a hand can notice even at the lightest touch.";
-  return figure;
-}
-
-Figure share_figure(const ReportData& data) {
-  double samples = 1.0;
-  for (const ModelResult& model : data.models) samples = std::max(samples, static_cast<double>(model.pooled.samples));
-  const double floor = 50.0 / samples;  // half a sample, in percent
-  const Measure above = [floor](const ModelResult& model) {
-    return std::max(floor, 100.0 * (1.0 - model.pooled.within_jnd));
-  };
-  Figure figure = against_time(data, "pareto_share", above, log_range(with(values(data, above), 0.1)),
-                               "Samples above the JND [%]", 0.1, "0.1 %: 99.9 % within the JND");
-  figure.title = "Evaluation time against what a hand can notice";
-  figure.caption = "The share of the samples in contact with an error that a hand can notice; a model without any "
-                   "is drawn at half a sample.";
-  return figure;
-}
-
-Figure worst_figure(const ReportData& data) {
-  Figure figure = against_time(data, "pareto_worst", kWorst, log_range(with(values(data, kWorst), 1.0)),
-                               "Worst error [JND]", 1.0, "JND");
-  figure.title = "Evaluation time against the worst error";
-  figure.caption = "One sample decides: a model whose worst error lies below the line never differs noticeably from "
-                   "the measurement. What all models have in common above it is not for another method to mend.";
-  return figure;
-}
-
-Figure fit_figure(const ReportData& data) {
-  Figure figure;
-  figure.name = "fit_time";
-  figure.title = "Fit time against error";
-  figure.caption = "What accuracy costs before the first tick: fits of the same prepared training data, one after the "
-                   "other. Filled: at least 99.9 % of the samples within the JND.";
-  figure.has_times = true;
-  AxisRange y_axis = log_range(values(data, kRms));
-  const AxisRange x_axis = log_range(values(data, kFit));
-  const Scatter plot = scatter(data, kFit, kRms, y_axis);
-  figure.data = plot.data;
-  figure.commands = "set logscale xy\nset rmargin 21\nset xrange " + x_axis.text() + "\nset yrange " + y_axis.text() +
-                    "\n" + x_axis.tics("x") + y_axis.tics("y") + "set xlabel \"Fit [s]\"\nset ylabel \"RMS error [mN]\"\n" +
-                    side_labels(plot.labels, "graph 1.02", 0.075, 1) + plot.plots + "\n";
-  return figure;
-}
-
-// Costs against something, each curve's name behind its end.
-struct CostCurves {
-  AxisRange axis;  // logarithmic
-  std::string plots;
-  std::vector<SideLabel> labels;
-
-  // `what`: a data block, and which of its columns.
-  void add(const std::string& what, const std::string& dashes, std::string_view colour, double last_s,
-           const std::string& label) {
-    plots += (plots.empty() ? "plot $" : ", \\\n  $") + what +
-             " with linespoints pointtype 7 pointsize 0.6 linewidth 1.5" + dashes + " linecolor rgb \"" +
-             std::string(colour) + "\"";
-    labels.push_back({axis.fraction(last_s), label, std::string(colour)});
-  }
-  std::string commands(const std::string& other_axis, const std::string& label) const {
-    return other_axis + "set rmargin 16\nset yrange " + axis.text() + "\n" + axis.tics("y") + "set ylabel \"" +
-           label + "\"\n" + side_labels(labels, "graph 1.02", 0.075, 1) + plots + "\n";
-  }
-};
-
-Figure sites_figure(const ReportData& data) {
-  Figure figure;
-  figure.name = "fit_time_sites";
-  figure.title = "Fit time against training samples (figure 8 of the paper)";
-  figure.caption = "Sites are what the reduction keeps. Direct interpolation grows with the cube of their number, the "
-                   "methods with 100 centres with the number itself.";
-  figure.has_times = true;
-  std::vector<std::string> order;
-  for (const SitesTime& time : data.sites_time) {
-    if (std::find(order.begin(), order.end(), time.method) == order.end()) order.push_back(time.method);
-  }
-  std::vector<double> seconds;
-  double most_sites = 500.0;
-  for (const SitesTime& time : data.sites_time) {
-    seconds.push_back(time.seconds);
-    most_sites = std::max(most_sites, static_cast<double>(time.sites));
-  }
-  CostCurves curves{log_range(seconds), {}, {}};
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    std::vector<std::vector<double>> rows;
-    for (const SitesTime& time : data.sites_time) {
-      if (time.method == order[i]) rows.push_back({static_cast<double>(time.sites), time.seconds});
-    }
-    const PlannedModel& plan = data.models[i].plan;
-    const std::string block = "sites" + std::to_string(i);
-    figure.data += data_block(block, rows);
-    curves.add(block, plan.request.candidates < 100 ? " dashtype 2" : "", method_colour(*plan.request.method),
-               rows.back()[1], model_label(plan));
-  }
-  figure.commands = curves.commands("set logscale xy\nset xrange [400:" + std::to_string(1.25 * most_sites) +
-                                        "]\nset xtics (500, 1000, 2000, 4000, 6850)\nset xlabel \"Sites\"\n",
-                                    "Fit [s]");
-  return figure;
-}
-
-Figure dimension_figure(const ReportData& data) {
-  Figure figure;
-  figure.name = "cost_dimension";
-  figure.title = "Cost against the dimension (figure 2 of the paper)";
-  figure.caption = "A grid of 10 nodes a side, filled from the direct interpolant, becomes unaffordable with every "
-                   "further feature; centres do not care.";
-  figure.has_times = true;
-  std::vector<std::vector<double>> rows;
-  std::vector<double> seconds;
-  for (const DimensionTime& time : data.dimension_time) {
-    rows.push_back({static_cast<double>(time.dimension), time.direct_seconds, time.grid_seconds, time.greedy_seconds});
-    seconds.insert(seconds.end(), rows.back().begin() + 1, rows.back().end());
-  }
-  figure.data = data_block("dimension", rows);
-  CostCurves curves{log_range(seconds), {}, {}};
-  const std::pair<const char*, const Method*> parts[] = {
-      {"direct fit", &kDirectMethod}, {"filling the grid", &kVoxelMethod}, {"greedy fit", &kGreedyMethod}};
-  for (std::size_t i = 0; i < 3 && !rows.empty(); ++i) {
-    curves.add("dimension using 1:" + std::to_string(i + 2), "", method_colour(*parts[i].second), rows.back()[i + 1],
-               parts[i].first);
-  }
-  figure.commands = curves.commands("set logscale y\nset xtics 1\nset xlabel \"Features\"\n", "Seconds");
-  return figure;
-}
+std::string times_text(double factor) { return three_digits(factor) + " times"; }
 
 }  // namespace
 
 std::vector<Figure> speed_figures(const ReportData& data) {
-  return {rms_figure(data), share_figure(data), worst_figure(data), fit_figure(data)};
+  Figure speed = make_figure(data, "speed_error", evaluation_ns);
+  speed.title = "What a microsecond buys: speed against error";
+  speed.caption = "99 % of the errors are no larger than this, in what a hand can just notice; down and left is better. "
+                  "Filled: Palpate. Hollow: the paper's recipe with the same method. A line goes through the sizes of "
+                  "one method (numbers: fewest and most centres or nodes); bars are 95 % intervals from resampled "
+                  "strokes; the grey steps are the Pareto front: nothing is both faster and better. Below the dotted "
+                  "line no model can come but by luck: that is the noise of the force sensor.";
+  speed.set_text("x_label", "One evaluation, median");
+  double slowest = 0.0;
+  for (const ModelResult& model : data.models) slowest = std::max(slowest, evaluation_ns(model));
+  speed.set_text("edge", slowest > 0.0 ? "one tick of 1 ms: " + times_text(kBudget_ns / slowest) + " the slowest →" : "");
+  speed.set_number("is_fit", 0.0);
+  Figure fit = make_figure(data, "fit_error", fit_seconds);
+  fit.title = "What a second buys: fit time against error";
+  fit.caption = "The same with the time of the fit, after what all methods share; a grid includes the direct fit that "
+                "fills it. One after the other, on this machine.";
+  fit.set_text("x_label", "Fit");
+  fit.set_text("edge", "");
+  fit.set_number("is_fit", 1.0);
+  return {std::move(speed), std::move(fit)};
 }
 
-std::vector<Figure> cost_figures(const ReportData& data) {
-  std::vector<Figure> figures;
-  if (!data.sites_time.empty()) figures.push_back(sites_figure(data));
-  if (!data.dimension_time.empty()) figures.push_back(dimension_figure(data));
-  return figures;
+// Every figure of merit of the main models, with its interval.
+Figure evidence_figure(const ReportData& data) {
+  Figure figure;
+  figure.name = "evidence";
+  figure.title = "How sure are these figures?";
+  figure.caption = "Dots: all test samples; bars: 95 % intervals from " + std::to_string(kResamples) +
+                   " resamplings of the strokes. Where bars overlap the test does not tell two models apart. Crosses: "
+                   "with the surface of the test moved to the models'. Dotted: a perfect model, by the force noise.";
+  Table table{"evidence", "", false,
+              {{"row", ""}, {"model", ""}, {"recipe", ""}, {"colour", ""}, {"beyond", ""}, {"beyond_low", ""},
+               {"beyond_high", ""}, {"p99", ""}, {"p99_low", ""}, {"p99_high", ""}, {"rms_mN", ""}, {"rms_low", ""},
+               {"rms_high", ""}, {"worst", ""}, {"worst_low", ""}, {"worst_high", ""}, {"moved_beyond", ""},
+               {"moved_p99", ""}, {"moved_rms_mN", ""}, {"moved_worst", ""}},
+              {}};
+  std::uint64_t row = 0;
+  for (const ModelResult& model : data.models) {
+    if (!model.plan.main) continue;
+    const Evidence& e = model.pooled;
+    const Evidence& m = model.pooled_moved;
+    const auto beyond = [](double within) { return 100.0 * (1.0 - within); };
+    table.rows.push_back({row++, model.plan.name, std::string(rung_key(model.plan.rung)), model_colour(model.plan),
+                          beyond(e.within_jnd), beyond(e.within_interval.high), beyond(e.within_interval.low),
+                          e.p99_error_over_jnd, e.p99_interval.low, e.p99_interval.high, 1e3 * e.rms_error_N,
+                          1e3 * e.rms_interval_N.low, 1e3 * e.rms_interval_N.high, e.max_error_over_jnd,
+                          e.worst_interval.low, e.worst_interval.high, beyond(m.within_jnd), m.p99_error_over_jnd,
+                          1e3 * m.rms_error_N, m.max_error_over_jnd});
+  }
+  figure.width = 760;
+  figure.height = 100 + 24 * static_cast<int>(row);
+  figure.set_number("rows", static_cast<double>(row));
+  figure.set_number("floor_beyond", 100.0 * (1.0 - data.pooled_floor.within_jnd));
+  figure.set_number("floor_p99", data.pooled_floor.p99_error_over_jnd);
+  figure.set_number("floor_rms_mN", 1e3 * data.pooled_floor.rms_error_N);
+  figure.data = {std::move(table)};
+  return figure;
 }
 
 }  // namespace palpate

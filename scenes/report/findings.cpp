@@ -2,95 +2,123 @@
 #include <cmath>
 #include <map>
 
-#include "engine/base/text.h"
 #include "scenes/report/tables.h"
 
 namespace palpate {
 namespace {
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f %%", 100.0 * share);
+std::string percent_text(double share) { return fixed(100.0 * share, 2) + " %"; }
+
+std::string figures(const ErrorSummary& errors) {
+  return percent_text(errors.within_jnd) + " within the JND, 99 % of the errors up to " +
+         three_digits(errors.p99_error_over_jnd) + " JND";
+}
+
+const ModelResult* find_model(const ReportData& data, const std::string& name) {
+  for (const ModelResult& model : data.models) {
+    if (model.plan.name == name) return &model;
+  }
+  return nullptr;
+}
+
+// The last main model of a rung stands for it.
+const ModelResult* of_rung(const ReportData& data, Rung rung) {
+  const ModelResult* last = nullptr;
+  for (const ModelResult& model : data.models) {
+    if (model.plan.main && model.plan.rung == rung) last = &model;
+  }
+  return last;
+}
+
+std::string about_ladder(const ReportData& data) {
+  std::string text;
+  for (const Rung rung : {Rung::no_force, Rung::trend, Rung::paper, Rung::palpate}) {
+    const ModelResult* model = of_rung(data, rung);
+    if (model == nullptr || model->pooled.samples == 0) continue;
+    if (rung == Rung::no_force) {
+      text += "A model that always says 0 N has " + percent_text(model->pooled.within_jnd) +
+              " of the test samples within the JND";
+      continue;
+    }
+    const std::string words = rung == Rung::trend   ? std::string("the trend alone")
+                              : rung == Rung::paper ? "the paper's recipe (" + model->plan.name + ")"
+                                                    : "Palpate (" + model->plan.name + ")";
+    text += (text.empty() ? "" : "; ") + words + " " + percent_text(model->pooled.within_jnd) +
+            " (99 % of the errors up to " + three_digits(model->pooled.p99_error_over_jnd) + " JND)";
+  }
+  return text.empty() ? text : text + ".";
+}
+
+std::string about_recommendation(const ReportData& data) {
+  const Recommendation& choice = data.recommendation;
+  if (choice.reason.empty()) return {};
+  return (choice.recommended.empty() ? "" : "Recommended: " + choice.recommended + ". ") + choice.reason;
+}
+
+// Who cannot be told from the recommended model on the test.
+std::string about_ties(const ReportData& data) {
+  const ModelResult* chosen = find_model(data, data.recommendation.recommended);
+  if (chosen == nullptr || chosen->pooled.samples == 0) return {};
+  std::size_t count = 0;
+  std::size_t better = 0;
+  for (const ModelResult& model : data.models) {
+    if (&model == chosen || model.plan.rung == Rung::no_force) continue;
+    if (tied(model.pooled, chosen->pooled)) ++count;
+    else if (model.pooled.p99_error_over_jnd < chosen->pooled.p99_error_over_jnd) ++better;
+  }
+  std::string text = "On the test " + std::to_string(count) + " of the other " +
+                     std::to_string(data.models.size() - 2) + " models are tied with it (their 95 % intervals overlap)";
+  text += better > 0 ? ", and " + std::to_string(better) + (better == 1 ? " is better." : " are better.")
+                     : ", and none is better.";
+  const Evidence& evidence = chosen->pooled;
+  if (evidence.strokes < kFewStrokes) {
+    text += " The test has few strokes (" + std::to_string(evidence.strokes) +
+            "): its intervals are too narrow to be believed.";
+  }
+  if (evidence.beyond_samples > 0 && evidence.beyond_strokes < 3) {
+    text += " Few samples decide: the " + std::to_string(evidence.beyond_samples) +
+            (evidence.beyond_samples == 1 ? " sample" : " samples") + " beyond the JND lie in " +
+            (evidence.beyond_strokes == 1 ? std::string("one stroke.") : std::to_string(evidence.beyond_strokes) + " strokes.");
+  }
   return text;
 }
 
-std::string figures(const ModelResult& model) {
-  return percent(model.pooled.within_jnd) + " within the JND, RMS " + three_digits(1e3 * model.pooled.rms_error_N) +
-         " mN, worst error " + three_digits(model.pooled.max_error_over_jnd) + " JND";
-}
-
-std::string size_of(const ModelResult& model) {
-  const bool grid = model.plan.request.method->can_take(kTakesGrid);
-  return std::to_string(model.size) + (grid ? " nodes" : " centres");
-}
-
-const ModelResult* smallest_good(const ReportData& data) {
-  const ModelResult* best = nullptr;
-  for (const ModelResult& model : data.models) {
-    if (model.pooled.within_jnd < kGoodShare) continue;
-    const bool better = best == nullptr || model.size < best->size ||
-                        (model.size == best->size && model.pooled.rms_error_N < best->pooled.rms_error_N);
-    if (better) best = &model;
+std::string about_floors(const ReportData& data) {
+  if (data.test_names.empty()) return {};
+  const NoiseFloor& floor = data.pooled_floor;
+  std::string text = "With a force noise of " + three_digits(1e3 * floor.force_noise_N) +
+                     " mN a perfect model would have " + percent_text(floor.within_jnd) +
+                     " within the JND and 99 % of its errors up to " + three_digits(floor.p99_error_over_jnd) + " JND.";
+  const ModelResult* model = of_rung(data, Rung::palpate);
+  if (model == nullptr) model = of_rung(data, Rung::paper);
+  const bool moved = std::any_of(data.surface_offset_m.begin(), data.surface_offset_m.end(),
+                                 [](double offset_m) { return offset_m != 0.0; });
+  if (moved && model != nullptr) {
+    std::string offsets;
+    for (const double offset_m : data.surface_offset_m) {
+      offsets.append(offsets.empty() ? "" : ", ").append(fixed(1e3 * offset_m, 2));
+    }
+    text += " For these models the surface of the test lies at " + offsets + " mm; moved there, " + model->plan.name +
+            " has " + percent_text(model->pooled_moved.within_jnd) + " within the JND instead of " +
+            percent_text(model->pooled.within_jnd) + ".";
   }
-  return best;
-}
-
-template <typename Accept>
-const ModelResult* most_accurate(const ReportData& data, Accept accept) {
-  const ModelResult* best = nullptr;
-  for (const ModelResult& model : data.models) {
-    if (accept(model) && (best == nullptr || model.pooled.rms_error_N < best->pooled.rms_error_N)) best = &model;
-  }
-  return best;
-}
-
-std::string about_smallest(const ReportData& data) {
-  if (const ModelResult* small = smallest_good(data)) {
-    return "The smallest model with at least 99.9 % of the samples within the JND is " + small->plan.name + " (" +
-           size_of(*small) + "): " + figures(*small) + ".";
-  }
-  const ModelResult* best = nullptr;
-  for (const ModelResult& model : data.models) {
-    if (best == nullptr || model.pooled.within_jnd > best->pooled.within_jnd) best = &model;
-  }
-  return "No model keeps 99.9 % of the samples within the JND; " + best->plan.name + " comes nearest: " +
-         figures(*best) + ".";
+  return text;
 }
 
 std::string about_coverage(const ReportData& data) {
-  if (data.coverage.errors.empty()) return {};
-  const CoverageErrors& reference = data.coverage.errors.back();
-  const double all = static_cast<double>(reference.inside.samples + reference.outside.samples);
-  if (reference.outside.samples == 0) return "The test never left the training data.";
-  std::string text = percent(static_cast<double>(reference.outside.samples) / all) +
-                     " of the test samples lie away from the training data; there " + reference.model + " has " +
-                     percent(reference.outside.within_jnd) + " within the JND";
-  if (reference.inside.samples > 0) text += ", near the data " + percent(reference.inside.within_jnd);
-  return text + ".";
-}
-
-// Where the surface of a test recording decides the figures of the best model.
-std::string about_surface(const ReportData& data) {
-  double farthest_m = 0.0;
-  std::size_t which = 0;
-  for (std::size_t r = 0; r < data.surface_offset_m.size(); ++r) {
-    if (std::abs(data.surface_offset_m[r]) <= std::abs(farthest_m)) continue;
-    farthest_m = data.surface_offset_m[r];
-    which = r;
+  for (const CoverageErrors& errors : data.coverage.errors) {
+    if (errors.model != data.coverage.reference) continue;
+    const double all = static_cast<double>(errors.inside.samples + errors.outside.samples);
+    if (errors.outside.samples == 0) {
+      return errors.model + " found no test sample away from its training data.";
+    }
+    std::string text = percent_text(static_cast<double>(errors.outside.samples) / all) +
+                       " of the test samples lie away from the training data; there " + errors.model + " has " +
+                       percent_text(errors.outside.within_jnd) + " within the JND";
+    if (errors.inside.samples > 0) text += ", near the data " + percent_text(errors.inside.within_jnd);
+    return text + ".";
   }
-  if (farthest_m == 0.0) return {};
-  const ModelResult* best = nullptr;
-  for (const ModelResult& model : data.models) {
-    if (best == nullptr || model.pooled_moved.within_jnd > best->pooled_moved.within_jnd) best = &model;
-  }
-  const auto moved = std::count_if(data.surface_offset_m.begin(), data.surface_offset_m.end(),
-                                   [](double offset_m) { return offset_m != 0.0; });
-  return std::to_string(moved) + " of " + std::to_string(data.surface_offset_m.size()) +
-         " test recordings have their surface elsewhere than the models (" + data.test_names[which] + " farthest, by " +
-         fixed(1e3 * farthest_m, 3) + " mm). With the surface moved " + best->plan.name + " has " +
-         percent(best->pooled_moved.within_jnd) + " within the JND and RMS " +
-         three_digits(1e3 * best->pooled_moved.rms_error_N) + " mN, as recorded " + percent(best->pooled.within_jnd) +
-         " and " + three_digits(1e3 * best->pooled.rms_error_N) + " mN.";
+  return {};
 }
 
 std::string about_seeds(const ReportData& data) {
@@ -110,30 +138,30 @@ std::string about_seeds(const ReportData& data) {
   return text.empty() ? text : text + ".";
 }
 
+std::vector<std::string> time_findings(const ReportData& data) {
+  std::vector<std::string> sentences;
+  const ModelResult* chosen = find_model(data, data.recommendation.recommended);
+  if (chosen != nullptr && chosen->time.measured) {
+    sentences.push_back("One evaluation of " + chosen->plan.name + " takes " + three_digits(chosen->time.median_ns) +
+                        " ns, " + three_digits(100.0 * chosen->time.median_ns / kBudget_ns) +
+                        " % of a tick of 1 ms: " + figures(chosen->pooled) + ".");
+  }
+  const auto slow = std::count_if(data.models.begin(), data.models.end(), [](const ModelResult& model) {
+    return model.time.measured && model.time.p99_ns > kBudget_ns;
+  });
+  sentences.push_back(slow == 0 ? "Every model, the direct one with all its centres included, fits a tick of 1 ms."
+                                : std::to_string(slow) + " models do not fit a tick of 1 ms on this machine.");
+  return sentences;
+}
+
 }  // namespace
 
 std::vector<std::string> findings(const ReportData& data, bool with_times) {
+  if (data.models.empty()) return {};
+  if (with_times) return time_findings(data);
   std::vector<std::string> sentences;
-  if (data.models.empty()) return sentences;
-  if (with_times) {
-    const ModelResult* quick = most_accurate(data, [](const ModelResult& model) {
-      return model.time.measured && model.time.median_ns <= kQuick_ns;
-    });
-    if (quick != nullptr) {
-      sentences.push_back("The most accurate model within 1 µs an evaluation is " + quick->plan.name + " (" +
-                          three_digits(quick->time.median_ns) + " ns): " + figures(*quick) + ".");
-    } else {
-      sentences.push_back("No model takes less than 1 µs an evaluation on this machine.");
-    }
-    const auto slow = std::count_if(data.models.begin(), data.models.end(), [](const ModelResult& model) {
-      return model.time.measured && model.time.p99_ns > kBudget_ns;
-    });
-    sentences.push_back(slow == 0 ? "Every model, the direct one with all its centres included, fits a tick of 1 ms."
-                                  : std::to_string(slow) + " models do not fit a tick of 1 ms on this machine.");
-    return sentences;
-  }
-  sentences.push_back(about_smallest(data));
-  for (std::string sentence : {about_coverage(data), about_surface(data), about_seeds(data)}) {
+  for (std::string sentence : {about_ladder(data), about_recommendation(data), about_ties(data), about_floors(data),
+                               about_coverage(data), about_seeds(data)}) {
     if (!sentence.empty()) sentences.push_back(std::move(sentence));
   }
   return sentences;

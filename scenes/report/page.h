@@ -1,12 +1,14 @@
-// The page: one HTML file that needs nothing else, no network either.
+// The page: one HTML file that needs nothing else, no network either. Its words and
+// style are assets/report/page.html.
 //
-// Thread guarantee: pure function.
+// Thread guarantee: reads one file, otherwise pure.
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "scenes/report/figure.h"
 #include "scenes/report/report_data.h"
 #include "scenes/report/table.h"
@@ -24,8 +26,8 @@ struct ReportOrigin {
 };
 
 // `svgs`: each figure's SVG as gnuplot wrote it, by name. Figures follow light and
-// dark, fit a phone, and are not cut on A4.
-std::string make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
-                      const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs);
+// dark, fit a phone, and are not cut on A4. Errors: the template is missing or broken.
+Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
+                              const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs);
 
 }  // namespace palpate

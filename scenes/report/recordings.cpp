@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenes/material/rig.h"
+#include "scenes/report/leakage.h"
 
 namespace palpate {
 namespace {
@@ -40,8 +41,9 @@ Status refuse_doubles(const std::vector<std::string>& paths) {
   return {};
 }
 
-RecordingFacts facts_of(const Recording& recording, const std::string& role) {
+RecordingFacts facts_of(const Recording& recording, const std::string& role, const JndLine& jnd) {
   RecordingFacts facts;
+  facts.content_hash = hash_text(content_hash(recording));
   facts.role = role;
   facts.name = recording.name;
   facts.samples = recording.rows.size();
@@ -53,6 +55,9 @@ RecordingFacts facts_of(const Recording& recording, const std::string& role) {
     facts.deepest_m = std::max(facts.deepest_m, row.position_m);
     facts.largest_force_N = std::max(facts.largest_force_N, row.force_N);
   }
+  NoiseFloorFinder noise(jnd);
+  noise.add(recording);
+  facts.noise = noise.result();
   return facts;
 }
 
@@ -97,12 +102,25 @@ void make_folds(RecordingSet& set) {
 }
 
 Status add_files(RecordingSet& set, const std::vector<std::string>& paths) {
+  std::vector<std::pair<std::uint64_t, SharedRecording>> added;
   for (const std::string& path : paths) {
     auto recording = read_recording(path);
     if (!recording) return recording.error();
-    set.all.push_back(std::make_shared<const Recording>(std::move(*recording)));
+    auto shared = std::make_shared<const Recording>(std::move(*recording));
+    added.emplace_back(content_hash(*shared), shared);
   }
+  std::sort(added.begin(), added.end(), [](const auto& a, const auto& b) {
+    return a.second->name != b.second->name ? a.second->name < b.second->name : a.first < b.first;
+  });
+  for (const auto& [hash, recording] : added) set.all.push_back(recording);
   return {};
+}
+
+Status check_leakage(const RecordingSet& set, std::size_t trained) {
+  std::vector<const Recording*> train;
+  std::vector<const Recording*> test;
+  for (std::size_t i = 0; i < set.all.size(); ++i) (i < trained ? train : test).push_back(set.all[i].get());
+  return refuse_leakage(train, test);
 }
 
 Status check_contact(const RecordingSet& set) {
@@ -114,10 +132,43 @@ Status check_contact(const RecordingSet& set) {
   return {};
 }
 
+// Every other part of every recording.
+LeftOutFold every_other(const std::vector<std::vector<SharedRecording>>& parts, std::size_t odd) {
+  LeftOutFold fold;
+  for (const auto& recording : parts) {
+    for (std::size_t k = 0; k < recording.size(); ++k) (k % 2 == odd ? fold.left_out : fold.train).push_back(recording[k]);
+  }
+  return fold;
+}
+
 }  // namespace
 
+std::vector<LeftOutFold> left_out_folds(const std::vector<SharedRecording>& training, int most) {
+  std::vector<LeftOutFold> folds;
+  constexpr std::size_t kWholeFrom = 3;  // recordings: whole ones are left out
+  if (training.size() >= kWholeFrom) {
+    for (std::size_t f = 0; f < std::min<std::size_t>(static_cast<std::size_t>(most), kWholeFrom); ++f) {
+      LeftOutFold fold;
+      for (std::size_t i = 0; i < training.size(); ++i) {
+        (i % kWholeFrom == (f + 1) % kWholeFrom ? fold.left_out : fold.train).push_back(training[i]);
+      }
+      folds.push_back(std::move(fold));
+    }
+    return folds;
+  }
+  std::vector<std::vector<SharedRecording>> parts;
+  for (const SharedRecording& recording : training) {
+    auto pieces = cut(*recording);
+    if (!pieces) return {};
+    parts.push_back(std::move(*pieces));
+  }
+  // The odd parts first: training on the first, third and fifth has more to learn from.
+  for (int f = 0; f < std::min(most, 2); ++f) folds.push_back(every_other(parts, f == 0 ? 1 : 0));
+  return folds;
+}
+
 Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
-                                     const std::function<bool(double share)>& progress) {
+                                     const JndLine& jnd, const std::function<bool(double share)>& progress) {
   if (train.empty() && !test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
@@ -141,6 +192,7 @@ Result<RecordingSet> load_recordings(const std::vector<std::string>& train, cons
     if (const Status status = add_files(set, train); !status) return status.error();
     if (const Status status = add_files(set, test); !status) return status.error();
   }
+  if (const Status status = check_leakage(set, trained); !status) return status.error();
   if (trained == set.all.size()) {
     set.cross_validated = true;
     if (set.all.size() == 1) {
@@ -156,7 +208,7 @@ Result<RecordingSet> load_recordings(const std::vector<std::string>& train, cons
     }
   }
   for (std::size_t i = 0; i < set.all.size(); ++i) {
-    set.facts.push_back(facts_of(*set.all[i], set.cross_validated ? "both" : i < trained ? "train" : "test"));
+    set.facts.push_back(facts_of(*set.all[i], set.cross_validated ? "both" : i < trained ? "train" : "test", jnd));
   }
   if (const Status status = check_contact(set); !status) return status.error();
   return set;

@@ -30,16 +30,28 @@ struct RecordingSet {
   bool cross_validated = false;
 };
 
+// Training recordings again, with strokes left out: of several recordings whole ones, of
+// one or two every other part of them.
+struct LeftOutFold {
+  std::vector<SharedRecording> train;
+  std::vector<SharedRecording> left_out;
+};
+
+// Up to `most` folds of `training`; none where nothing can be left out.
+std::vector<LeftOutFold> left_out_folds(const std::vector<SharedRecording>& training, int most);
+
 inline constexpr std::size_t kMostFolds = 5;
 
 // Reads the files. Without any, the virtual silicone: seed 1 to train on, seed 2
 // to test on. Without a test recording the training recordings are divided into
 // up to kMostFolds folds, each tested by models that were fitted to the others; a
 // single one is first cut into kMostFolds parts of about the same length, where the
-// tool is out of contact if it ever is. Errors: those of the recordings; a test
-// recording without a training recording; the same file twice; no contact in a
-// test recording; too short to be cut.
+// tool is out of contact if it ever is. Recordings are ordered by name and content,
+// whatever the order in which they were given. Errors: those of the recordings; a test
+// recording without a training recording; the same file twice; the same content twice,
+// or a stretch of a training recording in a test (leakage.h); no contact in a test
+// recording; too short to be cut.
 Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
-                                     const std::function<bool(double share)>& progress = {});
+                                     const JndLine& jnd, const std::function<bool(double share)>& progress = {});
 
 }  // namespace palpate

@@ -12,6 +12,7 @@
 
 #include "scenes/scene/gnuplot.h"
 #include "scenes/report/report_folder.h"
+#include "scenes/report/model_facts.h"
 #include "scenes/report/run_methods.h"
 #include "scenes/report/tables.h"
 
@@ -57,6 +58,26 @@ std::string gnuplot_version(const std::string& svg) {
   return "gnuplot " + version;
 }
 
+OrderedJson recipes_json(const ReportRecipe& recipe) {
+  OrderedJson object = OrderedJson::object();
+  if (recipe.paper) object["paper"] = {{"reduction", "force"}, {"weighting", "relative"}, {"kernel", kernel_name(recipe.kernel)}};
+  if (recipe.palpate) {
+    object["palpate"] = {{"reduction", reduction_name(recipe.reduction)},
+                         {"weighting", weighting_name(recipe.weighting)},
+                         {"features", recipe.features},
+                         {"kernel", kernel_name(recipe.kernel)}};
+  }
+  return object;
+}
+
+OrderedJson recommendation_json(const Recommendation& choice) {
+  return {{"recommended", choice.recommended.empty() ? OrderedJson(nullptr) : OrderedJson(choice.recommended)},
+          {"chosen", choice.chosen},
+          {"on_left_out_strokes", choice.left_out},
+          {"tied", choice.tied},
+          {"reason", choice.reason}};
+}
+
 // All numbers. "timings" holds all that differs from run to run.
 OrderedJson report_json(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
                  const std::vector<Figure>& figures, const ReportPlan& plan) {
@@ -74,6 +95,9 @@ OrderedJson report_json(const ReportData& data, const ReportOrigin& origin, cons
           {"quick", data.quick},
           {"virtual_recordings", data.virtual_recordings},
           {"folds", data.folds},
+          {"recipes", recipes_json(plan.recipe)},
+          {"recommendation", recommendation_json(data.recommendation)},
+          {"surface_offset_m", data.surface_offset_m},
           {"relaxation_times_s", data.relaxation_times},
           {"seeds", plan.seeds},
           {"findings", findings(data, false)},
@@ -90,13 +114,13 @@ OrderedJson report_json(const ReportData& data, const ReportOrigin& origin, cons
 
 Result<std::map<std::string, std::string>> draw(const ReportFolder& folder, const std::string& gnuplot,
                                                 const std::vector<Figure>& figures) {
-  std::vector<std::string> scripts;
-  for (const Figure& figure : figures) {
-    scripts.push_back(figure.name + ".gp");
-    if (const Status status = folder.write("figures/" + scripts.back(), figure_script(figure)); !status) {
-      return status.error();
-    }
+  const auto files = figure_files(figures);
+  if (!files) return files.error();
+  for (const auto& [name, text] : *files) {
+    if (const Status status = folder.write("figures/" + name, text); !status) return status.error();
   }
+  std::vector<std::string> scripts;
+  for (const Figure& figure : figures) scripts.push_back(figure.name + ".gp");
   if (const Status status = run_gnuplot(gnuplot, folder.path_of("figures"), scripts); !status) return status.error();
   std::map<std::string, std::string> svgs;
   for (const Figure& figure : figures) {
@@ -129,10 +153,10 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   auto folder = ReportFolder::create(request.out, request.force);
   if (!folder) return folder.error();
 
-  const auto recordings = load_recordings(request.train, request.test,
+  const auto recordings = load_recordings(request.train, request.test, scene->jnd,
                                           [&](double share) { return control.go_on(kRecordingShare * share); });
   if (!recordings) return recordings.error();
-  const ReportPlan plan = make_plan(request.quick, scene->features.size());
+  const ReportPlan plan = make_plan(request.quick, scene->features.size(), request.recipe);
   FitControl measuring;
   measuring.progress = [&](double fraction) {
     return control.go_on(kRecordingShare + (kMeasuringShare - kRecordingShare) * fraction);
@@ -140,6 +164,7 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   auto data = run_methods(*recordings, *scene, plan, measuring);
   if (!data) return data.error();
   data->quick = request.quick;
+  add_model_facts(*data);
   // Some seconds, and the same for everybody: not for a quick report.
   if (!request.quick) data->hard_cases = hard_case_table(run_hard_cases());
 
@@ -162,9 +187,9 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   // Names of recordings need not be UTF-8; what cannot be said is replaced.
   const std::string json = numbers.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
   if (const Status status = folder->write("report.json", json); !status) return status.error();
-  if (const Status status = folder->write("index.html", make_page(*data, origin, tables, figures, *svgs)); !status) {
-    return status.error();
-  }
+  const auto page = make_page(*data, origin, tables, figures, *svgs);
+  if (!page) return page.error();
+  if (const Status status = folder->write("index.html", *page); !status) return status.error();
   if (!control.go_on(1.0)) return interrupted();
   if (const Status status = folder->commit(); !status) return status.error();
 

@@ -8,6 +8,7 @@
 
 #include "engine/base/fit_control.h"
 #include "scenes/report/page.h"
+#include "scenes/report/plan.h"
 
 namespace palpate {
 
@@ -16,6 +17,7 @@ struct ReportRequest {
   std::vector<std::string> test;   // none: k-fold over `train`
   std::string scene = "silicone_block";
   bool quick = false;
+  ReportRecipe recipe;
   std::string out;
   bool force = false;
   std::string command_line;
@@ -27,7 +29,7 @@ struct ReportSummary {
   std::vector<std::string> files;  // of the folder, sorted
 };
 
-// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into
+// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp,set,csv} into
 // `request.out`, which appears only when all is there. Errors: gnuplot is missing; the
 // folder exists without `force`; those of the recordings and fits; interrupted.
 Result<ReportSummary> make_report(const ReportRequest& request, const FitControl& control = {});

@@ -42,7 +42,7 @@ fs::path without_slash(const std::string& path) {
 
 Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrite) {
   const fs::path clean = without_slash(path);
-  if (path.empty() || clean.filename() == "." || clean.filename() == "..") {
+  if (path.empty() || path == "-" || clean.filename() == "." || clean.filename() == "..") {
     return Error{"cannot write a report to \"" + path + "\": it is no name of a new folder; name one for --out"};
   }
   if (const Status target = check_target(clean, overwrite); !target) return target.error();

@@ -1,42 +1,47 @@
 #include "scenes/report/run_methods.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "engine/tick/replay.h"
 #include "models/training/surface_search.h"
-#include "scenes/report/judge.h"
+#include "scenes/report/coverage_finder.h"
+#include "scenes/report/evaluator.h"
+#include "scenes/report/no_force.h"
+#include "scenes/report/recommendation.h"
 #include "scenes/report/scaling.h"
-#include "scenes/report/steps.h"
+#include "scenes/report/stopwatch.h"
+#include "scenes/report/trace_finder.h"
+#include "scenes/report/weighted_progress.h"
 #include "scenes/scene/training.h"
 
 namespace palpate {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // A method's base has been fitted before it.
 double own_seconds(const MethodRequest& request) { return request.method->expected_seconds(request); }
 
 constexpr double kPrepareWeight = 1.0;
-constexpr double kJudgeWeight = 0.1;  // a model
+constexpr double kEvaluateWeight = 0.1;  // a model
 constexpr double kSitesWeight = 8.0;
 constexpr double kDimensionWeight = 10.0;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 double total_weight(const RecordingSet& recordings, const ReportPlan& plan) {
-  double fold = kPrepareWeight;
-  for (const PlannedModel& model : plan.models) fold += own_seconds(model.request) + kJudgeWeight;
-  for (const PlannedModel& model : plan.repeated) {
-    fold += static_cast<double>(plan.seeds.size()) * (own_seconds(model.request) + kJudgeWeight);
+  const double prepare = kPrepareWeight * ((plan.recipe.paper ? 1.0 : 0.0) + (plan.recipe.palpate ? 1.0 : 0.0));
+  double fold = prepare;
+  double left_out = prepare;
+  for (const PlannedModel& model : plan.models) {
+    fold += own_seconds(model.request) + 2.0 * kEvaluateWeight;
+    if (is_candidate(model)) left_out += own_seconds(model.request) + kEvaluateWeight;
   }
-  return fold * static_cast<double>(recordings.folds.size()) + kSitesWeight + kDimensionWeight;
+  for (const PlannedModel& model : plan.repeated) {
+    fold += static_cast<double>(plan.seeds.size()) * (own_seconds(model.request) + kEvaluateWeight);
+  }
+  return fold * static_cast<double>(recordings.folds.size()) + left_out * plan.left_out_folds + kSitesWeight +
+         kDimensionWeight;
 }
 
 // Feature vectors as `model` meets them in the test recordings, to time it on.
@@ -58,18 +63,59 @@ double largest_force_N(const RecordingSet& recordings) {
   return largest;
 }
 
+// Where the surface of a tested recording is for the models; 0 where that cannot be told.
+double surface_of_models(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd) {
+  return locate_surface(thinned_rows(recording, kSearchRows), models, jnd).offset_m;
+}
+
+// The training as each recipe prepares it.
+struct Preparations {
+  std::optional<PreparedTraining> paper;
+  std::optional<PreparedTraining> palpate;
+
+  const PreparedTraining& of(Rung rung) const { return rung == Rung::paper || !palpate ? *paper : *palpate; }
+};
+
+// A fit that may take time, and what its method's base took before it.
+class MethodFitter {
+ public:
+  struct Outcome {
+    MethodFit fit;
+    double seconds = 0.0;  // the base's included
+  };
+
+  explicit MethodFitter(const Preparations& prepared) : prepared_(prepared) {}
+
+  // `model` above the lowest rung. The first fit of a rung and method serves as base.
+  Result<Outcome> fit(const PlannedModel& model, const FitControl& control) {
+    const auto base = done_.find({model.rung, model.request.method->base});
+    const bool has_base = base != done_.end();
+    const Stopwatch start;
+    auto fit = fit_method(prepared_.of(model.rung), model.request, control, has_base ? &base->second.fit : nullptr);
+    if (!fit) return Error{model.name + ": " + fit.error().message};
+    Outcome outcome{std::move(*fit), start.seconds() + (has_base ? base->second.seconds : 0.0)};
+    done_.try_emplace({model.rung, model.request.method}, outcome);
+    return outcome;
+  }
+
+ private:
+  const Preparations& prepared_;
+  std::map<std::pair<Rung, const Method*>, Outcome> done_;
+};
+
 class Run {
  public:
   Run(const RecordingSet& recordings, const Scene& scene, const ReportPlan& plan, const FitControl& control)
       : recordings_(recordings),
         scene_(scene),
         plan_(plan),
-        steps_(control, total_weight(recordings, plan)),
-        jury_(plan.models.size(), scene.jnd),
-        moved_jury_(plan.models.size(), scene.jnd),
-        seed_jury_(plan.repeated.size() * plan.seeds.size(), scene.jnd),
-        trace_(scene.jnd),
-        coverage_(scene.jnd, main_names(plan), largest_force_N(recordings)) {}
+        progress_(control, total_weight(recordings, plan)),
+        evaluator_(plan.models.size(), scene.jnd),
+        moved_evaluator_(plan.models.size(), scene.jnd),
+        seed_evaluator_(plan.repeated.size() * plan.seeds.size(), scene.jnd),
+        floor_(scene.jnd),
+        trace_(scene.jnd, counting(plan)),
+        coverage_(scene.jnd, main_names(plan), reference(plan), largest_force_N(recordings)) {}
 
   Result<ReportData> all() {
     begin();
@@ -77,6 +123,11 @@ class Run {
       if (const Status status = run_fold(static_cast<int>(fold)); !status) return status.error();
     }
     finish_models();
+    // With k folds every training stroke was left out once already.
+    if (!recordings_.cross_validated) {
+      if (const Status status = leave_out(); !status) return status.error();
+    }
+    data_.recommendation = recommend(data_.models, data_.coverage.features.size());
     return std::move(data_);
   }
 
@@ -88,6 +139,17 @@ class Run {
     }
     return names;
   }
+
+  // The worst seconds are those of the models that try their best.
+  static std::vector<bool> counting(const ReportPlan& plan) {
+    std::vector<bool> counts;
+    for (const PlannedModel& model : plan.models) {
+      if (model.main) counts.push_back(model.rung == (plan.recipe.palpate ? Rung::palpate : Rung::paper));
+    }
+    return counts;
+  }
+
+  static std::size_t reference(const ReportPlan& plan) { return main_names(plan).size() - 1; }
 
   void begin() {
     data_.scene = scene_.name;
@@ -102,28 +164,58 @@ class Run {
     }
   }
 
-  Result<PreparedTraining> prepare(const Fold& fold) {
+  Result<PreparedTraining> prepare(const std::vector<SharedRecording>& recordings, const TrainingRequest& request) {
     std::vector<MotionSource::Input> inputs;
-    for (const std::size_t index : fold.train) inputs.push_back({"", recordings_.all[index]});
+    for (const SharedRecording& recording : recordings) inputs.push_back({"", recording});
     MotionSource source(std::move(inputs));
-    return prepare_training(source, training_request(scene_), steps_.next(kPrepareWeight));
+    return prepare_training(source, request, progress_.next(kPrepareWeight));
+  }
+
+  Result<Preparations> prepare(const std::vector<SharedRecording>& recordings) {
+    Preparations prepared;
+    if (plan_.recipe.paper) {
+      TrainingRequest request = training_request(scene_);
+      request.reduction = Reduction::force;
+      request.weighting = Weighting::relative;
+      request.choice = FeatureChoice::scene;
+      auto training = prepare(recordings, request);
+      if (!training) return training.error();
+      prepared.paper = std::move(*training);
+    }
+    if (plan_.recipe.palpate) {
+      TrainingRequest request = training_request(scene_);
+      request.reduction = plan_.recipe.reduction;
+      request.weighting = plan_.recipe.weighting;
+      request.choice = plan_.recipe.choice;
+      request.list = plan_.recipe.list;
+      auto training = prepare(recordings, request);
+      if (!training) return training.error();
+      prepared.palpate = std::move(*training);
+    }
+    return prepared;
   }
 
   Status run_fold(int number) {
     const Fold& fold = recordings_.folds[static_cast<std::size_t>(number)];
-    const auto prepared = prepare(fold);
+    std::vector<SharedRecording> training;
+    for (const std::size_t index : fold.train) training.push_back(recordings_.all[index]);
+    const auto prepared = prepare(training);
     if (!prepared) return prepared.error();
-    if (number == 0) remember_relaxation(*prepared);
-    coverage_.add_sites(prepared->set);
+    const PreparedTraining& own = prepared->of(Rung::palpate);
+    if (number == 0) {
+      remember_relaxation(own);
+      data_.worth = own.selection.worth;
+    }
+    coverage_.add_sites(own.set);
     auto models = fit_models(number, *prepared);
     if (!models) return models.error();
     auto repeated = fit_repeated(*prepared);
     if (!repeated) return repeated.error();
-    if (const Status status = judge(fold, *models, *repeated); !status) return status;
+    if (const Status status = evaluate(fold, *models, *repeated); !status) return status;
     const bool last = number + 1 == static_cast<int>(recordings_.folds.size());
     if (!last) return {};
     time_models(fold, *models);
-    return time_scaling(*prepared);
+    return time_scaling(own);
   }
 
   void remember_relaxation(const PreparedTraining& prepared) {
@@ -132,36 +224,52 @@ class Run {
     }
   }
 
-  Result<std::vector<ModelPointer>> fit_models(int fold, const PreparedTraining& prepared) {
+  Result<std::vector<ModelPointer>> fit_models(int fold, const Preparations& prepared) {
     std::vector<ModelPointer> models;
-    std::map<const Method*, std::pair<MethodFit, double>> done;  // the main fit of each method, and its seconds
+    MethodFitter fitter(prepared);
     for (ModelResult& result : data_.models) {
-      const MethodRequest& request = result.plan.request;
-      const auto base = done.find(request.method->base);
-      const bool has_base = base != done.end();
-      const auto start = Clock::now();
-      auto fit = fit_method(prepared, request, steps_.next(own_seconds(request)),
-                            has_base ? &base->second.first : nullptr);
-      if (!fit) return fit.error();
-      const double seconds = seconds_since(start) + (has_base ? base->second.second : 0.0);
-      result.fit_seconds += seconds / static_cast<double>(recordings_.folds.size());
-      result.health.push_back({fold, fit->report, prepared.common.provenance.samples, prepared.set.sites.size(),
-                               fit->data.provenance.training_within_jnd});
-      done.try_emplace(request.method, *fit, seconds);
-      models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
-      result.size = models.back()->centre_count();
-      if (result.plan.main && request.method->can_take(kTakesGrid)) result.plan.name = models.back()->name();
+      const PlannedModel& plan = result.plan;
+      if (plan.rung == Rung::no_force) {
+        models.push_back(std::make_shared<const NoForce>(prepared.of(Rung::palpate).set.features));
+        continue;
+      }
+      auto outcome = fitter.fit(plan, progress_.next(own_seconds(plan.request)));
+      if (!outcome) return outcome.error();
+      MethodFit& fit = outcome->fit;
+      const PreparedTraining& own = prepared.of(plan.rung);
+      result.fit_seconds += outcome->seconds / static_cast<double>(recordings_.folds.size());
+      result.health.push_back({fold, fit.report, own.common.provenance.samples, own.set.sites.size(),
+                               fit.data.provenance.training_within_jnd});
+      auto model = std::make_shared<const FittedModel>(std::move(fit.data));
+      result.size = model->centre_count();
+      models.push_back(model);
+      name_by_size(result, *model);
+      data_.fitted[plan.name] = model;
     }
     return models;
   }
 
-  Result<std::vector<ModelPointer>> fit_repeated(const PreparedTraining& prepared) {
+  // What was made, not what was asked for: no more centres than there are sites.
+  static void name_by_size(ModelResult& result, const FittedModel& model) {
+    PlannedModel& plan = result.plan;
+    const Method& method = *plan.request.method;
+    const std::string prefix = plan.rung == Rung::paper ? "paper-" : "";
+    if (plan.main && method.can_take(kTakesGrid)) plan.name = prefix + model.name();
+    if (method.can_take(kTakesCentres) && result.size < plan.request.centres) {
+      plan.name = prefix + method.name + "-" + std::to_string(result.size);
+      if (plan.few_candidates()) {
+        plan.name += "-of-" + std::to_string(plan.request.candidates);
+      }
+    }
+  }
+
+  Result<std::vector<ModelPointer>> fit_repeated(const Preparations& prepared) {
     std::vector<ModelPointer> models;
     for (const PlannedModel& model : plan_.repeated) {
       for (const std::uint64_t seed : plan_.seeds) {
         MethodRequest request = model.request;
         request.seed = seed;
-        auto fit = fit_method(prepared, request, steps_.next(own_seconds(request)));
+        auto fit = fit_method(prepared.of(model.rung), request, progress_.next(own_seconds(request)));
         if (!fit) return fit.error();
         models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       }
@@ -169,48 +277,98 @@ class Run {
     return models;
   }
 
-  Status judge(const Fold& fold, const std::vector<ModelPointer>& models, const std::vector<ModelPointer>& repeated) {
+  Status evaluate(const Fold& fold, const std::vector<ModelPointer>& models,
+                  const std::vector<ModelPointer>& repeated) {
     const std::vector<ModelPointer> main(models.begin(), models.begin() + static_cast<std::ptrdiff_t>(main_models(data_)));
     for (const std::size_t index : fold.test) {
       const Recording& recording = *recordings_.all[index];
-      const double share = kJudgeWeight / static_cast<double>(fold.test.size());
-      const auto errors = jury_.judge(recording, models, steps_.next(share * static_cast<double>(models.size())));
+      const double share = kEvaluateWeight / static_cast<double>(fold.test.size());
+      const auto errors = evaluator_.evaluate(recording, models, progress_.next(share * static_cast<double>(models.size())));
       if (!errors) return errors.error();
       data_.test_names.push_back(recording.name);
+      data_.floors.push_back(recordings_.facts[index].noise);
+      floor_.add(recording);
       for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording.push_back((*errors)[i]);
-      if (const Status status = judge_moved(recording, models, main); !status) return status;
+      if (const Status status = evaluate_moved(recording, models, main, share); !status) return status;
       const auto again =
-          seed_jury_.judge(recording, repeated, steps_.next(share * static_cast<double>(repeated.size())));
+          seed_evaluator_.evaluate(recording, repeated, progress_.next(share * static_cast<double>(repeated.size())));
       if (!again) return again.error();
-      if (const Status status = trace_.look_at(recording, main); !status) return status;
-      if (const Status status = coverage_.look_at(recording, main); !status) return status;
+      if (const Status status = trace_.search(recording, main); !status) return status;
+      if (const Status status = coverage_.search(recording, main); !status) return status;
     }
     return {};
   }
 
-  // The main models say together where the surface is.
-  Status judge_moved(const Recording& recording, const std::vector<ModelPointer>& models,
-                     const std::vector<ModelPointer>& main) {
-    const SurfaceLocation surface =
-        locate_surface(thinned_rows(recording, kSearchRows), {main.begin(), main.end()}, scene_.jnd);
-    data_.surface_offset_m.push_back(surface.offset_m);
-    const auto errors = moved_jury_.judge(recording, models, {}, surface.offset_m);
+  // The main models that have learnt something say together where the surface is.
+  Status evaluate_moved(const Recording& recording, const std::vector<ModelPointer>& models,
+                        const std::vector<ModelPointer>& main, double share) {
+    const double offset_m = surface_of_models(recording, {main.begin() + 1, main.end()}, scene_.jnd);
+    data_.surface_offset_m.push_back(offset_m);
+    const auto errors = moved_evaluator_.evaluate(with_surface_at(recording, offset_m), models,
+                                                  progress_.next(share * static_cast<double>(models.size())));
     if (!errors) return errors.error();
     for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording_moved.push_back((*errors)[i]);
     return {};
   }
 
+  // Candidates fitted again without some of the training strokes, and replayed over those.
+  Status leave_out() {
+    std::vector<SharedRecording> training;
+    for (const std::size_t index : recordings_.folds.front().train) training.push_back(recordings_.all[index]);
+    std::vector<std::size_t> candidates;
+    for (std::size_t i = 0; i < plan_.models.size(); ++i) {
+      if (is_candidate(plan_.models[i])) candidates.push_back(i);
+    }
+    ReplayEvaluator evaluator(candidates.size(), scene_.jnd);
+    bool any = false;
+    for (const LeftOutFold& fold : left_out_folds(training, plan_.left_out_folds)) {
+      // Too little to learn from, or to tell by: nothing can be said from this fold.
+      const auto prepared = prepare(fold.train);
+      if (!prepared) continue;
+      MethodFitter fitter(*prepared);
+      std::vector<ModelPointer> models;
+      for (const std::size_t i : candidates) {
+        auto outcome = fitter.fit(plan_.models[i], progress_.next(own_seconds(plan_.models[i].request)));
+        if (!outcome) break;
+        models.push_back(std::make_shared<const FittedModel>(std::move(outcome->fit.data)));
+      }
+      if (models.size() < candidates.size()) continue;
+      for (const SharedRecording& recording : fold.left_out) {
+        if (const auto errors = evaluator.evaluate(*recording, models); !errors) return errors.error();
+        any = true;
+      }
+    }
+    if (!progress_.next(0.0).go_on(1.0)) return interrupted();
+    if (!any) return {};
+    const std::vector<Evidence> pooled = evaluator.pooled();
+    for (std::size_t i = 0; i < candidates.size(); ++i) data_.models[candidates[i]].left_out = pooled[i];
+    return {};
+  }
+
   void time_models(const Fold& fold, const std::vector<ModelPointer>& models) {
-    const FeatureSample sample = sample_features(recordings_, fold, models.front());
-    for (std::size_t i = 0; i < models.size(); ++i) data_.models[i].time = time_model(*models[i], sample);
+    std::map<std::string, FeatureSample> samples;  // by the features that a model takes
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      if (data_.models[i].plan.rung == Rung::no_force) continue;
+      auto [at, fresh] = samples.try_emplace(feature_key(models[i]->features()));
+      if (fresh) at->second = sample_features(recordings_, fold, models[i]);
+      data_.models[i].time = time_model(*models[i], at->second);
+    }
+  }
+
+  static std::string feature_key(const std::vector<FeatureSpec>& features) {
+    std::string key;
+    for (const FeatureSpec& spec : features) {
+      key += feature_name(spec) + ",";
+    }
+    return key;
   }
 
   Status time_scaling(const PreparedTraining& prepared) {
-    auto sites = time_against_sites(prepared, plan_.site_counts, steps_.next(kSitesWeight));
+    auto sites = time_against_sites(prepared, plan_.site_counts, progress_.next(kSitesWeight));
     if (!sites) return sites.error();
     data_.sites_time = std::move(*sites);
     auto dimensions = time_against_dimension(prepared.sites, plan_.most_dimensions, plan_.dimension_sites,
-                                             steps_.next(kDimensionWeight));
+                                             progress_.next(kDimensionWeight));
     if (!dimensions) return dimensions.error();
     data_.dimension_time = std::move(*dimensions);
     data_.dimension_sites = std::min<std::uint64_t>(plan_.dimension_sites, prepared.set.sites.size());
@@ -218,32 +376,38 @@ class Run {
   }
 
   void finish_models() {
-    const std::vector<ErrorSummary> pooled = jury_.pooled();
-    for (std::size_t i = 0; i < pooled.size(); ++i) data_.models[i].pooled = pooled[i];
-    const std::vector<ErrorSummary> moved = moved_jury_.pooled();
-    for (std::size_t i = 0; i < moved.size(); ++i) data_.models[i].pooled_moved = moved[i];
-    const std::vector<ErrorSummary> seeds = seed_jury_.pooled();
+    const std::vector<Evidence> pooled = evaluator_.pooled();
+    const std::vector<Evidence> moved = moved_evaluator_.pooled();
+    for (std::size_t i = 0; i < pooled.size(); ++i) {
+      data_.models[i].pooled = pooled[i];
+      data_.models[i].pooled_moved = moved[i];
+    }
+    const std::vector<Evidence> seeds = seed_evaluator_.pooled();
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       data_.seeds.push_back(
           {plan_.repeated[i / plan_.seeds.size()], plan_.seeds[i % plan_.seeds.size()], seeds[i]});
     }
+    data_.pooled_floor = floor_.result();
     data_.trace = trace_.worst();
     data_.coverage = coverage_.result();
     for (std::size_t i = 0; i < main_models(data_); ++i) data_.models[i].bins = coverage_.bins(i);
-    for (CoverageErrors& errors : data_.coverage.errors) {
-      for (std::size_t i = 0; i < plan_.models.size(); ++i) {
-        if (errors.model == plan_.models[i].name) errors.model = data_.models[i].plan.name;
+    for (std::size_t i = 0; i < plan_.models.size(); ++i) {
+      const std::string& fitted = data_.models[i].plan.name;
+      for (CoverageErrors& errors : data_.coverage.errors) {
+        if (errors.model == plan_.models[i].name) errors.model = fitted;
       }
+      if (data_.coverage.reference == plan_.models[i].name) data_.coverage.reference = fitted;
     }
   }
 
   const RecordingSet& recordings_;
   const Scene& scene_;
   const ReportPlan& plan_;
-  Steps steps_;
-  Jury jury_;
-  Jury moved_jury_;
-  Jury seed_jury_;
+  WeightedProgress progress_;
+  ReplayEvaluator evaluator_;
+  ReplayEvaluator moved_evaluator_;
+  ReplayEvaluator seed_evaluator_;
+  NoiseFloorFinder floor_;
   TraceFinder trace_;
   CoverageFinder coverage_;
   ReportData data_;

@@ -1,7 +1,6 @@
 #include "scenes/report/scaling.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -10,15 +9,10 @@
 #include "models/fit/fit_greedy.h"
 #include "models/fit/fill_grid.h"
 #include "scenes/report/plan.h"
+#include "scenes/report/stopwatch.h"
 
 namespace palpate {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // `count` indices below `total`, evenly spread.
 std::vector<Eigen::Index> spread(std::size_t total, std::size_t count) {
@@ -80,14 +74,14 @@ Result<double> time_grid(const Sites& sites, const RbfFunction& function, Dimens
     for (int i = 0; i < kNodesPerDimension; ++i) nodes.push_back(low + (high - low) * i / (kNodesPerDimension - 1));
     grid.nodes.push_back(std::move(nodes));
   }
-  const auto start = Clock::now();
+  const Stopwatch start;
   const RbfEvaluator evaluator(function);
   const Status filled = fill_grid(
       grid, [&](const Eigen::MatrixXd& points, Eigen::VectorXd& out) { evaluator.evaluate_many(points, out); },
       control);
   if (!filled) return filled.error();
   time.nodes = grid.node_count();
-  return seconds_since(start);
+  return start.seconds();
 }
 
 }  // namespace
@@ -105,13 +99,13 @@ Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepar
     quiet.progress = [&](double) { return control.go_on((done - 1.0) / static_cast<double>(site_counts.size())); };
     std::map<const Method*, std::pair<MethodFit, double>> fitted;
     for (const PlannedModel& model : make_plan(true, prepared.set.features.size()).models) {
-      if (!model.main) continue;
+      if (!model.main || model.rung != Rung::palpate) continue;
       const auto base = fitted.find(model.request.method->base);
       const bool has_base = base != fitted.end();
-      const auto start = Clock::now();
+      const Stopwatch start;
       auto fit = fit_method(some, model.request, quiet, has_base ? &base->second.first : nullptr);
       if (!fit) return fit.error();
-      const double seconds = seconds_since(start);
+      const double seconds = start.seconds();
       times.push_back({model.name, asked, seconds + (has_base ? base->second.second : 0.0)});
       fitted.try_emplace(model.request.method, std::move(*fit), seconds);
     }
@@ -128,17 +122,17 @@ Result<std::vector<DimensionTime>> time_against_dimension(const Sites& sites, in
     const Sites some = with_dimension(sites, dimension, most_sites);
     DimensionTime time;
     time.dimension = dimension;
-    auto start = Clock::now();
+    Stopwatch start;
     const auto direct = fit_direct(some, {}, quiet);
     if (!direct) return direct.error();
-    time.direct_seconds = seconds_since(start);
+    time.direct_seconds = start.seconds();
     const auto grid = time_grid(some, direct->function, time, quiet);
     if (!grid) return grid.error();
     time.grid_seconds = *grid;
-    start = Clock::now();
+    start = Stopwatch();
     const auto greedy = fit_greedy(some, {}, quiet);
     if (!greedy) return greedy.error();
-    time.greedy_seconds = seconds_since(start);
+    time.greedy_seconds = start.seconds();
     times.push_back(time);
   }
   return times;

@@ -32,6 +32,11 @@ std::string shown(const TableCell& cell, const TableColumn& column) {
                                                       : with_thousands(fixed(value, column.decimals));
 }
 
+std::string interval_html(const TableCell& low, const TableCell& high, const TableColumn& column) {
+  if (!std::isfinite(low.number) || !std::isfinite(high.number)) return {};
+  return "<small>" + shown(low, column) + "–" + shown(high, column) + "</small>";
+}
+
 bool is_text(const Table& table, std::size_t column) {
   for (const auto& row : table.rows) {
     if (row[column].kind != TableCell::Kind::text) return false;
@@ -64,7 +69,7 @@ std::string table_csv(const Table& table) {
   }
   text.push_back('\n');
   for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
+    for (std::size_t i = 0; i < row.size(); ++i) {  // a row without cells is a blank line
       if (i > 0) text.push_back(',');
       text += csv_cell(row[i]);
     }
@@ -93,6 +98,7 @@ nlohmann::ordered_json table_json(const Table& table) {
 std::string table_html(const Table& table) {
   std::string html = "<div class=\"table\"><table>\n<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].title.empty()) continue;
     html += is_text(table, i) ? "<th class=\"text\">" : "<th>";
     html += escape_html(table.columns[i].title) + "</th>";
   }
@@ -100,8 +106,12 @@ std::string table_html(const Table& table) {
   for (const auto& row : table.rows) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
+      const TableColumn& column = table.columns[i];
+      if (column.title.empty()) continue;
       html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
-      html += shown(row[i], table.columns[i]) + "</td>";
+      html += shown(row[i], column);
+      if (column.has_interval) html += interval_html(row[i + 1], row[i + 2], column);
+      html += "</td>";
     }
     html += "</tr>\n";
   }

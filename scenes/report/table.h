@@ -19,9 +19,10 @@ namespace palpate {
 // in full.
 struct TableColumn {
   std::string key;    // CSV header and JSON key, unit at its end: "rms_error_N"
-  std::string title;  // on the page, with the unit in which it is shown: "RMS [mN]"
+  std::string title;  // on the page, with the unit in which it is shown: "RMS [mN]"; empty: not shown
   double scale = 1.0;  // shown = stored x scale
   int decimals = kThreeDigits;
+  bool has_interval = false;  // the next two columns are its lower and upper end, shown under it
 
   static constexpr int kThreeDigits = -1;  // three significant digits
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/report/hard/hard_cases.h"
+#include "scenes/report/recommendation.h"
 #include "scenes/report/report_data.h"
 
 namespace palpate {
@@ -18,11 +19,10 @@ std::vector<Table> make_tables(const ReportData& data);
 // The stability suite's cases as a table for ReportData::hard_cases.
 Table hard_case_table(const std::vector<HardCaseResult>& results);
 
-// What to conclude, a sentence each: the smallest model with 99.9 % within the JND,
-// the most accurate within 1 us, ... `with_times`: those that rest on measured times.
+// What to conclude, a sentence each; the first is what every rung of the ladder gains.
+// `with_times`: those that rest on measured times.
 std::vector<std::string> findings(const ReportData& data, bool with_times);
 
-inline constexpr double kGoodShare = 0.999;   // within the JND
 inline constexpr double kQuick_ns = 1000.0;   // 1 us
 inline constexpr double kBudget_ns = 1e6;     // a tick of 1 ms
 

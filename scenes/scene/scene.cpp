@@ -31,7 +31,7 @@ std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
   for (const FeatureSpec& feature : scene.features) {
     char low_pass[48];
-    std::snprintf(low_pass, sizeof low_pass, "velocity low-pass %g s", feature.relaxation_time_s);
+    std::snprintf(low_pass, sizeof low_pass, "relaxation %g s", feature.relaxation_time_s);
     switch (feature.kind) {
       case FeatureKind::depth:
         words.emplace_back("depth");

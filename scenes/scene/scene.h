@@ -45,7 +45,7 @@ struct Scene {
   double strongest_press_N = 5.0;
 };
 
-// The features in words: "depth, velocity, velocity low-pass 0.17 s".
+// The features in words: "depth, velocity, relaxation 0.17 s".
 std::string describe_features(const Scene& scene);
 
 // Reads a scene from the text of its file; `path` stands in the messages and

@@ -27,6 +27,102 @@ const FeatureVector& feed(FeatureFilter& filter, double time_s, double position_
   return filter.update({time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s});
 }
 
+FeatureSpec stops(std::initializer_list<double> thresholds_m, const DriveCurve& drive) {
+  FeatureSpec spec;
+  spec.kind = FeatureKind::stops;
+  for (const double threshold_m : thresholds_m) spec.parts[spec.part_count++] = {0.0, threshold_m, drive};
+  return spec;
+}
+
+FeatureSpec spectrum(std::initializer_list<double> times_s, const DriveCurve& drive) {
+  FeatureSpec spec;
+  spec.kind = FeatureKind::maxwell_spectrum;
+  for (const double time_s : times_s) spec.parts[spec.part_count++] = {time_s, 0.0, drive};
+  return spec;
+}
+
+FeatureSpec fading_peak(double time_s) { return {FeatureKind::fading_peak, time_s}; }
+
+// A motion in contact that ends where it began, of several incommensurable sines.
+double closed_motion_m(double phase) {
+  const double angle = 2.0 * std::numbers::pi * phase;
+  return 4e-3 - 1.5e-3 * std::cos(angle) + 0.8e-3 * std::sin(7.0 * angle) + 0.3e-3 * std::sin(31.0 * angle);
+}
+
+TEST(Features, ASpectrumIsTheSumOfItsBranches) {
+  FeatureFilter together({spectrum({0.02, 0.3, 4.0}, stiffening())});
+  FeatureFilter apart({maxwell(0.02, stiffening()), maxwell(0.3, stiffening()), maxwell(4.0, stiffening())});
+  for (int i = 0; i < 3000; ++i) {
+    const double t = 1e-3 * i;
+    const auto& each = feed(apart, t, closed_motion_m(t / 3.0)).values;
+    const double sum = feed(together, t, closed_motion_m(t / 3.0)).values[0];
+    ASSERT_DOUBLE_EQ(sum, each[0] + each[1] + each[2]) << t;
+  }
+}
+
+TEST(Features, AStopBendsThenSlipsAndTurnsWithTheTool) {
+  // g = 1 N at every depth that is met here: u^1 with a reference of the depth itself.
+  const double threshold_m = 1e-4;
+  FeatureFilter filter({stops({threshold_m}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
+  const auto at = [&](double depth_m, double bend_m) { return depth_m / 5e-3 * bend_m / threshold_m; };
+  EXPECT_EQ(feed(filter, 0.0, 0.0).values[0], 0.0);
+  EXPECT_NEAR(feed(filter, 0.1, 5e-5).values[0], at(5e-5, 5e-5), 1e-15);
+  EXPECT_NEAR(feed(filter, 0.2, 5e-3).values[0], at(5e-3, 1e-4), 1e-15) << "slipping on the way in";
+  EXPECT_NEAR(feed(filter, 0.3, 4.9e-3).values[0], 0.0, 1e-12) << "half way back";
+  EXPECT_NEAR(feed(filter, 0.4, 4e-3).values[0], at(4e-3, -1e-4), 1e-15) << "slipping on the way out";
+  EXPECT_NEAR(feed(filter, 9.4, 4e-3).values[0], at(4e-3, -1e-4), 1e-14) << "time alone changes nothing";
+}
+
+TEST(Features, FreeAirForgetsStopsAndHealsThePeak) {
+  FeatureFilter filter({stops({1e-4}, stiffening()), fading_peak(0.5)});
+  feed(filter, 0.0, 0.0);
+  EXPECT_EQ(feed(filter, 0.1, 5e-3).values[1], 5e-3);
+  feed(filter, 0.2, -1e-3);
+  EXPECT_EQ(feed(filter, 0.3, -1e-3).values[0], 0.0);
+  for (int i = 1; i <= 200; ++i) feed(filter, 0.3 + 0.1 * i, -1e-3);
+  EXPECT_LT(filter.vector().values[1], 1e-15);
+  EXPECT_NEAR(feed(filter, 21.0, 5e-5).values[0], stiffening().at(5e-5) * 0.5, 1e-15) << "bristles arrive unbent";
+}
+
+TEST(Features, ThePeakIsTheDeepestDepthAndFadesTowardsThePresentOne) {
+  FeatureFilter filter({fading_peak(2.0)});
+  feed(filter, 0.0, 6e-3);
+  for (int i = 1; i <= 4000; ++i) {
+    const double t = 1e-3 * i;
+    ASSERT_NEAR(feed(filter, t, 2e-3).values[0], 2e-3 + 4e-3 * std::exp(-(t - 1e-3) / 2.0) , 4e-3 * 6e-4)
+        << "one step late, of 2 s";
+  }
+  EXPECT_EQ(feed(filter, 5.0, 7e-3).values[0], 7e-3);
+}
+
+// The work over a closed cycle in the limit cycle, by the trapezoidal rule.
+double work_of_a_cycle(const FeatureSpec& spec, double duration_s, int steps) {
+  FeatureFilter filter({spec});
+  double before_N = 0.0;
+  double work = 0.0;
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    work = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const double phase = static_cast<double>(i) / steps;
+      const double next = static_cast<double>(i + 1) / steps;
+      const double force_N =
+          feed(filter, duration_s * (cycle + next), closed_motion_m(next)).values[0];
+      work += 0.5 * (force_N + before_N) * (closed_motion_m(next) - closed_motion_m(phase));
+      before_N = force_N;
+    }
+  }
+  return work;
+}
+
+TEST(Features, AClosedCycleNeverGivesBackMoreThanItTook) {
+  const DriveCurve saturating{8e-3, {4.0, -6.0, 4.0, -1.0}};
+  for (const double duration_s : {0.05, 0.5, 5.0}) {
+    EXPECT_GT(work_of_a_cycle(stops({5e-5, 2e-4, 8e-4}, stiffening()), duration_s, 20000), 0.0);
+    EXPECT_GT(work_of_a_cycle(stops({1e-4}, saturating), duration_s, 20000), 0.0);
+    EXPECT_GT(work_of_a_cycle(spectrum({0.01, 0.1, 1.0}, stiffening()), duration_s, 20000), 0.0);
+  }
+}
+
 TEST(Features, LowpassOfARampIsExactAtAnyRate) {
   const double tau_s = 0.17;
   const double speed_m_per_s = 0.02;
@@ -212,6 +308,9 @@ TEST(Features, HaveNamesWithUnits) {
   EXPECT_EQ(feature_name(lowpass(0.17)), "feature_lowpass_velocity_0.17s_m_per_s");
   EXPECT_EQ(feature_name(lowpass(1.0 / 3.0)), "feature_lowpass_velocity_0.3333s_m_per_s");
   EXPECT_EQ(feature_name(maxwell(1.27, stiffening())), "feature_maxwell_branch_1.27s_N");
+  EXPECT_EQ(feature_name(spectrum({0.02, 0.3}, stiffening())), "feature_maxwell_spectrum_0.02-0.3s_N");
+  EXPECT_EQ(feature_name(stops({1e-4}, stiffening())), "feature_stops_0.1mm_N");
+  EXPECT_EQ(feature_name(fading_peak(6.0)), "feature_fading_peak_6s_m");
 }
 
 // A million ticks of a sine: the low-pass's steady state is the closed form

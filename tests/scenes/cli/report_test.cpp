@@ -72,7 +72,7 @@ TEST_F(ReportVerb, PageNeedsNothingElse) {
   for (const char* outside : {"http:", "https:", "<script", "<link", "<img", "@import", "src="}) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   }
-  // Every reference is to an id of the page itself; ids are unique.
+  // Every reference is to an id of the page itself or to a file of the folder.
   std::map<std::string, int> ids;
   const std::regex id("\\bid=[\"']([^\"']+)[\"']");
   for (std::sregex_iterator it(page.begin(), page.end(), id), end; it != end; ++it) {
@@ -81,9 +81,46 @@ TEST_F(ReportVerb, PageNeedsNothingElse) {
   const std::regex reference("href=[\"']([^\"']+)[\"']");
   for (std::sregex_iterator it(page.begin(), page.end(), reference), end; it != end; ++it) {
     const std::string target = (*it)[1];
-    ASSERT_EQ(target[0], '#') << target;
-    EXPECT_EQ(ids[target.substr(1)] > 0, true) << target;
+    if (target[0] == '#') {
+      EXPECT_EQ(ids[target.substr(1)] > 0, true) << target;
+    } else {
+      EXPECT_TRUE(fs::exists(out() + "/" + target)) << target << ": data one click away, in the folder itself";
+    }
   }
+}
+
+TEST_F(ReportVerb, LeadsWithTheLadder) {
+  const Json report = Json::parse(test::read_text(out() + "/report.json"));
+  EXPECT_EQ(report["findings"][0].get<std::string>().rfind("A model that always says 0 N has ", 0), 0u);
+  std::map<std::string, int> rungs;
+  for (const Json& row : report["tables"]["ladder"]) ++rungs[row["rung"]];
+  EXPECT_EQ(rungs, (std::map<std::string, int>{{"Palpate", 5}, {"floor", 1}, {"no force", 1}, {"the paper's recipe", 5}, {"trend", 1}}));
+  for (const Json& row : report["tables"]["ladder"]) {
+    if (row["rung"] == "floor") continue;
+    EXPECT_LE(row["within_jnd_low"], row["within_jnd"]);
+    EXPECT_GE(row["within_jnd_high"], row["within_jnd"]);
+  }
+  for (const Json& row : report["tables"]["recordings"]) EXPECT_EQ(row["content_hash"].get<std::string>().size(), 16u);
+}
+
+TEST_F(ReportVerb, EveryFigureCanBeDrawnAgainFromItsFolder) {
+  for (const char* name : {"speed_error", "evidence", "error_max_jnd", "worst_trace"}) {
+    const std::string svg = out() + "/figures/" + name + ".svg";
+    const std::string before = test::read_text(svg);
+    fs::remove(svg);
+    const auto drawn = test::run_program({"sh", "-c", "cd '" + out() + "/figures' && LC_ALL=C gnuplot -d " + name + ".gp"});
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    EXPECT_TRUE(test::read_text(svg) == before) << name;
+  }
+}
+
+TEST_F(ReportVerb, WhatWasTrainedOnIsRefusedAsATest) {
+  const std::string copy = folder_->with_file("copy.csv", test::read_text(folder_->file("r1.csv")));
+  const auto ran = run_palpate({"report", "--quick", "--train", folder_->file("r1.csv"), "--test", copy, "--out", folder_->file("leak")});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_NE(ran.err.find("copy has the same content as r1"), std::string::npos) << ran.err;
+  EXPECT_FALSE(fs::exists(folder_->file("leak")));
+  fs::remove(copy);
 }
 
 TEST_F(ReportVerb, NothingIsWrittenOverWithoutForce) {

@@ -2,28 +2,30 @@
 
 #include <gtest/gtest.h>
 
-#include <regex>
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/report/figures.h"
 
 namespace palpate {
 namespace {
 
-std::vector<double> heights(const std::string& commands) {
-  std::vector<double> values;
-  const std::regex place("graph ([-0-9.e]+) left");
-  for (std::sregex_iterator it(commands.begin(), commands.end(), place), end; it != end; ++it) {
-    values.push_back(std::stod((*it)[1]));
-  }
-  return values;
+TEST(SpreadLabels, NeverOverlapStayInsideAndKeepTheirOrder) {
+  const std::vector<double> at = spread_labels({0.99, 0.98, 0.97, 0.5, 0.5, 0.0}, 0.07);
+  ASSERT_EQ(at.size(), 6u);
+  std::vector<double> sorted = at;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i) EXPECT_GE(sorted[i] - sorted[i - 1], 0.07 - 1e-6);
+  EXPECT_LE(sorted.back(), 0.98 + 1e-9);
+  EXPECT_GE(sorted.front(), 0.0);
+  EXPECT_EQ(at.front(), sorted.back()) << "the highest stays the highest";
 }
 
-TEST(SideLabels, NeverOverlapAndStayInside) {
-  std::vector<SideLabel> labels;
-  for (const double at : {0.99, 0.98, 0.97, 0.5, 0.5, 0.0}) labels.push_back({at, "x", "#000000"});
-  const auto at = heights(side_labels(labels, "graph 1.02", 0.07, 1));
-  ASSERT_EQ(at.size(), 6u);
-  for (std::size_t i = 1; i < at.size(); ++i) EXPECT_GE(at[i] - at[i - 1], 0.07 - 1e-6);
-  EXPECT_LE(at.back(), 0.98 + 1e-9);
-  EXPECT_GE(at.front(), 0.0);
+TEST(FittedSlope, IsThatOfAPowerLaw) {
+  const FittedSlope exact = fitted_slope({1.0, 2.0, 4.0, 8.0}, {3.0, 3.0 * std::pow(2.0, 1.5), 3.0 * std::pow(4.0, 1.5), 3.0 * std::pow(8.0, 1.5)});
+  EXPECT_NEAR(exact.slope, 1.5, 1e-12);
+  EXPECT_NEAR(exact.half_width, 0.0, 1e-6);
+  EXPECT_FALSE(std::isfinite(fitted_slope({1.0, 2.0}, {1.0, 2.0}).slope)) << "two points decide nothing";
 }
 
 TEST(AxisRange, EndsAtRoundNumbersBeyondTheData) {
@@ -32,7 +34,7 @@ TEST(AxisRange, EndsAtRoundNumbersBeyondTheData) {
   EXPECT_DOUBLE_EQ(range.high, 100.0);
   EXPECT_NEAR(range.fraction(5.0), 0.0, 1e-12);
   EXPECT_NEAR(range.fraction(100.0), 1.0, 1e-12);
-  EXPECT_EQ(range.text(), "[5:100]");
+  EXPECT_NEAR(range.value(range.fraction(20.0)), 20.0, 1e-9);
   EXPECT_EQ(range.tics("y"), "set ytics (\"5\" 5, \"\" 6 1, \"\" 7 1, \"\" 8 1, \"\" 9 1, \"10\" 10, \"20\" 20, \"\" 30 1, "
                              "\"\" 40 1, \"50\" 50, \"\" 60 1, \"\" 70 1, \"\" 80 1, \"\" 90 1, \"100\" 100)\n");
   EXPECT_GE(zero_range({6.03}).high, 6.03);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "scenes/report/tables.h"
+
 namespace palpate {
 namespace {
 
@@ -20,7 +22,9 @@ std::string page_of(const ReportData& data) {
   Figure figure;
   figure.name = "jnd";
   figure.title = "The JND";
-  return make_page(data, origin, tables, {figure}, {{"jnd", "<svg viewBox=\"0 0 1 1\"><g id=\"x\"/></svg>"}});
+  const auto page = make_page(data, origin, tables, {figure}, {{"jnd", "<svg viewBox=\"0 0 1 1\"><g id=\"x\"/></svg>"}});
+  EXPECT_TRUE(page.ok()) << page.error().message;
+  return page.ok() ? *page : std::string();
 }
 
 TEST(Page, EscapesWhatComesFromOutside) {
@@ -43,13 +47,23 @@ TEST(Page, SaysHowItWasTested) {
   EXPECT_NE(page.find("A quick report"), std::string::npos);
 }
 
-TEST(Page, ShowsTheHardCasesWhenThereAreAny) {
+TEST(Page, SumsUpTheHardCasesWhenThereAreAny) {
   ReportData data = example();
   EXPECT_EQ(page_of(data).find("Hard cases"), std::string::npos);
-  data.hard_cases = Table{"hard_cases", "what holds", false, {{"case", "case"}}, {{std::string("two sites")}}};
+  HardCaseResult result;
+  result.name = "two sites";
+  result.method = "greedy";
+  result.worst_over_jnd = 3.0;
+  result.safe = true;
+  data.hard_cases = hard_case_table({result});
   const std::string page = page_of(data);
-  EXPECT_NE(page.find("<h2>Hard cases</h2>"), std::string::npos);
-  EXPECT_NE(page.find("two sites"), std::string::npos);
+  EXPECT_NE(page.find("1 of 1 made-up hard cases"), std::string::npos);
+  EXPECT_NE(page.find("greedy with &quot;two sites&quot;, 3.00 JND"), std::string::npos);
+}
+
+TEST(Page, EveryFigureHasItsDataOneClickAway) {
+  const std::string page = page_of(example());
+  EXPECT_NE(page.find("<a href=\"figures/jnd.gp\">gp</a>"), std::string::npos);
 }
 
 }  // namespace

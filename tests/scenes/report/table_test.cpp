@@ -36,5 +36,17 @@ TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
   EXPECT_NE(html.find("&lt;i&gt;</td><td>0</td><td>–</td><td>100.00</td>"), std::string::npos) << html;
 }
 
+TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
+  const Table table{"example", "", false,
+                    {{"share", "share [%]", 100.0, 1, true}, {"share_low", "", 100.0, 1}, {"share_high", "", 100.0, 1}},
+                    {{0.5, 0.25, 0.75}}};
+  EXPECT_EQ(table_csv(table), "share,share_low,share_high\n0.5,0.25,0.75\n");
+  EXPECT_NE(table_html(table).find("<td>50.0<small>25.0–75.0</small></td></tr>"), std::string::npos) << table_html(table);
+}
+
+TEST(Table, ARowWithoutCellsBreaksALine) {
+  EXPECT_EQ(table_csv({"t", "", false, {{"x", ""}}, {{1.0}, {}, {2.0}}}), "x\n1\n\n2\n");
+}
+
 }  // namespace
 }  // namespace palpate

@@ -27,7 +27,7 @@ TEST(Scene, EveryShippedSceneReads) {
 TEST(Scene, SiliconeHasThePapersFeatures) {
   const auto scene = load_scene("silicone_block");
   ASSERT_TRUE(scene.ok());
-  EXPECT_EQ(describe_features(*scene), "depth, velocity, velocity low-pass 0.17 s, velocity low-pass 1.27 s");
+  EXPECT_EQ(describe_features(*scene), "depth, velocity, relaxation 0.17 s, relaxation 1.27 s");
   EXPECT_EQ(scene->material, "silicone");
   EXPECT_EQ(scene->default_models.size(), 5u);
 }
@@ -36,7 +36,7 @@ TEST(Scene, OthersModelOnlyWhatTheyNeed) {
   EXPECT_EQ(describe_features(*load_scene("elastic_block")), "depth");
   EXPECT_EQ(describe_features(*load_scene("stiff_block")), "depth, velocity");
   EXPECT_EQ(describe_features(*load_scene("foam_block")),
-            "depth, velocity, velocity low-pass 0.08 s, velocity low-pass 0.9 s");
+            "depth, velocity, relaxation 0.08 s, relaxation 0.9 s");
   EXPECT_FALSE(load_scene("skin")->material.has_value());
   EXPECT_FALSE(load_scene("jnd_study")->material.has_value());
 }

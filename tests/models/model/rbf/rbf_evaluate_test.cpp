@@ -178,6 +178,26 @@ TEST_P(RbfEvaluatorOnTarget, NearestDistanceIsThatOfABruteForceSearch) {
     }
 }
 
+// Not nearly: a force must not depend on which way its trust was found.
+TEST_P(RbfEvaluatorOnTarget, NearestDistanceWithALimitIsTheSameToTheBitBeyondIt) {
+  for (int d = 1; d <= kMaxFeatures; ++d)
+    for (const int count : {1, 16, 63, 64, 65, 130, 500, 768}) {
+      const Eigen::MatrixXd points = random_points(d, count, 1);
+      const NearestDistance nearest(points);
+      const Eigen::MatrixXd queries = random_points(d, 50, 9);
+      for (int i = 0; i < 50; ++i) {
+        const double* query = queries.col(i).data();
+        const double exact = nearest.nearest_squared(query);
+        for (const double limit : {0.0, 0.5 * exact, std::nextafter(exact, 0.0)})
+          EXPECT_EQ(nearest.nearest_squared(query, limit), exact);
+        for (const double limit : {exact, 1.5 * exact, 100.0}) {
+          EXPECT_LE(nearest.nearest_squared(query, limit), limit);
+          EXPECT_GE(nearest.nearest_squared(query, limit), exact);
+        }
+      }
+    }
+}
+
 TEST(NearestDistance, IsInfiniteFarAwayAndForNonFiniteQueries) {
   const NearestDistance nearest(random_points(2, 5, 1));
   const double infinity = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// One progress for a job of many unequal steps.
+// One progress for a job of many unequal parts.
 //
 // Thread guarantee: one thread.
 #pragma once
@@ -9,12 +9,12 @@
 
 namespace palpate {
 
-// `control` of each step goes from 0 to 1; the whole moves on by the step's share.
-class Steps {
+// `control` of each part goes from 0 to 1; the whole moves on by the part's share.
+class WeightedProgress {
  public:
-  Steps(FitControl whole, double total_weight) : whole_(std::move(whole)), total_(total_weight) {}
+  WeightedProgress(FitControl whole, double total_weight) : whole_(std::move(whole)), total_(total_weight) {}
 
-  // The control of the next step, valid until the next call of `next`.
+  // The control of the next part, valid until the next call of `next`.
   FitControl next(double weight) {
     done_ += weight_;
     weight_ = weight;

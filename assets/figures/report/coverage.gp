@@ -1,0 +1,24 @@
+# Features of training sites and test samples against the depth. Reads coverage.csv.
+load "coverage.set"
+load "style.gp"
+do for [medium in media] {
+  eval open(medium, "coverage")
+  set multiplot layout 1,panel_count
+  set xlabel x_label
+  set tmargin 1.8
+  do for [p = 0:panel_count - 1] {
+    unset label
+    set ylabel (p == 0 ? y_label_0 : p == 1 ? y_label_1 : y_label_2) offset 1,0
+    if (p == 0) {
+      set label 1 "trained on" at graph 0,1.06 left textcolor rgb blue
+      set label 2 "test, near" at graph 0.45,1.06 left textcolor rgb muted
+    }
+    if (p == 1 || panel_count == 1) { set label 3 "test, away" at graph 0,1.06 left textcolor rgb vermilion }
+    of(kind) = strcol("kind") eq kind ? column("depth") : NaN
+    plot "coverage.csv" using (of("near")):(column(3 + p)) with points pointtype 7 pointsize 0.3 linecolor rgb muted, \
+      "" using (of("trained")):(column(3 + p)) with points pointtype 7 pointsize 0.2 linecolor rgb blue, \
+      "" using (of("away")):(column(3 + p)) with points pointtype 7 pointsize 0.35 linecolor rgb vermilion
+  }
+  unset multiplot
+  unset output
+}

@@ -1,0 +1,17 @@
+// Seconds since its own beginning.
+// Thread guarantee: value type.
+#pragma once
+
+#include <chrono>
+
+namespace palpate {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace palpate

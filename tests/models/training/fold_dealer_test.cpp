@@ -1,0 +1,64 @@
+#include "models/training/fold_dealer.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace palpate {
+namespace {
+
+MotionRow row(int recording, int stroke, bool contact = true) {
+  MotionRow one;
+  one.recording = recording;
+  one.stroke = stroke;
+  one.sample.position_m = contact ? 1e-3 : -1e-3;
+  return one;
+}
+
+TEST(FoldDealer, WholeRecordingsFromThreeOn) {
+  FoldDealer dealer(4, 9, 900);
+  EXPECT_EQ(dealer.folds(), 4);
+  for (int recording = 0; recording < 4; ++recording) {
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(dealer.next(row(recording, 2 * recording + i / 25)), recording);
+  }
+}
+
+TEST(FoldDealer, ShortStrokesStayWhole) {
+  FoldDealer dealer(1, 20, 2000);
+  EXPECT_EQ(dealer.folds(), 5);
+  for (int stroke = 1; stroke <= 20; ++stroke) {
+    std::set<int> folds;
+    for (int i = 0; i < 100; ++i) folds.insert(dealer.next(row(0, stroke)));
+    EXPECT_EQ(folds.size(), 1U) << stroke;
+    EXPECT_EQ(*folds.begin(), (stroke - 1) % 5);
+  }
+}
+
+TEST(FoldDealer, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
+  for (const bool turns_round : {true, false}) {
+    FoldDealer dealer(1, 1, 1000, turns_round);
+    std::set<int> folds;
+    int changes = 0;
+    int last = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const int fold = dealer.next(row(0, 1));
+      folds.insert(fold);
+      changes += fold != last ? 1 : 0;
+      last = fold;
+    }
+    EXPECT_EQ(folds.size(), 5U);
+    EXPECT_EQ(changes, turns_round ? 9 : 47) << "10 pieces, or 48 of 21 samples";
+  }
+}
+
+TEST(FoldDealer, FreeAirDoesNotChangeTheDeal) {
+  FoldDealer with_air(1, 8, 80);
+  FoldDealer without(1, 8, 80);
+  for (int stroke = 1; stroke <= 8; ++stroke) {
+    for (int i = 0; i < 30; ++i) with_air.next(row(0, stroke, false));
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(with_air.next(row(0, stroke)), without.next(row(0, stroke)));
+  }
+}
+
+}  // namespace
+}  // namespace palpate
