@@ -96,6 +96,7 @@ double step(palpate_stream& stream, const ToolSample& sample) noexcept {
   const TickSnapshot& snapshot = stream.tick.step(sample);
   if (snapshot.fault == TickFault::bad_sample || snapshot.fault == TickFault::time_not_later) return 0.0;
   stream.out_of_domain = (snapshot.out_of_domain_mask & 1U) != 0;
+  stream.predicted_error_N = snapshot.predicted_error_N[0];
   return snapshot.force_N[0];
 }
 

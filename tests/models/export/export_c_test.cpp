@@ -2,7 +2,6 @@
 // with replay sample by sample.
 #include "models/export/export_c.h"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,50 +11,13 @@
 
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
+#include "tests/support/compiled_model.h"
 #include "tests/support/example_model.h"
-#include "tests/support/run_program.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
 
-// A compiled file; Real as in the export.
-template <typename Real>
-class CompiledModel {
- public:
-  CompiledModel(const ModelData& data, ExportRequest request) {
-    request.single_precision = sizeof(Real) == sizeof(float);
-    const Result<ExportedC> file = export_c(data, request);
-    EXPECT_TRUE(file.ok()) << data.name;
-    if (!file) return;
-    const std::string source = folder_.with_file("model.c", file->text);
-    const std::string library = folder_.file("model.so");
-    const auto run = test::run_program({PALPATE_C_COMPILER, "-std=c99", "-ffreestanding", "-O1", "-Wall", "-Wextra",
-                                        "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC",
-                                        "-shared", source, "-o", library, "-lm"});
-    EXPECT_EQ(run.exit_code, 0) << data.name << "\n" << run.err;
-    library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
-    EXPECT_NE(library_, nullptr) << data.name;
-    if (library_ == nullptr) return;
-    force = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
-    force_after = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force_after"));
-    reset = reinterpret_cast<void (*)()>(dlsym(library_.get(), "palpate_reset"));
-    out_of_domain = reinterpret_cast<int (*)()>(dlsym(library_.get(), "palpate_out_of_domain"));
-  }
-
-  Real (*force)(Real, Real) = nullptr;
-  Real (*force_after)(Real, Real) = nullptr;
-  void (*reset)() = nullptr;
-  int (*out_of_domain)() = nullptr;
-
- private:
-  struct Close {
-    void operator()(void* library) const { dlclose(library); }
-  };
-  test::TemporaryFolder folder_;
-  std::unique_ptr<void, Close> library_;
-};
-
+using test::CompiledModel;
 using Compare = std::function<void(const RecordingRow& row, double force_N, bool out_of_domain)>;
 
 ExportRequest request_for(const Recording& recording) {

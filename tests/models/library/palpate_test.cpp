@@ -69,6 +69,9 @@ void compare(const Recording& recording, const ModelHandle& handle, palpate_stre
                                                               r.acceleration_m_per_s2);
       ASSERT_EQ(force_N, snapshot.force_N[0]) << data.name << " row " << row;
       ASSERT_EQ(palpate_stream_out_of_domain(stream), static_cast<int>(snapshot.out_of_domain_mask & 1U));
+      const double bound_N = palpate_stream_predicted_error(stream);
+      const double expected_N = snapshot.predicted_error_N[0];
+      ASSERT_TRUE(bound_N == expected_N || (std::isnan(bound_N) && std::isnan(expected_N))) << data.name;
       ++row;
     });
     EXPECT_TRUE(summary.ok());

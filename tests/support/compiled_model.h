@@ -1,0 +1,52 @@
+// An exported C file, compiled as a microcontroller's compiler would and loaded.
+#pragma once
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "models/export/export_c.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate::test {
+
+// A compiled file; Real as in the export.
+template <typename Real>
+class CompiledModel {
+ public:
+  CompiledModel(const ModelData& data, ExportRequest request) {
+    request.single_precision = sizeof(Real) == sizeof(float);
+    const Result<ExportedC> file = export_c(data, request);
+    EXPECT_TRUE(file.ok()) << data.name;
+    if (!file) return;
+    const std::string source = folder_.with_file("model.c", file->text);
+    const std::string library = folder_.file("model.so");
+    const auto run = run_program({PALPATE_C_COMPILER, "-std=c99", "-ffreestanding", "-O1", "-Wall", "-Wextra",
+                                        "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC",
+                                        "-shared", source, "-o", library, "-lm"});
+    EXPECT_EQ(run.exit_code, 0) << data.name << "\n" << run.err;
+    library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
+    EXPECT_NE(library_, nullptr) << data.name;
+    if (library_ == nullptr) return;
+    force = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
+    force_after = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force_after"));
+    reset = reinterpret_cast<void (*)()>(dlsym(library_.get(), "palpate_reset"));
+    out_of_domain = reinterpret_cast<int (*)()>(dlsym(library_.get(), "palpate_out_of_domain"));
+  }
+
+  Real (*force)(Real, Real) = nullptr;
+  Real (*force_after)(Real, Real) = nullptr;
+  void (*reset)() = nullptr;
+  int (*out_of_domain)() = nullptr;
+
+ private:
+  struct Close {
+    void operator()(void* library) const { dlclose(library); }
+  };
+  TemporaryFolder folder_;
+  std::unique_ptr<void, Close> library_;
+};
+
+}  // namespace palpate::test
