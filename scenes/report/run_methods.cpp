@@ -91,7 +91,12 @@ class MethodFitter {
     const auto base = done_.find({model.rung, model.request.method->base});
     const bool has_base = base != done_.end();
     const Stopwatch start;
-    auto fit = fit_method(prepared_.of(model.rung), model.request, control, has_base ? &base->second.fit : nullptr);
+    const PreparedTraining& prepared = prepared_.of(model.rung);
+    MethodRequest request = model.request;
+    // Left-out parts of a recording may support other features than the whole.
+    if (!request.grid.empty()) request.grid.resize(prepared.common.features.size(), request.grid.back());
+    auto fit = fit_method(prepared, request, control, has_base ? &base->second.fit : nullptr);
+    if (!fit && fit.error().message == interrupted().message) return fit.error();
     if (!fit) return Error{model.name + ": " + fit.error().message};
     Outcome outcome{std::move(*fit), start.seconds() + (has_base ? base->second.seconds : 0.0)};
     done_.try_emplace({model.rung, model.request.method}, outcome);

@@ -61,6 +61,26 @@ std::string first_line(const std::string& text) {
   return "no message";
 }
 
+Status run_script(const std::string& program, const std::string& folder, const std::string& script) {
+  int pipe_ends[2];
+  if (pipe2(pipe_ends, O_CLOEXEC) != 0) return Error{"cannot start " + program + ": no pipe"};
+  std::vector<std::string> command{program, "-d", script};  // no personal settings
+  std::vector<std::string> environment = plain_environment();
+  const std::vector<char*> arguments = pointers(command);
+  const std::vector<char*> settings = pointers(environment);
+  const pid_t child = fork();
+  if (child == 0) become(arguments.data(), settings.data(), folder.c_str(), pipe_ends[1]);
+  close(pipe_ends[1]);
+  const std::string said = child > 0 ? read_all(pipe_ends[0]) : "";
+  close(pipe_ends[0]);
+  int status = 0;
+  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  return Error{"gnuplot (" + program + ") could not draw " + script + ": " + first_line(said) +
+               "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
+}
+
 }  // namespace
 
 Result<std::string> find_gnuplot() {
@@ -82,24 +102,11 @@ Result<std::string> find_gnuplot() {
 }
 
 Status run_gnuplot(const std::string& program, const std::string& folder, const std::vector<std::string>& scripts) {
-  int pipe_ends[2];
-  if (pipe2(pipe_ends, O_CLOEXEC) != 0) return Error{"cannot start " + program + ": no pipe"};
-  std::vector<std::string> command{program, "-d"};  // no personal settings
-  command.insert(command.end(), scripts.begin(), scripts.end());
-  std::vector<std::string> environment = plain_environment();
-  const std::vector<char*> arguments = pointers(command);
-  const std::vector<char*> settings = pointers(environment);
-  const pid_t child = fork();
-  if (child == 0) become(arguments.data(), settings.data(), folder.c_str(), pipe_ends[1]);
-  close(pipe_ends[1]);
-  const std::string said = child > 0 ? read_all(pipe_ends[0]) : "";
-  close(pipe_ends[0]);
-  int status = 0;
-  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  // A process each: what one script leaves set must not colour the next.
+  for (const std::string& script : scripts) {
+    if (const Status drawn = run_script(program, folder, script); !drawn) return drawn;
   }
-  if (child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  return Error{"gnuplot (" + program + ") could not draw the figures: " + first_line(said) +
-               "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
+  return {};
 }
 
 }  // namespace palpate

@@ -29,7 +29,7 @@ TEST(Gnuplot, SaysWhatItDidNotUnderstand) {
   folder.with_file("a.gp", "dance\n");
   const Status status = run_gnuplot(*program, folder.path(), {"a.gp"});
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message.rfind("gnuplot (" + *program + ") could not draw the figures: ", 0), 0u)
+  EXPECT_EQ(status.error().message.rfind("gnuplot (" + *program + ") could not draw a.gp: ", 0), 0u)
       << status.error().message;
 }
 
