@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace palpate {
 namespace {
+
+// The guard's radius is chosen by what the correction is worth beyond the data; a press
+// deeper than the deepest recorded one by this share is out of the domain in any case.
+constexpr double kDeeper = 0.15;
 
 Error wrong(const std::string& field, const std::string& found, const std::string& expected) {
   return {field + ": found " + found + ", expected " + expected};
@@ -131,6 +136,13 @@ FittedModel::FittedModel(ModelData data)
     offset_[i] = data_.offset(static_cast<Eigen::Index>(i));
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
+  deepest_m_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < dimension_; ++i) {
+    if (data_.features[i].kind != FeatureKind::depth) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    depth_ = i;
+    deepest_m_ = data_.upper(k) + kDeeper * (data_.upper(k) - data_.lower(k));
+  }
 }
 
 int FittedModel::centre_count() const noexcept { return data_.correction->size(); }
@@ -149,7 +161,7 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   // A comparison that fails for NaN, so that nothing but a force leaves.
   const double largest_N = kForceMargin * data_.largest_force_N;
   if (!(force_N > 0.0)) force_N = 0.0;
-  ForceEstimate estimate{std::min(force_N, largest_N), trust < 0.5};
+  ForceEstimate estimate{std::min(force_N, largest_N), trust < 0.5 || features[depth_] > deepest_m_};
   if (data_.error_bound) {
     const double beyond = std::sqrt(squared_distance) - data_.cover.inner_radius;
     estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond);

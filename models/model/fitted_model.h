@@ -106,6 +106,8 @@ class FittedModel final : public ForceModel {
   DomainGuard guard_;
   const Correction* correction_ = nullptr;  // of data_; null when the trend stands alone
   std::size_t dimension_ = 0;
+  std::size_t depth_ = 0;  // which feature
+  double deepest_m_ = 0.0;  // depths beyond are out of the domain whatever the guard's radius
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};
 };

@@ -51,11 +51,12 @@ std::string read_all(int descriptor) {
   }
 }
 
-// The first line that says something.
+// The first line that says something, warnings left out.
 std::string first_line(const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (line.find_first_not_of(" \t^") != std::string::npos) return line;
+    const bool says = line.find_first_not_of(" \t^") != std::string::npos;
+    if (says && line.find("warning:") == std::string::npos) return line;
   }
   return "no message";
 }

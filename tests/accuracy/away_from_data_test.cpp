@@ -20,7 +20,7 @@ using test::ModelPtr;
 using test::prepare;
 using test::press_and_hold;
 using test::RecordingPtr;
-using test::default_request;
+using test::scene_request;
 using test::scripted_press;
 using test::ScriptedPress;
 using test::Stretch;
@@ -59,7 +59,7 @@ const Subject& silicone() {
     RigSettings settings = test::train_settings("silicone");
     settings.seconds = 12.0;
     settings.rate_Hz = kTrainingRate_Hz;
-    return subject_of("silicone", prepare({test::rig_recording(settings)}, default_request("silicone_block")),
+    return subject_of("silicone", prepare({test::rig_recording(settings)}, scene_request("silicone_block")),
                       kModerateSpeed_m_per_s);
   }();
   return subject;
@@ -71,7 +71,7 @@ const Subject& press() {
   static const Subject subject = [] {
     Subject made = subject_of(
         "press",
-        prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block")), 0.01);
+        prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")), 0.01);
     // Its position counts from where the force first passed 0.1 N.
     made.onset_N = 0.1;
     // Falls short of one JND with an encoder unlike its own. Below 1 N, where
@@ -208,7 +208,7 @@ TEST(AwayFromData, SweepsOfEveryFeature) {
 // Both kinds of model from the same training; every method against its twin.
 void expect_no_worse_than_position(const std::string& what, const RecordingPtr& train, const RecordingPtr& test_run,
                                    const std::string& scene) {
-  const std::vector<ModelPtr> full = fit_all(prepare({train}, default_request(scene)));
+  const std::vector<ModelPtr> full = fit_all(prepare({train}, scene_request(scene)));
   const std::vector<ModelPtr> alone = fit_all(prepare({train}, test::position_request()));
   const std::vector<ErrorSummary> full_errors = judge_moved(*test_run, full);
   const std::vector<ErrorSummary> alone_errors = judge_moved(*test_run, alone);

@@ -1,4 +1,5 @@
 # Seconds against something, a line a method. Reads FIGURE.csv and FIGURE_labels.csv.
+reset
 load "FIGURE.set"
 load "style.gp"
 set logscale y

@@ -1,4 +1,5 @@
 # Features of training sites and test samples against the depth. Reads coverage.csv.
+reset
 load "coverage.set"
 load "style.gp"
 do for [medium in media] {

@@ -1,5 +1,6 @@
 # Errors in bins of measured force, a panel a recipe, with the samples of every bin below.
 # Reads FIGURE.csv, FIGURE_labels.csv, FIGURE_counts.csv. Hollow: few samples.
+reset
 load "FIGURE.set"
 load "style.gp"
 jnd_mN(x) = 1000 * (jnd_offset_N + jnd_fraction * x)

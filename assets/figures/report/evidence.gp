@@ -1,4 +1,5 @@
 # Figures of merit of the main models with their 95 % intervals. Reads evidence.csv.
+reset
 load "evidence.set"
 load "style.gp"
 set grid noytics nomytics

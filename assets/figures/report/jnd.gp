@@ -1,4 +1,5 @@
 # The JND line, and the two points that the paper's text gives. Reads jnd.csv.
+reset
 load "jnd.set"
 load "style.gp"
 set xrange [0.1:5]

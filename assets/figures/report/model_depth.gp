@@ -1,4 +1,5 @@
 # What the model says of the material. Reads model_depth.csv and model_depth_spectrum.csv.
+reset
 load "model_depth.set"
 load "style.gp"
 do for [medium in media] {

@@ -1,4 +1,5 @@
 # One point a seed. Reads repeatability_points.csv and repeatability_methods.csv.
+reset
 load "repeatability.set"
 load "style.gp"
 set xrange [-0.6:methods - 0.4]

@@ -1,5 +1,6 @@
 # A replayed recording: measured force, differences over the JND, error against force.
 # Reads replay.csv, replay_bins.csv, replay_models.csv.
+reset
 load "replay.set"
 load "style.gp"
 jnd_mN(x) = 1000 * (jnd_offset_N + jnd_fraction * x)

@@ -1,5 +1,6 @@
 # Time against the 99th percentile of error/JND, a panel a test recording; also for fit
 # times. Reads FIGURE.csv (models), FIGURE_front.csv, FIGURE_labels.csv, FIGURE_panels.csv.
+reset
 load "FIGURE.set"
 load "style.gp"
 if (is_fit) {

@@ -1,5 +1,6 @@
 # The worst seconds: measured force, and every model's difference from it over the JND.
 # Reads worst_trace.csv and worst_trace_strips.csv (which columns belong to which strip).
+reset
 load "worst_trace.set"
 load "style.gp"
 set xrange [from_s:to_s]

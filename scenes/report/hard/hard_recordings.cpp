@@ -25,6 +25,8 @@ constexpr double kJudgedRate_Hz = 1000.0;
 TrainingRequest clean_request() {
   TrainingRequest request;
   request.scene = "hard case";
+  // These are about numbers, not about where a surface lies.
+  request.surface = Surface::recorded;
   request.features = {{FeatureKind::depth, 0.0, {}}, {FeatureKind::velocity, 0.0, {}},
                       {FeatureKind::lowpass_velocity, 0.17, {}}};
   return request;

@@ -61,7 +61,9 @@ TEST(ModelFirmware, RendersTheForcesOfReplayAtOneKilohertz) {
     }
     worst_over_jnd = std::max(worst_over_jnd, jnd.error_over_jnd(firmware.force_N(), snapshot.force_N[0]));
     // After the ramp the current is the force's, to one mA.
-    if (++row > 400) EXPECT_NEAR(all.board.current_mA, std::max(-1000.0, -200.0 * snapshot.force_N[0]), 1.5);
+    if (++row > 400) {
+      EXPECT_NEAR(all.board.current_mA, std::max(-1000.0, -200.0 * snapshot.force_N[0]), 1.5);
+    }
   });
   EXPECT_TRUE(summary.ok());
   EXPECT_LT(worst_over_jnd, 0.05);

@@ -28,7 +28,7 @@ std::vector<SurfaceRow> moved(const Recording& recording, double offset_m) {
 TEST(SurfaceSearch, FindsTheShiftOfATestRecording) {
   for (const char* material : {"silicone", "foam", "gel"}) {
     const auto training = std::make_shared<const Recording>(shorter(test::train_settings(material), 1));
-    const auto prepared = test::prepare({training}, test::scene_request("silicone_block"));
+    const auto prepared = test::prepare({training}, test::default_request("silicone_block"));
     const std::vector<std::shared_ptr<const ForceModel>> models{test::fit(prepared, &kGreedyMethod),
                                                                 test::fit(prepared, &kRandomMethod)};
     const Recording recording = shorter(test::test_settings(material), 2);

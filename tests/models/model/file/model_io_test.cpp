@@ -34,6 +34,46 @@ ModelData read_back(const ModelData& data) {
   return back ? *back : ModelData{};
 }
 
+TEST(ModelIo, FeaturesWithPartsSofteningAndTheErrorBoundAreKept) {
+  const DriveCurve drive{5e-3, {0.1, 0.2, 1.0 / 3.0, 0.4}};
+  FeatureSpec spectrum;
+  spectrum.kind = FeatureKind::maxwell_spectrum;
+  spectrum.part_count = 2;
+  spectrum.parts[0] = {0.05, 0.0, drive};
+  spectrum.parts[1] = {0.7, 0.0, drive};
+  FeatureSpec stops;
+  stops.kind = FeatureKind::stops;
+  stops.part_count = 1;
+  stops.parts[0] = {0.0, 1e-4, drive};
+  ModelData data = example_model("greedy", KernelKind::cubic,
+                                 {FeatureSpec{}, spectrum, stops, {FeatureKind::fading_peak, 6.0}}, 11);
+  data.trend.softening[1] = drive;
+  data.error_bound = ErrorBound{0.01, 0.02, 0.3};
+  const ModelData back = read_back(data);
+  EXPECT_EQ(back.features, data.features);
+  EXPECT_EQ(back.trend.softening, data.trend.softening);
+  ASSERT_TRUE(back.error_bound.has_value());
+  const FittedModel original(data);
+  const FittedModel loaded(back);
+  test::Numbers numbers(4);
+  for (int query = 0; query < 500; ++query) {
+    const double x[] = {5e-3 * std::abs(numbers.next()), numbers.next(), numbers.next(), 5e-3};
+    const ForceEstimate one = original.evaluate(x);
+    const ForceEstimate other = loaded.evaluate(x);
+    ASSERT_EQ(bits(one.force_N), bits(other.force_N));
+    ASSERT_EQ(bits(one.predicted_error_N), bits(other.predicted_error_N));
+    ASSERT_GE(one.predicted_error_N, 0.01);
+  }
+  EXPECT_EQ(text_of(back), text_of(data));
+}
+
+TEST(ModelIo, AModelWithoutAnErrorBoundSaysThatItDoesNotKnow) {
+  const ModelData data = example_models().front();
+  EXPECT_EQ(text_of(data).find("error_bound"), std::string::npos);
+  std::array<double, kMaxFeatures> x{};
+  EXPECT_TRUE(std::isnan(FittedModel(read_back(data)).evaluate(x.data()).predicted_error_N));
+}
+
 TEST(ModelIo, ForcesAreBitIdenticalAfterLoading) {
   const test::TemporaryFolder folder;
   for (const ModelData& data : example_models()) {
