@@ -10,8 +10,8 @@
 // Consistency says nothing of a shift common to all; the onsets decide it, weighted
 // by their errors. Of the shifts within their errors or 0.25 mm, the one that
 // leaves most recordings as they are: it changes no force of the model, only where
-// its zero lies. One recording: its own onset, likewise. Offsets that cannot be told
-// from 0 are 0.
+// its zero lies. One recording: its own onset, likewise. Where no offset of a set can
+// be told from 0 all are 0.
 // Standard errors: delete-one-fold jackknife over pieces of the recordings, and a
 // share of what the trend cannot follow.
 // Source: variable projection, Golub & Pereyra (1973); trend: fit_trend.h.
