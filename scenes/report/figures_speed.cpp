@@ -10,6 +10,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMostPanels = 4;
+constexpr double kNearFloor = 0.3;  // of the least error
 
 struct Panel {
   std::string title;
@@ -122,7 +123,7 @@ void add_panel(Builder& b, const ReportData& data, const Panel& panel, std::uint
   }
   std::vector<double> wanted;
   for (const End& end : ends) wanted.push_back(b.y.fraction(end.y));
-  const std::vector<double> at = spread_labels(wanted, 0.055);
+  const std::vector<double> at = spread_labels(wanted, 0.065);
   for (std::size_t i = 0; i < ends.size(); ++i) {
     b.labels.rows.push_back({number, ends[i].x, b.y.value(at[i]), ends[i].colour, ends[i].label});
   }
@@ -158,10 +159,12 @@ Figure make_figure(const ReportData& data, const std::string& name, TimeOf time)
   for (const ModelResult& model : data.models) {
     if (!(time(model) > 0.0)) continue;
     times.push_back(time(model));
-    for (const Panel& panel : panels) {
-      errors.push_back(errors_of(model, panel).p99_error_over_jnd);
-      errors.push_back(panel.floor);
-    }
+    for (const Panel& panel : panels) errors.push_back(errors_of(model, panel).p99_error_over_jnd);
+  }
+  // A floor far below all models is said in words, not drawn: it would flatten the rest.
+  const double least = *std::min_element(errors.begin(), errors.end());
+  for (const Panel& panel : panels) {
+    if (panel.floor > kNearFloor * least) errors.push_back(panel.floor);
   }
   // To the right there must be room for the labels.
   b.x = cropped(times, 1.5, panels.size() > 1 ? 12.0 : 5.0);
@@ -198,7 +201,7 @@ std::vector<Figure> speed_figures(const ReportData& data) {
   speed.set_text("x_label", "One evaluation, median");
   double slowest = 0.0;
   for (const ModelResult& model : data.models) slowest = std::max(slowest, evaluation_ns(model));
-  speed.set_text("edge", slowest > 0.0 ? "one tick of 1 ms: " + times_text(kBudget_ns / slowest) + " the slowest →" : "");
+  speed.set_text("edge", slowest > 0.0 ? "1 ms tick: " + times_text(kBudget_ns / slowest) + " the slowest →" : "");
   speed.set_number("is_fit", 0.0);
   Figure fit = make_figure(data, "fit_error", fit_seconds);
   fit.title = "What a second buys: fit time against error";

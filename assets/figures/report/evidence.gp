@@ -6,7 +6,7 @@ set grid noytics nomytics
 unset ylabel
 do for [medium in media] {
   eval open(medium, "evidence")
-  set multiplot layout 1,4 margins 0.19,0.985,0.16,0.93 spacing 0.025,0
+  set multiplot layout 1,4 margins 0.27,0.985,0.16,0.93 spacing 0.025,0
   do for [c = 0:3] {
     unset arrow
     unset label

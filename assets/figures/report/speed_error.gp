@@ -5,6 +5,8 @@ load "FIGURE.set"
 load "style.gp"
 if (is_fit) {
   set xtics ("1 ms" 1e-3, "10 ms" 1e-2, "0.1 s" 0.1, "1 s" 1, "10 s" 10, "100 s" 100)
+} else if (panel_count > 1) {
+  set xtics ("10 ns" 10, "30 ns" 30, "100 ns" 100, "300 ns" 300, "1 µs" 1e3, "3 µs" 3e3, "10 µs" 1e4, "30 µs" 3e4, "100 µs" 1e5)
 } else {
   set xtics ("10 ns" 10, "20 ns" 20, "50 ns" 50, "100 ns" 100, "200 ns" 200, "500 ns" 500, "1 µs" 1e3, "2 µs" 2e3, "5 µs" 5e3, "10 µs" 1e4, "20 µs" 2e4, "50 µs" 5e4, "100 µs" 1e5)
 }
@@ -26,11 +28,13 @@ do for [medium in media] {
     unset label
     unset arrow
     set label 1 title_of at graph 0.02,1.03 left noenhanced textcolor rgb ink
-    set label 2 "1 JND: a hand can just tell" at graph 0.99,first 1 right offset 0,0.5 textcolor rgb muted
+    set label 2 (panel_count > 1 ? "1 JND" : "1 JND: a hand can just tell") at graph 0.99,first 1 right offset 0,0.5 textcolor rgb muted
     set arrow 1 from graph 0,first 1 to graph 1,first 1 nohead dashtype 2 linewidth 1.5 linecolor rgb muted
     if (floor_jnd > y_low) {
       set arrow 2 from graph 0,first floor_jnd to graph 1,first floor_jnd nohead dashtype 3 linewidth 2 linecolor rgb muted
       set label 3 "noise of the force sensor" at graph 0.99,first floor_jnd right offset 0,0.5 textcolor rgb muted
+    } else {
+      set label 3 sprintf("force noise: %.2g JND, below ↓", floor_jnd) at graph 0.99,0.11 right noenhanced textcolor rgb muted
     }
     set label 4 edge at graph 0.99,0.04 right noenhanced textcolor rgb muted
     set xlabel x_label
