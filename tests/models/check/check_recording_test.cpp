@@ -96,7 +96,7 @@ TEST(CheckRecording, FindsAMonotonicCompressionOnlyForASceneWithMemory) {
 
 TEST(CheckRecording, BlamesNoVirtualMaterial) {
   for (const Material& material : materials()) {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1ULL, 2ULL, 3ULL}) {
       SCOPED_TRACE(std::string(material.name) + " " + std::to_string(seed));
       RigSettings settings;
       settings.material = std::string(material.name);
