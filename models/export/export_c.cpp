@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// Of kMotionC on a quantised sample, counted with a type that counts.
+// Of kMotionC on a quantised sample, estimated from its source.
 constexpr TickOperations kMotionOperations{.arithmetic = 1500, .divisions = 60, .roots = 3, .exponentials = 20,
                                            .logarithms = 6};
 // Filters, their mixture, features and the last sample.
