@@ -7,12 +7,6 @@
 
 namespace palpate {
 
-Recording with_surface_at(const Recording& recording, double offset_m) {
-  Recording moved = recording;
-  for (RecordingRow& row : moved.rows) row.position_m -= offset_m;
-  return moved;
-}
-
 Result<std::vector<Evidence>> ReplayEvaluator::evaluate(const Recording& recording,
                                                         const std::vector<ModelPointer>& models,
                                                         const FitControl& control) {

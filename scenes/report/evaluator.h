@@ -16,9 +16,6 @@ namespace palpate {
 
 using ModelPointer = std::shared_ptr<const ForceModel>;
 
-// The same recording with `offset_m` taken from its positions.
-Recording with_surface_at(const Recording& recording, double offset_m);
-
 // Errors of some models, recording by recording and together. The same models in the
 // same order every time, from one fold to the next.
 class ReplayEvaluator {

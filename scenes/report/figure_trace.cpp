@@ -108,7 +108,7 @@ Figure trace_figure(const ReportData& data) {
   const std::vector<TraceRow>& rows = data.trace.rows;
   const double length_s = rows.empty() ? 0.0 : rows.back().time_s - rows.front().time_s;
   const bool five = length_s > 0.95 * TraceFinder::kTraceSeconds;
-  figure.title = std::string("The worst ") + (five ? std::string("five") : three_digits(length_s)) + " seconds";
+  figure.title = std::string("The worst ") + (five ? std::string("five") : fixed(length_s, 2)) + " seconds";
   const std::vector<Strip> strips = strips_of(data);
   figure.caption = "Of " + data.trace.recording + ", where the models err most. Top: the measured force. Below: how far "
                    "each model's force is from it, in JNDs; in the grey band a hand cannot tell. Strong: Palpate; "

@@ -12,7 +12,6 @@ namespace {
 constexpr std::array<double, 6> kStudent{12.71, 4.303, 3.182, 2.776, 2.571, 2.447};
 
 std::string slope_text(const FittedSlope& fit) {
-  if (!std::isfinite(fit.slope)) return "a slope that too few points decide";
   return fixed(fit.slope, 2) + " ± " + fixed(fit.half_width, 2);
 }
 
@@ -68,14 +67,20 @@ Figure sites_figure(const ReportData& data) {
     line->x.push_back(static_cast<double>(time.sites));
     line->y.push_back(time.seconds);
   }
-  figure.caption = "Sites are what the reduction keeps. Fitted exponents of their number, with 95 % intervals: ";
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    figure.caption += (i == 0 ? "" : ", ") + lines[i].label + " " + slope_text(fitted_slope(lines[i].x, lines[i].y));
+  figure.caption = "Sites are what the reduction keeps. ";
+  std::string slopes;
+  for (const Line& line : lines) {
+    const FittedSlope slope = fitted_slope(line.x, line.y);
+    if (std::isfinite(slope.slope)) slopes += (slopes.empty() ? "" : ", ") + line.label + " " + slope_text(slope);
   }
-  figure.caption += ".";
+  figure.caption += slopes.empty() ? "Too few sites for a slope to be fitted."
+                                   : "Fitted exponents of their number, with 95 % intervals: " + slopes + ".";
   add_lines(figure, lines);
   figure.set_text("x_label", "Sites");
   figure.set_number("x_log", 1.0);
+  std::string tics;
+  for (const double x : lines.empty() ? std::vector<double>{} : lines.front().x) tics += (tics.empty() ? "" : ", ") + fixed(x, 0);
+  figure.settings += "set xtics (" + tics + ")\n";
   return figure;
 }
 

@@ -85,7 +85,7 @@ Figure seeds_figure(const ReportData& data) {
   for (const SeedResult& seed : data.seeds) by_model[seed.model.name].push_back(&seed);
   std::uint64_t count = 0;
   std::vector<double> rms;
-  std::vector<double> worst;
+  std::vector<double> worst{1.0};  // the line at one JND is always in view
   for (const auto& [name, seeds] : by_model) {
     names.rows.push_back({count, model_label(seeds.front()->model)});
     for (std::size_t i = 0; i < seeds.size(); ++i) {
@@ -126,7 +126,7 @@ Figure facts_figure(const ReportData& data) {
                    "and how much stiffness relaxes with which time at half the greatest depth. SI figures in "
                    "tables/model_depth.csv and tables/model_relaxation.csv.";
   figure.width = 760;
-  figure.height = 430;
+  figure.height = 440;
   Table curve{"model_depth", "", false,
               {{"depth_mm", ""}, {"elastic_N", ""}, {"elastic_stiffness_N_per_mm", ""},
                {"instantaneous_stiffness_N_per_mm", ""}, {"viscosity_slow_Ns_per_m", ""}, {"viscosity_fast_Ns_per_m", ""}},
@@ -136,6 +136,9 @@ Figure facts_figure(const ReportData& data) {
   }
   Table spectrum{"model_depth_spectrum", "", false, {{"relaxation_time_s", ""}, {"stiffness_N_per_mm", ""}}, {}};
   for (const auto& row : data.facts.spectrum) spectrum.rows.push_back({row[0], 1e-3 * row[1]});
+  // The branches are sorted by time.
+  figure.set_number("spectrum_low", data.facts.spectrum.empty() ? 0.01 : 0.3 * data.facts.spectrum.front()[0]);
+  figure.set_number("spectrum_high", data.facts.spectrum.empty() ? 10.0 : 3.0 * data.facts.spectrum.back()[0]);
   figure.set_number("branches", static_cast<double>(data.facts.spectrum.size()));
   figure.data = {std::move(curve), std::move(spectrum)};
   return figure;

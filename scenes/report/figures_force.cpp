@@ -46,9 +46,10 @@ Figure force_figure(const ReportData& data, const Curve& curve) {
   figure.caption = std::string(curve.over_jnd
                                    ? "Error over the JND, sample by sample; below the line at 1 a hand cannot tell. "
                                    : "In the grey band a hand cannot tell the model from the material. ") +
-                   conclusion(data, curve);
+                   conclusion(data, curve) + " Hollow: few samples. Dotted, where in view: the force sensor's noise, " +
+                   three_digits(1e3 * data.pooled_floor.force_noise_N) + " mN.";
   figure.width = 760;
-  figure.height = 370;
+  figure.height = 390;
   Table table{figure.name, "", false,
               {{"panel", ""}, {"model", ""}, {"force_N", ""}, {"error", ""}, {"count", ""}, {"few", ""}, {"colour", ""}},
               {}};
@@ -104,6 +105,7 @@ Figure force_figure(const ReportData& data, const Curve& curve) {
   figure.set_number("over_jnd", curve.over_jnd ? 1.0 : 0.0);
   figure.set_number("jnd_offset_N", data.jnd.offset_N);
   figure.set_number("jnd_fraction", data.jnd.weber_fraction);
+  figure.set_number("noise_N", data.pooled_floor.force_noise_N);
   figure.set_number("few", static_cast<double>(kFewSamples));
   figure.set_text("y_label", std::string(curve.largest ? "Largest error [" : "Mean + std of error [") +
                                  (curve.over_jnd ? "JND]" : "mN]"));

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scenes/report/figures.h"
+#include "scenes/report/label_placer.h"
 #include "scenes/report/tables.h"
 
 namespace palpate {
@@ -81,11 +82,12 @@ std::vector<const ModelResult*> pareto_front(const ReportData& data, const Panel
   return front;
 }
 
-struct End {
-  double x = 0.0;
-  double y = 0.0;
-  double colour = 0.0;
-  std::string label;
+// Pixels around the plot area of a panel; the script has the same.
+struct Margins {
+  double left = 72.0;
+  double right = 14.0;
+  double top = 28.0;
+  double bottom = 62.0;
 };
 
 struct Builder {
@@ -96,37 +98,87 @@ struct Builder {
   Table panels;
   AxisRange x;
   AxisRange y;
+  bool small = false;  // several panels
+  double width = 0.0;  // of a plot area, pixels
+  double height = 0.0;
 };
 
+void add_label(Builder& b, std::uint64_t panel, const LabelPlacer::Place& place, double x, double y, double colour,
+               const std::string& text) {
+  // The end of the line to what is named; the text's own end when it is near.
+  const double from_x = place.far ? x : place.x;
+  const double from_y = place.far ? y : place.y;
+  b.labels.rows.push_back({panel, b.x.value(place.x / b.width), b.y.value(place.y / b.height), colour, text,
+                           b.x.value(from_x / b.width), b.y.value(from_y / b.height)});
+}
+
+struct End {
+  double x = 0.0;  // pixels
+  double y = 0.0;
+  double colour = 0.0;
+  std::string label;
+};
+
+// The points of one method and recipe; nothing that is there is written over later.
+End add_line(Builder& b, LabelPlacer& placer, const std::vector<const ModelResult*>& line, const Panel& panel,
+             std::uint64_t number, TimeOf time) {
+  End end;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const ModelResult& model = *line[i];
+    const Evidence& errors = errors_of(model, panel);
+    // A bar for each would hide the points of a small panel.
+    const bool bar = !b.small || number == 0;
+    const double low = bar ? errors.p99_interval.low : errors.p99_error_over_jnd;
+    const double high = bar ? errors.p99_interval.high : errors.p99_error_over_jnd;
+    b.points.rows.push_back({number, model.plan.name, std::string(rung_key(model.plan.rung)), time(model),
+                             errors.p99_error_over_jnd, low, high, model_colour(model.plan),
+                             static_cast<std::uint64_t>(model.size)});
+    const double x = b.width * b.x.fraction(time(model));
+    const double y = b.height * b.y.fraction(errors.p99_error_over_jnd);
+    placer.keep_point_free(x, y);
+    placer.keep_line_free(x, b.height * b.y.fraction(std::max(low, b.y.low)), x, b.height * b.y.fraction(std::min(high, b.y.high)));
+    if (i > 0) placer.keep_line_free(end.x, end.y, x, y);
+    end.x = x;
+    end.y = y;
+  }
+  b.points.rows.push_back({});
+  const PlannedModel& last = line.back()->plan;
+  end.colour = model_colour(last);
+  end.label = model_label(last);
+  if (line.size() > 1 && !b.small) end.label += " " + size_text(line.front()->size) + "–" + size_text(line.back()->size);
+  return end;
+}
+
+// The lines at one JND and at the noise of the force sensor, or where that lies.
+void add_levels(Builder& b, LabelPlacer& placer, const Panel& panel, std::uint64_t number) {
+  const double muted = 0x6e6e6e;
+  const double one = b.height * b.y.fraction(1.0);
+  const double noise = b.height * b.y.fraction(panel.floor);
+  const bool inside = noise > 0.0;
+  placer.keep_line_free(0.0, one, b.width, one);
+  if (inside) placer.keep_line_free(0.0, noise, b.width, noise);
+  const std::string one_text = b.small ? "1 JND" : "1 JND: a hand can just tell";
+  add_label(b, number, placer.along(one, one_text), 0.0, 0.0, muted, one_text);
+  const std::string noise_text = inside ? std::string(b.small ? "force noise" : "noise of the force sensor")
+                                        : "force noise " + three_digits(panel.floor) + " JND ↓";
+  add_label(b, number, placer.along(inside ? noise : 2.0, noise_text), 0.0, 0.0, muted, noise_text);
+}
+
 void add_panel(Builder& b, const ReportData& data, const Panel& panel, std::uint64_t number, TimeOf time) {
+  LabelPlacer placer(b.width, b.height);
   std::vector<End> ends;
   for (const Rung rung : {Rung::trend, Rung::paper, Rung::palpate}) {
     for (const Method* method : methods()) {
       const auto line = series(data, rung, *method, time);
-      for (const ModelResult* model : line) {
-        const Evidence& errors = errors_of(*model, panel);
-        b.points.rows.push_back({number, model->plan.name, std::string(rung_key(rung)), time(*model),
-                                 errors.p99_error_over_jnd, errors.p99_interval.low, errors.p99_interval.high,
-                                 model_colour(model->plan), static_cast<std::uint64_t>(model->size)});
-      }
       if (line.empty()) continue;
-      b.points.rows.push_back({});
-      const ModelResult& last = *line.back();
-      std::string label = model_label(last.plan);
-      if (line.size() > 1) label += " " + size_text(line.front()->size) + "–" + size_text(last.size);
-      if (rung == Rung::paper) {
-        // The hollow line's partner carries the name; alone it needs its own.
-        if (!series(data, Rung::palpate, *method, time).empty()) continue;
-      }
-      ends.push_back({time(last), errors_of(last, panel).p99_error_over_jnd, model_colour(last.plan), label});
+      const End end = add_line(b, placer, line, panel, number, time);
+      // The hollow line's partner carries the name; alone it needs its own.
+      if (rung != Rung::paper || series(data, Rung::palpate, *method, time).empty()) ends.push_back(end);
     }
   }
-  std::vector<double> wanted;
-  for (const End& end : ends) wanted.push_back(b.y.fraction(end.y));
-  const std::vector<double> at = spread_labels(wanted, 0.065);
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    b.labels.rows.push_back({number, ends[i].x, b.y.value(at[i]), ends[i].colour, ends[i].label});
-  }
+  add_levels(b, placer, panel, number);
+  std::stable_sort(ends.begin(), ends.end(), [](const End& one, const End& other) { return one.x > other.x; });
+  for (const End& end : ends) add_label(b, number, placer.beside(end.x, end.y, end.label), end.x, end.y, end.colour, end.label);
   for (const ModelResult* model : pareto_front(data, panel, time)) {
     b.front.rows.push_back({number, model->plan.name, time(*model), errors_of(*model, panel).p99_error_over_jnd});
   }
@@ -134,7 +186,7 @@ void add_panel(Builder& b, const ReportData& data, const Panel& panel, std::uint
   b.panels.rows.push_back({number, panel.title, panel.floor});
 }
 
-// Beyond the data by a share of a decade, so that nothing sits on the frame.
+// Beyond the data by these factors, so that nothing sits on the frame.
 AxisRange cropped(const std::vector<double>& values, double below, double above) {
   double low = HUGE_VAL;
   double high = 0.0;
@@ -147,13 +199,8 @@ AxisRange cropped(const std::vector<double>& values, double below, double above)
   return {low / below, high * above, true};
 }
 
-Figure make_figure(const ReportData& data, const std::string& name, TimeOf time) {
-  const std::vector<Panel> panels = panels_of(data);
-  Builder b{{}, {name, "", true, {{"panel", ""}, {"model", ""}, {"recipe", ""}, {"time", ""}, {"p99_error_over_jnd", ""},
-                                  {"p99_low", ""}, {"p99_high", ""}, {"colour", ""}, {"size", ""}}, {}},
-            {name + "_front", "", true, {{"panel", ""}, {"model", ""}, {"time", ""}, {"p99_error_over_jnd", ""}}, {}},
-            {name + "_labels", "", true, {{"panel", ""}, {"time", ""}, {"p99_error_over_jnd", ""}, {"colour", ""}, {"label", ""}}, {}},
-            {name + "_panels", "", true, {{"panel", ""}, {"title", ""}, {"floor", ""}}, {}}, {}, {}};
+// Both axes just around what the models have, and one JND.
+void crop(Builder& b, const ReportData& data, const std::vector<Panel>& panels, TimeOf time) {
   std::vector<double> errors{1.0};
   std::vector<double> times;
   for (const ModelResult& model : data.models) {
@@ -166,18 +213,36 @@ Figure make_figure(const ReportData& data, const std::string& name, TimeOf time)
   for (const Panel& panel : panels) {
     if (panel.floor > kNearFloor * least) errors.push_back(panel.floor);
   }
-  // To the right there must be room for the labels.
-  b.x = cropped(times, 1.5, panels.size() > 1 ? 12.0 : 5.0);
-  b.y = cropped(errors, 1.2, 1.3);
-  for (std::size_t p = 0; p < panels.size(); ++p) add_panel(b, data, panels[p], p, time);
+  b.x = cropped(times, 1.4, 2.2);
+  b.y = cropped(errors, 1.35, 1.35);
+}
+
+Figure make_figure(const ReportData& data, const std::string& name, TimeOf time) {
+  const std::vector<Panel> panels = panels_of(data);
+  Builder b{{}, {name, "", true, {{"panel", ""}, {"model", ""}, {"recipe", ""}, {"time", ""}, {"p99_error_over_jnd", ""},
+                                  {"p99_low", ""}, {"p99_high", ""}, {"colour", ""}, {"size", ""}}, {}},
+            {name + "_front", "", true, {{"panel", ""}, {"model", ""}, {"time", ""}, {"p99_error_over_jnd", ""}}, {}},
+            {name + "_labels", "", true, {{"panel", ""}, {"time", ""}, {"p99_error_over_jnd", ""}, {"colour", ""}, {"label", ""},
+                                          {"of_time", ""}, {"of_p99", ""}}, {}},
+            {name + "_panels", "", true, {{"panel", ""}, {"title", ""}, {"floor", ""}}, {}}, {}, {}};
+  b.small = panels.size() > 1;
   Figure& figure = b.figure;
   figure.name = name;
   figure.script = "speed_error";
   figure.has_times = true;
   figure.width = 760;
-  figure.height = panels.size() == 1 ? 470 : 760;
+  figure.height = !b.small ? 470 : panels.size() > 2 ? 720 : 360;
+  const Margins margins;
+  b.width = figure.width / (b.small ? 2.0 : 1.0) - margins.left - margins.right;
+  b.height = figure.height / (panels.size() > 2 ? 2.0 : 1.0) - margins.top - margins.bottom;
+  crop(b, data, panels, time);
+  for (std::size_t p = 0; p < panels.size(); ++p) add_panel(b, data, panels[p], p, time);
   figure.data = {b.points, b.front, b.labels, b.panels};
   figure.set_number("panel_count", static_cast<double>(panels.size()));
+  figure.set_number("margin_left", margins.left);
+  figure.set_number("margin_right", margins.right);
+  figure.set_number("margin_top", margins.top);
+  figure.set_number("margin_bottom", margins.bottom);
   figure.set_number("x_low", b.x.low);
   figure.set_number("x_high", b.x.high);
   figure.set_number("y_low", b.y.low);
@@ -185,8 +250,6 @@ Figure make_figure(const ReportData& data, const std::string& name, TimeOf time)
   figure.settings += b.y.tics("y");
   return std::move(b.figure);
 }
-
-std::string times_text(double factor) { return three_digits(factor) + " times"; }
 
 }  // namespace
 
@@ -198,10 +261,11 @@ std::vector<Figure> speed_figures(const ReportData& data) {
                   "one method (numbers: fewest and most centres or nodes); bars are 95 % intervals from resampled "
                   "strokes; the grey steps are the Pareto front: nothing is both faster and better. Below the dotted "
                   "line no model can come but by luck: that is the noise of the force sensor.";
-  speed.set_text("x_label", "One evaluation, median");
   double slowest = 0.0;
   for (const ModelResult& model : data.models) slowest = std::max(slowest, evaluation_ns(model));
-  speed.set_text("edge", slowest > 0.0 ? "1 ms tick: " + times_text(kBudget_ns / slowest) + " the slowest →" : "");
+  const std::string edge = slowest > 0.0 ? "1 ms tick: " + three_digits(kBudget_ns / slowest) + " × the slowest →" : "";
+  speed.set_text("x_label", "One evaluation, median");
+  speed.set_text("edge", edge);
   speed.set_number("is_fit", 0.0);
   Figure fit = make_figure(data, "fit_error", fit_seconds);
   fit.title = "What a second buys: fit time against error";
@@ -217,10 +281,11 @@ std::vector<Figure> speed_figures(const ReportData& data) {
 Figure evidence_figure(const ReportData& data) {
   Figure figure;
   figure.name = "evidence";
-  figure.title = "How sure are these figures?";
+  figure.title = "Figures of merit and their 95 % intervals";
   figure.caption = "Dots: all test samples; bars: 95 % intervals from " + std::to_string(kResamples) +
                    " resamplings of the strokes. Where bars overlap the test does not tell two models apart. Crosses: "
-                   "with the surface of the test moved to the models'. Dotted: a perfect model, by the force noise.";
+                   "with the surface of the test moved to the models'. Dotted: a perfect model, by the force noise. "
+                   "On the left edge: none.";
   Table table{"evidence", "", false,
               {{"row", ""}, {"model", ""}, {"recipe", ""}, {"colour", ""}, {"beyond", ""}, {"beyond_low", ""},
                {"beyond_high", ""}, {"p99", ""}, {"p99_low", ""}, {"p99_high", ""}, {"rms_mN", ""}, {"rms_low", ""},
@@ -241,7 +306,7 @@ Figure evidence_figure(const ReportData& data) {
                           1e3 * m.rms_error_N, m.max_error_over_jnd});
   }
   figure.width = 760;
-  figure.height = 100 + 24 * static_cast<int>(row);
+  figure.height = 80 + 24 * static_cast<int>(row);
   figure.set_number("rows", static_cast<double>(row));
   figure.set_number("floor_beyond", 100.0 * (1.0 - data.pooled_floor.within_jnd));
   figure.set_number("floor_p99", data.pooled_floor.p99_error_over_jnd);

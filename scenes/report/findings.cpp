@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "scenes/report/recommendation.h"
 #include "scenes/report/tables.h"
 
 namespace palpate {
@@ -30,23 +31,41 @@ const ModelResult* of_rung(const ReportData& data, Rung rung) {
   return last;
 }
 
-std::string about_ladder(const ReportData& data) {
+// "1, 2 and 3".
+std::string enumerated(const std::vector<std::string>& items) {
   std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == items.size() ? " and " : ", ") + items[i];
+  }
+  return text;
+}
+
+// What the centres are worth beside the trend, as far as the test can tell.
+std::string about_centres(const ModelResult* trend, const ModelResult* own) {
+  if (trend == nullptr || own == nullptr || own->pooled.samples == 0) return {};
+  if (tied(trend->pooled, own->pooled)) {
+    return " What the centres gain over the trend alone, this test cannot tell: the two are tied.";
+  }
+  const bool better = own->pooled.p99_error_over_jnd < trend->pooled.p99_error_over_jnd;
+  return std::string(better ? " Over the trend alone the centres gain " : " Against the trend alone the centres lose ") +
+         three_digits(std::abs(own->pooled.p99_error_over_jnd - trend->pooled.p99_error_over_jnd)) + " JND of that.";
+}
+
+std::string about_ladder(const ReportData& data) {
+  std::vector<std::string> shares;
+  std::vector<std::string> limits;
   for (const Rung rung : {Rung::no_force, Rung::trend, Rung::paper, Rung::palpate}) {
     const ModelResult* model = of_rung(data, rung);
     if (model == nullptr || model->pooled.samples == 0) continue;
-    if (rung == Rung::no_force) {
-      text += "A model that always says 0 N has " + percent_text(model->pooled.within_jnd) +
-              " of the test samples within the JND";
-      continue;
-    }
-    const std::string words = rung == Rung::trend   ? std::string("the trend alone")
-                              : rung == Rung::paper ? "the paper's recipe (" + model->plan.name + ")"
-                                                    : "Palpate (" + model->plan.name + ")";
-    text += (text.empty() ? "" : "; ") + words + " " + percent_text(model->pooled.within_jnd) +
-            " (99 % of the errors up to " + three_digits(model->pooled.p99_error_over_jnd) + " JND)";
+    const std::string name = rung == Rung::no_force ? std::string("a model that always says 0 N")
+                             : rung == Rung::trend  ? std::string("the trend alone")
+                                                    : std::string(rung_name(rung)) + " (" + model->plan.name + ")";
+    shares.push_back(name + " has " + percent_text(model->pooled.within_jnd));
+    limits.push_back(three_digits(model->pooled.p99_error_over_jnd));
   }
-  return text.empty() ? text : text + ".";
+  if (shares.empty()) return {};
+  return "Within the JND of the test: " + enumerated(shares) + " of the samples. 99 % of the errors are up to " +
+         enumerated(limits) + " JND." + about_centres(of_rung(data, Rung::trend), of_rung(data, Rung::palpate));
 }
 
 std::string about_recommendation(const ReportData& data) {
@@ -66,8 +85,12 @@ std::string about_ties(const ReportData& data) {
     if (tied(model.pooled, chosen->pooled)) ++count;
     else if (model.pooled.p99_error_over_jnd < chosen->pooled.p99_error_over_jnd) ++better;
   }
-  std::string text = "On the test " + std::to_string(count) + " of the other " +
-                     std::to_string(data.models.size() - 2) + " models are tied with it (their 95 % intervals overlap)";
+  const std::size_t others = data.models.size() - 2;  // without 0 N and the chosen one
+  std::string text = "On the test " +
+                     (count == others ? "all " + std::to_string(others) + " other models are"
+                                      : std::to_string(count) + " of the " + std::to_string(others) + " other models " +
+                                            (count == 1 ? "is" : "are")) +
+                     " tied with it (their 95 % intervals overlap)";
   text += better > 0 ? ", and " + std::to_string(better) + (better == 1 ? " is better." : " are better.")
                      : ", and none is better.";
   const Evidence& evidence = chosen->pooled;
@@ -94,13 +117,13 @@ std::string about_floors(const ReportData& data) {
   const bool moved = std::any_of(data.surface_offset_m.begin(), data.surface_offset_m.end(),
                                  [](double offset_m) { return offset_m != 0.0; });
   if (moved && model != nullptr) {
-    std::string offsets;
-    for (const double offset_m : data.surface_offset_m) {
-      offsets.append(offsets.empty() ? "" : ", ").append(fixed(1e3 * offset_m, 2));
-    }
-    text += " For these models the surface of the test lies at " + offsets + " mm; moved there, " + model->plan.name +
-            " has " + percent_text(model->pooled_moved.within_jnd) + " within the JND instead of " +
-            percent_text(model->pooled.within_jnd) + ".";
+    std::vector<std::string> offsets;
+    for (const double offset_m : data.surface_offset_m) offsets.push_back(fixed(1e3 * offset_m, 2));
+    text += " For these models the surface of the test lies at " + enumerated(offsets) + " mm; moved there, " +
+            model->plan.name + " has " + percent_text(model->pooled_moved.within_jnd) + " within the JND (as recorded " +
+            percent_text(model->pooled.within_jnd) + ") and 99 % of its errors up to " +
+            three_digits(model->pooled_moved.p99_error_over_jnd) + " JND (as recorded " +
+            three_digits(model->pooled.p99_error_over_jnd) + ").";
   }
   return text;
 }
@@ -132,7 +155,7 @@ std::string about_seeds(const ReportData& data) {
   }
   std::string text;
   for (const auto& [model, range] : ranges) {
-    text += (text.empty() ? "Over " + std::to_string(counts[model]) + " seeds the RMS error of " : ", of ") + model +
+    text += (text.empty() ? "Over " + std::to_string(counts[model]) + " seeds the RMS error of " : ", that of ") + model +
             " lies between " + three_digits(range.first) + " and " + three_digits(range.second) + " mN";
   }
   return text.empty() ? text : text + ".";

@@ -71,12 +71,12 @@ class TrendCurves {
   const ModelData& data_;
 };
 
-void add_values(ModelFacts& facts, const ModelData& data, const TrendCurves& curves) {
+void add_values(ModelFacts& facts, const ModelData& data, const TrendCurves& curves, int centres) {
   const double deepest_m = curves.reference_m();
   const double half_m = 0.5 * deepest_m;
   const double speed_m_per_s = data.trend.thinning_velocity_m_per_s;
-  const auto add = [&](const char* quantity, double value, const char* unit, const char* meaning) {
-    facts.values.push_back({std::string(quantity), value, std::string(unit), std::string(meaning)});
+  const auto add = [&](const char* quantity, double value, const char* unit, const std::string& meaning) {
+    facts.values.push_back({std::string(quantity), value, std::string(unit), meaning});
   };
   add("greatest depth", deepest_m, "m", "of the training data");
   add("elastic force there", curves.force_N(deepest_m, 0.0), "N", "of an endlessly slow press");
@@ -86,17 +86,25 @@ void add_values(ModelFacts& facts, const ModelData& data, const TrendCurves& cur
   const double instant = curves.instantaneous_stiffness(half_m);
   add("instantaneous stiffness at half depth", instant, "N/m", "before anything relaxes");
   add("share that relaxes", instant > 0.0 ? 1.0 - curves.stiffness(half_m) / instant : kNoFigure, "1", "of it, at half depth");
-  add("viscosity at half depth", curves.viscosity(half_m, kSlow_m_per_s), "Ns/m", "slow");
-  add("viscosity at half depth", curves.viscosity(half_m, speed_m_per_s), "Ns/m", "at the RMS speed");
-  add("RMS speed", speed_m_per_s, "m/s", "of the training data in contact");
+  if (curves.viscosity(half_m, kSlow_m_per_s) > 0.0) {
+    add("viscosity at half depth", curves.viscosity(half_m, kSlow_m_per_s), "Ns/m", "slow");
+    add("viscosity at half depth", curves.viscosity(half_m, speed_m_per_s), "Ns/m", "at the RMS speed");
+    add("RMS speed", speed_m_per_s, "m/s", "of the training data in contact");
+  } else {
+    add("viscosity at half depth", 0.0, "Ns/m", "what resists the speed is in the branches below");
+  }
   if (curves.friction_N(half_m) > 0.0) {
     add("dry friction at half depth", curves.friction_N(half_m), "N", "half the gap between in and out");
   }
-  for (const RelaxationTime& time : data.provenance.relaxation_times) {
-    add("relaxation time", time.time_s, "s", time.standard_error_s > 0.0 ? "identified" : "given by the scene");
-    if (time.standard_error_s > 0.0) add("its standard error", time.standard_error_s, "s", "jackknife over strokes");
+  for (const auto& [time_s, stiffness_N_per_m] : curves.spectrum(half_m)) {
+    add("relaxation time", time_s, "s", "relaxes " + three_digits(stiffness_N_per_m) + " N/m at half depth");
   }
-  add("largest correction", data.correction_limit_N, "N", "that the radial basis functions may add");
+  for (const RelaxationTime& time : data.provenance.relaxation_times) {
+    if (time.standard_error_s > 0.0) {
+      add("its standard error", time.standard_error_s, "s", "of " + three_digits(time.time_s) + " s, jackknife over strokes");
+    }
+  }
+  if (centres > 0) add("largest correction", data.correction_limit_N, "N", "that the radial basis functions may add");
 }
 
 }  // namespace
@@ -106,7 +114,7 @@ ModelFacts model_facts(const std::string& name, const FittedModel& model) {
   const TrendCurves curves(data);
   ModelFacts facts;
   facts.model = name;
-  add_values(facts, data, curves);
+  add_values(facts, data, curves, model.centre_count());
   for (std::size_t k = 0; k < data.features.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     facts.features.push_back({feature_name(data.features[k]), data.lower(at), data.upper(at)});

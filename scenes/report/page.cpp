@@ -61,10 +61,14 @@ std::string hard_cases_text(const ReportData& data) {
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return (*a)[4].number > (*b)[4].number; });
   std::string text = std::to_string(safe) + " of " + std::to_string(rows.size()) +
                      " made-up hard cases (broken data, motions far from the training; the same in every report) end "
-                     "safely: finite and bounded everywhere, or refused with a message. The worst three errors: ";
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
-    const auto& row = *order[i];
-    text += (i == 0 ? "" : "; ") + row[1].text + " with \"" + row[0].text + "\", " + three_digits(row[4].number) + " JND";
+                     "safely: finite and bounded everywhere, or refused with a message. The worst three cases: ";
+  std::vector<std::string> named;  // a case once, with its worst method
+  for (const auto* worst : order) {
+    const auto& row = *worst;
+    if (named.size() == 3) break;
+    if (std::find(named.begin(), named.end(), row[0].text) != named.end()) continue;
+    named.push_back(row[0].text);
+    text += (named.size() == 1 ? "" : "; ") + row[1].text + " with \"" + row[0].text + "\", " + three_digits(row[4].number) + " JND";
   }
   return "<p>" + prose(text + ".") + "</p>\n";
 }

@@ -25,11 +25,14 @@ struct ReportRecipe {
 };
 
 struct ReportPlan {
+  bool quick = false;
   ReportRecipe recipe;
   std::vector<PlannedModel> models;    // the main ones first, a method's base before it
   std::vector<PlannedModel> repeated;  // once per seed
   std::vector<std::uint64_t> seeds;    // at least ten
-  std::vector<std::size_t> site_counts;  // for fit time against sites; those above the data's are left out
+  // For fit time against sites: the most (or all that there are), halved again and again.
+  std::size_t most_sites = 0;
+  int site_halvings = 0;
   int left_out_folds = 2;  // of the training, for the recommendation
   int most_dimensions = 0;
   std::size_t dimension_sites = 0;  // at most, for cost against the dimension
@@ -43,6 +46,6 @@ ReportPlan make_plan(bool quick, std::size_t features, const ReportRecipe& recip
 const PlannedModel* representative(const ReportPlan& plan, Rung rung);
 
 // Whether a model is cheap enough in fitting to be fitted again for the recommendation.
-bool is_candidate(const PlannedModel& model);
+bool is_candidate(const PlannedModel& model, bool quick);
 
 }  // namespace palpate

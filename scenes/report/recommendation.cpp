@@ -7,6 +7,9 @@
 namespace palpate {
 namespace {
 
+constexpr std::uint64_t kFewestBlocks = 3;
+constexpr double kPoorShare = 0.9;  // within the JND
+
 std::string percent(double share) { return fixed(100.0 * share, 2) + " %"; }
 
 bool better(const Evidence& one, const Evidence& other) {
@@ -66,7 +69,10 @@ void confirm(Recommendation& result, const std::vector<Candidate>& ranked, const
 
 }  // namespace
 
-bool tied(const Evidence& one, const Evidence& other) { return one.p99_interval.overlaps(other.p99_interval); }
+bool tied(const Evidence& one, const Evidence& other) {
+  // Of one or two blocks a resampling says nothing.
+  return std::min(one.blocks, other.blocks) < kFewestBlocks || one.p99_interval.overlaps(other.p99_interval);
+}
 
 int evaluation_cost(const ModelResult& model, std::size_t features) {
   const Method& method = *model.plan.request.method;
@@ -99,10 +105,17 @@ Recommendation recommend(const std::vector<ModelResult>& models, std::size_t fea
   const Candidate& chosen = candidates.front();
   result.chosen = chosen.model->plan.name;
   const std::string where = result.left_out ? "training strokes left out of the fit" : "the test itself";
-  result.reason = "Chosen on " + where + ": " + result.chosen + ", the cheapest of " +
-                  std::to_string(result.tied.size()) + " models tied with the best there (" + best.model->plan.name +
-                  "), with " + percent(chosen.evidence->within_jnd) + " within the JND and 99 % of the errors up to " +
+  const std::string rank =
+      result.tied.size() == 1 ? "the best there"
+                              : "the cheapest of " + std::to_string(result.tied.size()) + " models that are tied there" +
+                                    (chosen.model == best.model ? "" : " (" + best.model->plan.name + " is the best)");
+  result.reason = "Chosen on " + where + ": " + result.chosen + ", " + rank + ", with " + percent(chosen.evidence->within_jnd) + " within the JND and 99 % of the errors up to " +
                   three_digits(chosen.evidence->p99_error_over_jnd) + " JND.";
+  if (chosen.evidence->within_jnd < kPoorShare) {
+    result.reason += result.left_out ? " That is little: the strokes left out are unlike those that remained, so the "
+                                       "choice rests on thin ground. Record more strokes to train on."
+                                     : " That is little; no model of this report is good enough.";
+  }
   if (!result.left_out) {
     result.recommended = result.chosen;
     result.reason += " Nothing could be left out of the training, so no test remains that had no say.";

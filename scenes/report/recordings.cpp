@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scenes/material/rig.h"
+#include "models/training/surface_estimate.h"
 #include "scenes/report/leakage.h"
 
 namespace palpate {
@@ -71,28 +72,6 @@ std::size_t cut_near(const Recording& recording, std::size_t from, std::size_t p
   return from;
 }
 
-Result<std::vector<SharedRecording>> cut(const Recording& whole) {
-  const std::size_t part = whole.rows.size() / kMostFolds;
-  if (part < kSmallestPart) {
-    return Error{whole.name + ": found " + std::to_string(whole.rows.size()) + " rows and no test recording, expected "
-                 "at least " + std::to_string(kMostFolds * kSmallestPart) +
-                 " to cut into parts; give another recording with --test"};
-  }
-  std::vector<SharedRecording> parts;
-  std::size_t begin = 0;
-  for (std::size_t k = 1; k <= kMostFolds; ++k) {
-    const std::size_t end = k == kMostFolds ? whole.rows.size() : cut_near(whole, k * part, part);
-    auto piece = std::make_shared<Recording>();
-    piece->name = whole.name + " part " + std::to_string(k);
-    piece->columns = whole.columns;
-    piece->rows.assign(whole.rows.begin() + static_cast<std::ptrdiff_t>(begin),
-                       whole.rows.begin() + static_cast<std::ptrdiff_t>(end));
-    parts.push_back(std::move(piece));
-    begin = end;
-  }
-  return parts;
-}
-
 void make_folds(RecordingSet& set) {
   const std::size_t folds = std::min(kMostFolds, set.all.size());
   set.folds.resize(folds);
@@ -132,39 +111,37 @@ Status check_contact(const RecordingSet& set) {
   return {};
 }
 
-// Every other part of every recording.
-LeftOutFold every_other(const std::vector<std::vector<SharedRecording>>& parts, std::size_t odd) {
-  LeftOutFold fold;
-  for (const auto& recording : parts) {
-    for (std::size_t k = 0; k < recording.size(); ++k) (k % 2 == odd ? fold.left_out : fold.train).push_back(recording[k]);
-  }
-  return fold;
-}
-
 }  // namespace
 
-std::vector<LeftOutFold> left_out_folds(const std::vector<SharedRecording>& training, int most) {
-  std::vector<LeftOutFold> folds;
-  constexpr std::size_t kWholeFrom = 3;  // recordings: whole ones are left out
-  if (training.size() >= kWholeFrom) {
-    for (std::size_t f = 0; f < std::min<std::size_t>(static_cast<std::size_t>(most), kWholeFrom); ++f) {
-      LeftOutFold fold;
-      for (std::size_t i = 0; i < training.size(); ++i) {
-        (i % kWholeFrom == (f + 1) % kWholeFrom ? fold.left_out : fold.train).push_back(training[i]);
-      }
-      folds.push_back(std::move(fold));
-    }
-    return folds;
+Recording with_correction(const Recording& recording, const RowCorrection& correction) {
+  Recording moved = recording;
+  for (RecordingRow& row : moved.rows) {
+    row.position_m -= correction.offset_m;
+    row.force_N -= correction.force_zero_N;
   }
-  std::vector<std::vector<SharedRecording>> parts;
-  for (const SharedRecording& recording : training) {
-    auto pieces = cut(*recording);
-    if (!pieces) return {};
-    parts.push_back(std::move(*pieces));
+  return moved;
+}
+
+Result<std::vector<SharedRecording>> cut_into_parts(const Recording& whole) {
+  const std::size_t part = whole.rows.size() / kMostFolds;
+  if (part < kSmallestPart) {
+    return Error{whole.name + ": found " + std::to_string(whole.rows.size()) + " rows and no test recording, expected "
+                 "at least " + std::to_string(kMostFolds * kSmallestPart) +
+                 " to cut into parts; give another recording with --test"};
   }
-  // The odd parts first: training on the first, third and fifth has more to learn from.
-  for (int f = 0; f < std::min(most, 2); ++f) folds.push_back(every_other(parts, f == 0 ? 1 : 0));
-  return folds;
+  std::vector<SharedRecording> parts;
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k <= kMostFolds; ++k) {
+    const std::size_t end = k == kMostFolds ? whole.rows.size() : cut_near(whole, k * part, part);
+    auto piece = std::make_shared<Recording>();
+    piece->name = whole.name + " part " + std::to_string(k);
+    piece->columns = whole.columns;
+    piece->rows.assign(whole.rows.begin() + static_cast<std::ptrdiff_t>(begin),
+                       whole.rows.begin() + static_cast<std::ptrdiff_t>(end));
+    parts.push_back(std::move(piece));
+    begin = end;
+  }
+  return parts;
 }
 
 Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
@@ -196,9 +173,11 @@ Result<RecordingSet> load_recordings(const std::vector<std::string>& train, cons
   if (trained == set.all.size()) {
     set.cross_validated = true;
     if (set.all.size() == 1) {
-      auto parts = cut(*set.all.front());
+      const SurfaceEstimate surface = estimate_surface(*set.all.front());
+      auto parts = cut_into_parts(with_correction(*set.all.front(), {surface.offset_m, surface.force_zero_N}));
       if (!parts) return parts.error();
       set.all = std::move(*parts);
+      set.at_own_surface = true;
     }
     make_folds(set);
   } else {

@@ -10,6 +10,7 @@
 
 #include "engine/recording/recording.h"
 #include "engine/base/result.h"
+#include "models/training/motion_source.h"
 #include "scenes/report/report_data.h"
 
 namespace palpate {
@@ -28,19 +29,19 @@ struct RecordingSet {
   std::vector<RecordingFacts> facts;
   bool virtual_recordings = false;
   bool cross_validated = false;
+  bool at_own_surface = false;  // positions are from the surface already: parts of one recording
 };
 
-// Training recordings again, with strokes left out: of several recordings whole ones, of
-// one or two every other part of them.
-struct LeftOutFold {
-  std::vector<SharedRecording> train;
-  std::vector<SharedRecording> left_out;
-};
-
-// Up to `most` folds of `training`; none where nothing can be left out.
-std::vector<LeftOutFold> left_out_folds(const std::vector<SharedRecording>& training, int most);
+// The same recording with its surface and force zero moved to 0.
+Recording with_correction(const Recording& recording, const RowCorrection& correction);
 
 inline constexpr std::size_t kMostFolds = 5;
+
+// kMostFolds parts of about the same length, each from a place where the tool is out of
+// contact if it ever is. A part says less of its surface than the whole does (it may begin
+// on a dent that the last press left): move the whole to its surface before. Errors: too
+// short.
+Result<std::vector<SharedRecording>> cut_into_parts(const Recording& whole);
 
 // Reads the files. Without any, the virtual silicone: seed 1 to train on, seed 2
 // to test on. Without a test recording the training recordings are divided into

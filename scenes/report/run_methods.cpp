@@ -10,22 +10,17 @@
 #include "models/training/surface_search.h"
 #include "scenes/report/coverage_finder.h"
 #include "scenes/report/evaluator.h"
+#include "scenes/report/left_out.h"
+#include "scenes/report/method_fitter.h"
 #include "scenes/report/no_force.h"
 #include "scenes/report/recommendation.h"
 #include "scenes/report/scaling.h"
-#include "scenes/report/stopwatch.h"
 #include "scenes/report/trace_finder.h"
 #include "scenes/report/weighted_progress.h"
-#include "scenes/scene/training.h"
 
 namespace palpate {
 namespace {
 
-// A method's base has been fitted before it.
-double own_seconds(const MethodRequest& request) { return request.method->expected_seconds(request); }
-
-constexpr double kPrepareWeight = 1.0;
-constexpr double kEvaluateWeight = 0.1;  // a model
 constexpr double kSitesWeight = 8.0;
 constexpr double kDimensionWeight = 10.0;
 
@@ -34,11 +29,11 @@ double total_weight(const RecordingSet& recordings, const ReportPlan& plan) {
   double fold = prepare;
   double left_out = prepare;
   for (const PlannedModel& model : plan.models) {
-    fold += own_seconds(model.request) + 2.0 * kEvaluateWeight;
-    if (is_candidate(model)) left_out += own_seconds(model.request) + kEvaluateWeight;
+    fold += fit_weight(model.request) + 2.0 * kEvaluateWeight;
+    if (is_candidate(model, plan.quick)) left_out += fit_weight(model.request) + kEvaluateWeight;
   }
   for (const PlannedModel& model : plan.repeated) {
-    fold += static_cast<double>(plan.seeds.size()) * (own_seconds(model.request) + kEvaluateWeight);
+    fold += static_cast<double>(plan.seeds.size()) * (fit_weight(model.request) + kEvaluateWeight);
   }
   return fold * static_cast<double>(recordings.folds.size()) + left_out * plan.left_out_folds + kSitesWeight +
          kDimensionWeight;
@@ -68,46 +63,6 @@ double surface_of_models(const Recording& recording, const std::vector<ModelPoin
   return locate_surface(thinned_rows(recording, kSearchRows), models, jnd).offset_m;
 }
 
-// The training as each recipe prepares it.
-struct Preparations {
-  std::optional<PreparedTraining> paper;
-  std::optional<PreparedTraining> palpate;
-
-  const PreparedTraining& of(Rung rung) const { return rung == Rung::paper || !palpate ? *paper : *palpate; }
-};
-
-// A fit that may take time, and what its method's base took before it.
-class MethodFitter {
- public:
-  struct Outcome {
-    MethodFit fit;
-    double seconds = 0.0;  // the base's included
-  };
-
-  explicit MethodFitter(const Preparations& prepared) : prepared_(prepared) {}
-
-  // `model` above the lowest rung. The first fit of a rung and method serves as base.
-  Result<Outcome> fit(const PlannedModel& model, const FitControl& control) {
-    const auto base = done_.find({model.rung, model.request.method->base});
-    const bool has_base = base != done_.end();
-    const Stopwatch start;
-    const PreparedTraining& prepared = prepared_.of(model.rung);
-    MethodRequest request = model.request;
-    // Left-out parts of a recording may support other features than the whole.
-    if (!request.grid.empty()) request.grid.resize(prepared.common.features.size(), request.grid.back());
-    auto fit = fit_method(prepared, request, control, has_base ? &base->second.fit : nullptr);
-    if (!fit && fit.error().message == interrupted().message) return fit.error();
-    if (!fit) return Error{model.name + ": " + fit.error().message};
-    Outcome outcome{std::move(*fit), start.seconds() + (has_base ? base->second.seconds : 0.0)};
-    done_.try_emplace({model.rung, model.request.method}, outcome);
-    return outcome;
-  }
-
- private:
-  const Preparations& prepared_;
-  std::map<std::pair<Rung, const Method*>, Outcome> done_;
-};
-
 class Run {
  public:
   Run(const RecordingSet& recordings, const Scene& scene, const ReportPlan& plan, const FitControl& control)
@@ -130,7 +85,9 @@ class Run {
     finish_models();
     // With k folds every training stroke was left out once already.
     if (!recordings_.cross_validated) {
-      if (const Status status = leave_out(); !status) return status.error();
+      auto left_out = left_out_errors(registered_, scene_, plan_, progress_);
+      if (!left_out) return left_out.error();
+      for (std::size_t i = 0; i < left_out->size(); ++i) data_.models[i].left_out = (*left_out)[i];
     }
     data_.recommendation = recommend(data_.models, data_.coverage.features.size());
     return std::move(data_);
@@ -169,47 +126,18 @@ class Run {
     }
   }
 
-  Result<PreparedTraining> prepare(const std::vector<SharedRecording>& recordings, const TrainingRequest& request) {
-    std::vector<MotionSource::Input> inputs;
-    for (const SharedRecording& recording : recordings) inputs.push_back({"", recording});
-    MotionSource source(std::move(inputs));
-    return prepare_training(source, request, progress_.next(kPrepareWeight));
-  }
-
-  Result<Preparations> prepare(const std::vector<SharedRecording>& recordings) {
-    Preparations prepared;
-    if (plan_.recipe.paper) {
-      TrainingRequest request = training_request(scene_);
-      request.reduction = Reduction::force;
-      request.weighting = Weighting::relative;
-      request.choice = FeatureChoice::scene;
-      auto training = prepare(recordings, request);
-      if (!training) return training.error();
-      prepared.paper = std::move(*training);
-    }
-    if (plan_.recipe.palpate) {
-      TrainingRequest request = training_request(scene_);
-      request.reduction = plan_.recipe.reduction;
-      request.weighting = plan_.recipe.weighting;
-      request.choice = plan_.recipe.choice;
-      request.list = plan_.recipe.list;
-      auto training = prepare(recordings, request);
-      if (!training) return training.error();
-      prepared.palpate = std::move(*training);
-    }
-    return prepared;
-  }
-
   Status run_fold(int number) {
     const Fold& fold = recordings_.folds[static_cast<std::size_t>(number)];
     std::vector<SharedRecording> training;
     for (const std::size_t index : fold.train) training.push_back(recordings_.all[index]);
-    const auto prepared = prepare(training);
+    const Surface surface = recordings_.at_own_surface ? Surface::recorded : Surface::automatic;
+    const auto prepared = prepare_recipes(training, scene_, plan_.recipe, surface, progress_);
     if (!prepared) return prepared.error();
     const PreparedTraining& own = prepared->of(Rung::palpate);
     if (number == 0) {
       remember_relaxation(own);
       data_.worth = own.selection.worth;
+      registered_ = at_own_surfaces(training, own.common.provenance);
     }
     coverage_.add_sites(own.set);
     auto models = fit_models(number, *prepared);
@@ -238,7 +166,7 @@ class Run {
         models.push_back(std::make_shared<const NoForce>(prepared.of(Rung::palpate).set.features));
         continue;
       }
-      auto outcome = fitter.fit(plan, progress_.next(own_seconds(plan.request)));
+      auto outcome = fitter.fit(plan, progress_.next(fit_weight(plan.request)));
       if (!outcome) return outcome.error();
       MethodFit& fit = outcome->fit;
       const PreparedTraining& own = prepared.of(plan.rung);
@@ -274,7 +202,7 @@ class Run {
       for (const std::uint64_t seed : plan_.seeds) {
         MethodRequest request = model.request;
         request.seed = seed;
-        auto fit = fit_method(prepared.of(model.rung), request, progress_.next(own_seconds(request)));
+        auto fit = fit_method(prepared.of(model.rung), request, progress_.next(fit_weight(request)));
         if (!fit) return fit.error();
         models.push_back(std::make_shared<const FittedModel>(std::move(fit->data)));
       }
@@ -309,44 +237,10 @@ class Run {
                         const std::vector<ModelPointer>& main, double share) {
     const double offset_m = surface_of_models(recording, {main.begin() + 1, main.end()}, scene_.jnd);
     data_.surface_offset_m.push_back(offset_m);
-    const auto errors = moved_evaluator_.evaluate(with_surface_at(recording, offset_m), models,
+    const auto errors = moved_evaluator_.evaluate(with_correction(recording, {offset_m, 0.0}), models,
                                                   progress_.next(share * static_cast<double>(models.size())));
     if (!errors) return errors.error();
     for (std::size_t i = 0; i < errors->size(); ++i) data_.models[i].per_recording_moved.push_back((*errors)[i]);
-    return {};
-  }
-
-  // Candidates fitted again without some of the training strokes, and replayed over those.
-  Status leave_out() {
-    std::vector<SharedRecording> training;
-    for (const std::size_t index : recordings_.folds.front().train) training.push_back(recordings_.all[index]);
-    std::vector<std::size_t> candidates;
-    for (std::size_t i = 0; i < plan_.models.size(); ++i) {
-      if (is_candidate(plan_.models[i])) candidates.push_back(i);
-    }
-    ReplayEvaluator evaluator(candidates.size(), scene_.jnd);
-    bool any = false;
-    for (const LeftOutFold& fold : left_out_folds(training, plan_.left_out_folds)) {
-      // Too little to learn from, or to tell by: nothing can be said from this fold.
-      const auto prepared = prepare(fold.train);
-      if (!prepared) continue;
-      MethodFitter fitter(*prepared);
-      std::vector<ModelPointer> models;
-      for (const std::size_t i : candidates) {
-        auto outcome = fitter.fit(plan_.models[i], progress_.next(own_seconds(plan_.models[i].request)));
-        if (!outcome) break;
-        models.push_back(std::make_shared<const FittedModel>(std::move(outcome->fit.data)));
-      }
-      if (models.size() < candidates.size()) continue;
-      for (const SharedRecording& recording : fold.left_out) {
-        if (const auto errors = evaluator.evaluate(*recording, models); !errors) return errors.error();
-        any = true;
-      }
-    }
-    if (!progress_.next(0.0).go_on(1.0)) return interrupted();
-    if (!any) return {};
-    const std::vector<Evidence> pooled = evaluator.pooled();
-    for (std::size_t i = 0; i < candidates.size(); ++i) data_.models[candidates[i]].left_out = pooled[i];
     return {};
   }
 
@@ -369,7 +263,7 @@ class Run {
   }
 
   Status time_scaling(const PreparedTraining& prepared) {
-    auto sites = time_against_sites(prepared, plan_.site_counts, progress_.next(kSitesWeight));
+    auto sites = time_against_sites(prepared, plan_.most_sites, plan_.site_halvings, progress_.next(kSitesWeight));
     if (!sites) return sites.error();
     data_.sites_time = std::move(*sites);
     auto dimensions = time_against_dimension(prepared.sites, plan_.most_dimensions, plan_.dimension_sites,
@@ -415,6 +309,7 @@ class Run {
   NoiseFloorFinder floor_;
   TraceFinder trace_;
   CoverageFinder coverage_;
+  std::vector<SharedRecording> registered_;  // the training, every surface at 0
   ReportData data_;
 };
 

@@ -14,6 +14,9 @@
 namespace palpate {
 namespace {
 
+// With fewer a fit takes no time that a clock can tell.
+constexpr std::size_t kFewestSites = 100;
+
 // `count` indices below `total`, evenly spread.
 std::vector<Eigen::Index> spread(std::size_t total, std::size_t count) {
   std::vector<Eigen::Index> indices;
@@ -86,17 +89,18 @@ Result<double> time_grid(const Sites& sites, const RbfFunction& function, Dimens
 
 }  // namespace
 
-Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepared,
-                                                  const std::vector<std::size_t>& site_counts,
+Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepared, std::size_t most, int halvings,
                                                   const FitControl& control) {
   std::vector<SitesTime> times;
+  const std::size_t all = std::min(most, prepared.set.sites.size());
   double done = 0.0;
-  for (const std::size_t asked : site_counts) {
+  for (int halving = halvings; halving >= 0; --halving) {
+    const std::size_t asked = all >> halving;
     done += 1.0;
-    if (asked > prepared.set.sites.size()) continue;
+    if (asked < kFewestSites) continue;
     const PreparedTraining some = with_sites(prepared, asked);
     FitControl quiet;
-    quiet.progress = [&](double) { return control.go_on((done - 1.0) / static_cast<double>(site_counts.size())); };
+    quiet.progress = [&](double) { return control.go_on((done - 1.0) / (1.0 + halvings)); };
     std::map<const Method*, std::pair<MethodFit, double>> fitted;
     for (const PlannedModel& model : make_plan(true, prepared.set.features.size()).models) {
       if (!model.main || model.rung != Rung::palpate) continue;

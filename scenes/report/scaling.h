@@ -11,10 +11,9 @@
 
 namespace palpate {
 
-// Every method with its default size on every so-manieth site. Errors: interrupted;
-// those of fit_method.
-Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepared,
-                                                  const std::vector<std::size_t>& site_counts,
+// Every method with its default size on `most` of the sites, or all that there are, and on
+// a half, a quarter ... of those, evenly spread. Errors: interrupted; those of fit_method.
+Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepared, std::size_t most, int halvings,
                                                   const FitControl& control);
 
 // Direct interpolation, a grid of kNodesPerDimension nodes a side filled from it,

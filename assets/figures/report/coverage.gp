@@ -2,6 +2,8 @@
 reset
 load "coverage.set"
 load "style.gp"
+stats "coverage.csv" using "depth" nooutput
+set xtics tic_step(STATS_max, 4)
 do for [medium in media] {
   eval open(medium, "coverage")
   set multiplot layout 1,panel_count
@@ -12,7 +14,7 @@ do for [medium in media] {
     set ylabel (p == 0 ? y_label_0 : p == 1 ? y_label_1 : y_label_2) offset 1,0
     if (p == 0) {
       set label 1 "trained on" at graph 0,1.06 left textcolor rgb blue
-      set label 2 "test, near" at graph 0.45,1.06 left textcolor rgb muted
+      set label 2 "test, near" at graph 1,1.06 right textcolor rgb muted
     }
     if (p == 1 || panel_count == 1) { set label 3 "test, away" at graph 0,1.06 left textcolor rgb vermilion }
     of(kind) = strcol("kind") eq kind ? column("depth") : NaN

@@ -30,7 +30,7 @@ TEST(ReplayEvaluator, PoolsWhatItSawRecordingByRecording) {
 
 TEST(WithSurfaceAt, MovesPositionsAlone) {
   const Recording recording = test::example_recording(20, 1000.0);
-  const Recording moved = with_surface_at(recording, 0.001);
+  const Recording moved = with_correction(recording, {0.001, 0.0});
   EXPECT_DOUBLE_EQ(moved.rows[7].position_m, recording.rows[7].position_m - 0.001);
   EXPECT_EQ(moved.rows[7].force_N, recording.rows[7].force_N);
 }

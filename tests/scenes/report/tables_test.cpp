@@ -97,7 +97,7 @@ TEST(Tables, HardCasesSayWhetherTheyAreSafe) {
 TEST(Findings, LeadWithWhatEveryRungGains) {
   const auto plain = findings(example(), false);
   ASSERT_GE(plain.size(), 5u);
-  EXPECT_EQ(plain[0].rfind("A model that always says 0 N has ", 0), 0u) << plain[0];
+  EXPECT_EQ(plain[0].rfind("Within the JND of the test: a model that always says 0 N has ", 0), 0u) << plain[0];
   for (const char* rung : {"the trend alone", "the paper's recipe (paper-greedy-100)", "Palpate (greedy-100)"}) {
     EXPECT_NE(plain[0].find(rung), std::string::npos) << plain[0];
   }
