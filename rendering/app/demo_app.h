@@ -75,7 +75,7 @@ class DemoApp {
   void replay_key(int key);
   void handle_mouse();
   void move_tool_to_mouse();
-  void take_notices(double now_s);
+  void read_notices(double now_s);
   void draw();
   void draw_blocks();
   void clear_panel();
@@ -90,11 +90,11 @@ class DemoApp {
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.
-  void go_on_with(const std::string& scene, const std::string& device);
+  void switch_to(const std::string& scene, const std::string& device);
   void reopen(const SessionRequest& request);
   void offer_finished_recording();
   void next_line_up();
-  double limited_depth_m(double wanted_m) const;
+  double limited_depth_m(double requested_m) const;
   void save_curves();
   CurveSource curve_source() const;
   void next_reference();
