@@ -1,5 +1,7 @@
 #include "models/export/export_c.h"
 
+#include <cmath>
+
 #include "models/export/correction_c.h"
 #include "models/export/feature_c.h"
 #include "models/export/motion_c.h"
@@ -87,7 +89,7 @@ static real model_force(void) {
   for (k = 0; k < FEATURES; ++k) u[k] = (value[k] - offset[k]) * inverse_scale[k];
   force_N = trend_of();
   trust = trust_in(u);
-  is_out_of_domain = trust < R(0.5);
+  is_out_of_domain = trust < R(0.5) || IS_TOO_DEEP;
   if (trust > R(0.0)) {
     const real correction_N = correction_of(u) - CORRECTED_SHARE * force_N;
     force_N += trust * clamped(correction_N, -CORRECTION_LIMIT_N, CORRECTION_LIMIT_N);
@@ -130,11 +132,20 @@ real palpate_force(real time_s, real position_m) {
 }
 )C";
 
+// A press deeper than any recorded one, as the library tells it.
+std::string too_deep(const CText& out, const ModelData& data) {
+  std::size_t feature = 0;
+  const double deepest_m = deepest_in_domain_m(data, feature);
+  if (!std::isfinite(deepest_m)) return "0";
+  return std::string("(value[").append(std::to_string(feature)).append("] > ").append(out.number(deepest_m)).append(")");
+}
+
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n#define CORRECTED_SHARE " +
           std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") + "\n#define CORRECTION_LIMIT_N " +
           out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
           out.number(kForceMargin * data.largest_force_N) + "\n");
+  out.add("#define IS_TOO_DEEP " + too_deep(out, data) + "\n");
   out.list("offset", data.offset);
   out.list("inverse_scale", data.scale.cwiseInverse());
 }

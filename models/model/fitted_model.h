@@ -87,6 +87,10 @@ inline constexpr double kForceMargin = 1.2;
 // field, what was found and what was expected.
 Status validate_model(const ModelData& data);
 
+// Depths beyond this are out of the domain whatever the guard's radius; infinite without
+// a depth feature. `feature`: which one that is; 0 without.
+double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
+
 class FittedModel final : public ForceModel {
  public:
   // `data` must pass validate_model.

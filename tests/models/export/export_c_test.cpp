@@ -102,6 +102,22 @@ TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   }
 }
 
+TEST(ExportC, APressDeeperThanRecordedIsOutOfTheDomain) {
+  ModelData data = test::example_models().front();
+  data.upper(0) = 3e-3;  // of depth: recordings go to 6 mm
+  data.lower(0) = 0.0;
+  const Recording& recording = recordings().front();
+  const CompiledModel<double> compiled(data, request_for(recording));
+  ASSERT_NE(compiled.force, nullptr);
+  int flagged = 0;
+  for_each_force(recording, data, [&](const RecordingRow& row, double, bool out_of_domain) {
+    compiled.force(row.time_s, row.position_m);
+    EXPECT_EQ(compiled.out_of_domain(), out_of_domain ? 1 : 0);
+    flagged += out_of_domain ? 1 : 0;
+  });
+  EXPECT_GT(flagged, 100);
+}
+
 TEST(ExportC, StepsGiveTheSameAsTimes) {
   const Recording& recording = recordings().front();
   const ModelData data = test::example_models().front();
