@@ -25,6 +25,15 @@ std::string in_comment(const std::string& text) {
   return safe;
 }
 
+// What the file takes the positions for.
+std::string sensor_text(const CText& exact, const PositionSensor& sensor) {
+  const std::string step = sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
+  const std::string noise =
+      sensor.position_noise_m > 0.0 ? "with a noise of " + exact.number(sensor.position_noise_m) + " m" : "";
+  if (step.empty() && noise.empty()) return "exact";
+  return step + (step.empty() || noise.empty() ? "" : " ") + noise;
+}
+
 std::string head(const ModelData& data, const ExportRequest& request) {
   const std::string real = request.single_precision ? "float" : "double";
   const CText exact(false);
@@ -43,13 +52,16 @@ std::string head(const ModelData& data, const ExportRequest& request) {
          " *\n"
          " * One tool, one thread: the state is static. For two models in one program compile one\n"
          " * with -Dpalpate_force=other_force and so on.\n"
-         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M may be defined when compiling: the\n"
-         " * step that positions come in, 0 where there is none, and the deviation beside it.\n"
+         " * Positions are taken to be " + sensor_text(exact, request.sensor) + ". For another sensor define\n"
+         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M when compiling: the step that\n"
+         " * positions come in, 0 where there is none, and the deviation beside it.\n"
+         " * A recording of such positions, without measured velocity or acceleration, gives the\n"
+         " * forces of palpate replay.\n"
          " */\n"
          "#include <stdint.h>\n\n"
-         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " + exact.number(request.encoder_step_m) +
+         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " + exact.number(request.sensor.encoder_step_m) +
          "\n#endif\n#ifndef PALPATE_POSITION_NOISE_M\n#define PALPATE_POSITION_NOISE_M " +
-         exact.number(request.position_noise_m) + "\n#endif\n\n";
+         exact.number(request.sensor.position_noise_m) + "\n#endif\n\n";
 }
 
 constexpr const char* kDoubleC = R"C(typedef double real;

@@ -119,6 +119,11 @@ Status validate_model(const ModelData& data) {
       if (!(value >= 0.0) || !std::isfinite(value)) return wrong("error_bound", std::to_string(value), "0 or more");
     }
   }
+  if (data.sensor) {
+    for (const double value : {data.sensor->encoder_step_m, data.sensor->position_noise_m}) {
+      if (!(value >= 0.0) || !std::isfinite(value)) return wrong("sensor", std::to_string(value), "0 or more");
+    }
+  }
   for (const auto& [value, field] : {std::pair{data.correction_limit_N, "correction_limit_N"},
                                      std::pair{data.largest_force_N, "largest_force_N"},
                                      std::pair{data.jnd.offset_N, "jnd.offset_N"},
@@ -127,6 +132,11 @@ Status validate_model(const ModelData& data) {
   }
   if (data.correction == nullptr) return wrong("model", "no correction", "centres, a grid, or the trend alone");
   return data.correction->validate(static_cast<int>(n));
+}
+
+PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m) {
+  const bool theirs = data.sensor && (encoder_step_m == 0.0 || encoder_step_m == data.sensor->encoder_step_m);
+  return theirs ? *data.sensor : PositionSensor{encoder_step_m, 0.0};
 }
 
 double deepest_in_domain_m(const ModelData& data, std::size_t& feature) {

@@ -22,7 +22,7 @@ using Compare = std::function<void(const RecordingRow& row, double force_N, bool
 
 ExportRequest request_for(const Recording& recording) {
   const SensorSpec sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
-  return {false, sensor.encoder_step_m, sensor.position_noise_m};
+  return {false, {sensor.encoder_step_m, sensor.position_noise_m}};
 }
 
 void for_each_force(const Recording& recording, const ModelData& data, const Compare& compare) {
@@ -158,7 +158,7 @@ TEST(ExportC, TheSameModelGivesTheSameBytesAndCountsItsTables) {
   for (const ModelData& data : all_models()) {
     const Result<ExportedC> once = export_c(data, {});
     const Result<ExportedC> again = export_c(data, {});
-    const Result<ExportedC> single = export_c(data, {true, 0.0, 0.0});
+    const Result<ExportedC> single = export_c(data, {true, {}});
     ASSERT_TRUE(once.ok() && again.ok() && single.ok());
     EXPECT_EQ(once->text, again->text);
     EXPECT_GT(once->table_bytes, single->table_bytes);
