@@ -374,6 +374,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
     if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
   }
 
+  prepared.common.sensor = PositionSensor{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;
   provenance.recordings = source.names();
   provenance.scene = request.scene;

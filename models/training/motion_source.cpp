@@ -166,7 +166,10 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
       if (!count) return count.error();
       if (*count == 0) break;
       if (!estimator) {
-        estimator.emplace(identify_sensor(chunk.data(), *count, stream->columns()));
+        const SensorSpec sensor = identify_sensor(chunk.data(), *count, stream->columns());
+        estimator.emplace(sensor);
+        std::tie(encoder_step_m_, position_noise_m_) = std::max(
+            std::pair{encoder_step_m_, position_noise_m_}, std::pair{sensor.encoder_step_m, sensor.position_noise_m});
         force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk.data(), *count));
       }
       for (std::size_t i = 0; i < *count; ++i) {
