@@ -26,7 +26,6 @@ constexpr double kNsPerS = 1e9;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
-constexpr float kTextStep = 0.1F;
 constexpr double kExaggeration = 10.0;
 
 // Where real-time priority was refused, the picture steps back for the force:
@@ -85,6 +84,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (view_.kiosk) {
     if (Status status = set_up_exhibit(); !status) return status;
   }
+  commands_ = make_commands();
   listen();
   if (find_font().empty())
     notify("no font found; install fonts-dejavu-core", true);
@@ -101,7 +101,7 @@ void DemoApp::listen() {
   });
   glfwSetKeyCallback(window_->handle(), [](GLFWwindow* handle, int key, int, int action, int modifiers) {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
-    if (action == GLFW_PRESS) app->press_key(key, modifiers);
+    app->handle_key_event(key, action, modifiers);
   });
   // After these callbacks, which it calls behind its own.
   ui_ = std::make_unique<UiContext>(window_->handle());
@@ -164,7 +164,7 @@ void DemoApp::draw() {
   const SceneArea area = scene_area();
   const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {[this](Command command) { run(command); },
+                {&commands_,
                  [this](const std::string& scene) { go_on_with(scene, first_device_); },
                  [this](const std::string& path) { go_on_with(request_.scene, "replay:" + path); }});
   if (view_.kiosk) {
@@ -260,118 +260,12 @@ void DemoApp::take_notices(double now_s) {
   if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
 }
 
-void DemoApp::run(Command command) {
-  switch (command) {
-    case Command::next_block_count:
-      view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
-      notify_of_missing_blocks();
-      break;
-    case Command::pause_curves:
-      if (view_.time.paused) {
-        view_.time.run();
-      } else {
-        view_.time.pause(steady_now_s());
-      }
-      break;
-    case Command::next_line_up:
-      next_line_up();
-      break;
-    case Command::exaggerate:
-      view_.exaggerated = !view_.exaggerated;
-      break;
-    case Command::scene_list:
-      view_.scene_list = !view_.scene_list;
-      break;
-    case Command::difference:
-      view_.difference = !view_.difference;
-      break;
-    case Command::reset_figures:
-      session_->reset_figures();
-      break;
-    case Command::next_reference:
-      next_reference();
-      break;
-    case Command::record:
-      record();
-      break;
-    case Command::file_list:
-      view_.file_list = !view_.file_list;
-      break;
-    case Command::zero:
-      session_->start_zeroing();
-      break;
-    case Command::dead_man:
-      next_dead_man();
-      break;
-    case Command::details:
-      view_.details = !view_.details;
-      break;
-    case Command::theme:
-      view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light;
-      break;
-    case Command::help:
-      view_.help = !view_.help;
-      break;
-    case Command::save_curves:
-      save_curves();
-      break;
-    case Command::home_view:
-      blocks_->camera().go_home();
-      break;
-    case Command::larger_text:
-      view_.text_size = std::min(kLargestText, view_.text_size + kTextStep);
-      break;
-    case Command::smaller_text:
-      view_.text_size = std::max(kSmallestText, view_.text_size - kTextStep);
-      break;
-    case Command::fullscreen:
-      window_->set_fullscreen(!window_->fullscreen());
-      break;
-  }
-}
-
-// Fewer models than blocks were asked for: no block stays away without a word.
-void DemoApp::notify_of_missing_blocks() {
-  const std::size_t shown = shown_slots(*session_, view_.block_count).size();
-  if (shown >= view_.block_count) return;
-  notify(std::to_string(shown) + " of " + std::to_string(view_.block_count) + " blocks: no more models are ready", false);
-}
-
 void DemoApp::notify(std::string text, bool problem) {
   if (view_.kiosk) {  // not for visitors
     write_to_log(text);
     return;
   }
   toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
-}
-
-void DemoApp::next_dead_man() {
-  if (!session_->renders_force()) {
-    notify("there is no device that pushes: nothing to hold a switch for", false);
-    return;
-  }
-  switch (session_->dead_man()) {
-    case DeadMan::off:
-      session_->use_dead_man(DeadMan::key);
-      break;
-    case DeadMan::key:
-      session_->use_dead_man(DeadMan::grip);
-      break;
-    case DeadMan::grip:
-      session_->use_dead_man(DeadMan::off);
-      break;
-  }
-}
-
-void DemoApp::next_reference() {
-  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->comparison().reference());
-  const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
-  for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
-    const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];
-    if (!session_->has_reference(kind)) continue;
-    session_->use_reference(kind);
-    return;
-  }
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {

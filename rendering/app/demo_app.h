@@ -54,11 +54,12 @@ class DemoApp {
   Window& window() noexcept { return *window_; }
 
   // What events do; GLFW's callbacks call them. A key counts even when it was
-  // pressed and let go within a frame.
+  // pressed and let go within a frame. `action`: of GLFW.
   // A recording (.csv) is offered to be fitted or replayed; all else is taken for a model.
   void drop_files(const std::vector<std::string>& paths);
-  void press_key(int key, int modifiers);
-  void run(Command command);
+  void handle_key_event(int key, int action, int modifiers);
+  // All that can be asked for, a row each; an exhibit has buttons of its own.
+  std::vector<WindowCommand>& commands() noexcept { return commands_; }
 
  private:
   DemoApp() = default;
@@ -67,12 +68,19 @@ class DemoApp {
   struct KeyPress {
     int key = 0;  // GLFW's
     int modifiers = 0;
+    bool again = false;  // the keyboard repeats it
   };
+  std::vector<WindowCommand> make_commands();
   void handle_keys();
   void handle_key(const KeyPress& press);
+  void run_held();
   void close_windows();
   void nudge_tool(double by_m);
-  void replay_key(int key);
+  void select_listed(std::size_t number);
+  void pause_or_run();
+  void next_block_count();
+  void scroll_curves(double by_s);
+  void seek_replay(double by_s);
   void handle_mouse();
   void move_tool_to_mouse();
   void take_notices(double now_s);
@@ -99,7 +107,6 @@ class DemoApp {
   CurveSource curve_source() const;
   void next_reference();
   void next_dead_man();
-  void notify_of_missing_blocks();
 
   // What lies on the window goes before it.
   std::unique_ptr<Window> window_;
@@ -119,7 +126,9 @@ class DemoApp {
   std::string recording_;  // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;
+  std::vector<WindowCommand> commands_;
   std::vector<KeyPress> keys_;  // since the last frame
+  std::vector<int> down_;       // keys that are held
   double frame_began_s_ = 0.0;
   double last_frame_s_ = 0.0;  // its end
   double second_began_s_ = 0.0;

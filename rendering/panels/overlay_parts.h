@@ -36,7 +36,7 @@ std::vector<std::string> model_files(const std::vector<std::string>& folders);
 
 // Windows in the middle.
 void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area);
-void draw_help(ViewState& view, const UiStyle& style);
+void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands);
 void draw_file_list(LiveSession& session, ViewState& view);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
 // What to do with a recording: fit it, replay it.

@@ -21,26 +21,6 @@ void begin_in_the_middle() {
 constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
 
-struct HelpLine {
-  const char* key;
-  const char* text;
-};
-
-std::vector<HelpLine> help_lines() {
-  std::vector<HelpLine> lines = {{"mouse", "moves the probe, over the block; down is deeper"},
-                                 {"wheel, Up, Down", "move the probe step by step"},
-                                 {"right button", "turns the view; Ctrl + wheel comes nearer"},
-                                 {"1 ... 9", "make a model the active one; a click on its block too"}};
-  for (const CommandEntry& entry : commands()) lines.push_back({entry.key, entry.help});
-  lines.push_back({"a row, right button", "renames a model, takes it out"});
-  lines.push_back({"on the curves", "drag zooms, the wheel goes back, double click goes on"});
-  lines.push_back({"Left, Right", "scroll back and forth while the curves stand still"});
-  lines.push_back({"P [ ] , .", "pause, seek, speed of a replayed recording"});
-  lines.push_back({"drop a file", "loads a model; of a recording: fits or replays it"});
-  lines.push_back({"Ctrl+Q", "ends the program"});
-  return lines;
-}
-
 }  // namespace
 
 std::vector<std::string> model_files(const std::vector<std::string>& folders) {
@@ -104,11 +84,11 @@ void draw_device_words(LiveSession& session, const UiStyle& style, const SceneAr
   ImGui::End();
 }
 
-void draw_help(ViewState& view, const UiStyle& style) {
+void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
   if (!view.help) return;
-  const std::vector<HelpLine> lines = help_lines();
+  const std::vector<HelpLine> lines = help_lines(commands);
   float keys = 0.0F;
-  for (const HelpLine& line : lines) keys = std::max(keys, ImGui::CalcTextSize(line.key).x);
+  for (const HelpLine& line : lines) keys = std::max(keys, ImGui::CalcTextSize(line.keys.c_str()).x);
   begin_in_the_middle();
   ImGui::SetNextWindowFocus();
   ImGui::Begin("Keys", &view.help, kDialog);
@@ -116,10 +96,10 @@ void draw_help(ViewState& view, const UiStyle& style) {
   const float from = ImGui::GetCursorPosX() + keys + ImGui::GetFontSize();
   const float room = all - from - 3.0F * ImGui::GetFontSize();
   for (const HelpLine& line : lines) {
-    ImGui::TextColored(paint(style.colours().text), "%s", line.key);
+    ImGui::TextColored(paint(style.colours().text), "%s", line.keys.c_str());
     ImGui::SameLine(from);
     ImGui::PushTextWrapPos(from + room);
-    ImGui::TextUnformatted(line.text);
+    ImGui::TextUnformatted(line.text.c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::End();

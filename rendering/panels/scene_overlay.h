@@ -15,44 +15,14 @@
 #include "rendering/panels/panel_views.h"
 #include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
+#include "rendering/panels/window_command.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
 
-// What can be asked for by button or key.
-enum class Command {
-  next_line_up,
-  exaggerate,
-  scene_list,
-  difference,
-  save_curves,
-  home_view,
-  larger_text,
-  smaller_text,
-  next_block_count,
-  pause_curves,
-  reset_figures,
-  next_reference,
-  record,
-  file_list,
-  zero,
-  dead_man,
-  details,
-  theme,
-  help,
-  fullscreen
-};
-struct CommandEntry {
-  Command command;
-  const char* key;    // as on the keyboard
-  const char* label;  // on its button; empty: no button
-  const char* help;   // one line
-};
-const std::vector<CommandEntry>& commands();
-
 // What the windows over the picture can ask of the program.
 struct OverlayActions {
-  std::function<void(Command)> run;
+  const std::vector<WindowCommand>* commands = nullptr;  // buttons and the list of keys
   std::function<void(const std::string&)> use_scene;
   std::function<void(const std::string&)> replay;
 };
