@@ -103,6 +103,13 @@ void DemoApp::listen() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->handle_key_event(key, action, modifiers);
   });
+  const auto stir = [](GLFWwindow* handle, auto...) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->stirred_ = true;
+  };
+  glfwSetCursorPosCallback(window_->handle(), stir);
+  glfwSetMouseButtonCallback(window_->handle(), stir);
+  glfwSetScrollCallback(window_->handle(), stir);
+  glfwSetCharCallback(window_->handle(), stir);
   // After these callbacks, which it calls behind its own.
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
@@ -146,16 +153,42 @@ void DemoApp::frame() {
   offer_finished_recording();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
-  draw();
+  const bool whole = panel_is_due(now_s);
+  if (whole) {
+    draw();
+  } else {
+    draw_again();
+  }
   handle_keys();
-  handle_mouse();
+  if (whole) handle_mouse();
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
 }
 
+// Text and curves are much of a frame's work where the processor draws, and nobody reads
+// sixty numbers a second: the probe moves in every frame, the panel some twenty times a second.
+// What somebody does is answered at once.
+bool DemoApp::panel_is_due(double now_s) const {
+  constexpr double kPanelEvery_s = 0.045;
+  const UiSize size = window_->ui_size();
+  return stirred_ || now_s - panel_drawn_s_ >= kPanelEvery_s || ImGui::GetIO().WantCaptureMouse ||
+         size.width != panel_drawn_in_.x || size.height != panel_drawn_in_.y;
+}
+
+void DemoApp::draw_again() {
+  draw_blocks();
+  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
+  const Viewport part = pixels_of(panel);
+  drawn_panel_.copy(part.x, part.y);
+  ui_->draw_again(panel.at, {panel.at.x + panel.size.x, panel.at.y + panel.size.y});
+}
+
 void DemoApp::draw() {
+  stirred_ = false;
+  panel_drawn_s_ = steady_now_s();
+  panel_drawn_in_ = {window_->ui_size().width, window_->ui_size().height};
   style_.update(window_->ui_size(), view_.kiosk ? kKioskText : view_.text_size, view_.theme);
   ui_->begin_frame();
   wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
@@ -173,6 +206,8 @@ void DemoApp::draw() {
     panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
   ui_->end_frame();
+  const Viewport part = pixels_of(panel);
+  drawn_panel_.take(part.x, part.y, part.width, part.height);
 }
 
 void DemoApp::draw_blocks() {

@@ -84,7 +84,9 @@ class DemoApp {
   void handle_mouse();
   void move_tool_to_mouse();
   void take_notices(double now_s);
-  void draw();
+  bool panel_is_due(double now_s) const;
+  void draw();        // all of it
+  void draw_again();  // the picture, and around it what was drawn last
   void draw_blocks();
   void clear_panel();
   void count_frame(double now_s);
@@ -135,6 +137,10 @@ class DemoApp {
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
   float wheel_ = 0.0F;  // of the mouse, in this frame
+  Backdrop drawn_panel_;
+  double panel_drawn_s_ = 0.0;
+  ImVec2 panel_drawn_in_{0.0F, 0.0F};  // a window of this size
+  bool stirred_ = true;  // somebody did something since the panel was drawn
   bool orbiting_ = false;
   bool leaving_ = false;  // a kiosk's only way out
 };

@@ -71,6 +71,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(settings_.camera);
   blocks_framed_ = 0;
+  stirred_ = true;
   view_.time = CurveTime{};
   view_.time.zero_s = steady_now_s();
 }

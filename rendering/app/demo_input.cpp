@@ -24,6 +24,7 @@ constexpr float kClick_px = 4.0F;
 }  // namespace
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
+  stirred_ = true;
   std::erase(down_, key);
   if (action == GLFW_RELEASE) return;
   down_.push_back(key);
