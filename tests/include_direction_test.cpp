@@ -43,7 +43,7 @@ const std::map<std::string, Names> kRooms = {
     {"scenes/scene", {"models/fit"}},
     {"scenes/material", {"scenes/scene", "devices/virtual"}},
     {"scenes/worker", {"scenes/material"}},
-    {"scenes/live", {"scenes/worker", "devices/registry"}},
+    {"scenes/live", {"scenes/worker", "devices/registry", "engine/import"}},
     {"scenes/report", {"scenes/material"}},
     {"scenes/study", {"scenes/worker", "devices/registry"}},
     {"scenes/cli", {"engine/import", "models/check", "models/export", "scenes/report", "scenes/study", "scenes/live"}},

@@ -58,7 +58,6 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 
 Status DemoApp::set_up(const DemoRequest& request) {
   view_.kiosk = request.kiosk;
-  view_.offered_recording = request.recording;
   view_.theme = request.kiosk ? Theme::dark : Theme::light;
   // Without a display nothing else needs to start.
   if (Status status = Window::find_display(); !status) return status;
@@ -88,6 +87,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   listen();
   if (find_font().empty())
     notify("no font found; install fonts-dejavu-core", true);
+  if (!request.recording.empty()) offer(request.recording);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
@@ -132,9 +132,10 @@ void DemoApp::close() {
 }
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
+  if (view_.kiosk) return;
   for (const std::string& path : paths) {
-    if (path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0 && !view_.kiosk) {
-      view_.offered_recording = path;
+    if (is_offered(path)) {
+      offer(path);
     } else {
       session_->load_file(path);
     }
@@ -151,6 +152,7 @@ void DemoApp::frame() {
   session_->update();
   take_notices(now_s);
   offer_finished_recording();
+  show_offer();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_began_s_ = now_s;
   const bool whole = panel_is_due(now_s);

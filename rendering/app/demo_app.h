@@ -4,6 +4,7 @@
 // Thread guarantee: main thread only.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@
 #include "rendering/panels/view_state.h"
 #include "rendering/app/window.h"
 #include "scenes/live/live_session.h"
+#include "scenes/live/recording_offer.h"
 
 namespace palpate {
 
@@ -49,13 +51,16 @@ class DemoApp {
 
   LiveSession& session() noexcept { return *session_; }
   ViewState& view() noexcept { return view_; }
+  const OpenDay& exhibit() const noexcept { return open_day_; }
+  const BlockView& blocks() const noexcept { return *blocks_; }
   const FrameFigures& frames() const noexcept { return frames_; }
   const std::vector<Toast>& toasts() const noexcept { return toasts_; }
   Window& window() noexcept { return *window_; }
 
   // What events do; GLFW's callbacks call them. A key counts even when it was
   // pressed and let go within a frame. `action`: of GLFW.
-  // A recording (.csv) is offered to be fitted or replayed; all else is taken for a model.
+  // A model file (.json) is loaded; all else is offered to be fitted or replayed, as a
+  // recording or as another program's table.
   void drop_files(const std::vector<std::string>& paths);
   void handle_key_event(int key, int action, int modifiers);
   // All that can be asked for, a row each; an exhibit has buttons of its own.
@@ -102,7 +107,9 @@ class DemoApp {
   // Another session in place of this one: a scene, a recording.
   void go_on_with(const std::string& scene, const std::string& device);
   void reopen(const SessionRequest& request);
+  void offer(const std::string& path);
   void offer_finished_recording();
+  void show_offer();
   void next_line_up();
   double limited_depth_m(double wanted_m) const;
   void save_curves();
@@ -125,6 +132,7 @@ class DemoApp {
   SessionRequest request_;
   std::string first_device_;  // as the program was asked for it
   std::optional<SessionRequest> next_;  // what to go on with after this frame
+  std::future<Result<RecordingOffer>> arriving_;  // a file that is read
   std::string recording_;  // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;

@@ -138,7 +138,7 @@ void DemoApp::seek_replay(double by_s) {
 
 void DemoApp::close_windows() {
   view_.help = view_.file_list = view_.details = view_.scene_list = false;
-  view_.offered_recording.clear();
+  view_.offered = {};
 }
 
 void DemoApp::next_dead_man() {

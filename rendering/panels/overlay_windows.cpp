@@ -67,8 +67,8 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
 }
 
 // What the device wants of whoever holds it, large and in the middle.
-void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  std::string words = empty_scene_words(session);
+void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area) {
+  std::string words = offered ? std::string() : empty_scene_words(session);
   if (words.empty()) words = session.device_words();
   if (words.empty()) return;
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -124,25 +124,34 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
 }
 
 void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions) {
-  if (view.offered_recording.empty()) return;
-  const std::string path = view.offered_recording;
+  if (!view.offered.any()) return;
+  const OfferedFile offered = view.offered;
   bool open = true;
   begin_in_the_middle();
-  ImGui::Begin("Recording", &open, kDialog);
-  ImGui::TextUnformatted(std::filesystem::path(path).filename().c_str());
-  if (ImGui::Button("Fit it, and put it in my hand")) {
-    session.fit_recording(path);
-    open = false;
+  ImGui::Begin(offered.problem.empty() ? "Recording" : "Not a recording", &open, kDialog);
+  ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
+  if (!offered.problem.empty()) {
+    ImGui::TextUnformatted(offered.problem.c_str());
+    ImGui::TextDisabled("What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
+  } else {
+    ImGui::TextUnformatted(std::filesystem::path(offered.path).filename().c_str());
+    for (const std::string& line : offered.words) ImGui::TextDisabled("%s", line.c_str());
+    if (ImGui::Button("Fit it, and put it in my hand")) {
+      session.fit_recording(offered.path);
+      open = false;
+    }
+    tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
+    ImGui::SameLine();
+    if (ImGui::Button("Replay it")) {
+      open = false;
+      actions.replay(offered.path);
+    }
+    tip("Moves the probe as it was recorded; the models are compared with the recorded force");
+    ImGui::TextDisabled("%s", offered.path.c_str());
   }
-  tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
-  if (ImGui::Button("Replay it")) {
-    open = false;
-    actions.replay(path);
-  }
-  tip("Moves the probe as it was recorded; the models are compared with the recorded force");
-  ImGui::TextDisabled("%s", path.c_str());
+  ImGui::PopTextWrapPos();
   ImGui::End();
-  if (!open) view.offered_recording.clear();
+  if (!open) view.offered = {};
 }
 
 void draw_file_list(LiveSession& session, ViewState& view) {

@@ -138,12 +138,23 @@ std::string recording_words(const RecordingStatus& recording) {
   return "recording " + name + length;
 }
 
-std::string peak_error_words(const ModelsView& models, double reference_N) {
+BigNumber big_number(const ModelsView& models, const JndLine& jnd) {
   const SlotView* active = models.active();
-  if (active == nullptr || std::isnan(reference_N)) return "–";
-  const double error = active->recent_peak_error_over_jnd;
+  if (active == nullptr) {
+    const auto fitting = std::find_if(models.slots.begin(), models.slots.end(),
+                                      [](const SlotView* slot) { return slot->state == SlotState::fitting; });
+    if (fitting == models.slots.end()) return {};
+    return {fixed(100.0 * (*fitting)->progress, 0) + " %", "of the first model, " + (*fitting)->name + ":",
+            "until then the true material answers alone", 0.0};
+  }
+  const double error = models.compared ? active->recent_peak_error_over_jnd
+                       : models.in_contact ? active->predicted_error_N / jnd.at(active->force_N)
+                                           : std::nan("");
+  BigNumber big{"–", "of what a hand can notice:", "the error of the active model", error};
+  if (!models.compared) big.below = "predicted for the active model (95 %)";
   // Two decimals are more than anyone can see change.
-  return error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+  if (!std::isnan(error)) big.number = error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+  return big;
 }
 
 std::string empty_scene_words(const LiveSession& session) {
@@ -199,14 +210,14 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   // Who only passes by needs no model's name.
   const bool passing = view.kiosk && (session.mouse() != nullptr) && session.mouse()->hand_is_exploring();
   if (!passing && (!view.kiosk || view.hidden_choice > 0)) draw_labels(session, blocks, view, style, area);
-  if (!view.kiosk) draw_big_number(session, style, area, bars);
+  if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.kiosk) draw_data_warning(session, style, area);
   draw_title(session, view, style, area);
   if (!view.kiosk) draw_hint(session, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
   if (!view.kiosk) buttons_height_ = draw_buttons(area, *actions.commands);
-  draw_device_words(session, style, area);
+  draw_device_words(session, view.offered.any(), style, area);
   draw_toasts(toasts, style, area);
   draw_file_list(session, view);
   draw_scene_list(session, view, actions);

@@ -30,8 +30,15 @@ struct OverlayActions {
 // The overlay's sentences; empty when there is nothing to tell.
 std::string data_warning(const ModelsView& models);
 std::string recording_words(const RecordingStatus& recording);
-// The big number: the recent peak error of the active model over the JND.
-std::string peak_error_words(const ModelsView& models, double reference_N);
+// The big number and what it is: the recent peak error of the active model over the JND;
+// without a reference the one it predicts; how far the first fit is before there is one.
+struct BigNumber {
+  std::string number = "–";
+  std::string what = "of what a hand can notice:";
+  std::string below = "the error of the active model";
+  double error_over_jnd = 0.0;  // above 1 in its own colour
+};
+BigNumber big_number(const ModelsView& models, const JndLine& jnd);
 
 // What a scene without models and without a material says of itself; empty otherwise.
 std::string empty_scene_words(const LiveSession& session);

@@ -15,8 +15,9 @@ namespace palpate {
 namespace {
 
 constexpr float kBetween = 1.32F;  // blocks side by side, in widths
-constexpr float kArrow_m_per_N = 0.006F;
-constexpr float kLongestArrow_m = 0.09F;
+constexpr float kStrongestArrow = 0.3F;  // of a scene's strongest press, in sizes of a block
+constexpr float kLongestArrow = 0.6F;
+constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
@@ -38,8 +39,6 @@ void draw_solids(Draw draw) {
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
 }
-
-float arrow_length_m(const BlockPose& pose) { return std::min(kArrow_m_per_N * pose.force_N, kLongestArrow_m); }
 
 // In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
 // sensor's disc, and a dull handle.
@@ -96,6 +95,9 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
     : geometry_(scene.block),
       block_colour_(rgb(scene.block_colour)),
       tool_colour_(rgb(scene.tool_colour)),
+      size_m_(std::max(static_cast<float>(scene.block.width_m), 1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
+      arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),
+      arrow_width_(size_m_ / kUsualSize_m),
       block_shader_(std::move(block)),
       solid_shader_(std::move(solid)),
       table_shader_(std::move(table)),
@@ -124,13 +126,16 @@ const BlockView::Meshes& BlockView::meshes(const Viewport& viewport, std::size_t
 }
 
 void BlockView::show(std::size_t count, bool at_once) {
-  const auto width = static_cast<float>(geometry_.width_m);
   // Several blocks are seen more from the front, so that none hides another.
   if (count == 1) {
-    camera_.frame(0.92F * width, 0.5F, at_once);
+    camera_.frame(0.92F * size_m_, 0.5F, at_once);
   } else {
-    camera_.frame(count == 2 ? 1.42F * width : 1.78F * width, 0.3F, at_once);
+    camera_.frame((count == 2 ? 1.42F : 1.78F) * size_m_, 0.3F, at_once);
   }
+}
+
+float BlockView::arrow_length_m(const BlockPose& pose) const {
+  return std::min(arrow_m_per_N_ * pose.force_N, kLongestArrow * size_m_);
 }
 
 glm::vec3 BlockView::place(std::size_t index, std::size_t count) const {
@@ -204,7 +209,7 @@ Viewport BlockView::standing(const std::vector<BlockPose>& blocks, const Viewpor
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const glm::vec3 at = place(i, blocks.size());
     const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
-                               arrow_length_m(blocks[i]) + kArrowTip_m);
+                               arrow_length_m(blocks[i]) + arrow_width_ * kArrowTip_m);
     for (const float x : {-1.0F, 1.0F}) {
       for (const float z : {-1.0F, 1.0F}) {
         reach(at + glm::vec3(x * half.x, 0.0F, z * half.y));
@@ -338,10 +343,10 @@ void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("colour", pose.arrow);
   solid_shader_.set("shininess", 0.0F);
   solid_shader_.set("offset", foot);
-  solid_shader_.set("stretch", glm::vec3(1.0F, length_m, 1.0F));
+  solid_shader_.set("stretch", glm::vec3(arrow_width_, length_m, arrow_width_));
   shown_->shaft.draw();
   solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
-  solid_shader_.set("stretch", glm::vec3(1.0F));
+  solid_shader_.set("stretch", glm::vec3(arrow_width_));
   shown_->tip.draw();
 }
 

@@ -55,6 +55,7 @@ class BlockView {
   const BlockGeometry& geometry() const noexcept { return geometry_; }
 
  private:
+  float arrow_length_m(const BlockPose& pose) const;
   BlockView(const Scene& scene, Shader block, Shader solid, Shader table);
   // All that the table's picture depends on.
   struct TableState {
@@ -88,6 +89,9 @@ class BlockView {
   BlockGeometry geometry_;
   Rgb block_colour_;
   Rgb tool_colour_;
+  float size_m_;          // of what the camera frames for one block
+  float arrow_m_per_N_;
+  float arrow_width_;     // times the usual
   Shader block_shader_, solid_shader_, table_shader_;
   Meshes fine_, coarse_;
   const Meshes* shown_ = &fine_;

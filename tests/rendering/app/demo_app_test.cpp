@@ -67,10 +67,42 @@ TEST_F(DemoAppTest, ADroppedRecordingIsOfferedAndReplayed) {
   const std::string strokes = folder_.file("strokes.csv");
   ASSERT_TRUE(write_recording(strokes, test::example_recording(2000, 1000.0), {}, false).ok());
   drop(strokes);
-  EXPECT_EQ(app_->view().offered_recording, strokes);
+  ASSERT_TRUE(until([&] { return app_->view().offered.any(); }));
+  EXPECT_EQ(app_->view().offered.path, strokes);
   frames(3);
   press(GLFW_KEY_ESCAPE);
-  EXPECT_EQ(app_->view().offered_recording, "");
+  EXPECT_FALSE(app_->view().offered.any());
+}
+
+TEST_F(DemoAppTest, AnotherProgramsTableIsImportedAndOffered) {
+  open("hand");
+  const std::string foreign = folder_.file("trial.txt");
+  std::ofstream file(foreign);
+  file << "Zeit [s];Weg [mm];Kraft [N]\n";
+  for (int i = 0; i < 200; ++i) file << "0," << 1000 + i << ";1," << 100 + i << ";0," << 100 + i << "\n";
+  file.close();
+  drop(foreign);
+  ASSERT_TRUE(until([&] { return app_->view().offered.any(); }));
+  EXPECT_EQ(app_->view().offered.problem, "");
+  ASSERT_GE(app_->view().offered.words.size(), 4u);
+  EXPECT_EQ(app_->view().offered.words[2].substr(0, 30), "position: column 2 \"Weg [mm]\" ");
+  const auto recording = read_recording(app_->view().offered.path);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(recording->rows.size(), 200u);
+}
+
+TEST_F(DemoAppTest, WhatIsAmbiguousIsExplainedInTheWindow) {
+  open("hand");
+  const std::string foreign = folder_.file("two.csv");
+  std::ofstream file(foreign);
+  file << "time [s],position [mm],force A [N],force B [N]\n";
+  for (int i = 0; i < 200; ++i) file << 0.01 * i << "," << 1 + 0.1 * i << "," << 0.2 * i << "," << 0.3 * i << "\n";
+  file.close();
+  drop(foreign);
+  ASSERT_TRUE(until([&] { return app_->view().offered.any(); }));
+  EXPECT_EQ(app_->view().offered.path, "");
+  EXPECT_NE(app_->view().offered.problem.find("force B"), std::string::npos) << app_->view().offered.problem;
+  EXPECT_NE(app_->view().offered.problem.find("--columns"), std::string::npos) << app_->view().offered.problem;
 }
 
 TEST_F(DemoAppTest, ModelsAreRenamedAndTakenOut) {
