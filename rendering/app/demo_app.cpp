@@ -154,6 +154,7 @@ void DemoApp::frame() {
   offer_finished_recording();
   show_offer();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
+  frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
   const bool whole = panel_is_due(now_s);
   if (whole) {

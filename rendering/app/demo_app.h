@@ -140,6 +140,7 @@ class DemoApp {
   std::vector<KeyPress> keys_;  // since the last frame
   std::vector<int> down_;       // keys that are held
   double frame_began_s_ = 0.0;
+  double frame_s_ = 0.0;  // since the frame before, at most a tenth of a second
   double last_frame_s_ = 0.0;  // its end
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;

@@ -13,8 +13,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kKeyStep_m = 0.0003;  // a frame, while held
-constexpr double kScrollStep_s = 0.1;
+// While a key is held; by time, so that a slow picture changes nothing.
+constexpr double kKeySpeed_m_per_s = 0.018;
+constexpr double kScrollSpeed = 6.0;  // seconds a second
 constexpr double kSeekStep_s = 2.0;
 constexpr double kSpeedStep = 1.25;
 constexpr float kTextStep = 0.1F;
@@ -30,7 +31,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.shown = "wheel", .help = "moves the probe step by step; with Ctrl the view comes nearer"},
       {.shown = "right button", .help = "turns the view"},
       {.keys = {GLFW_KEY_DOWN, GLFW_KEY_UP}, .help = "press deeper, and let go",
-       .run = [this](std::size_t key) { nudge_tool(key == 0 ? kKeyStep_m : -kKeyStep_m); }, .when = When::held},
+       .run = [this](std::size_t key) { nudge_tool((key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s * frame_s_); }, .when = When::held},
       {.keys = {GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7, GLFW_KEY_8, GLFW_KEY_9},
        .shown = "1 ... 9", .help = "make a model the active one; a click on its block or row too",
        .run = [this](std::size_t key) { select_listed(key); }},
@@ -62,7 +63,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.shown = "a row, right button", .help = "renames a model, takes it out"},
       {.shown = "on the curves", .help = "drag zooms, the wheel goes back, double click goes on"},
       {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, .help = "scroll back and forth while the curves stand still",
-       .run = [this](std::size_t key) { scroll_curves(key == 0 ? kScrollStep_s : -kScrollStep_s); }, .when = When::held},
+       .run = [this](std::size_t key) { scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * frame_s_); }, .when = When::held},
       {.keys = {GLFW_KEY_P}, .label = "Pause", .help = "pause a replayed recording, and play it on",
        .run = [this](std::size_t) { session_->replay()->pause(!session_->replay()->paused()); }, .replay = true,
        .on = [this] { return session_->replay() != nullptr && session_->replay()->paused(); }, .label_on = "Play"},

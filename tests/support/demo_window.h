@@ -82,6 +82,17 @@ class DemoWindowTest : public ::testing::Test {
     glfwSetKeyCallback(window, callback);
     frames(2);
   }
+  // Down until `done`.
+  template <typename Done>
+  void hold(int key, Done done) {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
+    glfwSetKeyCallback(window, callback);
+    callback(window, key, 0, GLFW_PRESS, 0);
+    EXPECT_TRUE(until(done));
+    callback(window, key, 0, GLFW_RELEASE, 0);
+    frames(2);
+  }
   // The left button, where the mouse is.
   void click() {
     GLFWwindow* window = app_->window().handle();
