@@ -73,7 +73,9 @@ Status DemoApp::set_up(const DemoRequest& request) {
   session_ = std::move(*session);
   yield_to_haptics(session_->loop().scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
-  auto window = Window::open(request.window);
+  WindowRequest asked = request.window;
+  asked.empty = palette(view_.theme).background;
+  auto window = Window::open(asked);
   if (!window) return window.error();
   window_ = std::move(*window);
   auto blocks = BlockView::create(session_->scene());

@@ -36,9 +36,8 @@ double expected_cost_s(const SlotPlan& plan) {
   MethodRequest request;
   request.method = plan.method;
   if (plan.centres > 0) request.centres = plan.centres;
-  return expected_seconds(request) + (plan.origin == ModelOrigin::position ? kOwnPreparation_s
-                                   : plan.paper                          ? 0.0
-                                                                         : kChoosesFeatures_s);
+  return expected_seconds(request) + (plan.paper ? 0.0 : kChoosesFeatures_s) +
+         (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
 }
 
 }  // namespace
