@@ -10,7 +10,7 @@
 #include "engine/tick/sensor_identification.h"
 #include "models/check/force_lag.h"
 #include "models/check/recording_measures.h"
-#include "models/training/surface_estimate.h"
+#include "models/surface/surface_estimate.h"
 
 namespace palpate {
 namespace {

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/random_stream.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/fit/methods.h"
-#include "models/fit/candidate_gains.h"
-#include "models/fit/lapack.h"
-#include "models/fit/orthogonal_basis.h"
-#include "models/fit/seeded_random.h"
-#include "models/fit/solve_weights.h"
+#include "models/solve/candidate_gains.h"
+#include "models/solve/lapack.h"
+#include "models/solve/orthogonal_basis.h"
+#include "models/solve/solve_weights.h"
 
 namespace palpate {
 namespace {
@@ -79,7 +79,7 @@ class RandomSubsets final : public Selection {
   }
 
   Eigen::Index candidates_;
-  SeededRandom random_;
+  SplitMix64 random_;
 };
 
 class AllSites final : public Selection {
@@ -126,7 +126,7 @@ class AllSites final : public Selection {
 bool select(Selection& selection, Eigen::Index count, const FitControl& control,
             std::vector<Eigen::Index>& chosen) {
   for (Eigen::Index step = 0; step < count; ++step) {
-    if (!control.go_on(0.95 * static_cast<double>(step) / static_cast<double>(count))) return false;
+    if (!control.may_continue(0.95 * static_cast<double>(step) / static_cast<double>(count))) return false;
     const Eigen::Index site = selection.next();
     if (site < 0) break;
     chosen.push_back(site);
@@ -162,7 +162,7 @@ Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, c
     fitted->report.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " +
                                    (clamped.centres < options.centres ? "there are no more distinct sites"
                                                                       : "no other site lowers the error"));
-  if (!control.go_on(1.0)) return interrupted();
+  if (!control.may_continue(1.0)) return interrupted();
   return fitted;
 }
 

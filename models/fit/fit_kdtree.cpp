@@ -10,12 +10,12 @@
 
 #include "models/model/rbf/rbf_correction.h"
 #include "models/fit/methods.h"
-#include "models/fit/lapack.h"
-#include "models/fit/orthogonal_basis.h"
+#include "models/solve/lapack.h"
+#include "models/solve/orthogonal_basis.h"
 #include "engine/base/parallel.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/fit/site_tree.h"
-#include "models/fit/solve_weights.h"
+#include "models/solve/site_tree.h"
+#include "models/solve/solve_weights.h"
 
 namespace palpate {
 namespace {
@@ -170,7 +170,7 @@ Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, c
   fit.set(centres.leftCols(1), {0});
   std::vector<bool> whole;
   while (tree.leaf_count() < most) {
-    if (!control.go_on(0.95 * static_cast<double>(tree.leaf_count()) / static_cast<double>(most)))
+    if (!control.may_continue(0.95 * static_cast<double>(tree.leaf_count()) / static_cast<double>(most)))
       return interrupted();
     // The first split does not depend on errors: there is one leaf.
     const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
@@ -188,7 +188,7 @@ Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, c
   fitted->report.centres_asked = options.centres;
   if (used < options.centres)
     fitted->report.notes.push_back("only " + std::to_string(used) + " centres: no leaf can be split further");
-  if (!control.go_on(1.0)) return interrupted();
+  if (!control.may_continue(1.0)) return interrupted();
   return fitted;
 }
 

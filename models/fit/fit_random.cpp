@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/random_stream.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/fit/methods.h"
-#include "models/fit/seeded_random.h"
-#include "models/fit/solve_weights.h"
+#include "models/solve/solve_weights.h"
 
 namespace palpate {
 
@@ -17,7 +17,7 @@ Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, c
   std::vector<Eigen::Index> order = distinct_sites(sites);
   const auto distinct = static_cast<Eigen::Index>(order.size());
   const Eigen::Index count = std::clamp<Eigen::Index>(options.centres, 0, distinct);
-  SeededRandom random(options.seed);
+  SplitMix64 random(options.seed);
   Eigen::MatrixXd centres(sites.dimension(), count);
   for (Eigen::Index j = 0; j < count; ++j) {  // Fisher-Yates, the first `count` of it
     const auto left = static_cast<std::uint64_t>(distinct - j);

@@ -8,7 +8,7 @@
 
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
-#include "models/fit/fit_report.h"
+#include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
 namespace palpate {

@@ -16,7 +16,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
-#include "models/fit/fit_report.h"
+#include "models/solve/fit_report.h"
 #include "models/model/correction.h"
 #include "models/model/rbf/kernels.h"
 #include "models/training/sites.h"

@@ -152,7 +152,7 @@ void DemoApp::frame() {
   glfwPollEvents();
   const double now_s = steady_now_s();
   session_->update();
-  take_notices(now_s);
+  read_notices(now_s);
   offer_finished_recording();
   show_offer();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
@@ -203,8 +203,8 @@ void DemoApp::draw() {
   const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
                 {&commands_,
-                 [this](const std::string& scene) { go_on_with(scene, first_device_); },
-                 [this](const std::string& path) { go_on_with(request_.scene, "replay:" + path); }});
+                 [this](const std::string& scene) { switch_to(scene, first_device_); },
+                 [this](const std::string& path) { switch_to(request_.scene, "replay:" + path); }});
   if (view_.kiosk) {
     open_day_.draw(*session_, view_, style_, panel.at, panel.size);
   } else {
@@ -257,13 +257,13 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     pose.arrow = slot_colour(models, slot, view_.theme);
     pose.chosen = slot == models.selected;
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
-    pose.judged = view_.hidden_choice == 0;
+    pose.shows_error = view_.hidden_choice == 0;
     poses.push_back(pose);
   }
   // Before the first model is ready: a block nobody has a model of yet.
   if (poses.empty()) {
     pose.dent_m = std::max(0.0F, pose.tool_m);
-    pose.judged = false;
+    pose.shows_error = false;
     poses.push_back(pose);
   }
   return poses;
@@ -276,7 +276,7 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
   pose.dent_m = active != nullptr ? static_cast<float>(active->dent_m) : std::max(0.0F, pose.tool_m);
   pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
   pose.arrow = kReferenceColour;
-  pose.chosen = pose.judged = false;
+  pose.chosen = pose.shows_error = false;
   return pose;
 }
 
@@ -292,8 +292,8 @@ void DemoApp::count_frame(double now_s) {
   second_began_s_ = now_s;
 }
 
-void DemoApp::take_notices(double now_s) {
-  for (const Notice& notice : session_->take_notices()) {
+void DemoApp::read_notices(double now_s) {
+  for (const Notice& notice : session_->read_notices()) {
     notify(notice.text, notice.problem);
   }
   std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });

@@ -88,7 +88,7 @@ class DemoApp {
   void seek_replay(double by_s);
   void handle_mouse();
   void move_tool_to_mouse();
-  void take_notices(double now_s);
+  void read_notices(double now_s);
   bool panel_is_due(double now_s) const;
   void draw();        // all of it
   void draw_again();  // the picture, and around it what was drawn last
@@ -105,13 +105,13 @@ class DemoApp {
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.
-  void go_on_with(const std::string& scene, const std::string& device);
+  void switch_to(const std::string& scene, const std::string& device);
   void reopen(const SessionRequest& request);
   void offer(const std::string& path);
   void offer_finished_recording();
   void show_offer();
   void next_line_up();
-  double limited_depth_m(double wanted_m) const;
+  double limited_depth_m(double requested_m) const;
   void save_curves();
   CurveSource curve_source() const;
   void next_reference();

@@ -46,7 +46,7 @@ void DemoApp::save_settings() {
   (void)write_settings(settings_file_, settings_);
 }
 
-void DemoApp::go_on_with(const std::string& scene, const std::string& device) {
+void DemoApp::switch_to(const std::string& scene, const std::string& device) {
   next_ = request_;
   next_->scene = scene;
   next_->device = device;
@@ -125,12 +125,12 @@ void DemoApp::next_line_up() {
 }
 
 // As deep as there are data, and softly a little beyond.
-double DemoApp::limited_depth_m(double wanted_m) const {
+double DemoApp::limited_depth_m(double requested_m) const {
   constexpr double kMargin = 0.08;  // of that depth
   const double known_m = session_->models().trained_depth_m();
-  if (wanted_m <= known_m) return wanted_m;
+  if (requested_m <= known_m) return requested_m;
   const double margin_m = kMargin * known_m;
-  return known_m + margin_m * (1.0 - std::exp((known_m - wanted_m) / margin_m));
+  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
 }
 
 void DemoApp::record() {

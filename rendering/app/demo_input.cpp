@@ -110,8 +110,8 @@ void DemoApp::move_tool_to_mouse() {
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);
   const float below_px = mouse.y - area.at.y - surface.y;
-  const auto wanted_m = static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size));
-  tool->set_target(limited_depth_m(wanted_m), steady_now_s());
+  const auto requested_m = static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size));
+  tool->set_target(limited_depth_m(requested_m), steady_now_s());
 }
 
 }  // namespace palpate

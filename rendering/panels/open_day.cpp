@@ -65,21 +65,21 @@ bool OpenDay::update(LiveSession& session, ViewState& view) {
   if (visitor && !visitor_ && !trying) begin(session, view);
   if (left) forget(session, view);
   visitor_ = visitor;
-  see_ticks(session);
+  update_ticks(session);
   view.hidden_choice = trial_.state() == AbTrial::State::exploring ? trial_.pressed() : 0;
   view.hidden_name = words()(view.hidden_choice == 2 ? "block_2" : "block_1");
   return left;
 }
 
 // Every tick counts, however slow the picture is.
-void OpenDay::see_ticks(const LiveSession& session) {
+void OpenDay::update_ticks(const LiveSession& session) {
   const ForceHistory& history = session.comparison().history();
   if (trial_.state() == AbTrial::State::exploring) {
     std::size_t next = history.first_at(seen_s_);
     while (next < history.size() && history[next].loop_time_s <= seen_s_) ++next;
     for (; next < history.size(); ++next) {
       const HistoryPoint& point = history[next];
-      trial_.see(static_cast<double>(point.force_N[trial_.slot_under(1)]),
+      trial_.update(static_cast<double>(point.force_N[trial_.slot_under(1)]),
                  static_cast<double>(point.force_N[trial_.slot_under(2)]), point.in_contact, session.jnd());
     }
   }

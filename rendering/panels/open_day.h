@@ -49,7 +49,7 @@ class OpenDay {
   void forget(LiveSession& session, ViewState& view);
   void try_model(int number, LiveSession& session, ViewState& view);
   void answer(bool different, ViewState& view);
-  void see_ticks(const LiveSession& session);
+  void update_ticks(const LiveSession& session);
   void draw_nobody(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& size);
   void draw_question(LiveSession& session, ViewState& view, const UiStyle& style);
   void draw_reveal(LiveSession& session, ViewState& view, const UiStyle& style, float height);

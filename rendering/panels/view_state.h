@@ -67,7 +67,7 @@ struct ViewState {
   TableState table;
   bool exaggerated = false;       // arrows show ten times the difference
   bool centres_together = true;   // the slider moves all models that have centres
-  int wanted_centres = 0;         // of the slider, as long as it is held
+  int requested_centres = 0;         // of the slider, as long as it is held
   bool scene_list = false;        // scenes to choose from
   OfferedFile offered;
   bool help = false;

@@ -311,7 +311,7 @@ void BlockView::draw_block(const BlockPose& pose, const glm::vec3& at) const {
   block_shader_.set("colour", block_colour_);
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
   // Shallow dents have no colour yet: there is nothing to judge.
-  block_shader_.set("mark", pose.judged ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
+  block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
   block_shader_.set("tool_gap", std::max(0.0F, -pose.tool_m));
   shown_->block.draw();
 }

@@ -29,7 +29,7 @@ struct BlockPose {
   float force_N = 0.0F;
   Rgb arrow{0.0F};
   bool chosen = false;  // in the hand
-  bool judged = true;   // the dent shows the error's colour
+  bool shows_error = true;   // the dent shows the error's colour
 };
 
 class BlockView {

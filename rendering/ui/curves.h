@@ -61,9 +61,9 @@ class CurveColumns {
 
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
-  void take(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
-  void take_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column);
-  void take_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
+  void add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
+  void add_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column);
+  void add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
   void find_highest();
 
   std::vector<CurveColumn> columns_;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/tick/replay.h"
-#include "models/training/surface_search.h"
+#include "models/surface/surface_search.h"
 #include "scenes/report/coverage_finder.h"
 #include "scenes/report/evaluator.h"
 #include "scenes/report/no_force.h"
@@ -343,7 +343,7 @@ class Run {
         any = true;
       }
     }
-    if (!progress_.next(0.0).go_on(1.0)) return interrupted();
+    if (!progress_.next(0.0).may_continue(1.0)) return interrupted();
     if (!any) return {};
     const std::vector<Evidence> pooled = evaluator.pooled();
     for (std::size_t i = 0; i < candidates.size(); ++i) data_.models[candidates[i]].left_out = pooled[i];

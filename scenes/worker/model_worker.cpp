@@ -87,7 +87,7 @@ void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan) {
   wake_.notify_all();
 }
 
-std::vector<FinishedModel> ModelWorker::take_finished() {
+std::vector<FinishedModel> ModelWorker::read_finished() {
   const std::lock_guard lock(mutex_);
   return std::exchange(finished_, {});
 }

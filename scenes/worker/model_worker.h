@@ -54,7 +54,7 @@ class ModelWorker {
   // is made once, as asked last. Files do not wait behind fits.
   void add_job(std::size_t job_id, const SlotPlan& plan);
   // What was finished since the last call.
-  std::vector<FinishedModel> take_finished();
+  std::vector<FinishedModel> read_finished();
 
   struct Progress {
     bool working = false;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "models/fit/fit_direct.h"
-#include "models/fit/fill_grid.h"
+#include "models/solve/fill_grid.h"
 #include "models/fit/fit_greedy.h"
 #include "models/fit/fit_kdtree.h"
 #include "models/fit/fit_random.h"

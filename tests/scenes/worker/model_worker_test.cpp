@@ -19,7 +19,7 @@ namespace {
 std::vector<FinishedModel> wait_for(ModelWorker& worker, std::size_t count) {
   std::vector<FinishedModel> all;
   while (all.size() < count) {
-    for (FinishedModel& one : worker.take_finished()) all.push_back(std::move(one));
+    for (FinishedModel& one : worker.read_finished()) all.push_back(std::move(one));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return all;
