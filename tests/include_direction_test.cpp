@@ -45,7 +45,7 @@ const std::map<std::string, Names> kRooms = {
     {"scenes/material", {"devices/virtual"}},
     {"scenes/scene", {"models/fit", "scenes/material"}},
     {"scenes/worker", {"scenes/scene"}},
-    {"scenes/live", {"scenes/worker", "devices/registry"}},
+    {"scenes/live", {"scenes/worker", "devices/registry", "engine/import"}},
     {"scenes/report", {"scenes/scene"}},
     {"scenes/study", {"scenes/worker", "devices/registry"}},
     {"scenes/cli", {"engine/import", "models/check", "models/export", "scenes/report", "scenes/study", "scenes/live"}},

@@ -1,5 +1,6 @@
 // What the window does with files, settings and sessions.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -71,8 +72,30 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(settings_.camera);
   blocks_framed_ = 0;
+  stirred_ = true;
   view_.time = CurveTime{};
   view_.time.zero_s = steady_now_s();
+}
+
+// A large file takes a while to read, in which the picture goes on. The last one counts.
+void DemoApp::offer(const std::string& path) {
+  const auto folder = data_folder();
+  if (!folder) {
+    notify(folder.error().message, true);
+    return;
+  }
+  arriving_ = std::async(std::launch::async, [path, folder = *folder] { return offer_recording(path, folder); });
+  notify("reading " + path, false);
+}
+
+void DemoApp::show_offer() {
+  if (!arriving_.valid() || arriving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  const Result<RecordingOffer> offered = arriving_.get();
+  if (offered) {
+    view_.offered = {offered->path, offered->words, {}};
+  } else {
+    view_.offered = {{}, {}, offered.error().message};
+  }
 }
 
 // Recorded and on the disk: what now?
@@ -82,7 +105,7 @@ void DemoApp::offer_finished_recording() {
     recording_ = status.path;
   } else if (!recording_.empty()) {
     std::error_code missing;
-    if (!view_.kiosk && std::filesystem::exists(recording_, missing)) view_.offered_recording = recording_;
+    if (!view_.kiosk && std::filesystem::exists(recording_, missing)) view_.offered = {recording_, {}, {}};
     recording_.clear();
   }
 }

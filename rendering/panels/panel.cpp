@@ -32,7 +32,7 @@ std::string bins_words(const ModelsView& models) {
   const auto outside = static_cast<double>(active->samples_out_of_domain);
   const double share = outside / (outside + static_cast<double>(active->errors.samples()));
   char text[64];
-  std::snprintf(text, sizeof text, "%.1f %% outside the data, not counted", 100.0 * share);
+  std::snprintf(text, sizeof text, "%.1f %% outside the data left out", 100.0 * share);
   return text;
 }
 
@@ -86,7 +86,7 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   if (bins) {
     section_title(style, "ERROR AGAINST FORCE");
     ImGui::SameLine();
-    ImGui::TextDisabled("%s", bins_words(errors.models).c_str());
+    quiet_words(bins_words(errors.models));
     draw_error_bins(errors, style, rest * 0.32F);
   }
   draw_health(health, view, style, frames);

@@ -24,6 +24,7 @@ const CurveColumn& empty_column() {
                          &column.error_over_jnd, &column.felt_over_jnd}) {
       values->fill(kNone);
     }
+    column.predicted_low_N = column.predicted_high_N = column.predicted_over_jnd = kNone;
     return column;
   }();
   return empty;
@@ -92,10 +93,21 @@ void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColum
     column.reference_N = point.reference_N;
     column.reference = true;
   }
+  if (std::isnan(point.reference_N)) add_prediction(point, jnd, column);
   column.any = true;
   for (std::size_t i = 0; i < slots_; ++i) {
     if (!std::isnan(point.force_N[i])) add_model(point, i, jnd_N, column);
   }
+}
+
+void CurveColumns::add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
+  const float force_N = point.force_N[point.active];
+  const float error_N = point.in_contact ? point.predicted_error_N : 0.0F;
+  if (std::isnan(force_N) || std::isnan(point.predicted_error_N)) return;
+  column.predicted_low_N = smaller(column.predicted_low_N, force_N - error_N);
+  column.predicted_high_N = larger(column.predicted_high_N, force_N + error_N);
+  column.predicted_over_jnd =
+      larger(column.predicted_over_jnd, error_N / static_cast<float>(jnd.at(static_cast<double>(force_N))));
 }
 
 void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column) {

@@ -72,6 +72,8 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
   if (std::string note = device_->note(); !note.empty()) notices_.add(std::move(note), false);
   if (Status status = models_.start(plans); !status) return status;
+  // The material answers from the first tick on, before there is any model of it.
+  if (truth_ != nullptr) publish();
   return loop_->start();
 }
 
