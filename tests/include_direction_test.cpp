@@ -32,19 +32,21 @@ const std::map<std::string, Names> kRooms = {
     {"models/export", {"models/model"}},
     {"models/library", {"models/model", "engine/live"}},
     {"models/training", {"models/model"}},
-    {"models/check", {"models/training"}},
-    {"models/fit", {"models/training"}},
+    {"models/surface", {"models/training"}},
+    {"models/check", {"models/surface"}},
+    {"models/solve", {"models/training"}},
+    {"models/fit", {"models/surface", "models/solve"}},
     {"models/fit_library", {"models/fit", "models/check", "models/library", "engine/import"}},
     {"devices/firmware", {}},
     {"devices/virtual", {"engine/live"}},
     {"devices/stream", {"engine/live"}},
     {"devices/hid", {"devices/virtual", "devices/stream", "devices/firmware", "engine/json"}},
     {"devices/registry", {"devices/hid"}},
-    {"scenes/scene", {"models/fit"}},
-    {"scenes/material", {"scenes/scene", "devices/virtual"}},
-    {"scenes/worker", {"scenes/material"}},
-    {"scenes/live", {"scenes/worker", "devices/registry"}},
-    {"scenes/report", {"scenes/material"}},
+    {"scenes/material", {"devices/virtual"}},
+    {"scenes/scene", {"models/fit", "scenes/material"}},
+    {"scenes/worker", {"scenes/scene"}},
+    {"scenes/live", {"scenes/worker", "devices/registry", "engine/import"}},
+    {"scenes/report", {"scenes/scene"}},
     {"scenes/study", {"scenes/worker", "devices/registry"}},
     {"scenes/cli", {"engine/import", "models/check", "models/export", "scenes/report", "scenes/study", "scenes/live"}},
     {"rendering/ui", {"scenes/live"}},
@@ -154,7 +156,7 @@ TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_EQ(find_fault("engine/tick", "vector", false), "");
   EXPECT_NE(find_fault("engine/tick", "engine/live/pacer.h", true), "");
   EXPECT_NE(find_fault("engine/live", "models/model/trend.h", true), "");
-  EXPECT_NE(find_fault("models/model", "models/fit/lapack.h", true), "");
+  EXPECT_NE(find_fault("models/model", "models/solve/lapack.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/training/sites.h", true), "");
   EXPECT_NE(find_fault("models/model", "devices/hid/hid_bus.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");

@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 // Reports to judge by; at 1 kHz they come at once.
-constexpr int kReportsToJudge = 8;
+constexpr int kReportsToInspect = 8;
 // Reads that may come back with nothing.
 constexpr int kMostEmptyReads = 10;
 
@@ -32,7 +32,7 @@ struct Identification {
 
 Identification read_reports(HidConnection& connection, const HidDrivers& drivers) {
   Identification seen;
-  for (int empty = 0; seen.reports < kReportsToJudge && empty < kMostEmptyReads;) {
+  for (int empty = 0; seen.reports < kReportsToInspect && empty < kMostEmptyReads;) {
     std::array<std::uint8_t, kLargestHidReport + 1> bytes{};
     seen.last_size = connection.read(bytes.data(), bytes.size());
     seen.unplugged = seen.last_size < 0;

@@ -34,6 +34,11 @@ void ReplayDevice::seek(double at_s) noexcept {
   seek_s_.store(std::clamp(at_s, 0.0, duration_s_), std::memory_order_relaxed);
 }
 
+void ReplayDevice::step(int rows) noexcept {
+  pause(true);
+  rows_.fetch_add(rows, std::memory_order_relaxed);
+}
+
 void ReplayDevice::move_surface(double offset_m) noexcept {
   if (std::isfinite(offset_m)) surface_offset_m_.store(offset_m, std::memory_order_relaxed);
 }
@@ -48,6 +53,18 @@ void ReplayDevice::go_to(double at_s) noexcept {
   restart_ = true;
 }
 
+// `next_` is the row after the one that was seen last.
+void ReplayDevice::go_by(int rows) noexcept {
+  const auto last = static_cast<long>(recording_.rows.size()) - 1;
+  const long row = std::clamp(static_cast<long>(next_) - 1 + rows, 0L, last);
+  const double at_s = recording_.rows[static_cast<std::size_t>(row)].time_s - recording_.rows.front().time_s;
+  if (rows < 0) {
+    go_to(at_s);
+  } else {
+    playhead_s_ = at_s;
+  }
+}
+
 void ReplayDevice::move_playhead(double now_s) noexcept {
   const double step_s = started_ ? std::clamp(now_s - now_s_, 0.0, kLongestReplayStep_s) : 0.0;
   started_ = true;
@@ -58,8 +75,11 @@ void ReplayDevice::move_playhead(double now_s) noexcept {
     go_to(std::min(playhead_s_, duration_s_));
   }
   const double seek_s = seek_s_.exchange(-1.0, std::memory_order_relaxed);
+  const int rows = rows_.exchange(0, std::memory_order_relaxed);
   if (seek_s >= 0.0) {
     go_to(seek_s);
+  } else if (rows != 0) {
+    go_by(rows);
   } else if (!paused()) {
     playhead_s_ += step_s * speed();
     if (next_ == recording_.rows.size()) go_to(0.0);

@@ -38,6 +38,7 @@ class ReplayDevice final : public Device, public ReplayControl {
   void pause(bool paused) noexcept override { paused_.store(paused, std::memory_order_relaxed); }
   void set_speed(double speed) noexcept override;
   void seek(double at_s) noexcept override;
+  void step(int rows) noexcept override;
   bool paused() const noexcept override { return paused_.load(std::memory_order_relaxed); }
   double speed() const noexcept override { return speed_.load(std::memory_order_relaxed); }
   double playhead_s() const noexcept override { return shown_s_.load(std::memory_order_relaxed); }
@@ -50,6 +51,7 @@ class ReplayDevice final : public Device, public ReplayControl {
  private:
   void move_playhead(double now_s) noexcept;
   void go_to(double at_s) noexcept;
+  void go_by(int rows) noexcept;
 
   std::string name_;
   Recording recording_;
@@ -58,6 +60,7 @@ class ReplayDevice final : public Device, public ReplayControl {
   std::atomic<bool> paused_{false};
   std::atomic<double> speed_{1.0};
   std::atomic<double> seek_s_{-1.0};  // below 0: none
+  std::atomic<int> rows_{0};          // to go by
   std::atomic<double> shown_s_{0.0};
   std::atomic<double> surface_offset_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);

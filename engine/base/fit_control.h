@@ -13,7 +13,7 @@ struct FitControl {
   // be empty.
   std::function<bool(double fraction)> progress;
 
-  bool go_on(double fraction) const { return !progress || progress(fraction); }
+  bool may_continue(double fraction) const { return !progress || progress(fraction); }
 };
 
 inline Error interrupted() { return Error{"interrupted"}; }

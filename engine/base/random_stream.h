@@ -1,9 +1,9 @@
 // Random numbers that are the same on every machine and with every library.
 //
-// xoshiro256** (Blackman & Vigna 2018), seeded by splitmix64. Integer
-// arithmetic and correctly rounded operations only, so the same seed gives the
-// same bits everywhere. Streams of one seed are independent: each sensor and
-// the hand have their own.
+// RandomStream: xoshiro256** (Blackman & Vigna 2018), seeded by SplitMix64. Streams
+// of one seed are independent: each sensor and the hand have their own. SplitMix64
+// (Steele, Lea & Flood 2014): for draws without replacement. Integer arithmetic and
+// correctly rounded operations only, so the same seed gives the same bits everywhere.
 // Thread guarantee: one thread at a time; wait-free.
 #pragma once
 
@@ -12,11 +12,37 @@
 
 namespace palpate {
 
+class SplitMix64 {
+ public:
+  explicit SplitMix64(std::uint64_t seed) noexcept : state_(seed) {}
+
+  std::uint64_t next() noexcept { return mixed(state_ += kStep); }
+
+  // Uniform in [0, bound), without bias. bound >= 1.
+  std::uint64_t below(std::uint64_t bound) noexcept {
+    const std::uint64_t rejected = (0 - bound) % bound;  // 2^64 mod bound
+    std::uint64_t value = next();
+    while (value < rejected) value = next();
+    return value % bound;
+  }
+
+  // The step from one state to the next, and what makes a number of a state.
+  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15u;
+  static std::uint64_t mixed(std::uint64_t z) noexcept {
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream) noexcept {
-    std::uint64_t mixer = mixed(seed) + 0x9e3779b97f4a7c15u * (stream + 1);
-    for (std::uint64_t& word : state_) word = mixed(mixer += 0x9e3779b97f4a7c15u);
+    SplitMix64 mixer(SplitMix64::mixed(seed) + SplitMix64::kStep * (stream + 1));
+    for (std::uint64_t& word : state_) word = mixer.next();
   }
 
   std::uint64_t next() noexcept {
@@ -54,11 +80,6 @@ class RandomStream {
 
  private:
   static std::uint64_t rotated(std::uint64_t x, int by) noexcept { return x << by | x >> (64 - by); }
-  static std::uint64_t mixed(std::uint64_t z) noexcept {
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-  }
   std::array<std::uint64_t, 4> state_{};
 };
 

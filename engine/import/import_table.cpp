@@ -95,7 +95,7 @@ Status Importer::find_columns() {
   const TableLayout& layout = table_.layout;
   std::string_view rest = text_.text().substr(layout.data_offset);
   std::vector<std::string_view> first_row;
-  split_table_fields(take_line(rest), layout.delimiter, first_row);
+  split_table_fields(next_line(rest), layout.delimiter, first_row);
   const bool has_header = !layout.names.empty();
   for (std::size_t i = 0; i < layout.columns; ++i) {
     ForeignColumn column;
@@ -151,7 +151,7 @@ Status Importer::find_time_unit() {
   std::vector<double> steps;
   TableTime last;
   for (std::size_t row = 0; row < kTimeUnitRows && !rest.empty(); ++row) {
-    splitter_.split(take_line(rest), index_, fields_);
+    splitter_.split(next_line(rest), index_, fields_);
     TableTime time;
     if (row == 0) {
       clock_ = !parse_number_time(fields_[0], table_.layout.decimal, time) && parse_clock_time(fields_[0], time);
@@ -291,7 +291,7 @@ Status Importer::read_rows() {
   std::uint64_t footer_lines = 0;
   if (!request_.rate_Hz) table_.columns[0].number = index_[0] + 1;
   while (!rest.empty()) {
-    const std::string_view line = take_line(rest);
+    const std::string_view line = next_line(rest);
     ++number;
     TableTime time;
     RecordingRow row;

@@ -31,7 +31,7 @@ std::vector<SampleLine> sample_lines(std::string_view text) {
   text = text.substr(0, kSampleBytes);
   while (!text.empty() && lines.size() < kSampleLines) {
     const auto offset = static_cast<std::size_t>(text.data() - begin);
-    const std::string_view line = take_line(text);
+    const std::string_view line = next_line(text);
     if (text.empty() && cut) break;  // the sample ends inside this line
     lines.push_back({line, offset});
   }
@@ -296,7 +296,7 @@ std::optional<Delimiter> delimiter_from_name(std::string_view name) {
   return static_cast<Delimiter>(found - kDelimiterNames.begin());
 }
 
-std::string_view take_line(std::string_view& text) {
+std::string_view next_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   std::string_view line = text.substr(0, end);
   text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);

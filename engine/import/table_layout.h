@@ -50,6 +50,6 @@ Result<TableLayout> find_table_layout(std::string_view text, const LayoutRequest
 void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<std::string_view>& fields);
 
 // The line at the start of `text` (which loses it) without its line end.
-std::string_view take_line(std::string_view& text);
+std::string_view next_line(std::string_view& text);
 
 }  // namespace palpate

@@ -58,14 +58,14 @@ std::size_t without_thousands(std::string_view text, char decimal, char* buffer)
 }
 
 // Two to four digits at the start of `text`, which loses them.
-bool take_digits(std::string_view& text, std::size_t most, int& value) {
+bool parse_digits(std::string_view& text, std::size_t most, int& value) {
   const auto parsed = std::from_chars(text.data(), text.data() + std::min(text.size(), most), value);
   if (text.empty() || !is_digit(text.front()) || parsed.ec != std::errc()) return false;
   text.remove_prefix(static_cast<std::size_t>(parsed.ptr - text.data()));
   return true;
 }
 
-bool take(std::string_view& text, std::string_view any_of) {
+bool skip_one_of(std::string_view& text, std::string_view any_of) {
   if (text.empty() || any_of.find(text.front()) == std::string_view::npos) return false;
   text.remove_prefix(1);
   return true;
@@ -84,14 +84,14 @@ std::int64_t days_since_1970(int year, int month, int day) {
 
 // A date at the start of `text`, which loses it. Only the difference between rows
 // counts, so that of 3/5/2024 either reading will do.
-bool take_date(std::string_view& text, std::int64_t& days) {
+bool parse_date(std::string_view& text, std::int64_t& days) {
   std::string_view rest = text;
   std::array<int, 3> parts{};
-  if (!take_digits(rest, 4, parts[0])) return false;
+  if (!parse_digits(rest, 4, parts[0])) return false;
   if (rest.empty() || (rest.front() != '-' && rest.front() != '/' && rest.front() != '.')) return false;
   const char separator = rest.front();
   const std::string_view mark(&separator, 1);
-  if (!take(rest, mark) || !take_digits(rest, 2, parts[1]) || !take(rest, mark) || !take_digits(rest, 4, parts[2])) {
+  if (!skip_one_of(rest, mark) || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2])) {
     return false;
   }
   if (parts[0] < 32) std::swap(parts[0], parts[2]);
@@ -160,23 +160,23 @@ bool parse_number_time(std::string_view text, char decimal, TableTime& time) {
 bool has_date(std::string_view text) {
   text = trimmed(text);
   std::int64_t days = 0;
-  return take_date(text, days);
+  return parse_date(text, days);
 }
 
 bool parse_clock_time(std::string_view text, TableTime& time) {
   text = trimmed(text);
   std::int64_t days = 0;
-  if (take_date(text, days)) {
+  if (parse_date(text, days)) {
     if (text.empty()) return false;
-    if (!take(text, "T ")) return false;
+    if (!skip_one_of(text, "T ")) return false;
     text = trimmed(text);
   }
   int first = 0;
   int second = 0;
   int third = 0;
-  if (!take_digits(text, 4, first) || !take(text, ":") || !take_digits(text, 2, second) || second > 59) return false;
-  const bool has_hours = take(text, ":");
-  if (has_hours && (!take_digits(text, 2, third) || third > 60)) return false;
+  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59) return false;
+  const bool has_hours = skip_one_of(text, ":");
+  if (has_hours && (!parse_digits(text, 2, third) || third > 60)) return false;
   time.fraction = 0.0;
   if (text.starts_with('.') || text.starts_with(',')) {
     const std::size_t end = std::min(text.find_first_not_of("0123456789", 1), text.size());

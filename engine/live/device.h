@@ -53,6 +53,9 @@ class ReplayControl {
   virtual void pause(bool paused) noexcept = 0;
   virtual void set_speed(double speed) noexcept = 0;  // times the recording's own pace
   virtual void seek(double at_s) noexcept = 0;        // from the beginning of the recording
+  // Pauses, and goes so many rows on (at most kMaxSamplesPerTick at a time), or back,
+  // where the stream restarts.
+  virtual void step(int rows) noexcept = 0;
   virtual bool paused() const noexcept = 0;
   virtual double speed() const noexcept = 0;
   virtual double playhead_s() const noexcept = 0;

@@ -12,18 +12,18 @@ void FaultRecorder::add(const FaultTick& tick, bool fault) noexcept {
   const bool begins = fault && !in_fault_;
   in_fault_ = fault;
   if (left_ > 0) {
-    if (--left_ == 0) hand_over();
+    if (--left_ == 0) publish();
   } else if (begins) {
     left_ = kTicksAfter;
   }
 }
 
 void FaultRecorder::finish() noexcept {
-  if (left_ > 0) hand_over();
+  if (left_ > 0) publish();
   left_ = 0;
 }
 
-void FaultRecorder::hand_over() noexcept {
+void FaultRecorder::publish() noexcept {
   if (handed_.load(std::memory_order_acquire) >= 0) {
     dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return;
@@ -33,7 +33,7 @@ void FaultRecorder::hand_over() noexcept {
   ends_[active_] = counts_[active_] = 0;
 }
 
-std::optional<std::vector<FaultTick>> FaultRecorder::take() {
+std::optional<std::vector<FaultTick>> FaultRecorder::read() {
   const int handed = handed_.load(std::memory_order_acquire);
   if (handed < 0) return std::nullopt;
   const auto ring = static_cast<std::size_t>(handed);

@@ -54,13 +54,13 @@ class FaultRecorder {
   // One slow-side thread: the ticks of the oldest fault that was not taken yet,
   // oldest first, the fault's first tick kTicksAfter before the end (less when
   // the loop ended).
-  std::optional<std::vector<FaultTick>> take();
+  std::optional<std::vector<FaultTick>> read();
 
   // Any thread. Faults whose ticks were lost.
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
-  void hand_over() noexcept;
+  void publish() noexcept;
 
   std::vector<FaultTick> rings_[2];
   std::size_t ends_[2] = {0, 0};    // where the next tick goes

@@ -33,7 +33,7 @@ class ForceMixer {
   void jump_to(std::size_t selected) noexcept;
 
   // A new set takes over: all of what was felt is now the outgoing force.
-  void hand_over() noexcept { jump_to(kOutgoing); }
+  void begin_transition() noexcept { jump_to(kOutgoing); }
 
   // The mixture of `forces_N` after moving towards `selected` for `step_s`, which
   // counts as between 0 and 10 ms.

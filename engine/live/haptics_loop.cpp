@@ -17,9 +17,9 @@ double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<dou
 
 HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
     : device_(device),
-      taken_(std::make_unique<TakenRing>()),
+      recorded_(std::make_unique<RecordedRing>()),
       settings_(settings),
-      live_(device, slot_, {settings.jnd, taken_.get(), settings.source}),
+      live_(device, slot_, {settings.jnd, recorded_.get(), settings.source}),
       pacer_(settings.spin_ns),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 

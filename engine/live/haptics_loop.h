@@ -81,9 +81,9 @@ class HapticsLoop {
 
   // One reader thread, the recorder's, wait-free, O(most). Every sample that was
   // taken while the controls asked for a recording, oldest first.
-  std::size_t read_samples(TakenSample* samples, std::size_t most) noexcept { return taken_->pop(samples, most); }
+  std::size_t read_samples(RecordedSample* samples, std::size_t most) noexcept { return recorded_->pop(samples, most); }
   // Any thread, wait-free. Samples that found no room since the beginning.
-  std::uint64_t dropped_samples() const noexcept { return taken_->dropped(); }
+  std::uint64_t dropped_samples() const noexcept { return recorded_->dropped(); }
 
   // Any thread, wait-free; the figures of `statistics` that cost nothing.
   std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
@@ -91,7 +91,7 @@ class HapticsLoop {
 
   // One slow-side thread, after each `newest` or so: the ticks around a fault, see
   // FaultRecorder; write_fault_file makes a file of them.
-  std::optional<std::vector<FaultTick>> take_fault_ticks() { return live_.fault_recorder().take(); }
+  std::optional<std::vector<FaultTick>> read_fault_ticks() { return live_.fault_recorder().read(); }
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;
@@ -107,7 +107,7 @@ class HapticsLoop {
   void let_go(Pacer& pacer, Deadlines& deadlines) noexcept;
 
   Device& device_;
-  std::unique_ptr<TakenRing> taken_;
+  std::unique_ptr<RecordedRing> recorded_;
   LoopSettings settings_;
   ModelSlot<LiveModels> slot_;
   LiveTick live_;

@@ -65,9 +65,9 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       limiter_(device.limits()),
       source_(settings.source),
       outgoing_mixer_(settings.jnd),
-      taken_(settings.taken),
+      recorded_(settings.recorded),
       ns_per_cycle_(ns_per_cycle()) {
-  mixer_.hand_over();
+  mixer_.begin_transition();
 }
 
 LiveTick::~LiveTick() {
@@ -76,7 +76,7 @@ LiveTick::~LiveTick() {
 }
 
 void LiveTick::warm_up() noexcept {
-  take_models();
+  update_models();
   if (models_ == nullptr) return;
   HapticsTick& tick = models_->tick;
   tick.reset();
@@ -84,52 +84,52 @@ void LiveTick::warm_up() noexcept {
   tick.reset();
 }
 
-void LiveTick::take_models() noexcept {
+void LiveTick::update_models() noexcept {
   if (outgoing_ != nullptr) return;  // one fade at a time
-  LiveModels* next = slot_.take();
+  LiveModels* next = slot_.acquire();
   if (next == nullptr) return;
   if (models_ != nullptr) {
     next->tick.continue_from(models_->tick);
     outgoing_ = models_;
     outgoing_mixer_ = mixer_;
   }
-  mixer_.hand_over();
+  mixer_.begin_transition();
   models_ = next;
   snapshot_.models_id = models_->id;
   snapshot_.selected = models_->selected;
   snapshot_.tick = models_->tick.snapshot();
 }
 
-void LiveTick::take_samples(double now_s) noexcept {
+void LiveTick::process_samples(double now_s) noexcept {
   snapshot_.samples = 0;
   snapshot_.restarted = false;
   DeviceSample sample;
-  for (int i = 0; i < kMaxSamplesPerTick && device_.read(now_s, sample); ++i) take_sample(sample);
+  for (int i = 0; i < kMaxSamplesPerTick && device_.read(now_s, sample); ++i) process_sample(sample);
 }
 
-void LiveTick::take_sample(const DeviceSample& sample) noexcept {
+void LiveTick::process_sample(const DeviceSample& sample) noexcept {
   ++snapshot_.samples;
   snapshot_.restarted = snapshot_.restarted || sample.restart;
   snapshot_.measured_N = sample.measured_force_N;
   step_models(sample);
-  if (recording_ != 0 && taken_ != nullptr) hand_over_sample(sample);
+  if (recording_ != 0 && recorded_ != nullptr) publish_sample(sample);
 }
 
-void LiveTick::hand_over_sample(const DeviceSample& sample) noexcept {
-  TakenSample taken;
-  taken.tool = sample.tool;
-  taken.measured_N = sample.measured_force_N;
-  taken.recording = recording_;
-  taken.restart = sample.restart;
+void LiveTick::publish_sample(const DeviceSample& sample) noexcept {
+  RecordedSample recorded;
+  recorded.tool = sample.tool;
+  recorded.measured_N = sample.measured_force_N;
+  recorded.recording = recording_;
+  recorded.restart = sample.restart;
   if (models_ != nullptr) {
     const TickFault fault = snapshot_.tick.fault;
-    taken.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
-    if (models_->reference != nullptr) taken.reference_N = snapshot_.reference_N;
+    recorded.usable = fault != TickFault::bad_sample && fault != TickFault::time_not_later;
+    if (models_->reference != nullptr) recorded.reference_N = snapshot_.reference_N;
     if (models_->written_model < models_->tick.model_count()) {
-      taken.model_N = snapshot_.tick.force_N[models_->written_model];
+      recorded.model_N = snapshot_.tick.force_N[models_->written_model];
     }
   }
-  taken_->push(taken);
+  recorded_->push(recorded);
 }
 
 void LiveTick::step_models(const DeviceSample& sample) noexcept {
@@ -236,8 +236,8 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   snapshot_.faults = 0;
   recording_ = controls.recording;
   acknowledge(controls);
-  take_models();
-  take_samples(now_s);
+  update_models();
+  process_samples(now_s);
   snapshot_.device = device_.health(now_s);
   const double commanded_N =
       source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);

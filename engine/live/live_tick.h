@@ -60,7 +60,7 @@ struct LiveModels {
   HapticsTick tick;
   std::shared_ptr<ReferenceForce> reference;
   std::uint32_t selected = 0;  // until the controls speak of this set
-  // The model whose force goes into TakenSample, none by default: the reference
+  // The model whose force goes into RecordedSample, none by default: the reference
   // where there is neither a sensor nor a ReferenceForce.
   std::uint32_t written_model = kMaxModels;
 };
@@ -122,7 +122,7 @@ static_assert(std::is_trivially_copyable_v<LoopSnapshot>);
 
 // One sample as the device gave it, for a recorder: a tick may take several, of
 // which a snapshot has only the last.
-struct TakenSample {
+struct RecordedSample {
   ToolSample tool;
   double measured_N = kNoForce;
   double reference_N = kNoForce;  // of the set's ReferenceForce at this sample
@@ -131,15 +131,15 @@ struct TakenSample {
   bool restart = false;           // a new stream begins here
   bool usable = true;             // false: not finite, or not later than the one before
 };
-static_assert(std::is_trivially_copyable_v<TakenSample>);
+static_assert(std::is_trivially_copyable_v<RecordedSample>);
 
 // At 1 kHz half a minute, at 20 kHz more than a second of a recorder that stands still.
-inline constexpr std::size_t kTakenRing = 32768;
-using TakenRing = SpscRing<TakenSample, kTakenRing>;
+inline constexpr std::size_t kRecordedRing = 32768;
+using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 
 struct LiveTickSettings {
   JndLine jnd;
-  TakenRing* taken = nullptr;  // outlives the tick; null: nobody records
+  RecordedRing* recorded = nullptr;  // outlives the tick; null: nobody records
   ForceSource* source = nullptr;  // outlives the tick; null: the models
   bool passivity = true;  // false: for tests of what its controller is needed for
 };
@@ -169,11 +169,11 @@ class LiveTick {
   const HapticsTick* models() const noexcept { return models_ != nullptr ? &models_->tick : nullptr; }
 
  private:
-  void take_models() noexcept;
-  void take_samples(double now_s) noexcept;
-  void take_sample(const DeviceSample& sample) noexcept;
+  void update_models() noexcept;
+  void process_samples(double now_s) noexcept;
+  void process_sample(const DeviceSample& sample) noexcept;
   void step_models(const DeviceSample& sample) noexcept;
-  void hand_over_sample(const DeviceSample& sample) noexcept;
+  void publish_sample(const DeviceSample& sample) noexcept;
   double mix(const LoopControls& controls, double step_s) noexcept;
   void acknowledge(const LoopControls& controls) noexcept;
   bool dead_man_released(const LoopControls& controls) const noexcept;
@@ -192,7 +192,7 @@ class LiveTick {
   LiveModels* outgoing_ = nullptr;  // still felt; retired when it is not
   ForceMixer outgoing_mixer_;
   LoopSnapshot snapshot_;
-  TakenRing* taken_;
+  RecordedRing* recorded_;
   std::uint32_t recording_ = 0;
   FaultRecorder recorder_;
   std::uint32_t acknowledged_ = 0;

@@ -48,7 +48,7 @@ class ModelSlot {
   // Haptics thread. Wait-free. The pending set, now the caller's until `retire`;
   // null when there is none, or when the ring has no room: try next tick.
   // At most one taken set may be waiting for its `retire` beside the newest one.
-  T* take() noexcept {
+  T* acquire() noexcept {
     if (pending_.load(std::memory_order_relaxed) == nullptr || !retired_.has_room()) return nullptr;
     return pending_.exchange(nullptr, std::memory_order_acq_rel);
   }

@@ -17,6 +17,12 @@ constexpr double kMultipleTolerance = 0.02;
 // anything would pass for a multiple: noise passes half the time at most.
 constexpr double kLargestMultipleTolerance = 0.25;
 constexpr double kMultipleShare = 0.99;
+// A change of position loses digits of the position: of 1 m in steps of 1 um it keeps
+// ten. Rounded to nine, the step is the number that a data sheet has, 3e-05 and not
+// 2.9999999999998778e-05, and a program that is told that number gives replay's bits.
+constexpr int kStepDigits = 9;
+// A step this far below the noise is the last digit of the text, not an encoder's.
+constexpr double kLeastStepOverNoise = 0.5;
 
 // The step that a column is quantised by; 0 when it is not.
 double quantisation_step(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
@@ -55,6 +61,25 @@ double quiet_noise(const RecordingRow* rows, std::size_t count, double Recording
   return std::sqrt(window_variance[static_cast<std::size_t>(quiet)] / 6.0);
 }
 
+double rounded_step(double step) {
+  if (!(step > 0.0)) return 0.0;
+  const double per_step = std::pow(10.0, kStepDigits - 1 - static_cast<int>(std::floor(std::log10(step))));
+  return std::round(step * per_step) / per_step;
+}
+
+// The nearest of 1, 2, 5, 10, ... by ratio; 0 stays 0.
+double preferred_number(double value) {
+  if (!(value > 0.0)) return 0.0;
+  const double decade = std::floor(std::log10(value));
+  double best = 0.0;
+  for (const double digit : {1.0, 2.0, 5.0, 10.0}) {
+    // A quotient of whole numbers, so that the same number always has the same bits.
+    const double candidate = decade < 0.0 ? digit / std::pow(10.0, -decade) : digit * std::pow(10.0, decade);
+    if (std::abs(std::log(candidate / value)) < std::abs(std::log(best / value))) best = candidate;
+  }
+  return best;
+}
+
 // White noise of a column, its quantisation included: a velocity differenced
 // from an encoder is quiet at rest and wrong by a step in motion.
 double column_noise(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
@@ -66,12 +91,15 @@ double column_noise(const RecordingRow* rows, std::size_t count, double Recordin
 SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns) {
   count = std::min(count, kSensorIdentificationRows);
   SensorSpec sensor;
-  sensor.encoder_step_m = quantisation_step(rows, count, &RecordingRow::position_m);
+  sensor.encoder_step_m = rounded_step(quantisation_step(rows, count, &RecordingRow::position_m));
   const double position_noise_m = quiet_noise(rows, count, &RecordingRow::position_m);
   const double quantisation_m = sensor.encoder_step_m / std::sqrt(12.0);
-  // The quantisation is modelled as such; only what exceeds it is noise.
+  // The quantisation is modelled as such; only what exceeds it is noise. Recordings of
+  // one rig differ by less than the factor of 1.6 that rounding may change it by, and by
+  // that the velocity changes less than by half a decade of its own density.
   sensor.position_noise_m =
-      std::sqrt(std::max(0.0, position_noise_m * position_noise_m - quantisation_m * quantisation_m));
+      preferred_number(std::sqrt(std::max(0.0, position_noise_m * position_noise_m - quantisation_m * quantisation_m)));
+  if (sensor.encoder_step_m < kLeastStepOverNoise * sensor.position_noise_m) sensor.encoder_step_m = 0.0;
   sensor.has_velocity = columns.velocity;
   sensor.has_acceleration = columns.acceleration;
   // Floors: 0.1 mm/s and 10 mm/s^2, finer than any sensor of this kind; a column

@@ -1,5 +1,7 @@
 #include "models/export/export_c.h"
 
+#include <cmath>
+
 #include "models/export/correction_c.h"
 #include "models/export/feature_c.h"
 #include "models/export/motion_c.h"
@@ -23,6 +25,15 @@ std::string in_comment(const std::string& text) {
   return safe;
 }
 
+// What the file takes the positions for.
+std::string sensor_text(const CText& exact, const PositionSensor& sensor) {
+  const std::string step = sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
+  const std::string noise =
+      sensor.position_noise_m > 0.0 ? "with a noise of " + exact.number(sensor.position_noise_m) + " m" : "";
+  if (step.empty() && noise.empty()) return "exact";
+  return step + (step.empty() || noise.empty() ? "" : " ") + noise;
+}
+
 std::string head(const ModelData& data, const ExportRequest& request) {
   const std::string real = request.single_precision ? "float" : "double";
   const CText exact(false);
@@ -41,13 +52,16 @@ std::string head(const ModelData& data, const ExportRequest& request) {
          " *\n"
          " * One tool, one thread: the state is static. For two models in one program compile one\n"
          " * with -Dpalpate_force=other_force and so on.\n"
-         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M may be defined when compiling: the\n"
-         " * step that positions come in, 0 where there is none, and the deviation beside it.\n"
+         " * Positions are taken to be " + sensor_text(exact, request.sensor) + ". For another sensor define\n"
+         " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M when compiling: the step that\n"
+         " * positions come in, 0 where there is none, and the deviation beside it.\n"
+         " * A recording of such positions, without measured velocity or acceleration, gives the\n"
+         " * forces of palpate replay.\n"
          " */\n"
          "#include <stdint.h>\n\n"
-         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " + exact.number(request.encoder_step_m) +
+         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " + exact.number(request.sensor.encoder_step_m) +
          "\n#endif\n#ifndef PALPATE_POSITION_NOISE_M\n#define PALPATE_POSITION_NOISE_M " +
-         exact.number(request.position_noise_m) + "\n#endif\n\n";
+         exact.number(request.sensor.position_noise_m) + "\n#endif\n\n";
 }
 
 constexpr const char* kDoubleC = R"C(typedef double real;
@@ -87,7 +101,7 @@ static real model_force(void) {
   for (k = 0; k < FEATURES; ++k) u[k] = (value[k] - offset[k]) * inverse_scale[k];
   force_N = trend_of();
   trust = trust_in(u);
-  is_out_of_domain = trust < R(0.5);
+  is_out_of_domain = trust < R(0.5) || IS_TOO_DEEP;
   if (trust > R(0.0)) {
     const real correction_N = correction_of(u) - CORRECTED_SHARE * force_N;
     force_N += trust * clamped(correction_N, -CORRECTION_LIMIT_N, CORRECTION_LIMIT_N);
@@ -130,11 +144,20 @@ real palpate_force(real time_s, real position_m) {
 }
 )C";
 
+// A press deeper than any recorded one, as the library tells it.
+std::string too_deep(const CText& out, const ModelData& data) {
+  std::size_t feature = 0;
+  const double deepest_m = deepest_in_domain_m(data, feature);
+  if (!std::isfinite(deepest_m)) return "0";
+  return std::string("(value[").append(std::to_string(feature)).append("] > ").append(out.number(deepest_m)).append(")");
+}
+
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n#define CORRECTED_SHARE " +
           std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") + "\n#define CORRECTION_LIMIT_N " +
           out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
           out.number(kForceMargin * data.largest_force_N) + "\n");
+  out.add("#define IS_TOO_DEEP " + too_deep(out, data) + "\n");
   out.list("offset", data.offset);
   out.list("inverse_scale", data.scale.cwiseInverse());
 }

@@ -24,9 +24,8 @@ namespace palpate {
 
 struct ExportRequest {
   bool single_precision = false;
-  // Defaults of two macros of the file.
-  double encoder_step_m = 0.0;
-  double position_noise_m = 0.0;
+  // Defaults of two macros of the file; 0 and 0: exact positions.
+  PositionSensor sensor;
 };
 
 struct ExportedC {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "models/fit/lapack.h"
-#include "models/fit/penalised_weights.h"
-#include "models/fit/seeded_random.h"
+#include "engine/base/random_stream.h"
+#include "models/solve/lapack.h"
+#include "models/solve/penalised_weights.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/training/weighting.h"
@@ -54,7 +54,7 @@ class LeftOutFits {
     const Eigen::Index count = std::min(kCentres, std::max<Eigen::Index>(1, sites_.count() / 4));
     std::vector<Eigen::Index> order = distinct_sites(sites_);
     const Eigen::Index used = std::min(count, static_cast<Eigen::Index>(order.size()));
-    SeededRandom random(1);
+    SplitMix64 random(1);
     centres_.resize(sites_.dimension(), used);
     for (Eigen::Index j = 0; j < used; ++j) {
       const auto left = static_cast<std::uint64_t>(static_cast<Eigen::Index>(order.size()) - j);
@@ -239,7 +239,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   const std::vector<char> counts = inside_depth(input);
   std::vector<Variant> variants;
   std::vector<Eigen::VectorXd> predictions;
-  const auto judge = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
+  const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
     Variant variant{smoothing, strength, radius, std::vector<double>(static_cast<std::size_t>(input.folds), 0.0)};
     for (std::size_t i = 0; i < input.samples.size(); ++i) {
       if (!counts[i]) continue;
@@ -252,12 +252,12 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     variants.push_back(std::move(variant));
   };
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(input.samples.size()));
-  judge(fits.unit(), 0.0, input.least_radius, nothing);
+  score(fits.unit(), 0.0, input.least_radius, nothing);
   for (int decade = kHighestDecade; decade >= kLowestDecade; --decade) {
     const double smoothing = fits.unit() * std::pow(10.0, decade);
     predictions.push_back(fits.predictions(smoothing));
     for (const double factor : kRadiusFactors) {
-      for (const double strength : kStrengths) judge(smoothing, strength, factor * input.least_radius, predictions.back());
+      for (const double strength : kStrengths) score(smoothing, strength, factor * input.least_radius, predictions.back());
     }
   }
   const auto best = std::min_element(variants.begin(), variants.end(),

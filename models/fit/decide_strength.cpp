@@ -32,16 +32,16 @@ double spread_of(const FeatureSelection& selection, std::size_t strokes) {
 std::vector<LeftOutSample> left_out_samples(const PreparedTraining& prepared) {
   const ModelData& common = prepared.common;
   const auto d = static_cast<Eigen::Index>(common.features.size());
-  const std::size_t stride = prepared.judge_force_N.size() / kLeftOutSamples + 1;
+  const std::size_t stride = prepared.evaluation_force_N.size() / kLeftOutSamples + 1;
   std::vector<LeftOutSample> samples;
-  for (std::size_t i = 0; i < prepared.judge_force_N.size(); i += stride) {
-    const double* features = prepared.judge_features[i].data();
+  for (std::size_t i = 0; i < prepared.evaluation_force_N.size(); i += stride) {
+    const double* features = prepared.evaluation_features[i].data();
     LeftOutSample sample;
     sample.point = (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
     sample.trend_N = common.trend.at(features, common.features);
-    sample.force_N = prepared.judge_force_N[i];
+    sample.force_N = prepared.evaluation_force_N[i];
     sample.depth_m = features[0];
-    sample.fold = prepared.judge_fold[i];
+    sample.fold = prepared.evaluation_fold[i];
     samples.push_back(std::move(sample));
   }
   return samples;

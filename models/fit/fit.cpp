@@ -13,22 +13,27 @@ std::optional<double> share_within_jnd(const PreparedTraining& prepared, const M
   constexpr std::size_t kBetweenQuestions = 4096;
   const FittedModel model(data);
   std::size_t within = 0;
-  for (std::size_t i = 0; i < prepared.judge_force_N.size(); ++i) {
-    if (i % kBetweenQuestions == 0 && !control.go_on(0.99)) return std::nullopt;
-    const double force_N = model.evaluate(prepared.judge_features[i].data()).force_N;
-    if (data.jnd.error_over_jnd(force_N, prepared.judge_force_N[i]) <= 1.0) ++within;
+  for (std::size_t i = 0; i < prepared.evaluation_force_N.size(); ++i) {
+    if (i % kBetweenQuestions == 0 && !control.may_continue(0.99)) return std::nullopt;
+    const double force_N = model.evaluate(prepared.evaluation_features[i].data()).force_N;
+    if (data.jnd.error_over_jnd(force_N, prepared.evaluation_force_N[i]) <= 1.0) ++within;
   }
-  return static_cast<double>(within) / static_cast<double>(prepared.judge_force_N.size());
+  return static_cast<double>(within) / static_cast<double>(prepared.evaluation_force_N.size());
 }
 
 }  // namespace
 
-Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
-                             const FitControl& control, const MethodFit* base) {
+Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   Eigen::VectorXd jnd_N(prepared.sites.count());
   for (Eigen::Index i = 0; i < jnd_N.size(); ++i) {
     jnd_N(i) = prepared.common.jnd.at(prepared.set.sites[static_cast<std::size_t>(i)].force_N);
   }
+  return jnd_N;
+}
+
+Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
+                             const FitControl& control, const MethodFit* base) {
+  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   const Method& method = *request.method;
   std::optional<FittedCorrection> from;
   if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};
@@ -46,7 +51,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
                  "); try more smoothing or fewer centres"};
   }
   const std::optional<double> within_jnd = share_within_jnd(prepared, fit.data, control);
-  if (!within_jnd || !control.go_on(1.0)) return interrupted();
+  if (!within_jnd || !control.may_continue(1.0)) return interrupted();
   fit.data.provenance.training_within_jnd = *within_jnd;
   return fit;
 }

@@ -63,9 +63,9 @@ struct PreparedTraining {
   std::optional<ErrorBound> trend_bound;   // of the trend alone; that of `common` is of a correction
   std::optional<StrengthChoice> strength;  // of the correction; none for the paper's recipe
   // In-contact feature vectors and forces to judge the fit by, at most 100,000.
-  std::vector<std::array<double, kMaxFeatures>> judge_features;
-  std::vector<double> judge_force_N;
-  std::vector<int> judge_fold;
+  std::vector<std::array<double, kMaxFeatures>> evaluation_features;
+  std::vector<double> evaluation_force_N;
+  std::vector<int> evaluation_fold;
 };
 
 struct MethodFit {
@@ -77,6 +77,9 @@ struct MethodFit {
 // the scene; interrupted.
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control = {});
+
+// The JND at the force of each site.
+Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
 
 // Errors: the method cannot be fitted to these sites (says why); interrupted.
 // The same prepared training and request give the same bits. `base`: the fit of the

@@ -7,10 +7,10 @@
 
 #include "models/model/rbf/rbf_correction.h"
 #include "models/fit/methods.h"
-#include "models/fit/choose_smoothing.h"
-#include "models/fit/lapack.h"
+#include "models/solve/choose_smoothing.h"
+#include "models/solve/lapack.h"
 #include "engine/base/parallel.h"
-#include "models/fit/projected_kernel.h"
+#include "models/solve/projected_kernel.h"
 
 namespace palpate {
 namespace {
@@ -32,8 +32,8 @@ enum class Outcome { solved, failed, cancelled };
 
 Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const FitControl& control, Solution& out) {
   bool cancelled = false;
-  const auto go_on = [&](double share) {
-    cancelled = !control.go_on(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
+  const auto may_continue = [&](double share) {
+    cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
     return !cancelled;
   };
   // A matrix that rounding made indefinite gets ten times the smoothing.
@@ -41,7 +41,7 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
     const BlasThreads threads(thread_count());
     const double norm = symmetric_norm(matrix);
-    const bool factorised = cholesky_in_place(matrix, go_on);
+    const bool factorised = cholesky_in_place(matrix, may_continue);
     if (cancelled) return Outcome::cancelled;
     if (!factorised) continue;
     Eigen::VectorXd u = kernel.data();
@@ -109,7 +109,7 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
     smoothing = choice->smoothing;
     criterion = choice->criterion;
   }
-  if (!control.go_on(0.2)) return interrupted();
+  if (!control.may_continue(0.2)) return interrupted();
   switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
     case Outcome::cancelled: return interrupted();
     case Outcome::failed: return failed;
@@ -126,12 +126,12 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   if (sites.count() > kMostDirectSites)
     return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
                  std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
-  if (!control.go_on(0.0)) return interrupted();
+  if (!control.may_continue(0.0)) return interrupted();
   const ProjectedKernel kernel(sites, options.kernel);
-  if (!control.go_on(0.1)) return interrupted();
+  if (!control.may_continue(0.1)) return interrupted();
   const Result<Solution> solution = solve(sites, options, kernel, control);
   if (!solution) return solution.error();
-  if (!control.go_on(kFactorised)) return interrupted();
+  if (!control.may_continue(kFactorised)) return interrupted();
   FittedRbf fitted;
   fitted.function = kernel.function(solution->u);
   fitted.function.weights *= sites.strength;

@@ -13,7 +13,7 @@
 
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
-#include "models/fit/fit_report.h"
+#include "models/solve/fit_report.h"
 #include "models/fit/methods.h"
 #include "models/training/sites.h"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "models/fit/fill_grid.h"
+#include "models/solve/fill_grid.h"
 #include "models/fit/methods.h"
 #include "models/model/grid/grid_correction.h"
 #include "models/model/rbf/rbf_correction.h"

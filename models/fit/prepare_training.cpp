@@ -7,7 +7,7 @@
 #include "models/fit/fit_random.h"
 #include "models/training/feature_list.h"
 #include "models/training/relaxation.h"
-#include "models/training/surface_registration.h"
+#include "models/surface/surface_registration.h"
 
 namespace palpate {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kNoForceFloor_N = 0.01;
 constexpr Eigen::Index kQuickCentres = 100;
 constexpr int kOneSidedPasses = 3;
 constexpr double kCorrectionMargin = 1.1;
-constexpr std::size_t kMaximumJudged = 100000;
+constexpr std::size_t kMaximumEvaluationSamples = 100000;
 // Of the way in: with less way out in contact the tool never turns round.
 constexpr double kLeastWayOut = 0.1;
 // Where the error on strokes left out stays above these, other lists of features are
@@ -164,7 +164,7 @@ Result<Extent> measure_extent(MotionSource& source, const FitControl& control) {
 }
 
 Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const TrainingRequest& request,
-                        const Extent& extent, double no_force_N, const FeatureList& list, const FitControl& control) {
+                        const Extent& extent, double force_noise_floor_N, const FeatureList& list, const FitControl& control) {
   const bool papers = is_papers_recipe(request);
   TrendTerms terms{extent.depth_m, 0.0, {}, {}, {}};
   if (!papers) {
@@ -179,7 +179,7 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
   }, control, 0.15);
   if (!status) return status;
   const FittedTrend fitted =
-      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, no_force_N, request.drive,
+      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, force_noise_floor_N, request.drive,
                 !papers);
   prepared.common.trend = fitted.trend;
   prepared.common.corrects_trend = !papers;
@@ -208,11 +208,11 @@ Status find_surfaces(MotionSource& source, const TrainingRequest& request, Prove
   return {};
 }
 
-Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, const FoldDealer& dealer,
+Status keep_evaluation_samples(PreparedTraining& prepared, MotionSource& source, const FoldDealer& dealer,
                            const FitControl& control) {
   FeatureFilter filter(prepared.common.features);
   FoldDealer folds = dealer;
-  const std::size_t stride = prepared.set.contact_samples / kMaximumJudged + 1;
+  const std::size_t stride = prepared.set.contact_samples / kMaximumEvaluationSamples + 1;
   std::size_t seen = 0;
   return source.for_each([&](const MotionRow& row) {
     if (row.first) filter.reset();
@@ -220,9 +220,9 @@ Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, con
     if (vector.in_contact) {
       const int fold = folds.next(row);
       if (seen++ % stride == 0) {
-        prepared.judge_features.push_back(vector.values);
-        prepared.judge_force_N.push_back(row.force_N);
-        prepared.judge_fold.push_back(fold);
+        prepared.evaluation_features.push_back(vector.values);
+        prepared.evaluation_force_N.push_back(row.force_N);
+        prepared.evaluation_fold.push_back(fold);
       }
     }
     return true;
@@ -231,7 +231,7 @@ Status keep_judged_samples(PreparedTraining& prepared, MotionSource& source, con
 
 // The relaxation times of the scene, given ones instead, or identified ones.
 Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequest& request, const Extent& extent,
-                                        double no_force_N, Provenance& provenance, const FitControl& control) {
+                                        double force_noise_floor_N, Provenance& provenance, const FitControl& control) {
   std::vector<double> times_s = filter_times(request.features);
   if (request.relaxation != Relaxation::scene && times_s.empty()) {
     return Error{"scene \"" + request.scene + "\" has no relaxation features; leave out --relaxation, or use a scene "
@@ -244,7 +244,7 @@ Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequ
   }
   const auto identified = identify_relaxation(source, extent.depth_m,
                                               has_velocity(request.features) ? extent.rms_velocity_m_per_s : 0.0,
-                                              request.weighting, request.jnd, no_force_N, control);
+                                              request.weighting, request.jnd, force_noise_floor_N, control);
   if (!identified) return identified.error();
   times_s.clear();
   for (const IdentifiedTime& time : identified->times) {
@@ -260,7 +260,7 @@ struct Ground {
   const TrainingRequest& request;
   const Extent& extent;
   const FoldDealer& dealer;
-  double no_force_N;
+  double force_noise_floor_N;
 };
 
 // Trend, sites and correction strength of one list of features.
@@ -268,16 +268,16 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
                     const FitControl& control) {
   const TrainingRequest& request = ground.request;
   ModelData& common = prepared.common;
-  if (Status status = fit_common_trend(prepared, ground.source, request, ground.extent, ground.no_force_N, list, control);
+  if (Status status = fit_common_trend(prepared, ground.source, request, ground.extent, ground.force_noise_floor_N, list, control);
       !status) {
     return status;
   }
   const bool papers = is_papers_recipe(request);
-  auto set = make_training_set(ground.source, common.features, request.reduction, ground.no_force_N, control, 0.2,
+  auto set = make_training_set(ground.source, common.features, request.reduction, ground.force_noise_floor_N, control, 0.2,
                                papers ? nullptr : &ground.dealer);
   if (!set) return set.error();
   prepared.set = std::move(*set);
-  if (!control.go_on(0.25)) return interrupted();
+  if (!control.may_continue(0.25)) return interrupted();
   common.largest_force_N = std::max(0.0, ground.extent.force_N);
   common.offset = prepared.set.normalisation.offset;
   common.scale = prepared.set.normalisation.scale;
@@ -287,7 +287,7 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
   if (!papers) prepared.strength.emplace();
   if (Status status = make_sites(prepared, request); !status) return status;
   common.cover = make_cover(prepared.sites.points);
-  if (Status status = keep_judged_samples(prepared, ground.source, ground.dealer, control); !status) return status;
+  if (Status status = keep_evaluation_samples(prepared, ground.source, ground.dealer, control); !status) return status;
   if (!papers) decide_strength(prepared, request.jnd, ground.dealer.folds(), ground.extent.strokes);
   return {};
 }
@@ -318,7 +318,7 @@ std::vector<FeatureList> rivals_of(const FeatureSelection& selection, const Trai
 Result<PreparedTraining> prepare_automatic(const PreparedTraining& begun, const Ground& ground,
                                            const FitControl& control) {
   const TrainingRequest& request = ground.request;
-  const SelectionInput input{ground.extent.depth_m,       ground.extent.rms_velocity_m_per_s, ground.no_force_N,
+  const SelectionInput input{ground.extent.depth_m,       ground.extent.rms_velocity_m_per_s, ground.force_noise_floor_N,
                              ground.extent.turns_round(), request.weighting,                  request.jnd};
   auto selection = select_features(ground.source, ground.dealer, input, control, 0.1);
   if (!selection) return selection.error();
@@ -349,14 +349,14 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   }
   const auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
-  if (!control.go_on(0.05)) return interrupted();
+  if (!control.may_continue(0.05)) return interrupted();
   if (!(extent->depth_m > 0.0)) {
     return Error{"no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
                  "record a press, or check the sign and zero of position_m"};
   }
-  const double no_force_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
+  const double force_noise_floor_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
   const FoldDealer dealer(source.names().size(), extent->strokes, extent->contact_samples, extent->turns_round());
-  const Ground ground{source, request, *extent, dealer, no_force_N};
+  const Ground ground{source, request, *extent, dealer, force_noise_floor_N};
   if (request.choice == FeatureChoice::automatic) {
     auto automatic = prepare_automatic(prepared, ground, control);
     if (!automatic) return automatic.error();
@@ -364,16 +364,17 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   } else {
     FeatureList list = request.list;
     if (request.choice == FeatureChoice::scene) {
-      const auto times_s = scene_times(source, request, *extent, no_force_N, prepared.common.provenance, control);
+      const auto times_s = scene_times(source, request, *extent, force_noise_floor_N, prepared.common.provenance, control);
       if (!times_s) return times_s.error();
       list = scene_list(request.features, *times_s);
     } else {
       for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
     }
-    if (!control.go_on(0.15)) return interrupted();
+    if (!control.may_continue(0.15)) return interrupted();
     if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
   }
 
+  prepared.common.sensor = PositionSensor{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;
   provenance.recordings = source.names();
   provenance.scene = request.scene;
@@ -386,7 +387,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
                                 : request.choice == FeatureChoice::given   ? Relaxation::given
                                                                            : request.relaxation;
   provenance.relaxation = kRelaxationNames[static_cast<std::size_t>(relaxation)];
-  if (!control.go_on(0.3)) return interrupted();
+  if (!control.may_continue(0.3)) return interrupted();
   return prepared;
 }
 

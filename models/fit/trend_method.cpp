@@ -10,7 +10,7 @@ namespace {
 
 Result<FittedCorrection> fit_nothing(const MethodTask& task, const FitControl& control) {
   if (const Status status = validate_sites(task.sites); !status) return status.error();
-  if (!control.go_on(0.0)) return interrupted();
+  if (!control.may_continue(0.0)) return interrupted();
   FitReport report;
   const double squares = task.sites.row_scale.cwiseProduct(task.sites.target_N).squaredNorm();
   report.residual_rms = std::sqrt(squares / static_cast<double>(task.sites.count()));

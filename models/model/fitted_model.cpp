@@ -119,6 +119,11 @@ Status validate_model(const ModelData& data) {
       if (!(value >= 0.0) || !std::isfinite(value)) return wrong("error_bound", std::to_string(value), "0 or more");
     }
   }
+  if (data.sensor) {
+    for (const double value : {data.sensor->encoder_step_m, data.sensor->position_noise_m}) {
+      if (!(value >= 0.0) || !std::isfinite(value)) return wrong("sensor", std::to_string(value), "0 or more");
+    }
+  }
   for (const auto& [value, field] : {std::pair{data.correction_limit_N, "correction_limit_N"},
                                      std::pair{data.largest_force_N, "largest_force_N"},
                                      std::pair{data.jnd.offset_N, "jnd.offset_N"},
@@ -129,6 +134,23 @@ Status validate_model(const ModelData& data) {
   return data.correction->validate(static_cast<int>(n));
 }
 
+PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m) {
+  const bool theirs = data.sensor && (encoder_step_m == 0.0 || encoder_step_m == data.sensor->encoder_step_m);
+  return theirs ? *data.sensor : PositionSensor{encoder_step_m, 0.0};
+}
+
+double deepest_in_domain_m(const ModelData& data, std::size_t& feature) {
+  double deepest_m = std::numeric_limits<double>::infinity();
+  feature = 0;
+  for (std::size_t i = 0; i < data.features.size(); ++i) {
+    if (data.features[i].kind != FeatureKind::depth) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    feature = i;
+    deepest_m = data.upper(k) + kDeeper * (data.upper(k) - data.lower(k));
+  }
+  return deepest_m;
+}
+
 FittedModel::FittedModel(ModelData data)
     : data_(std::move(data)), trend_inputs_(data_.features), guard_(data_.cover), dimension_(data_.features.size()) {
   if (!data_.correction->is_none()) correction_ = data_.correction.get();
@@ -136,13 +158,7 @@ FittedModel::FittedModel(ModelData data)
     offset_[i] = data_.offset(static_cast<Eigen::Index>(i));
     inverse_scale_[i] = 1.0 / data_.scale(static_cast<Eigen::Index>(i));
   }
-  deepest_m_ = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < dimension_; ++i) {
-    if (data_.features[i].kind != FeatureKind::depth) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    depth_ = i;
-    deepest_m_ = data_.upper(k) + kDeeper * (data_.upper(k) - data_.lower(k));
-  }
+  deepest_m_ = deepest_in_domain_m(data_, depth_);
 }
 
 int FittedModel::centre_count() const noexcept { return data_.correction->size(); }

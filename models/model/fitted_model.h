@@ -46,6 +46,12 @@ struct RecordingSurface {
   double force_zero_N = 0.0;
 };
 
+// What the positions of the training recordings came in: the coarsest of them.
+struct PositionSensor {
+  double encoder_step_m = 0.0;    // 0: not quantised
+  double position_noise_m = 0.0;  // standard deviation beside the quantisation
+};
+
 // Where a model comes from; no effect on its forces.
 struct Provenance {
   std::vector<std::string> recordings;
@@ -76,6 +82,9 @@ struct ModelData {
   double largest_force_N = 0.0;  // of the training data; output stays below 1.2 times it
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none in files of before, and of the paper's recipe
+  // No effect on the force of a feature vector: what a stream, or an exported file, takes
+  // for its own sensor when it is told nothing. None in files of before.
+  std::optional<PositionSensor> sensor;
   JndLine jnd;
   CorrectionPtr correction;  // h; shared by copies
   Provenance provenance;
@@ -86,6 +95,14 @@ inline constexpr double kForceMargin = 1.2;
 // Checks sizes, signs and finiteness of everything above. Errors: names the
 // field, what was found and what was expected.
 Status validate_model(const ModelData& data);
+
+// The sensor of a tool of which only the step is known: with the training recordings'
+// step, or with 0 for "not known", it is theirs; else that step and no noise.
+PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m);
+
+// Depths beyond this are out of the domain whatever the guard's radius; infinite without
+// a depth feature. `feature`: which one that is; 0 without.
+double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
 
 class FittedModel final : public ForceModel {
  public:

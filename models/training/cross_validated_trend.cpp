@@ -94,8 +94,8 @@ double CrossValidatedTrend::Equations::residual(const Eigen::VectorXd& x) const 
 }
 
 CrossValidatedTrend::CrossValidatedTrend(const TrendRows& rows, int folds, Weighting weighting, const JndLine& jnd,
-                                         double no_force_N)
-    : train_(static_cast<std::size_t>(folds)), judge_(train_.size()) {
+                                         double force_noise_floor_N)
+    : train_(static_cast<std::size_t>(folds)), validation_(train_.size()) {
   std::vector<double> scale(rows.count());
   for (std::size_t i = 0; i < rows.count(); ++i) scale[i] = row_scale(weighting, jnd, rows.force_N(i));
   std::vector<char> active(rows.count(), 1);
@@ -112,7 +112,7 @@ CrossValidatedTrend::CrossValidatedTrend(const TrendRows& rows, int folds, Weigh
       const double robust = plain * robust_scale(jnd.error_over_jnd(trend_N, rows.force_N(i)));
       changed = changed || std::abs(robust - scale[i]) > 0.1 * plain;
       scale[i] = robust;
-      if (rows.force_N(i) > no_force_N) continue;
+      if (rows.force_N(i) > force_noise_floor_N) continue;
       const char counts = trend_N > 0.0 ? 1 : 0;
       changed = changed || counts != active[i];
       active[i] = counts;
@@ -133,9 +133,9 @@ void CrossValidatedTrend::accumulate(const TrendRows& rows, const std::vector<do
       if (!active[i] || rows.stroke(i) != static_cast<int>(k)) continue;
       (rows.depth_m(i) <= elsewhere_m[k] ? shallow : deep).add(rows.row(i), rows.force_N(i), scale[i]);
     }
-    const Eigen::MatrixXd& judged = shallow.finish();
-    const Eigen::MatrixXd all = judged + deep.finish();
-    judge_[k] = {judged.topLeftCorner(n, n), judged.col(n).head(n), judged(n, n), shallow.count()};
+    const Eigen::MatrixXd& validation = shallow.finish();
+    const Eigen::MatrixXd all = validation + deep.finish();
+    validation_[k] = {validation.topLeftCorner(n, n), validation.col(n).head(n), validation(n, n), shallow.count()};
     train_[k] = {all.topLeftCorner(n, n), all.col(n).head(n), all(n, n), shallow.count() + deep.count()};
     total_.gram += train_[k].gram;
     total_.right_side += train_[k].right_side;
@@ -152,8 +152,8 @@ CrossValidation CrossValidatedTrend::left_out(const ColumnList& columns, const C
     const Eigen::VectorXd start = near != nullptr ? Eigen::VectorXd(near->solutions[k](columns)) : Eigen::VectorXd();
     Eigen::VectorXd x = Eigen::VectorXd::Zero(total_.gram.cols());
     x(columns) = solve_non_negative(gram, right_side, start);
-    result.fold_error.push_back(judge_[k].count > 0.0 ? judge_[k].residual(x) / judge_[k].count : 0.0);
-    result.fold_count.push_back(judge_[k].count);
+    result.fold_error.push_back(validation_[k].count > 0.0 ? validation_[k].residual(x) / validation_[k].count : 0.0);
+    result.fold_count.push_back(validation_[k].count);
     result.solutions.push_back(std::move(x));
   }
   return result;

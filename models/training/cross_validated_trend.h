@@ -1,6 +1,6 @@
 // The trend's regression prepared for cross-validation: one Gram matrix of all
 // candidate columns for every fold, so that any subset of the columns is fitted
-// and judged without going back to the rows.
+// and evaluated without going back to the rows.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -29,7 +29,7 @@ struct CrossValidation {
 class CrossValidatedTrend {
  public:
   // The rows' "stroke" is their fold, 0 to folds - 1.
-  CrossValidatedTrend(const TrendRows& rows, int folds, Weighting weighting, const JndLine& jnd, double no_force_N);
+  CrossValidatedTrend(const TrendRows& rows, int folds, Weighting weighting, const JndLine& jnd, double force_noise_floor_N);
 
   // `columns`: ascending. `near`: of a set much like it, or nothing.
   CrossValidation left_out(const ColumnList& columns, const CrossValidation* near = nullptr) const;
@@ -50,7 +50,7 @@ class CrossValidatedTrend {
                   const std::vector<double>& elsewhere_m);
 
   std::vector<Equations> train_;  // per fold: its own rows
-  std::vector<Equations> judge_;  // per fold: those of its rows that count when it is left out
+  std::vector<Equations> validation_;  // per fold: those of its rows that count when it is left out
   Equations total_;
 };
 

@@ -137,7 +137,7 @@ class Search {
       : problem_(problem), candidates_(std::move(candidates)) {}
 
   using Set = std::vector<char>;  // by candidate: taken
-  struct Judged {
+  struct Scored {
     Set set;
     CrossValidation error;
   };
@@ -153,7 +153,7 @@ class Search {
     return list;
   }
 
-  Judged judge(Set set, const CrossValidation* near) const {
+  Scored score(Set set, const CrossValidation* near) const {
     CrossValidation error = problem_.left_out(columns(set), near);
     return {std::move(set), std::move(error)};
   }
@@ -171,15 +171,15 @@ class Search {
   // The best set that has one candidate more; nothing when there is none. Of sets as
   // good as the best, that of the more common cause: one press alone cannot tell
   // relaxation from friction and softening.
-  std::optional<Judged> best_with_one_more(const Judged& from) const;
+  std::optional<Scored> best_with_one_more(const Scored& from) const;
 
-  std::optional<Judged> best_with_one_less(const Judged& from) const {
-    std::optional<Judged> best;
+  std::optional<Scored> best_with_one_less(const Scored& from) const {
+    std::optional<Scored> best;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       if (!from.set[i]) continue;
       Set set = from.set;
       set[i] = 0;
-      Judged one = judge(std::move(set), &from.error);
+      Scored one = score(std::move(set), &from.error);
       if (!best || one.error.mean() < best->error.mean()) best = std::move(one);
     }
     return best;
@@ -190,19 +190,19 @@ class Search {
   std::vector<Candidate> candidates_;
 };
 
-bool as_good(const Search::Judged& small, const Search::Judged& best) {
+bool as_good(const Search::Scored& small, const Search::Scored& best) {
   return small.error.mean() - best.error.mean() <= small.error.standard_error_against(best.error);
 }
 
-std::optional<Search::Judged> Search::best_with_one_more(const Judged& from) const {
+std::optional<Search::Scored> Search::best_with_one_more(const Scored& from) const {
   constexpr std::array kByCause{Family::relaxation, Family::velocity, Family::stops, Family::peak};
-  std::array<std::optional<Judged>, kByCause.size()> best_of;
-  const Judged* best = nullptr;
+  std::array<std::optional<Scored>, kByCause.size()> best_of;
+  const Scored* best = nullptr;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     if (!may_join(from.set, i)) continue;
     Set set = from.set;
     set[i] = 1;
-    Judged one = judge(std::move(set), &from.error);
+    Scored one = score(std::move(set), &from.error);
     const auto cause = std::find(kByCause.begin(), kByCause.end(), candidates_[i].family) - kByCause.begin();
     auto& so_far = best_of[static_cast<std::size_t>(cause)];
     if (!so_far || one.error.mean() < so_far->error.mean()) so_far = std::move(one);
@@ -218,11 +218,11 @@ std::optional<Search::Judged> Search::best_with_one_more(const Judged& from) con
   return *best;
 }
 
-Search::Judged smallest_as_good(const Search& search, std::vector<Search::Judged> path) {
+Search::Scored smallest_as_good(const Search& search, std::vector<Search::Scored> path) {
   const auto best = std::min_element(path.begin(), path.end(), [](const auto& a, const auto& b) {
     return a.error.mean() < b.error.mean();
   });
-  Search::Judged chosen = *std::find_if(path.begin(), path.end(), [&](const auto& one) { return as_good(one, *best); });
+  Search::Scored chosen = *std::find_if(path.begin(), path.end(), [&](const auto& one) { return as_good(one, *best); });
   while (auto less = search.best_with_one_less(chosen)) {
     if (!as_good(*less, *best)) break;
     chosen = std::move(*less);
@@ -230,7 +230,7 @@ Search::Judged smallest_as_good(const Search& search, std::vector<Search::Judged
   return chosen;
 }
 
-std::vector<FeatureWorth> table_of_worth(const Search& search, const Search::Judged& chosen) {
+std::vector<FeatureWorth> table_of_worth(const Search& search, const Search::Scored& chosen) {
   const double with_all = std::sqrt(chosen.error.mean());
   std::vector<FeatureWorth> taken;
   std::vector<FeatureWorth> left;
@@ -240,11 +240,11 @@ std::vector<FeatureWorth> table_of_worth(const Search& search, const Search::Jud
     Search::Set other = chosen.set;
     if (chosen.set[i]) {
       other[i] = 0;
-      const double without = std::sqrt(search.judge(std::move(other), &chosen.error).error.mean());
+      const double without = std::sqrt(search.score(std::move(other), &chosen.error).error.mean());
       taken.push_back({candidate.name, true, with_all, without});
     } else if (search.may_join(chosen.set, i)) {
       other[i] = 1;
-      const double with = std::sqrt(search.judge(std::move(other), &chosen.error).error.mean());
+      const double with = std::sqrt(search.score(std::move(other), &chosen.error).error.mean());
       FeatureWorth worth{candidate.name, false, with, with_all};
       if (candidate.family != Family::peak) {
         left.push_back(std::move(worth));
@@ -305,18 +305,18 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   const CrossValidatedTrend problem(rows, dealer.folds(), input.weighting, input.jnd, input.force_floor_N);
   const Search search(problem, make_candidates(rows));
 
-  std::vector<Search::Judged> path{search.judge(Search::Set(search.candidates().size(), 0), nullptr)};
+  std::vector<Search::Scored> path{search.score(Search::Set(search.candidates().size(), 0), nullptr)};
   FeatureSelection selection;
   selection.turns_round = input.turns_round;
   while (selection.turns_round) {
     auto more = search.best_with_one_more(path.back());
     if (!more) break;
-    if (!control.go_on(fraction)) return interrupted();
+    if (!control.may_continue(fraction)) return interrupted();
     const bool worthwhile = more->error.mean() < (1.0 - kLeastGain) * path.back().error.mean();
     if (!worthwhile) break;
     path.push_back(std::move(*more));
   }
-  const Search::Judged chosen = smallest_as_good(search, std::move(path));
+  const Search::Scored chosen = smallest_as_good(search, std::move(path));
 
   const Eigen::VectorXd solution = problem.solve(search.columns(chosen.set));
   selection.list = list_of(search, chosen.set, solution);
@@ -327,7 +327,7 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   selection.worth = table_of_worth(search, chosen);
   selection.left_out_error_over_jnd = std::sqrt(chosen.error.mean());
   selection.training_error_over_jnd = std::sqrt(problem.training_error(solution));
-  if (!control.go_on(fraction)) return interrupted();
+  if (!control.may_continue(fraction)) return interrupted();
   return selection;
 }
 

@@ -194,7 +194,7 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
   return solver.solve().cwiseMax(0.0).cwiseProduct(inverse_norm);
 }
 
-FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
+FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double force_noise_floor_N,
                       BranchDrive drive, bool robust) {
   FittedTrend fitted;
   const Eigen::MatrixXd directions = free_directions(rows, drive);
@@ -214,7 +214,7 @@ FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine&
         changed = changed || std::abs(scaled - scale[i]) > 0.1 * plain;
         scale[i] = scaled;
       }
-      if (rows.force_N(i) > no_force_N) continue;
+      if (rows.force_N(i) > force_noise_floor_N) continue;
       const char counts = dot(rows.row(i), x) > 0.0 ? 1 : 0;
       changed = changed || counts != fitted.active[i];
       fitted.active[i] = counts;

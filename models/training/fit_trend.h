@@ -43,8 +43,8 @@ struct FittedTrend {
 enum class BranchDrive { elastic_rate, velocity };
 
 // `robust`: rows are scaled down as weighting.h has it, again after every pass.
-// `no_force_N`: at or below it a sample counts as "no measured force".
-FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double no_force_N,
+// `force_noise_floor_N`: at or below it a sample counts as "no measured force".
+FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine& jnd, double force_noise_floor_N,
                       BranchDrive drive = BranchDrive::elastic_rate, bool robust = false);
 
 }  // namespace palpate

@@ -129,7 +129,7 @@ Status MotionSource::arrange(const FitControl& control, double fraction) {
       if (!input.loaded && held + one.rows <= std::min(kRowsReadOnce, kept_rows_)) {
         copy->rows.insert(copy->rows.end(), chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(*count));
       }
-      if (!control.go_on(fraction)) return interrupted();
+      if (!control.may_continue(fraction)) return interrupted();
     }
     one.hash = hash.value();
     if (!input.loaded && copy->rows.size() == one.rows) {
@@ -166,7 +166,10 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
       if (!count) return count.error();
       if (*count == 0) break;
       if (!estimator) {
-        estimator.emplace(identify_sensor(chunk.data(), *count, stream->columns()));
+        const SensorSpec sensor = identify_sensor(chunk.data(), *count, stream->columns());
+        estimator.emplace(sensor);
+        std::tie(encoder_step_m_, position_noise_m_) = std::max(
+            std::pair{encoder_step_m_, position_noise_m_}, std::pair{sensor.encoder_step_m, sensor.position_noise_m});
         force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk.data(), *count));
       }
       for (std::size_t i = 0; i < *count; ++i) {
@@ -201,7 +204,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
   std::size_t seen = 0;
   CorrectedRows corrected(corrections_);
   const auto visit_and_ask = [&](const MotionRow& row) {
-    return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.go_on(fraction));
+    return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.may_continue(fraction));
   };
   if (!complete_) return read_all(visit_and_ask);
   for (const MotionRow& row : kept_) {

@@ -70,6 +70,9 @@ class MotionSource {
   std::size_t rows() const { return rows_; }                        // after the first pass
   // The largest force noise among the recordings; after the first pass.
   double force_noise_N() const { return force_noise_N_; }
+  // The coarsest of the recordings' encoder steps, then of their noises; after the first pass.
+  double encoder_step_m() const { return encoder_step_m_; }
+  double position_noise_m() const { return position_noise_m_; }
 
  private:
   Status arrange(const FitControl& control, double fraction);
@@ -83,6 +86,8 @@ class MotionSource {
   bool arranged_ = false;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
+  double encoder_step_m_ = 0.0;
+  double position_noise_m_ = 0.0;
   bool complete_ = false;  // kept_ holds everything
 };
 

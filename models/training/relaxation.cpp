@@ -46,7 +46,7 @@ struct TimeEquations {
 // The regression on a set of times, with its Gram matrix per fold.
 class Problem {
  public:
-  Problem(TrendRows rows, Weighting weighting, const JndLine& jnd, double no_force_N)
+  Problem(TrendRows rows, Weighting weighting, const JndLine& jnd, double force_noise_floor_N)
       : rows_(std::move(rows)), fixed_(static_cast<Eigen::Index>(rows_.columns() -
                                        kBranchTerms * rows_.relaxation_times_s().size())) {
     std::vector<char> active(rows_.count(), 1);
@@ -56,7 +56,7 @@ class Problem {
       // tell where the tool outran the material.
       const Eigen::VectorXd x = solve_non_negative(total_.gram, total_.right_side);
       for (std::size_t i = 0; i < rows_.count(); ++i) {
-        if (rows_.force_N(i) > no_force_N) continue;
+        if (rows_.force_N(i) > force_noise_floor_N) continue;
         active[i] = Eigen::Map<const Eigen::VectorXd>(rows_.row(i), x.size()).dot(x) > 0.0 ? 1 : 0;
       }
     }
@@ -146,7 +146,7 @@ Result<TrendRows> gather(MotionSource& source, double depth_m, double thinning_v
   const Status status = source.for_each([&](const MotionRow& row) {
     if (row.first) rows.begin_recording();
     rows.add(row.sample, row.motion, row.force_N, row.stroke);
-    return ++seen % 65536 != 0 || control.go_on(fraction);
+    return ++seen % 65536 != 0 || control.may_continue(fraction);
   });
   if (!status) return status.error();
   return rows;
@@ -264,7 +264,7 @@ constexpr std::size_t first_of(std::size_t count) {
 
 Result<RelaxationIdentification> identify_relaxation(MotionSource& source, double reference_depth_m,
                                                      double thinning_velocity_m_per_s, Weighting weighting, const JndLine& jnd,
-                                                     double no_force_N, const FitControl& control) {
+                                                     double force_noise_floor_N, const FitControl& control) {
   // A time shorter than two samples cannot be told from viscosity.
   double duration_s = 0.0;
   std::size_t steps = 0;
@@ -287,7 +287,7 @@ Result<RelaxationIdentification> identify_relaxation(MotionSource& source, doubl
     return Error{"relaxation times need at least " + std::to_string(kMinimumRows) + " samples in contact, found " +
                  std::to_string(rows->count()) + "; record longer, or pass --relaxation scene"};
   }
-  const Problem coarse(std::move(*rows), weighting, jnd, no_force_N);
+  const Problem coarse(std::move(*rows), weighting, jnd, force_noise_floor_N);
 
   // Centres of the fine ladders, by number of times.
   std::array<std::vector<double>, kMaximumTimes> centres_s;
@@ -295,12 +295,12 @@ Result<RelaxationIdentification> identify_relaxation(MotionSource& source, doubl
     for (const std::size_t index : best_of(coarse, coarse.total(), count).chosen) {
       centres_s[count - 1].push_back(coarse.times_s()[index]);
     }
-    if (!control.go_on(0.06 + 0.02 * static_cast<double>(count))) return interrupted();
+    if (!control.may_continue(0.06 + 0.02 * static_cast<double>(count))) return interrupted();
   }
 
   auto fine_rows = gather(source, reference_depth_m, thinning_velocity_m_per_s, fine_ladders(centres_s), control, 0.13);
   if (!fine_rows) return fine_rows.error();
-  const Problem fine(std::move(*fine_rows), weighting, jnd, no_force_N);
+  const Problem fine(std::move(*fine_rows), weighting, jnd, force_noise_floor_N);
 
   std::array<FineChoice, kMaximumTimes> choices;
   std::vector<double> between_s;  // of each number of times, behind each other
@@ -310,19 +310,19 @@ Result<RelaxationIdentification> identify_relaxation(MotionSource& source, doubl
     between_s.insert(between_s.end(), times_s.begin(), times_s.end());
   }
 
-  // Judged at the times themselves: with little noise a true time between two of
+  // Scored at the times themselves: with little noise a true time between two of
   // the ladder would pass for both of them.
-  auto judged_rows = gather(source, reference_depth_m, thinning_velocity_m_per_s, between_s, control, 0.14);
-  if (!judged_rows) return judged_rows.error();
-  const Problem judged(std::move(*judged_rows), weighting, jnd, no_force_N);
+  auto fine_score_rows = gather(source, reference_depth_m, thinning_velocity_m_per_s, between_s, control, 0.14);
+  if (!fine_score_rows) return fine_score_rows.error();
+  const Problem scored(std::move(*fine_score_rows), weighting, jnd, force_noise_floor_N);
   RelaxationIdentification result;
   std::size_t next = 0;
   for (std::size_t count = 1; count <= kMaximumTimes; ++count) {
     std::vector<std::size_t> chosen;
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(next++);
     double left_out = 0.0;
-    for (std::size_t fold = 0; fold < kFolds; ++fold) left_out += judged.left_out(fold, chosen);
-    result.error_over_jnd.push_back(std::sqrt(left_out / judged.total().count));
+    for (std::size_t fold = 0; fold < kFolds; ++fold) left_out += scored.left_out(fold, chosen);
+    result.error_over_jnd.push_back(std::sqrt(left_out / scored.total().count));
   }
   const double least = *std::min_element(result.error_over_jnd.begin(), result.error_over_jnd.end());
   std::size_t count = 1;

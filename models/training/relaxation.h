@@ -40,6 +40,6 @@ struct RelaxationIdentification {
 // fewer than 50 samples in contact.
 Result<RelaxationIdentification> identify_relaxation(MotionSource& source, double reference_depth_m,
                                                      double thinning_velocity_m_per_s, Weighting weighting, const JndLine& jnd,
-                                                     double no_force_N, const FitControl& control);
+                                                     double force_noise_floor_N, const FitControl& control);
 
 }  // namespace palpate

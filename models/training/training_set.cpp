@@ -176,7 +176,7 @@ class NoReduction {
 }  // namespace
 
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double no_force_N, const FitControl& control,
+                                      Reduction reduction, double force_noise_floor_N, const FitControl& control,
                                       double fraction, const FoldDealer* dealer) {
   TrainingSet set;
   set.features = features;
@@ -212,7 +212,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   if (dealer != nullptr) folds = *dealer;
   status = pass([&](const MotionRow& row, const FeatureVector& vector) {
     const int fold = folds ? folds->next(row) : 0;
-    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= no_force_N};
+    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
       case Reduction::coverage: coverage.add(site); break;
       case Reduction::force: force.add(site, row.recording != recording); break;

@@ -74,10 +74,10 @@ struct TrainingSet {
   double reduction_force_N = 0.0;  // in the end
 };
 
-// `no_force_N`: at or below it a sample counts as "no measured force". Errors:
+// `force_noise_floor_N`: at or below it a sample counts as "no measured force". Errors:
 // those of the source; no sample in contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                      Reduction reduction, double no_force_N, const FitControl& control = {},
+                                      Reduction reduction, double force_noise_floor_N, const FitControl& control = {},
                                       double fraction = 0.0, const FoldDealer* dealer = nullptr);
 
 }  // namespace palpate

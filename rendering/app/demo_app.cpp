@@ -26,7 +26,6 @@ constexpr double kNsPerS = 1e9;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 4;
-constexpr float kTextStep = 0.1F;
 constexpr double kExaggeration = 10.0;
 
 // Where real-time priority was refused, the picture steps back for the force:
@@ -59,7 +58,6 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 
 Status DemoApp::set_up(const DemoRequest& request) {
   view_.kiosk = request.kiosk;
-  view_.offered_recording = request.recording;
   view_.theme = request.kiosk ? Theme::dark : Theme::light;
   // Without a display nothing else needs to start.
   if (Status status = Window::find_display(); !status) return status;
@@ -75,7 +73,9 @@ Status DemoApp::set_up(const DemoRequest& request) {
   session_ = std::move(*session);
   yield_to_haptics(session_->loop().scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
-  auto window = Window::open(request.window);
+  WindowRequest asked = request.window;
+  asked.empty = palette(view_.theme).background;
+  auto window = Window::open(asked);
   if (!window) return window.error();
   window_ = std::move(*window);
   auto blocks = BlockView::create(session_->scene());
@@ -85,9 +85,11 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (view_.kiosk) {
     if (Status status = set_up_exhibit(); !status) return status;
   }
+  commands_ = make_commands();
   listen();
   if (find_font().empty())
     notify("no font found; install fonts-dejavu-core", true);
+  if (!request.recording.empty()) offer(request.recording);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
@@ -101,8 +103,15 @@ void DemoApp::listen() {
   });
   glfwSetKeyCallback(window_->handle(), [](GLFWwindow* handle, int key, int, int action, int modifiers) {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
-    if (action == GLFW_PRESS) app->press_key(key, modifiers);
+    app->handle_key_event(key, action, modifiers);
   });
+  const auto stir = [](GLFWwindow* handle, auto...) {
+    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->stirred_ = true;
+  };
+  glfwSetCursorPosCallback(window_->handle(), stir);
+  glfwSetMouseButtonCallback(window_->handle(), stir);
+  glfwSetScrollCallback(window_->handle(), stir);
+  glfwSetCharCallback(window_->handle(), stir);
   // After these callbacks, which it calls behind its own.
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
@@ -125,9 +134,10 @@ void DemoApp::close() {
 }
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
+  if (view_.kiosk) return;
   for (const std::string& path : paths) {
-    if (path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0 && !view_.kiosk) {
-      view_.offered_recording = path;
+    if (is_offered(path)) {
+      offer(path);
     } else {
       session_->load_file(path);
     }
@@ -142,20 +152,48 @@ void DemoApp::frame() {
   glfwPollEvents();
   const double now_s = steady_now_s();
   session_->update();
-  take_notices(now_s);
+  read_notices(now_s);
   offer_finished_recording();
+  show_offer();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
+  frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
-  draw();
+  const bool whole = panel_is_due(now_s);
+  if (whole) {
+    draw();
+  } else {
+    draw_again();
+  }
   handle_keys();
-  handle_mouse();
+  if (whole) handle_mouse();
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
 }
 
+// Text and curves are much of a frame's work where the processor draws, and nobody reads
+// sixty numbers a second: the probe moves in every frame, the panel some twenty times a second.
+// What somebody does is answered at once.
+bool DemoApp::panel_is_due(double now_s) const {
+  constexpr double kPanelEvery_s = 0.045;
+  const UiSize size = window_->ui_size();
+  return stirred_ || now_s - panel_drawn_s_ >= kPanelEvery_s || ImGui::GetIO().WantCaptureMouse ||
+         size.width != panel_drawn_in_.x || size.height != panel_drawn_in_.y;
+}
+
+void DemoApp::draw_again() {
+  draw_blocks();
+  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
+  const Viewport part = pixels_of(panel);
+  drawn_panel_.copy(part.x, part.y);
+  ui_->draw_again(panel.at, {panel.at.x + panel.size.x, panel.at.y + panel.size.y});
+}
+
 void DemoApp::draw() {
+  stirred_ = false;
+  panel_drawn_s_ = steady_now_s();
+  panel_drawn_in_ = {window_->ui_size().width, window_->ui_size().height};
   style_.update(window_->ui_size(), view_.kiosk ? kKioskText : view_.text_size, view_.theme);
   ui_->begin_frame();
   wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
@@ -164,15 +202,17 @@ void DemoApp::draw() {
   const SceneArea area = scene_area();
   const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {[this](Command command) { run(command); },
-                 [this](const std::string& scene) { go_on_with(scene, first_device_); },
-                 [this](const std::string& path) { go_on_with(request_.scene, "replay:" + path); }});
+                {&commands_,
+                 [this](const std::string& scene) { switch_to(scene, first_device_); },
+                 [this](const std::string& path) { switch_to(request_.scene, "replay:" + path); }});
   if (view_.kiosk) {
     open_day_.draw(*session_, view_, style_, panel.at, panel.size);
   } else {
     panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
   ui_->end_frame();
+  const Viewport part = pixels_of(panel);
+  drawn_panel_.take(part.x, part.y, part.width, part.height);
 }
 
 void DemoApp::draw_blocks() {
@@ -217,13 +257,13 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     pose.arrow = slot_colour(models, slot, view_.theme);
     pose.chosen = slot == models.selected;
     if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
-    pose.judged = view_.hidden_choice == 0;
+    pose.shows_error = view_.hidden_choice == 0;
     poses.push_back(pose);
   }
   // Before the first model is ready: a block nobody has a model of yet.
   if (poses.empty()) {
     pose.dent_m = std::max(0.0F, pose.tool_m);
-    pose.judged = false;
+    pose.shows_error = false;
     poses.push_back(pose);
   }
   return poses;
@@ -236,7 +276,7 @@ BlockPose DemoApp::reference_pose(BlockPose pose) const {
   pose.dent_m = active != nullptr ? static_cast<float>(active->dent_m) : std::max(0.0F, pose.tool_m);
   pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
   pose.arrow = kReferenceColour;
-  pose.chosen = pose.judged = false;
+  pose.chosen = pose.shows_error = false;
   return pose;
 }
 
@@ -252,89 +292,12 @@ void DemoApp::count_frame(double now_s) {
   second_began_s_ = now_s;
 }
 
-void DemoApp::take_notices(double now_s) {
-  for (const Notice& notice : session_->take_notices()) {
+void DemoApp::read_notices(double now_s) {
+  for (const Notice& notice : session_->read_notices()) {
     notify(notice.text, notice.problem);
   }
   std::erase_if(toasts_, [&](const Toast& toast) { return toast.until_s < now_s; });
   if (toasts_.size() > kMostToasts) toasts_.erase(toasts_.begin(), toasts_.end() - kMostToasts);
-}
-
-void DemoApp::run(Command command) {
-  switch (command) {
-    case Command::next_block_count:
-      view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
-      notify_of_missing_blocks();
-      break;
-    case Command::pause_curves:
-      if (view_.time.paused) {
-        view_.time.run();
-      } else {
-        view_.time.pause(steady_now_s());
-      }
-      break;
-    case Command::next_line_up:
-      next_line_up();
-      break;
-    case Command::exaggerate:
-      view_.exaggerated = !view_.exaggerated;
-      break;
-    case Command::scene_list:
-      view_.scene_list = !view_.scene_list;
-      break;
-    case Command::difference:
-      view_.difference = !view_.difference;
-      break;
-    case Command::reset_figures:
-      session_->reset_figures();
-      break;
-    case Command::next_reference:
-      next_reference();
-      break;
-    case Command::record:
-      record();
-      break;
-    case Command::file_list:
-      view_.file_list = !view_.file_list;
-      break;
-    case Command::zero:
-      session_->start_zeroing();
-      break;
-    case Command::dead_man:
-      next_dead_man();
-      break;
-    case Command::details:
-      view_.details = !view_.details;
-      break;
-    case Command::theme:
-      view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light;
-      break;
-    case Command::help:
-      view_.help = !view_.help;
-      break;
-    case Command::save_curves:
-      save_curves();
-      break;
-    case Command::home_view:
-      blocks_->camera().go_home();
-      break;
-    case Command::larger_text:
-      view_.text_size = std::min(kLargestText, view_.text_size + kTextStep);
-      break;
-    case Command::smaller_text:
-      view_.text_size = std::max(kSmallestText, view_.text_size - kTextStep);
-      break;
-    case Command::fullscreen:
-      window_->set_fullscreen(!window_->fullscreen());
-      break;
-  }
-}
-
-// Fewer models than blocks were asked for: no block stays away without a word.
-void DemoApp::notify_of_missing_blocks() {
-  const std::size_t shown = shown_slots(*session_, view_.block_count).size();
-  if (shown >= view_.block_count) return;
-  notify(std::to_string(shown) + " of " + std::to_string(view_.block_count) + " blocks: no more models are ready", false);
 }
 
 void DemoApp::notify(std::string text, bool problem) {
@@ -343,35 +306,6 @@ void DemoApp::notify(std::string text, bool problem) {
     return;
   }
   toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
-}
-
-void DemoApp::next_dead_man() {
-  if (!session_->renders_force()) {
-    notify("there is no device that pushes: nothing to hold a switch for", false);
-    return;
-  }
-  switch (session_->dead_man()) {
-    case DeadMan::off:
-      session_->use_dead_man(DeadMan::key);
-      break;
-    case DeadMan::key:
-      session_->use_dead_man(DeadMan::grip);
-      break;
-    case DeadMan::grip:
-      session_->use_dead_man(DeadMan::off);
-      break;
-  }
-}
-
-void DemoApp::next_reference() {
-  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->comparison().reference());
-  const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
-  for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
-    const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];
-    if (!session_->has_reference(kind)) continue;
-    session_->use_reference(kind);
-    return;
-  }
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {

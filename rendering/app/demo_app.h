@@ -4,6 +4,7 @@
 // Thread guarantee: main thread only.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@
 #include "rendering/panels/view_state.h"
 #include "rendering/app/window.h"
 #include "scenes/live/live_session.h"
+#include "scenes/live/recording_offer.h"
 
 namespace palpate {
 
@@ -49,16 +51,20 @@ class DemoApp {
 
   LiveSession& session() noexcept { return *session_; }
   ViewState& view() noexcept { return view_; }
+  const OpenDay& exhibit() const noexcept { return open_day_; }
+  const BlockView& blocks() const noexcept { return *blocks_; }
   const FrameFigures& frames() const noexcept { return frames_; }
   const std::vector<Toast>& toasts() const noexcept { return toasts_; }
   Window& window() noexcept { return *window_; }
 
   // What events do; GLFW's callbacks call them. A key counts even when it was
-  // pressed and let go within a frame.
-  // A recording (.csv) is offered to be fitted or replayed; all else is taken for a model.
+  // pressed and let go within a frame. `action`: of GLFW.
+  // A model file (.json) is loaded; all else is offered to be fitted or replayed, as a
+  // recording or as another program's table.
   void drop_files(const std::vector<std::string>& paths);
-  void press_key(int key, int modifiers);
-  void run(Command command);
+  void handle_key_event(int key, int action, int modifiers);
+  // All that can be asked for, a row each; an exhibit has buttons of its own.
+  std::vector<WindowCommand>& commands() noexcept { return commands_; }
 
  private:
   DemoApp() = default;
@@ -67,16 +73,25 @@ class DemoApp {
   struct KeyPress {
     int key = 0;  // GLFW's
     int modifiers = 0;
+    bool again = false;  // the keyboard repeats it
   };
+  std::vector<WindowCommand> make_commands();
   void handle_keys();
   void handle_key(const KeyPress& press);
+  void run_held();
   void close_windows();
   void nudge_tool(double by_m);
-  void replay_key(int key);
+  void select_listed(std::size_t number);
+  void pause_or_run();
+  void next_block_count();
+  void scroll_curves(double by_s);
+  void seek_replay(double by_s);
   void handle_mouse();
   void move_tool_to_mouse();
-  void take_notices(double now_s);
-  void draw();
+  void read_notices(double now_s);
+  bool panel_is_due(double now_s) const;
+  void draw();        // all of it
+  void draw_again();  // the picture, and around it what was drawn last
   void draw_blocks();
   void clear_panel();
   void count_frame(double now_s);
@@ -90,16 +105,17 @@ class DemoApp {
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.
-  void go_on_with(const std::string& scene, const std::string& device);
+  void switch_to(const std::string& scene, const std::string& device);
   void reopen(const SessionRequest& request);
+  void offer(const std::string& path);
   void offer_finished_recording();
+  void show_offer();
   void next_line_up();
-  double limited_depth_m(double wanted_m) const;
+  double limited_depth_m(double requested_m) const;
   void save_curves();
   CurveSource curve_source() const;
   void next_reference();
   void next_dead_man();
-  void notify_of_missing_blocks();
 
   // What lies on the window goes before it.
   std::unique_ptr<Window> window_;
@@ -116,16 +132,24 @@ class DemoApp {
   SessionRequest request_;
   std::string first_device_;  // as the program was asked for it
   std::optional<SessionRequest> next_;  // what to go on with after this frame
+  std::future<Result<RecordingOffer>> arriving_;  // a file that is read
   std::string recording_;  // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;
+  std::vector<WindowCommand> commands_;
   std::vector<KeyPress> keys_;  // since the last frame
+  std::vector<int> down_;       // keys that are held
   double frame_began_s_ = 0.0;
+  double frame_s_ = 0.0;  // since the frame before, at most a tenth of a second
   double last_frame_s_ = 0.0;  // its end
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
   float wheel_ = 0.0F;  // of the mouse, in this frame
+  Backdrop drawn_panel_;
+  double panel_drawn_s_ = 0.0;
+  ImVec2 panel_drawn_in_{0.0F, 0.0F};  // a window of this size
+  bool stirred_ = true;  // somebody did something since the panel was drawn
   bool orbiting_ = false;
   bool leaving_ = false;  // a kiosk's only way out
 };

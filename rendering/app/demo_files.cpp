@@ -1,5 +1,6 @@
 // What the window does with files, settings and sessions.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -45,7 +46,7 @@ void DemoApp::save_settings() {
   (void)write_settings(settings_file_, settings_);
 }
 
-void DemoApp::go_on_with(const std::string& scene, const std::string& device) {
+void DemoApp::switch_to(const std::string& scene, const std::string& device) {
   next_ = request_;
   next_->scene = scene;
   next_->device = device;
@@ -71,8 +72,30 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(settings_.camera);
   blocks_framed_ = 0;
+  stirred_ = true;
   view_.time = CurveTime{};
   view_.time.zero_s = steady_now_s();
+}
+
+// A large file takes a while to read, in which the picture goes on. The last one counts.
+void DemoApp::offer(const std::string& path) {
+  const auto folder = data_folder();
+  if (!folder) {
+    notify(folder.error().message, true);
+    return;
+  }
+  arriving_ = std::async(std::launch::async, [path, folder = *folder] { return offer_recording(path, folder); });
+  notify("reading " + path, false);
+}
+
+void DemoApp::show_offer() {
+  if (!arriving_.valid() || arriving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  const Result<RecordingOffer> offered = arriving_.get();
+  if (offered) {
+    view_.offered = {offered->path, offered->words, {}};
+  } else {
+    view_.offered = {{}, {}, offered.error().message};
+  }
 }
 
 // Recorded and on the disk: what now?
@@ -82,7 +105,7 @@ void DemoApp::offer_finished_recording() {
     recording_ = status.path;
   } else if (!recording_.empty()) {
     std::error_code missing;
-    if (!view_.kiosk && std::filesystem::exists(recording_, missing)) view_.offered_recording = recording_;
+    if (!view_.kiosk && std::filesystem::exists(recording_, missing)) view_.offered = {recording_, {}, {}};
     recording_.clear();
   }
 }
@@ -102,12 +125,12 @@ void DemoApp::next_line_up() {
 }
 
 // As deep as there are data, and softly a little beyond.
-double DemoApp::limited_depth_m(double wanted_m) const {
+double DemoApp::limited_depth_m(double requested_m) const {
   constexpr double kMargin = 0.08;  // of that depth
   const double known_m = session_->models().trained_depth_m();
-  if (wanted_m <= known_m) return wanted_m;
+  if (requested_m <= known_m) return requested_m;
   const double margin_m = kMargin * known_m;
-  return known_m + margin_m * (1.0 - std::exp((known_m - wanted_m) / margin_m));
+  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
 }
 
 void DemoApp::record() {

@@ -16,113 +16,57 @@ namespace {
 constexpr float kOrbit_rad_per_px = 0.006F;
 constexpr float kZoom_per_step = 0.9F;
 constexpr double kWheelStep_m = 0.0005;
-constexpr double kKeyStep_m = 0.0003;  // a frame, while held
 // The probe moves a third as far as the mouse does on the picture: a block is
 // pressed by millimetres, and a hand holds a mouse no finer than a few pixels.
 constexpr float kMouseGain = 0.33F;
-constexpr double kScrollStep_s = 0.1;
-constexpr double kSeekStep_s = 2.0;
-constexpr double kSpeedStep = 1.25;
 constexpr float kClick_px = 4.0F;
-
-constexpr std::pair<int, Command> kCommandKeys[] = {{GLFW_KEY_N, Command::next_line_up},
-                                                    {GLFW_KEY_X, Command::exaggerate},
-                                                    {GLFW_KEY_O, Command::scene_list},
-                                                    {GLFW_KEY_H, Command::help},
-                                                    {GLFW_KEY_SLASH, Command::help},
-                                                    {GLFW_KEY_B, Command::next_block_count},
-                                                    {GLFW_KEY_SPACE, Command::pause_curves},
-                                                    {GLFW_KEY_C, Command::reset_figures},
-                                                    {GLFW_KEY_V, Command::difference},
-                                                    {GLFW_KEY_F, Command::next_reference},
-                                                    {GLFW_KEY_R, Command::record},
-                                                    {GLFW_KEY_M, Command::file_list},
-                                                    {GLFW_KEY_L, Command::details},
-                                                    {GLFW_KEY_T, Command::theme},
-                                                    {GLFW_KEY_Z, Command::zero},
-                                                    {GLFW_KEY_D, Command::dead_man},
-                                                    {GLFW_KEY_S, Command::save_curves},
-                                                    {GLFW_KEY_HOME, Command::home_view},
-                                                    {GLFW_KEY_EQUAL, Command::larger_text},
-                                                    {GLFW_KEY_KP_ADD, Command::larger_text},
-                                                    {GLFW_KEY_MINUS, Command::smaller_text},
-                                                    {GLFW_KEY_KP_SUBTRACT, Command::smaller_text},
-                                                    {GLFW_KEY_F11, Command::fullscreen}};
-
-void scroll_back(const LiveSession& session, ViewState& view, double by_s) {
-  if (session.comparison().history().size() > 0) view.time.scroll_back(by_s, session.comparison().history()[0].loop_time_s);
-}
 
 }  // namespace
 
-void DemoApp::press_key(int key, int modifiers) { keys_.push_back({key, modifiers}); }
-
-void DemoApp::nudge_tool(double by_m) {
-  ToolInput* tool = session_->mouse();
-  const double at_m = session_->newest().tick.position_m;
-  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(at_m + by_m) > at_m)) tool->nudge(by_m, steady_now_s());
+void DemoApp::handle_key_event(int key, int action, int modifiers) {
+  stirred_ = true;
+  std::erase(down_, key);
+  if (action == GLFW_RELEASE) return;
+  down_.push_back(key);
+  keys_.push_back({key, modifiers, action == GLFW_REPEAT});
 }
 
 void DemoApp::handle_keys() {
   if (ImGui::GetIO().WantTextInput) {  // somebody types a name
     keys_.clear();
+    down_.clear();
     return;
   }
-  if (ImGui::IsKeyDown(GLFW_KEY_DOWN)) nudge_tool(kKeyStep_m);
-  if (ImGui::IsKeyDown(GLFW_KEY_UP)) nudge_tool(-kKeyStep_m);
-  if (ImGui::IsKeyDown(GLFW_KEY_G) && session_->dead_man() == DeadMan::key) session_->hold();
-  if (ImGui::IsKeyDown(GLFW_KEY_LEFT)) scroll_back(*session_, view_, kScrollStep_s);
-  if (ImGui::IsKeyDown(GLFW_KEY_RIGHT)) scroll_back(*session_, view_, -kScrollStep_s);
+  run_held();
   for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);
   // The next visitor finds it as new.
   if (view_.kiosk && open_day_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
+void DemoApp::run_held() {
+  for (const WindowCommand& command : commands_) {
+    if (command.when != WindowCommand::When::held) continue;
+    for (std::size_t i = 0; i < command.keys.size(); ++i) {
+      if (std::find(down_.begin(), down_.end(), command.keys[i]) != down_.end()) command.run(i);
+    }
+  }
+}
+
 void DemoApp::handle_key(const KeyPress& press) {
-  if ((press.modifiers & GLFW_MOD_CONTROL) != 0) {
-    const bool chord = (press.modifiers & GLFW_MOD_SHIFT) != 0;
-    if (press.key == GLFW_KEY_Q && (chord || !view_.kiosk)) close();
-    return;
-  }
+  const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
   if (view_.kiosk) {
-    open_day_.press_key(press.key, *session_, view_);
+    const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
+    if (chord && press.key == GLFW_KEY_Q) close();
+    if (!control && !press.again) open_day_.press_key(press.key, *session_, view_);
     return;
   }
-  for (const auto& [key, command] : kCommandKeys) {
-    if (press.key == key) run(command);
-  }
-  const std::vector<std::size_t> listed = models_view(*session_).listed();
-  const auto number = static_cast<std::size_t>(press.key - GLFW_KEY_1);
-  if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9 && number < listed.size()) session_->select(listed[number]);
-  if (press.key == GLFW_KEY_ESCAPE) close_windows();
-  if (session_->replay() != nullptr) replay_key(press.key);
-}
-
-void DemoApp::close_windows() {
-  view_.help = view_.file_list = view_.details = view_.scene_list = false;
-  view_.offered_recording.clear();
-}
-
-void DemoApp::replay_key(int key) {
-  ReplayControl& replay = *session_->replay();
-  switch (key) {
-    case GLFW_KEY_P:
-      replay.pause(!replay.paused());
-      break;
-    case GLFW_KEY_LEFT_BRACKET:
-      replay.seek(std::max(0.0, replay.playhead_s() - kSeekStep_s));
-      break;
-    case GLFW_KEY_RIGHT_BRACKET:
-      replay.seek(replay.playhead_s() + kSeekStep_s);
-      break;
-    case GLFW_KEY_COMMA:
-      replay.set_speed(replay.speed() / kSpeedStep);
-      break;
-    case GLFW_KEY_PERIOD:
-      replay.set_speed(replay.speed() * kSpeedStep);
-      break;
-    default:
-      break;
+  for (const WindowCommand& command : commands_) {
+    const auto key = std::find(command.keys.begin(), command.keys.end(), press.key);
+    if (key == command.keys.end() || command.control != control) continue;
+    if (command.replay && session_->replay() == nullptr) continue;
+    const bool wanted = command.when == WindowCommand::When::repeated ||
+                        (command.when == WindowCommand::When::pressed && !press.again);
+    if (wanted) command.run(static_cast<std::size_t>(key - command.keys.begin()));
   }
 }
 
@@ -166,8 +110,8 @@ void DemoApp::move_tool_to_mouse() {
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);
   const float below_px = mouse.y - area.at.y - surface.y;
-  const auto wanted_m = static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size));
-  tool->set_target(limited_depth_m(wanted_m), steady_now_s());
+  const auto requested_m = static_cast<double>(kMouseGain * below_px * blocks_->depth_per_pixel(index, count, size));
+  tool->set_target(limited_depth_m(requested_m), steady_now_s());
 }
 
 }  // namespace palpate

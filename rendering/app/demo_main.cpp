@@ -52,7 +52,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--model", session.models,
                  "Models: files, or methods (palpate fit --list-methods names them) [the scene's]")
       ->type_name("FILE_OR_METHOD");
-  app.add_option("files", arguments.files, "Models, or a recording (CSV) to fit or to replay")->type_name("FILE");
+  app.add_option("files", arguments.files, "Models, or a recording or another program's table to fit or to replay")->type_name("FILE");
   app.add_option_function<std::string>(
          "--discriminate",
          [&arguments](const std::string& recording) {
@@ -87,7 +87,7 @@ Status check_outputs(const Arguments& arguments) {
 void sort_files(Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
   for (const std::string& file : arguments.files) {
-    if (file.ends_with(".csv")) {
+    if (is_offered(file)) {
       arguments.demo.recording = file;
     } else {
       session.models.push_back(file);

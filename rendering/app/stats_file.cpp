@@ -37,14 +37,14 @@ Json graphics_json(const FrameFigures& frames) {
 
 // Figures over no sample are null: there is no number that would be true.
 Json model_json(const SlotView& slot) {
-  const bool judged = slot.errors.samples() > 0;
+  const bool has_errors = slot.errors.samples() > 0;
   return {{"name", slot.name},
           {"method", slot.method},
           {"centres", slot.centres},
           {"samples", slot.errors.samples()},
-          {"within_jnd", judged ? Json(slot.errors.within_jnd()) : Json(nullptr)},
-          {"rms_error_N", judged ? Json(slot.errors.rms_error_N()) : Json(nullptr)},
-          {"max_error_over_jnd", judged ? Json(slot.errors.max_error_over_jnd()) : Json(nullptr)},
+          {"within_jnd", has_errors ? Json(slot.errors.within_jnd()) : Json(nullptr)},
+          {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N()) : Json(nullptr)},
+          {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd()) : Json(nullptr)},
           {"evaluation_ns", slot.evaluation_ns > 0.0 ? Json(slot.evaluation_ns) : Json(nullptr)}};
 }
 

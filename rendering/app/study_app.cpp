@@ -94,14 +94,14 @@ void StudyApp::handle_keys() {
         code_ += static_cast<char>(std::toupper(static_cast<unsigned char>(typed.letter)));
       }
     } else if (study_ == nullptr) {
-      take_key_of_entry(typed.key);
+      handle_entry_key(typed.key);
     } else {
-      take_key(typed.key);
+      handle_key(typed.key);
     }
   }
 }
 
-void StudyApp::take_key_of_entry(int key) {
+void StudyApp::handle_entry_key(int key) {
   if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_);
   if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
   if (key == GLFW_KEY_TAB) {
@@ -109,7 +109,7 @@ void StudyApp::take_key_of_entry(int key) {
   }
 }
 
-void StudyApp::take_key(int key) {
+void StudyApp::handle_key(int key) {
   StudySession& session = study_->session();
   switch (key) {
     case GLFW_KEY_ESCAPE:

@@ -59,8 +59,8 @@ class StudyApp {
   void draw_result();
   void draw_trouble(const std::string& words) const;
   void handle_keys();
-  void take_key(int key);
-  void take_key_of_entry(int key);
+  void handle_key(int key);
+  void handle_entry_key(int key);
   void button(const char* label, int key);
 
   StudyRequest request_;

@@ -77,7 +77,7 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
     return error;
   }
   std::unique_ptr<Window> window(new Window(handle));
-  window->paced_by_display_ = window->display_sets_pace();
+  window->paced_by_display_ = window->display_sets_pace(request.empty);
   return window;
 }
 
@@ -86,9 +86,9 @@ Window::~Window() {
   glfwTerminate();
 }
 
-bool Window::display_sets_pace() {
+bool Window::display_sets_pace(const Rgb& empty) {
   glfwSwapInterval(1);
-  glClearColor(0.08F, 0.09F, 0.10F, 1.0F);
+  glClearColor(empty.r, empty.g, empty.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   glfwSwapBuffers(window_);
   glFinish();

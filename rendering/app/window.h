@@ -19,6 +19,7 @@ struct WindowRequest {
   int width = 1280;
   int height = 720;
   bool fullscreen = false;
+  Rgb empty{0.08F, 0.09F, 0.10F};  // its colour until the first picture
 };
 
 // What is drawn into.
@@ -52,7 +53,7 @@ class Window {
 
  private:
   explicit Window(GLFWwindow* window) : window_(window) {}
-  bool display_sets_pace();
+  bool display_sets_pace(const Rgb& empty);
 
   GLFWwindow* window_;
   bool paced_by_display_ = false;

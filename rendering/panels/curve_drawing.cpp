@@ -3,23 +3,9 @@
 namespace palpate {
 
 void CurvePainter::jnd_band(ImU32 colour) const {
-  std::vector<ImVec2> upper;
-  std::vector<ImVec2> lower;
-  const auto flush = [&] {
-    plot.band(upper, lower, colour);
-    upper.clear();
-    lower.clear();
-  };
-  for (const CurveColumn& column : columns) {
-    if (!column.any) continue;
-    if (!column.reference) {
-      flush();
-      continue;
-    }
-    upper.emplace_back(plot.x_px(column.time_s - zero_s), plot.y_px(static_cast<double>(column.band_high_N)));
-    lower.emplace_back(plot.x_px(column.time_s - zero_s), plot.y_px(static_cast<double>(column.band_low_N)));
-  }
-  flush();
+  band(
+      colour, [](const CurveColumn& c) { return c.reference ? c.band_low_N : NAN; },
+      [](const CurveColumn& c) { return c.reference ? c.band_high_N : NAN; });
 }
 
 void CurvePainter::troubles(ImU32 late, ImU32 alarm, float size_px) const {

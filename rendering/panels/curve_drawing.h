@@ -25,9 +25,36 @@ struct CurvePainter {
   }
   // The reference with one JND to either side.
   void jnd_band(ImU32 colour) const;
+  // Between two values of a column; NaN interrupts it.
+  template <typename Low, typename High>
+  void band(ImU32 colour, Low low, High high) const;
   // Along the upper edge: a tick for a missed deadline, a triangle for a fault.
   void troubles(ImU32 late, ImU32 alarm, float size_px) const;
 };
+
+template <typename Low, typename High>
+void CurvePainter::band(ImU32 colour, Low low, High high) const {
+  std::vector<ImVec2> upper;
+  std::vector<ImVec2> lower;
+  const auto flush = [&] {
+    plot.band(upper, lower, colour);
+    upper.clear();
+    lower.clear();
+  };
+  for (const CurveColumn& column : columns) {
+    if (!column.any) continue;
+    const auto bottom = static_cast<double>(low(column));
+    const auto top = static_cast<double>(high(column));
+    if (std::isnan(bottom) || std::isnan(top)) {
+      flush();
+      continue;
+    }
+    const float x = plot.x_px(column.time_s - zero_s);
+    upper.emplace_back(x, plot.y_px(top));
+    lower.emplace_back(x, plot.y_px(bottom));
+  }
+  flush();
+}
 
 template <typename Low, typename High>
 void CurvePainter::curve(ImU32 colour, float thickness, Low low, High high) const {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ class OpenDay {
 
   const AbTrial& trial() const noexcept { return trial_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
+  // Where the large buttons of the last frame are, by the key that does the same.
+  const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
   // The sentences of the reveal; empty before.
   std::vector<std::string> reveal() const;
 
@@ -46,11 +49,12 @@ class OpenDay {
   void forget(LiveSession& session, ViewState& view);
   void try_model(int number, LiveSession& session, ViewState& view);
   void answer(bool different, ViewState& view);
-  void see_ticks(const LiveSession& session);
-  void draw_nobody(const LiveSession& session, const UiStyle& style) const;
+  void update_ticks(const LiveSession& session);
+  void draw_nobody(LiveSession& session, ViewState& view, const UiStyle& style, const ImVec2& size);
   void draw_question(LiveSession& session, ViewState& view, const UiStyle& style);
   void draw_reveal(LiveSession& session, ViewState& view, const UiStyle& style, float height);
   void draw_foot(const LiveSession& session, const UiStyle& style, const ImVec2& at, const ImVec2& size);
+  bool large_button(const UiStyle& style, const std::string& text, const char* key, float width, bool down);
   std::string plain_name(const TrialModel& model) const;
   const ExhibitWords& words() const { return languages_[language_]; }
 
@@ -60,7 +64,9 @@ class OpenDay {
   std::size_t language_ = 0;
   std::string tally_path_;
   ExhibitTally tally_;
+  std::map<std::string, ImVec2> buttons_;  // their middles
   bool visitor_ = false;
+  double began_s_ = 0.0;       // of the trial, loop time
   double seen_s_ = 0.0;        // loop time of the last tick that the trial has
   double last_contact_s_ = 0.0;  // loop time at which somebody last did something
   std::size_t home_ = 0;  // the active slot when nobody is there

@@ -21,7 +21,13 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
     // The tool's length and a little more, for it is lifted between presses.
     const auto above = 16.0F * static_cast<float>(blocks.geometry().tool_radius_m);
     const glm::vec2 top = blocks.on_screen(index, count, {0.0F, above, 0.0F}, {area.size.x, area.size.y});
-    const float x = std::clamp(top.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
+    // The two of this row share the width where there is little of it.
+    const glm::vec2 other = blocks.on_screen(1 - index, count, {0.0F, above, 0.0F}, {area.size.x, area.size.y});
+    const float middle = 0.5F * (top.x + other.x);
+    const float gap = 0.5F * size.y;
+    const float low = top.x > other.x ? middle + gap : 4.0F;
+    const float high = (top.x > other.x ? area.size.x - 4.0F : middle - gap) - size.x;
+    const float x = std::clamp(top.x - 0.5F * size.x, std::min(low, high), std::max(low, high));
     return {area.at.x + x, area.at.y + std::max(3.0F * size.y, top.y - 1.9F * size.y)};
   }
   const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
@@ -49,7 +55,7 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const bool secret = view.hidden_choice > 0;
     const std::string text =
-        secret ? "block " + std::to_string(view.hidden_choice) : label_text(session, slots[i]);
+        secret ? view.hidden_name : label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
     const bool chosen = slots[i] == session.models().selected();
@@ -76,19 +82,15 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   ImFont* body = style.fonts().body;
   const float line = height_of(body);
   const ImVec2 corner(area.at.x + 1.1F * line, area.at.y + area.size.y - lift);
-  const ModelsView models = models_view(session);
-  const SlotView* active = models.active();
-  const double error = active != nullptr && !std::isnan(session.comparison().reference_N())
-                           ? active->recent_peak_error_over_jnd
-                           : 0.0;
-  const std::string number = peak_error_words(models, session.comparison().reference_N());
-  const ImVec2 size = text_size(big, "0.00");
+  const BigNumber shown = big_number(models_view(session), session.jnd());
+  ImVec2 size = text_size(big, "0.00");
+  size.x = std::max(size.x, text_size(big, shown.number).x);
   const float y = corner.y - size.y - 1.9F * line;
-  text_at(big, {corner.x, y}, ink(error > 1.0 ? kAboveJndColour : p.text), number);
+  text_at(big, {corner.x, y}, ink(shown.error_over_jnd > 1.0 ? kAboveJndColour : p.text), shown.number);
   const float beside = corner.x + size.x + 0.7F * line;
-  text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), "of what a hand can notice:");
+  text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), shown.what);
   text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet),
-          "the error of the active model");
+          shown.below);
   const float width = 11.0F * line;
   const float top = y + size.y + 0.35F * line;
   const float high = 0.55F * line;

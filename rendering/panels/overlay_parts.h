@@ -34,9 +34,9 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
 // All .json files in these folders, sorted.
 std::vector<std::string> model_files(const std::vector<std::string>& folders);
 
-// Windows in the middle.
-void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area);
-void draw_help(ViewState& view, const UiStyle& style);
+// Windows in the middle. `offered`: something else is asked there.
+void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area);
+void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands);
 void draw_file_list(LiveSession& session, ViewState& view);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
 // What to do with a recording: fit it, replay it.

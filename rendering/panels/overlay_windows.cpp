@@ -21,26 +21,6 @@ void begin_in_the_middle() {
 constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
 
-struct HelpLine {
-  const char* key;
-  const char* text;
-};
-
-std::vector<HelpLine> help_lines() {
-  std::vector<HelpLine> lines = {{"mouse", "moves the probe, over the block; down is deeper"},
-                                 {"wheel, Up, Down", "move the probe step by step"},
-                                 {"right button", "turns the view; Ctrl + wheel comes nearer"},
-                                 {"1 ... 9", "make a model the active one; a click on its block too"}};
-  for (const CommandEntry& entry : commands()) lines.push_back({entry.key, entry.help});
-  lines.push_back({"a row, right button", "renames a model, takes it out"});
-  lines.push_back({"on the curves", "drag zooms, the wheel goes back, double click goes on"});
-  lines.push_back({"Left, Right", "scroll back and forth while the curves stand still"});
-  lines.push_back({"P [ ] , .", "pause, seek, speed of a replayed recording"});
-  lines.push_back({"drop a file", "loads a model; of a recording: fits or replays it"});
-  lines.push_back({"Ctrl+Q", "ends the program"});
-  return lines;
-}
-
 }  // namespace
 
 std::vector<std::string> model_files(const std::vector<std::string>& folders) {
@@ -87,8 +67,8 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
 }
 
 // What the device wants of whoever holds it, large and in the middle.
-void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  std::string words = empty_scene_words(session);
+void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area) {
+  std::string words = offered ? std::string() : empty_scene_words(session);
   if (words.empty()) words = session.device_words();
   if (words.empty()) return;
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -104,11 +84,11 @@ void draw_device_words(LiveSession& session, const UiStyle& style, const SceneAr
   ImGui::End();
 }
 
-void draw_help(ViewState& view, const UiStyle& style) {
+void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
   if (!view.help) return;
-  const std::vector<HelpLine> lines = help_lines();
+  const std::vector<HelpLine> lines = help_lines(commands);
   float keys = 0.0F;
-  for (const HelpLine& line : lines) keys = std::max(keys, ImGui::CalcTextSize(line.key).x);
+  for (const HelpLine& line : lines) keys = std::max(keys, ImGui::CalcTextSize(line.keys.c_str()).x);
   begin_in_the_middle();
   ImGui::SetNextWindowFocus();
   ImGui::Begin("Keys", &view.help, kDialog);
@@ -116,10 +96,10 @@ void draw_help(ViewState& view, const UiStyle& style) {
   const float from = ImGui::GetCursorPosX() + keys + ImGui::GetFontSize();
   const float room = all - from - 3.0F * ImGui::GetFontSize();
   for (const HelpLine& line : lines) {
-    ImGui::TextColored(paint(style.colours().text), "%s", line.key);
+    ImGui::TextColored(paint(style.colours().text), "%s", line.keys.c_str());
     ImGui::SameLine(from);
     ImGui::PushTextWrapPos(from + room);
-    ImGui::TextUnformatted(line.text);
+    ImGui::TextUnformatted(line.text.c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::End();
@@ -144,25 +124,34 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
 }
 
 void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions) {
-  if (view.offered_recording.empty()) return;
-  const std::string path = view.offered_recording;
+  if (!view.offered.any()) return;
+  const OfferedFile offered = view.offered;
   bool open = true;
   begin_in_the_middle();
-  ImGui::Begin("Recording", &open, kDialog);
-  ImGui::TextUnformatted(std::filesystem::path(path).filename().c_str());
-  if (ImGui::Button("Fit it, and put it in my hand")) {
-    session.fit_recording(path);
-    open = false;
+  ImGui::Begin(offered.problem.empty() ? "Recording" : "Not a recording", &open, kDialog);
+  ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
+  if (!offered.problem.empty()) {
+    ImGui::TextUnformatted(offered.problem.c_str());
+    ImGui::TextDisabled("What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
+  } else {
+    ImGui::TextUnformatted(std::filesystem::path(offered.path).filename().c_str());
+    for (const std::string& line : offered.words) ImGui::TextDisabled("%s", line.c_str());
+    if (ImGui::Button("Fit it, and put it in my hand")) {
+      session.fit_recording(offered.path);
+      open = false;
+    }
+    tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
+    ImGui::SameLine();
+    if (ImGui::Button("Replay it")) {
+      open = false;
+      actions.replay(offered.path);
+    }
+    tip("Moves the probe as it was recorded; the models are compared with the recorded force");
+    ImGui::TextDisabled("%s", offered.path.c_str());
   }
-  tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
-  if (ImGui::Button("Replay it")) {
-    open = false;
-    actions.replay(path);
-  }
-  tip("Moves the probe as it was recorded; the models are compared with the recorded force");
-  ImGui::TextDisabled("%s", path.c_str());
+  ImGui::PopTextWrapPos();
   ImGui::End();
-  if (!open) view.offered_recording.clear();
+  if (!open) view.offered = {};
 }
 
 void draw_file_list(LiveSession& session, ViewState& view) {

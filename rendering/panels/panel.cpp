@@ -8,6 +8,7 @@
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -16,7 +17,7 @@ constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_N
                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                         ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
-void take(const TableAction& action, LiveSession& session) {
+void apply(const TableAction& action, LiveSession& session) {
   switch (action.kind) {
     case TableAction::Kind::none: break;
     case TableAction::Kind::select: session.select(action.slot); break;
@@ -31,7 +32,7 @@ std::string bins_words(const ModelsView& models) {
   const auto outside = static_cast<double>(active->samples_out_of_domain);
   const double share = outside / (outside + static_cast<double>(active->errors.samples()));
   char text[64];
-  std::snprintf(text, sizeof text, "%.1f %% outside the data, not counted", 100.0 * share);
+  std::snprintf(text, sizeof text, "%.1f %% outside the data left out", 100.0 * share);
   return text;
 }
 
@@ -41,11 +42,11 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
   ImGui::TextUnformatted("centres");
   ImGui::SameLine();
   int centres = models.active()->centres;
-  if (view.wanted_centres > 0 && (ImGui::IsMouseDown(ImGuiMouseButton_Left) || models.active()->refitting))
-    centres = view.wanted_centres;
+  if (view.requested_centres > 0 && (ImGui::IsMouseDown(ImGuiMouseButton_Left) || models.active()->refitting))
+    centres = view.requested_centres;
   ImGui::SetNextItemWidth(-9.0F * ImGui::GetFontSize());
-  if (ImGui::SliderInt("##centres", &centres, 1, 200, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
-    view.wanted_centres = centres;
+  if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    view.requested_centres = centres;
     for (const std::size_t slot : models.listed()) {
       if (slot == models.selected || view.centres_together) session.refit(slot, centres);
     }
@@ -80,12 +81,12 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_height - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
   curves_.draw(force_view(session), view, style, rest * (bins ? 0.32F : 0.48F), rest * (bins ? 0.36F : 0.52F));
-  take(draw_model_table(errors.models, view.table, style, table), session);
+  apply(draw_model_table(errors.models, view.table, style, table), session);
   if (centres > 0.0F) draw_centres(session, errors.models, view);
   if (bins) {
     section_title(style, "ERROR AGAINST FORCE");
     ImGui::SameLine();
-    ImGui::TextDisabled("%s", bins_words(errors.models).c_str());
+    quiet_words(bins_words(errors.models));
     draw_error_bins(errors, style, rest * 0.32F);
   }
   draw_health(health, view, style, frames);

@@ -18,6 +18,7 @@ constexpr float kSelectedLine_px = 2.0F;
 constexpr float kColumn_px = 2.0F;
 // JNDs to either side of 0 in the difference view: three times the band's own height.
 constexpr double kDifference_jnd = 3.0;
+constexpr float kPredictedAlpha = 0.28F;
 constexpr float kLabelRoom = 7.4F;  // for names beside the curves, in heights of a line
 
 // Towards a nice number above what is shown, quickly up, slowly down.
@@ -43,7 +44,11 @@ struct ForceCurves::Scene {
   Rgb colour(std::size_t slot) const {
     return view.hidden_choice > 0 ? style.colours().text : slot_colour(force.models, slot, style.theme());
   }
+  // Nothing to compare with: what the active model predicts of its own error.
+  bool predicts() const { return std::isnan(force.reference_N) && force.models.active() != nullptr; }
   bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
+  // Of models that are not the active one; what is dark is hard enough to see on black.
+  float faint() const { return style.theme() == Theme::dark ? 0.95F : 0.75F; }
   // The models in the order of drawing: the one in the hand on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
@@ -89,8 +94,10 @@ ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, c
       static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
   curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
                  columns);
-  view.force_scale_N =
-      eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, 1.05 * static_cast<double>(curves_.highest_force_N())}));
+  const double highest_N = 1.05 * static_cast<double>(curves_.highest_force_N());
+  // A visitor sees what was pressed, as large as it can be.
+  view.force_scale_N = view.kiosk ? round_up(std::max(0.5, highest_N))
+                                  : eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, highest_N}));
   // Beyond 8 JND the line would only hide what is near 1.
   view.error_scale = eased_scale(
       view.error_scale, std::clamp(1.2 * static_cast<double>(curves_.highest_felt_over_jnd()), 1.5, 8.0));
@@ -106,9 +113,13 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
                                                                   : std::nan("");
   section_title(scene.style, "FORCE");
   ImGui::SameLine();
-  ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
-  ImGui::SameLine();
-  ImGui::TextDisabled("%s", scene.force.reference_words.c_str());
+  if (scene.predicts()) {
+    quiet_words(scene.force.reference_words + ", band: where the active model expects it, 95 %");
+  } else {
+    ImGui::TextColored(paint(kReferenceColour), "%s N", at_most_three_decimals(reference_N).c_str());
+    ImGui::SameLine();
+    quiet_words(scene.force.reference_words);
+  }
   tip("Force of every model, and in green what they are compared with (F chooses another).\n"
       "The grey band is one just noticeable difference (JND) either way.\n"
       "Marks at the top: missed deadlines, and in red faults (L lists them).\n"
@@ -117,14 +128,14 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
 
 void ForceCurves::draw_titles_of_error(const Scene& scene) const {
   const bool difference = scene.view.difference;
-  section_title(scene.style, difference ? "DIFFERENCE / JND" : "FELT ERROR / JND");
+  section_title(scene.style, scene.predicts() ? "PREDICTED ERROR / JND" : difference ? "DIFFERENCE / JND" : "FELT ERROR / JND");
   ImGui::SameLine();
   if (scene.force.models.out_of_domain()) {
     ImGui::TextColored(paint(scene.style.colours().fault), "away from the recorded data");
   } else if (scene.view.time.paused) {
     ImGui::TextDisabled("stopped, Space goes on");
   } else {
-    ImGui::TextDisabled(difference ? "outside the band a hand could tell" : "above 1 a hand could tell");
+    quiet_words(difference ? "outside the band a hand could tell" : "above 1 a hand could tell");
   }
   tip(difference ? "Model minus reference, in just noticeable differences: inside the band a hand cannot tell.\n"
                    "V: what a hand feels of it, as one line."
@@ -164,16 +175,21 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
   paint_on.jnd_band(ink(p.band));
+  if (scene.predicts() && !scene.view.kiosk) {
+    paint_on.band(
+        ink(scene.colour(scene.force.models.selected), kPredictedAlpha), [](const CurveColumn& c) { return c.predicted_low_N; },
+        [](const CurveColumn& c) { return c.predicted_high_N; });
+  }
   paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
                  [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
     paint_on.curve(
-        ink(scene.colour(slot), selected ? 1.0F : 0.75F), (selected ? kSelectedLine_px : kModelLine_px) * thin,
+        ink(scene.colour(slot), selected ? 1.0F : scene.faint()), (selected ? kSelectedLine_px : kModelLine_px) * thin,
         [slot](const CurveColumn& c) { return c.low_N[slot]; },
         [slot](const CurveColumn& c) { return c.high_N[slot]; });
   });
-  paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
+  if (!scene.view.kiosk) paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
   finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.high_N[slot]; }, " N");
 }
 
@@ -184,10 +200,16 @@ void ForceCurves::draw_difference(const Scene& scene, float height) {
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
-  plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
+  if (scene.predicts()) {
+    paint_on.band(
+        ink(scene.colour(scene.force.models.selected), kPredictedAlpha),
+        [](const CurveColumn& c) { return -c.predicted_over_jnd; }, [](const CurveColumn& c) { return c.predicted_over_jnd; });
+  } else {
+    plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
+  }
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
-    const ImU32 colour = ink(scene.colour(slot), selected ? 1.0F : 0.75F);
+    const ImU32 colour = ink(scene.colour(slot), selected ? 1.0F : scene.faint());
     paint_on.curve(
         colour, (selected ? kSelectedLine_px : kModelLine_px) * thin,
         [slot](const CurveColumn& c) { return c.low_over_jnd[slot]; },
@@ -207,6 +229,11 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
   const Palette& p = scene.style.colours();
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
   plot.level(1.0, ink(p.text), 1.5F * thin);
+  if (scene.predicts()) {
+    paint_on.band(
+        ink(scene.colour(scene.force.models.selected), kPredictedAlpha), [](const CurveColumn& c) { return 0.0F * c.predicted_over_jnd; },
+        [](const CurveColumn& c) { return c.predicted_over_jnd; });
+  }
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
     for (const CurveColumn& column : curves_.columns()) {
@@ -215,7 +242,7 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
                       std::max(plot.y_px(static_cast<double>(column.error_over_jnd[slot])), plot.top() + thin));
       plot.list().AddRectFilled({at.x - thin, at.y - thin}, {at.x + thin, at.y + thin}, ink(scene.colour(slot), 0.35F));
     }
-    paint_on.curve(ink(scene.colour(slot), selected ? 1.0F : 0.75F),
+    paint_on.curve(ink(scene.colour(slot), selected ? 1.0F : scene.faint()),
                    (selected ? kSelectedLine_px : kModelLine_px) * thin,
                    [slot](const CurveColumn& c) { return c.felt_over_jnd[slot]; });
   });

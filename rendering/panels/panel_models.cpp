@@ -177,7 +177,7 @@ void draw_waiting(const SlotView& slot) {
   ImGui::PopClipRect();
 }
 
-void draw_figures(const SlotView& slot, const UiStyle& style) {
+void draw_figures(const SlotView& slot, bool compared, const UiStyle& style) {
   const ImVec4 above = paint(kAboveJndColour);
   const ImVec4 quiet = paint(style.colours().quiet);
   // A column that is not shown takes no text.
@@ -185,8 +185,8 @@ void draw_figures(const SlotView& slot, const UiStyle& style) {
     if (ImGui::TableSetColumnIndex(column)) right_aligned(text, colour);
   };
   cell(kForce, format("%.2f", slot.force_N));
-  cell(kError, format("%+.0f", 1e3 * slot.error_N), &quiet);
-  cell(kRatio, format("%.2f", slot.error_over_jnd), slot.error_over_jnd > 1.0 ? &above : nullptr);
+  cell(kError, compared ? format("%+.0f", 1e3 * slot.error_N) : "–", &quiet);
+  cell(kRatio, compared ? format("%.2f", slot.error_over_jnd) : "–", slot.error_over_jnd > 1.0 ? &above : nullptr);
   cell(kWithin, slot.errors.samples() > 0 ? format("%.2f", 100.0 * slot.errors.within_jnd()) : "–");
   cell(kTime, slot.evaluation_ns > 0.0 ? grouped(static_cast<int>(slot.evaluation_ns)) : "–");
   cell(kCentres, grouped(slot.centres));
@@ -249,7 +249,7 @@ TableAction draw_model_table(const ModelsView& models, TableState& table, const 
     const TableAction done = draw_name(models, index, table, style);
     if (done.kind != TableAction::Kind::none) action = done;
     if (models.slots[index]->state == SlotState::ready) {
-      draw_figures(*models.slots[index], style);
+      draw_figures(*models.slots[index], models.compared, style);
     } else {
       draw_waiting(*models.slots[index]);
     }

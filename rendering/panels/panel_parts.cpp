@@ -6,6 +6,24 @@
 
 namespace palpate {
 
+std::string fitting(const std::string& text, float room) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= room) return text;
+  std::string cut = text;
+  while (!cut.empty()) {
+    const std::size_t blank = cut.rfind(' ');
+    cut.resize(blank == std::string::npos ? 0 : blank);
+    const std::string shown = cut + " ...";
+    if (ImGui::CalcTextSize(shown.c_str()).x <= room) return shown;
+  }
+  return {};
+}
+
+void quiet_words(const std::string& text) {
+  const std::string shown = fitting(text, ImGui::GetContentRegionAvail().x);
+  ImGui::TextDisabled("%s", shown.c_str());
+  if (shown != text) tip(text.c_str());
+}
+
 void section_title(const UiStyle& style, const char* title) {
   ImGui::TextColored(paint(style.colours().text), "%s", title);
 }

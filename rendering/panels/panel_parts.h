@@ -1,6 +1,8 @@
 // Small parts that several panels use, at the cursor of the current ImGui window.
 #pragma once
 
+#include <string>
+
 #include "rendering/panels/panel_views.h"
 #include "rendering/ui/ui_style.h"
 
@@ -9,6 +11,11 @@ namespace palpate {
 // The colour of a model: of its method, another shade for each further one of it.
 Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme);
 
+// The beginning of `text` that fits into `room` pixels, ending in "..." where it is cut.
+std::string fitting(const std::string& text, float room);
+// Second-rank words on the rest of the line; cut where they do not fit, and then whole
+// in a tooltip.
+void quiet_words(const std::string& text);
 void section_title(const UiStyle& style, const char* title);
 // A tooltip for the item before, below it or above it, never over it.
 void tip(const char* text);

@@ -1,6 +1,7 @@
 #include "rendering/panels/panel_views.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scenes/live/live_session.h"
 
@@ -40,6 +41,7 @@ ModelsView models_view(const LiveSession& session) {
   for (std::size_t i = 0; i < session.models().size(); ++i) view.slots.push_back(&session.models().view(i));
   view.selected = session.models().selected();
   view.in_contact = session.newest().tick.in_contact;
+  view.compared = !std::isnan(session.comparison().reference_N());
   return view;
 }
 

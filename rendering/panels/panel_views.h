@@ -27,6 +27,7 @@ struct ModelsView {
   std::vector<const SlotView*> slots;
   std::size_t selected = 0;
   bool in_contact = false;
+  bool compared = true;  // there is a reference
 
   // The slots that are not hidden, in order: what keys and tables count.
   std::vector<std::size_t> listed() const;

@@ -54,45 +54,42 @@ void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea
 }
 
 // In as many rows as it takes. Returns how high it is.
-float draw_buttons(const LiveSession& session, const ViewState& view, const SceneArea& area,
-                   const std::function<void(Command)>& run) {
+float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& commands) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::Begin("buttons", nullptr, kFloating);
   bool first = true;
-  for (const CommandEntry& entry : commands()) {
-    if (*entry.label == '\0') continue;
-    std::string label = entry.label;
-    if (entry.command == Command::record && session.recording().active) label = "Stop recording";
-    if (entry.command == Command::pause_curves && view.time.paused) label = "Go on";
-    const float width = ImGui::CalcTextSize(label.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+  for (const WindowCommand& command : commands) {
+    if (command.label.empty() || command.replay) continue;
+    const float width = ImGui::CalcTextSize(shown_label(command).c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
     constexpr float kGap = 4.0F;
     const bool fits = ImGui::GetItemRectMax().x + kGap + width < area.at.x + area.size.x - kGap;
     if (!first && fits) ImGui::SameLine(0.0F, kGap);
     first = false;
-    if (ImGui::Button(label.c_str())) run(entry.command);
-    tip((std::string(entry.help) + " (" + entry.key + ")").c_str());
+    if (command_button(command)) command.run(0);
   }
   const float height = ImGui::GetWindowSize().y;
   ImGui::End();
   return height;
 }
 
-void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift) {
+void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift, const std::vector<WindowCommand>& commands) {
   if (session.replay() == nullptr) return;
   ReplayControl& replay = *session.replay();
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::SetNextWindowSize({area.size.x - 4.0F, 0.0F});
   ImGui::Begin("replay", nullptr, kFloating & ~ImGuiWindowFlags_AlwaysAutoResize);
-  if (ImGui::Button(replay.paused() ? "Play" : "Pause")) replay.pause(!replay.paused());
-  tip("The recording (P)");
-  ImGui::SameLine();
+  for (const WindowCommand& command : commands) {
+    if (command.label.empty() || !command.replay) continue;
+    if (command_button(command)) command.run(0);
+    ImGui::SameLine();
+  }
   // Figures beside the sliders: on them the grip hides what it is dragged over.
-  ImGui::SetNextItemWidth(0.50F * area.size.x);
+  ImGui::SetNextItemWidth(0.40F * area.size.x);
   auto at_s = static_cast<float>(replay.playhead_s());
   if (ImGui::SliderFloat("##at", &at_s, 0.0F, static_cast<float>(replay.duration_s()), "")) {
     replay.seek(static_cast<double>(at_s));
   }
-  tip("Where in the recording ([ and ] by 2 s)");
+  tip("Where in the recording");
   ImGui::SameLine();
   ImGui::Text("%5.1f of %.1f s", replay.playhead_s(), replay.duration_s());
   ImGui::SameLine();
@@ -101,7 +98,7 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift) {
   if (ImGui::SliderFloat("##speed", &speed, 0.05F, 10.0F, "", ImGuiSliderFlags_Logarithmic)) {
     replay.set_speed(static_cast<double>(speed));
   }
-  tip("Its speed (, and .)");
+  tip("Its speed");
   ImGui::SameLine();
   ImGui::Text("%.2f x", replay.speed());
   if (session.surface().found_m() != 0.0) {
@@ -126,33 +123,6 @@ void draw_recording(const LiveSession& session, const UiStyle& style, const Scen
 
 }  // namespace
 
-const std::vector<CommandEntry>& commands() {
-  static const std::vector<CommandEntry> all = {
-      {Command::help, "H", "Help", "all keys"},
-      {Command::record, "R", "Record", "record this session to a file that `palpate fit` reads"},
-      {Command::pause_curves, "Space", "Stop", "stop the curves to look back, and go on"},
-      {Command::reset_figures, "C", "Clear", "forget the errors so far, and alarms that were seen"},
-      {Command::next_line_up, "N", "Models", "the next set of models: Ladder, 2009, Palpate"},
-      {Command::exaggerate, "X", "x 10", "arrows that show ten times the difference, and back"},
-      {Command::scene_list, "O", "Scene", "choose another material"},
-      {Command::difference, "V", "View", "the difference in its band, or what a hand feels of it"},
-      {Command::next_reference, "F", "Reference", "choose what the models are compared with"},
-      {Command::file_list, "M", "Load", "load a model file"},
-      {Command::zero, "Z", "", "the device's tool is at its rest position: zero it there"},
-      {Command::dead_man, "D", "",
-       "push only while G, then while the handle's switch is held, and off again"},
-      {Command::theme, "T", "Theme", "light or dark"},
-      {Command::details, "L", "Loop", "all figures of the loop, and its faults"},
-      {Command::next_block_count, "B", "", "one, two or four blocks side by side"},
-      {Command::save_curves, "S", "Save", "save what the curves show, as a figure and as data"},
-      {Command::home_view, "Home", "", "the view as it was at the beginning"},
-      {Command::larger_text, "+", "", "larger text"},
-      {Command::smaller_text, "-", "", "smaller text"},
-      {Command::fullscreen, "F11", "", "full screen and back"},
-  };
-  return all;
-}
-
 std::string data_warning(const ModelsView& models) {
   if (!models.out_of_domain()) return {};
   return "Nothing like this was recorded: here " + models.active()->name + " only follows the trend";
@@ -168,12 +138,23 @@ std::string recording_words(const RecordingStatus& recording) {
   return "recording " + name + length;
 }
 
-std::string peak_error_words(const ModelsView& models, double reference_N) {
+BigNumber big_number(const ModelsView& models, const JndLine& jnd) {
   const SlotView* active = models.active();
-  if (active == nullptr || std::isnan(reference_N)) return "–";
-  const double error = active->recent_peak_error_over_jnd;
+  if (active == nullptr) {
+    const auto fitting = std::find_if(models.slots.begin(), models.slots.end(),
+                                      [](const SlotView* slot) { return slot->state == SlotState::fitting; });
+    if (fitting == models.slots.end()) return {};
+    return {fixed(100.0 * (*fitting)->progress, 0) + " %", "of the first model, " + (*fitting)->name + ":",
+            "until then the true material answers alone", 0.0};
+  }
+  const double error = models.compared ? active->recent_peak_error_over_jnd
+                       : models.in_contact ? active->predicted_error_N / jnd.at(active->force_N)
+                                           : std::nan("");
+  BigNumber big{"–", "of what a hand can notice:", "the error of the active model", error};
+  if (!models.compared) big.below = "predicted for the active model (95 %)";
   // Two decimals are more than anyone can see change.
-  return error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+  if (!std::isnan(error)) big.number = error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+  return big;
 }
 
 std::string empty_scene_words(const LiveSession& session) {
@@ -229,19 +210,19 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   // Who only passes by needs no model's name.
   const bool passing = view.kiosk && (session.mouse() != nullptr) && session.mouse()->hand_is_exploring();
   if (!passing && (!view.kiosk || view.hidden_choice > 0)) draw_labels(session, blocks, view, style, area);
-  if (!view.kiosk) draw_big_number(session, style, area, bars);
+  if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.kiosk) draw_data_warning(session, style, area);
   draw_title(session, view, style, area);
   if (!view.kiosk) draw_hint(session, style, area);
   draw_recording(session, style, area);
-  draw_replay_bar(session, area, buttons);
-  if (!view.kiosk) buttons_height_ = draw_buttons(session, view, area, actions.run);
-  draw_device_words(session, style, area);
+  draw_replay_bar(session, area, buttons, *actions.commands);
+  if (!view.kiosk) buttons_height_ = draw_buttons(area, *actions.commands);
+  draw_device_words(session, view.offered.any(), style, area);
   draw_toasts(toasts, style, area);
   draw_file_list(session, view);
   draw_scene_list(session, view, actions);
   draw_offered_recording(session, view, actions);
-  draw_help(view, style);
+  draw_help(view, style, *actions.commands);
 }
 
 }  // namespace palpate

@@ -15,44 +15,14 @@
 #include "rendering/panels/panel_views.h"
 #include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
+#include "rendering/panels/window_command.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
 
-// What can be asked for by button or key.
-enum class Command {
-  next_line_up,
-  exaggerate,
-  scene_list,
-  difference,
-  save_curves,
-  home_view,
-  larger_text,
-  smaller_text,
-  next_block_count,
-  pause_curves,
-  reset_figures,
-  next_reference,
-  record,
-  file_list,
-  zero,
-  dead_man,
-  details,
-  theme,
-  help,
-  fullscreen
-};
-struct CommandEntry {
-  Command command;
-  const char* key;    // as on the keyboard
-  const char* label;  // on its button; empty: no button
-  const char* help;   // one line
-};
-const std::vector<CommandEntry>& commands();
-
 // What the windows over the picture can ask of the program.
 struct OverlayActions {
-  std::function<void(Command)> run;
+  const std::vector<WindowCommand>* commands = nullptr;  // buttons and the list of keys
   std::function<void(const std::string&)> use_scene;
   std::function<void(const std::string&)> replay;
 };
@@ -60,8 +30,15 @@ struct OverlayActions {
 // The overlay's sentences; empty when there is nothing to tell.
 std::string data_warning(const ModelsView& models);
 std::string recording_words(const RecordingStatus& recording);
-// The big number: the recent peak error of the active model over the JND.
-std::string peak_error_words(const ModelsView& models, double reference_N);
+// The big number and what it is: the recent peak error of the active model over the JND;
+// without a reference the one it predicts; how far the first fit is before there is one.
+struct BigNumber {
+  std::string number = "–";
+  std::string what = "of what a hand can notice:";
+  std::string below = "the error of the active model";
+  double error_over_jnd = 0.0;  // above 1 in its own colour
+};
+BigNumber big_number(const ModelsView& models, const JndLine& jnd);
 
 // What a scene without models and without a material says of itself; empty otherwise.
 std::string empty_scene_words(const LiveSession& session);

@@ -49,18 +49,27 @@ struct TableState {
   std::array<char, 64> name{};
 };
 
+// A file that somebody gave.
+struct OfferedFile {
+  std::string path;                // of the recording to fit or to replay; empty: none
+  std::vector<std::string> words;  // how another program's table was understood
+  std::string problem;             // why there is none
+  bool any() const noexcept { return !path.empty() || !problem.empty(); }
+};
+
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
   float text_size = 1.0F;  // times the usual
   int hidden_choice = 0;        // above 0: which model is active is a secret, shown as this
+  std::string hidden_name;      // what it is called then
   std::size_t block_count = 4;  // 1, 2 or 4
   TableState table;
   bool exaggerated = false;       // arrows show ten times the difference
   bool centres_together = true;   // the slider moves all models that have centres
-  int wanted_centres = 0;         // of the slider, as long as it is held
+  int requested_centres = 0;         // of the slider, as long as it is held
   bool scene_list = false;        // scenes to choose from
-  std::string offered_recording;  // to fit or to replay; empty: none
+  OfferedFile offered;
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load

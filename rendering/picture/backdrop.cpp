@@ -32,6 +32,13 @@ bool Backdrop::begin(int width, int height) {
 
 void Backdrop::end() { glBindFramebuffer(GL_FRAMEBUFFER, 0); }
 
+void Backdrop::take(int x, int y, int width, int height) {
+  if (!begin(width, height)) return;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glBlitFramebuffer(x, y, x + width, y + height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  end();
+}
+
 void Backdrop::copy(int x, int y) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   glBlitFramebuffer(0, 0, width_, height_, x, y, x + width_, y + height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);

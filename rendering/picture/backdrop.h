@@ -1,6 +1,6 @@
-// A picture that is drawn once and copied every frame until it changes: the
-// table, which stands still while the camera does. Where pixels are computed by
-// the processor this is a third of the work of a frame.
+// A picture that is drawn once and copied every frame until it changes: what stands
+// still while the camera does, the panel between two of its frames. Where pixels are
+// computed by the processor this is a third of the work of a frame.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
@@ -17,6 +17,9 @@ class Backdrop {
   // the window. False: the driver cannot, draw to the window instead.
   bool begin(int width, int height);
   void end();
+  // The window's `width` x `height` pixels from (x, y), lower left corner, on.
+  void take(int x, int y, int width, int height);
+  unsigned framebuffer() const noexcept { return framebuffer_; }
   // Onto the window at (x, y), lower left corner.
   void copy(int x, int y) const;
 

@@ -15,8 +15,9 @@ namespace palpate {
 namespace {
 
 constexpr float kBetween = 1.32F;  // blocks side by side, in widths
-constexpr float kArrow_m_per_N = 0.006F;
-constexpr float kLongestArrow_m = 0.09F;
+constexpr float kStrongestArrow = 0.3F;  // of a scene's strongest press, in sizes of a block
+constexpr float kLongestArrow = 0.6F;
+constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
@@ -27,15 +28,26 @@ Rgb rgb(const Colour& colour) {
          255.0F;
 }
 
-float arrow_length_m(const BlockPose& pose) { return std::min(kArrow_m_per_N * pose.force_N, kLongestArrow_m); }
+// What has depth and is seen from outside.
+template <typename Draw>
+void draw_solids(Draw draw) {
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  draw();
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(0);
+}
 
 // In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
 // sensor's disc, and a dull handle.
 constexpr float kToolLength = 15.2F;
-std::vector<glm::vec2> ball_profile() {
+std::vector<glm::vec2> ball_profile(float detail) {
   std::vector<glm::vec2> profile;
-  for (int i = 0; i <= 20; ++i) {
-    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / 20.0F * 0.89F - 0.5F);
+  const int steps = static_cast<int>(20.0F * detail);
+  for (int i = 0; i <= steps; ++i) {
+    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / static_cast<float>(steps) * 0.89F - 0.5F);
     profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
   }
   for (const glm::vec2 point : {glm::vec2(0.30F, 2.02F), glm::vec2(0.30F, 5.0F), glm::vec2(0.33F, 5.2F),
@@ -83,28 +95,47 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
     : geometry_(scene.block),
       block_colour_(rgb(scene.block_colour)),
       tool_colour_(rgb(scene.tool_colour)),
+      size_m_(std::max(static_cast<float>(scene.block.width_m), 1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
+      arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),
+      arrow_width_(size_m_ / kUsualSize_m),
       block_shader_(std::move(block)),
       solid_shader_(std::move(solid)),
       table_shader_(std::move(table)),
-      block_(block_mesh(static_cast<float>(scene.block.width_m), static_cast<float>(scene.block.length_m),
-                        static_cast<float>(scene.block.height_m))),
-      ball_(lathe_mesh(ball_profile(), 28)),
-      sensor_(lathe_mesh(sensor_profile(), 32)),
-      handle_(lathe_mesh(handle_profile(), 28)),
-      shaft_(lathe_mesh(shaft_profile(), 14)),
-      tip_(lathe_mesh(tip_profile(), 20)),
+      fine_(geometry_, 1.0F),
+      coarse_(geometry_, 0.5F),
       square_(square_mesh()) {
   show(1, true);
 }
 
+BlockView::Meshes::Meshes(const BlockGeometry& geometry, float detail)
+    : block(block_mesh(static_cast<float>(geometry.width_m), static_cast<float>(geometry.length_m),
+                       static_cast<float>(geometry.height_m), detail)),
+      ball(lathe_mesh(ball_profile(detail), static_cast<int>(28.0F * detail))),
+      sensor(lathe_mesh(sensor_profile(), static_cast<int>(32.0F * detail))),
+      handle(lathe_mesh(handle_profile(), static_cast<int>(28.0F * detail))),
+      shaft(lathe_mesh(shaft_profile(), 14)),
+      tip(lathe_mesh(tip_profile(), 20)) {}
+
+// Triangles of a few pixels cost as much as large ones, and nobody sees them.
+const BlockView::Meshes& BlockView::meshes(const Viewport& viewport, std::size_t count) const {
+  constexpr float kFineFrom_px = 340.0F;  // a block's width
+  const glm::vec2 size(viewport.width, viewport.height);
+  const float half_m = 0.5F * static_cast<float>(geometry_.width_m);
+  const glm::vec2 from = on_screen(0, count, {-half_m, 0.0F, 0.0F}, size);
+  return glm::length(on_screen(0, count, {half_m, 0.0F, 0.0F}, size) - from) < kFineFrom_px ? coarse_ : fine_;
+}
+
 void BlockView::show(std::size_t count, bool at_once) {
-  const auto width = static_cast<float>(geometry_.width_m);
   // Several blocks are seen more from the front, so that none hides another.
   if (count == 1) {
-    camera_.frame(0.92F * width, 0.5F, at_once);
+    camera_.frame(0.92F * size_m_, 0.5F, at_once);
   } else {
-    camera_.frame(count == 2 ? 1.42F * width : 1.78F * width, 0.3F, at_once);
+    camera_.frame((count == 2 ? 1.42F : 1.78F) * size_m_, 0.3F, at_once);
   }
+}
+
+float BlockView::arrow_length_m(const BlockPose& pose) const {
+  return std::min(arrow_m_per_N_ * pose.force_N, kLongestArrow * size_m_);
 }
 
 glm::vec3 BlockView::place(std::size_t index, std::size_t count) const {
@@ -137,8 +168,9 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   if (viewport.width < 1 || viewport.height < 1) return;
   view_projection_ =
       camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
+  shown_ = &meshes(viewport, blocks.size());
   draw_backdrop(table_state(blocks, viewport, theme), viewport);
-  const Viewport part = standing(blocks, viewport);
+  const Viewport part = standing(blocks, viewport, resting_);
   if (part.width < 1 || part.height < 1) return;
   const bool smooth = smooth_.begin(0, part.x, part.y, part);
   if (smooth) {
@@ -151,21 +183,17 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
     glDisable(GL_SCISSOR_TEST);
   }
   draw_blocks(blocks);
-  if (smooth) smooth_.end(part);
+  if (smooth) smooth_.end(0, part);
 }
 
 void BlockView::draw_blocks(const std::vector<BlockPose>& blocks) const {
-  glEnable(GL_DEPTH_TEST);
-  glEnable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()));
-  for (std::size_t i = 0; i < blocks.size(); ++i) draw_block(blocks[i], place(i, blocks.size()));
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
-  glBindVertexArray(0);
+  draw_solids([&] {
+    for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()));
+    for (std::size_t i = 0; i < blocks.size(); ++i) draw_block(blocks[i], place(i, blocks.size()));
+  });
 }
 
-Viewport BlockView::standing(const std::vector<BlockPose>& blocks, const Viewport& viewport) const {
+Viewport BlockView::standing(const std::vector<BlockPose>& blocks, const Viewport& viewport, bool moving) const {
   const glm::vec2 size(viewport.width, viewport.height);
   glm::vec2 low = size;
   glm::vec2 high(0.0F);
@@ -175,14 +203,17 @@ Viewport BlockView::standing(const std::vector<BlockPose>& blocks, const Viewpor
     high = glm::max(high, at);
   };
   const glm::vec2 half = 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m);
+  // A dent is seen through the flat top's outline, the tool's shadow goes over its edge.
+  constexpr float kEdge_m = 0.005F;
+  const float lowest_m = moving ? kEdge_m : static_cast<float>(geometry_.height_m);
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const glm::vec3 at = place(i, blocks.size());
     const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
-                               arrow_length_m(blocks[i]) + kArrowTip_m);
+                               arrow_length_m(blocks[i]) + arrow_width_ * kArrowTip_m);
     for (const float x : {-1.0F, 1.0F}) {
       for (const float z : {-1.0F, 1.0F}) {
         reach(at + glm::vec3(x * half.x, 0.0F, z * half.y));
-        reach(at + glm::vec3(x * half.x, -geometry_.height_m, z * half.y));
+        reach(at + glm::vec3(x * half.x, -lowest_m, z * half.y));
         // The tool, and the arrow beside it.
         reach(at + glm::vec3(x * 0.022F, top, z * 0.022F));
       }
@@ -212,6 +243,7 @@ BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& block
 void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport) {
   if (!(state == backdrop_state_)) {
     backdrop_state_ = state;
+    resting_ = false;
     // The table lies behind and below all else: it needs no depth.
     const bool kept = backdrop_.begin(state.width, state.height);
     glViewport(kept ? 0 : viewport.x, kept ? 0 : viewport.y, state.width, state.height);
@@ -226,8 +258,27 @@ void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport)
       backdrop_state_ = TableState{};
       return;
     }
+  } else if (!resting_) {
+    // The view stands still since the last frame: now it pays.
+    add_resting_blocks(state);
   }
   backdrop_.copy(viewport.x, viewport.y);
+}
+
+void BlockView::add_resting_blocks(const TableState& state) {
+  BlockPose resting;
+  resting.tool_m = -1.0F;  // far above: no shadow
+  resting.shows_error = false;
+  const std::vector<BlockPose> blocks(state.count, resting);
+  const Viewport part = standing(blocks, {0, 0, state.width, state.height}, false);
+  if (part.width < 1 || part.height < 1 || !smooth_.begin(backdrop_.framebuffer(), part.x, part.y, part)) return;
+  glViewport(-part.x, -part.y, state.width, state.height);
+  draw_solids([&] {
+    for (std::size_t i = 0; i < state.count; ++i) draw_block(resting, place(i, state.count));
+  });
+  smooth_.end(backdrop_.framebuffer(), part);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  resting_ = true;
 }
 
 void BlockView::draw_table(const TableState& state) const {
@@ -260,9 +311,9 @@ void BlockView::draw_block(const BlockPose& pose, const glm::vec3& at) const {
   block_shader_.set("colour", block_colour_);
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
   // Shallow dents have no colour yet: there is nothing to judge.
-  block_shader_.set("mark", pose.judged ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
+  block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
   block_shader_.set("tool_gap", std::max(0.0F, -pose.tool_m));
-  block_.draw();
+  shown_->block.draw();
 }
 
 void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
@@ -272,13 +323,13 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
   solid_shader_.set("colour", tool_colour_);
   solid_shader_.set("shininess", 1.0F);
-  ball_.draw();
+  shown_->ball.draw();
   solid_shader_.set("colour", 0.62F * tool_colour_);
   solid_shader_.set("shininess", 0.6F);
-  sensor_.draw();
+  shown_->sensor.draw();
   solid_shader_.set("colour", 0.44F * tool_colour_);
   solid_shader_.set("shininess", 0.25F);
-  handle_.draw();
+  shown_->handle.draw();
   if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at);
 }
 
@@ -292,11 +343,11 @@ void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("colour", pose.arrow);
   solid_shader_.set("shininess", 0.0F);
   solid_shader_.set("offset", foot);
-  solid_shader_.set("stretch", glm::vec3(1.0F, length_m, 1.0F));
-  shaft_.draw();
+  solid_shader_.set("stretch", glm::vec3(arrow_width_, length_m, arrow_width_));
+  shown_->shaft.draw();
   solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
-  solid_shader_.set("stretch", glm::vec3(1.0F));
-  tip_.draw();
+  solid_shader_.set("stretch", glm::vec3(arrow_width_));
+  shown_->tip.draw();
 }
 
 }  // namespace palpate

@@ -29,7 +29,7 @@ struct BlockPose {
   float force_N = 0.0F;
   Rgb arrow{0.0F};
   bool chosen = false;  // in the hand
-  bool judged = true;   // the dent shows the error's colour
+  bool shows_error = true;   // the dent shows the error's colour
 };
 
 class BlockView {
@@ -55,6 +55,7 @@ class BlockView {
   const BlockGeometry& geometry() const noexcept { return geometry_; }
 
  private:
+  float arrow_length_m(const BlockPose& pose) const;
   BlockView(const Scene& scene, Shader block, Shader solid, Shader table);
   // All that the table's picture depends on.
   struct TableState {
@@ -67,10 +68,18 @@ class BlockView {
     bool operator==(const TableState&) const = default;
   };
   TableState table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) const;
+  // As finely as it is seen.
+  struct Meshes {
+    Meshes(const BlockGeometry& block, float detail);
+    GpuMesh block, ball, sensor, handle, shaft, tip;
+  };
+  const Meshes& meshes(const Viewport& viewport, std::size_t count) const;
   void draw_backdrop(const TableState& state, const Viewport& viewport);
   void draw_table(const TableState& state) const;
-  // The part of the viewport that blocks, tools and arrows lie in.
-  Viewport standing(const std::vector<BlockPose>& blocks, const Viewport& viewport) const;
+  void add_resting_blocks(const TableState& state);
+  // The part of the viewport that blocks, tools and arrows lie in; without the blocks'
+  // sides, which never move, where `moving` is all that is asked for.
+  Viewport standing(const std::vector<BlockPose>& blocks, const Viewport& viewport, bool moving) const;
   void draw_blocks(const std::vector<BlockPose>& blocks) const;
   void draw_block(const BlockPose& pose, const glm::vec3& place) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place) const;
@@ -80,12 +89,18 @@ class BlockView {
   BlockGeometry geometry_;
   Rgb block_colour_;
   Rgb tool_colour_;
+  float size_m_;          // of what the camera frames for one block
+  float arrow_m_per_N_;
+  float arrow_width_;     // times the usual
   Shader block_shader_, solid_shader_, table_shader_;
-  GpuMesh block_, ball_, sensor_, handle_, shaft_, tip_, square_;
+  Meshes fine_, coarse_;
+  const Meshes* shown_ = &fine_;
+  GpuMesh square_;
   Camera camera_;
   Backdrop backdrop_;
   SmoothTarget smooth_;
   TableState backdrop_state_;
+  bool resting_ = false;  // the backdrop has the blocks as nobody presses them
   glm::mat4 view_projection_{1.0F};
 };
 

@@ -25,7 +25,7 @@ void Camera::frame(float radius_m, float yaw_rad, bool at_once) {
   framed_.yaw_rad = yaw_rad;
   framed_.distance_m = 1.12F * radius_m / std::tan(0.5F * kFieldOfView_rad);
   aim();
-  if (at_once) now_ = wanted_;
+  if (at_once) now_ = target_;
 }
 
 void Camera::turn(const CameraTurn& turn) {
@@ -35,11 +35,11 @@ void Camera::turn(const CameraTurn& turn) {
 
 // What is beyond the limits is not remembered: the way back begins at once.
 void Camera::aim() {
-  wanted_.yaw_rad = framed_.yaw_rad + turn_.yaw_rad;
-  wanted_.pitch_rad = std::clamp(framed_.pitch_rad + turn_.pitch_rad, kLowest_rad, kHighest_rad);
-  wanted_.distance_m = std::clamp(framed_.distance_m * turn_.distance, 1.6F * radius_m_, 12.0F * radius_m_);
-  turn_.pitch_rad = wanted_.pitch_rad - framed_.pitch_rad;
-  turn_.distance = wanted_.distance_m / framed_.distance_m;
+  target_.yaw_rad = framed_.yaw_rad + turn_.yaw_rad;
+  target_.pitch_rad = std::clamp(framed_.pitch_rad + turn_.pitch_rad, kLowest_rad, kHighest_rad);
+  target_.distance_m = std::clamp(framed_.distance_m * turn_.distance, 1.6F * radius_m_, 12.0F * radius_m_);
+  turn_.pitch_rad = target_.pitch_rad - framed_.pitch_rad;
+  turn_.distance = target_.distance_m / framed_.distance_m;
 }
 
 void Camera::orbit(float yaw_rad, float pitch_rad) {
@@ -50,9 +50,9 @@ void Camera::zoom(float factor) { turn({turn_.yaw_rad, turn_.pitch_rad, turn_.di
 
 void Camera::advance(float seconds) {
   const float share = 1.0F - std::exp(-std::max(0.0F, seconds) / kEasing_s);
-  now_.yaw_rad += share * (wanted_.yaw_rad - now_.yaw_rad);
-  now_.pitch_rad += share * (wanted_.pitch_rad - now_.pitch_rad);
-  now_.distance_m += share * (wanted_.distance_m - now_.distance_m);
+  now_.yaw_rad += share * (target_.yaw_rad - now_.yaw_rad);
+  now_.pitch_rad += share * (target_.pitch_rad - now_.pitch_rad);
+  now_.distance_m += share * (target_.distance_m - now_.distance_m);
 }
 
 glm::vec3 Camera::eye() const {

@@ -46,7 +46,7 @@ class Camera {
   };
   void aim();  // at `framed_`, turned
   Pose now_;
-  Pose wanted_;
+  Pose target_;
   Pose framed_;  // as put
   CameraTurn turn_;
   float radius_m_ = 0.1F;

@@ -59,12 +59,12 @@ bool SmoothTarget::begin(unsigned source, int at_x, int at_y, const Viewport& pa
   return true;
 }
 
-void SmoothTarget::end(const Viewport& part) const {
+void SmoothTarget::end(unsigned target, const Viewport& part) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
   glBlitFramebuffer(0, 0, part.width, part.height, part.x, part.y, part.x + part.width, part.y + part.height,
                     GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
 }
 
 }  // namespace palpate

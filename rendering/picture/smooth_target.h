@@ -1,5 +1,5 @@
-// A part of the window drawn with several samples a pixel, so that edges are smooth:
-// begun with what is on the window, put back over it in the end. Only the part that
+// A part of a picture drawn with several samples a pixel, so that edges are smooth:
+// begun with what is there, put back over it in the end. Only the part that
 // something stands in, for every sample costs where the processor draws.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
@@ -22,8 +22,8 @@ class SmoothTarget {
   // window) whose lower left corner is at `at_x`, `at_y` as its lower left part, and
   // no depth yet. False: the driver cannot, draw to the window instead.
   bool begin(unsigned source, int at_x, int at_y, const Viewport& part);
-  // Puts it over `part` of the window, which is the target again.
-  void end(const Viewport& part) const;
+  // Puts it over `part` of the framebuffer `target`, which is what is drawn to again.
+  void end(unsigned target, const Viewport& part) const;
 
  private:
   bool resize(int width, int height);

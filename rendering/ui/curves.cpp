@@ -24,6 +24,7 @@ const CurveColumn& empty_column() {
                          &column.error_over_jnd, &column.felt_over_jnd}) {
       values->fill(kNone);
     }
+    column.predicted_low_N = column.predicted_high_N = column.predicted_over_jnd = kNone;
     return column;
   }();
   return empty;
@@ -53,9 +54,9 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
     if (place >= static_cast<double>(columns_.size())) break;
     if (place < 0.0) {
       CurveColumn before = empty_column();
-      take(point, jnd, before);
+      add(point, jnd, before);
     } else {
-      take(point, jnd, columns_[static_cast<std::size_t>(place)]);
+      add(point, jnd, columns_[static_cast<std::size_t>(place)]);
     }
     taken_s_ = point.loop_time_s;
   }
@@ -80,7 +81,7 @@ bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::
   return same;
 }
 
-void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
+void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
   column.trouble = std::max(column.trouble, point.trouble);
   column.contact = column.contact || point.in_contact;
   const double jnd_N = jnd.at(static_cast<double>(point.reference_N));
@@ -92,13 +93,24 @@ void CurveColumns::take(const HistoryPoint& point, const JndLine& jnd, CurveColu
     column.reference_N = point.reference_N;
     column.reference = true;
   }
+  if (std::isnan(point.reference_N)) add_prediction(point, jnd, column);
   column.any = true;
   for (std::size_t i = 0; i < slots_; ++i) {
-    if (!std::isnan(point.force_N[i])) take_model(point, i, jnd_N, column);
+    if (!std::isnan(point.force_N[i])) add_model(point, i, jnd_N, column);
   }
 }
 
-void CurveColumns::take_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column) {
+void CurveColumns::add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
+  const float force_N = point.force_N[point.active];
+  const float error_N = point.in_contact ? point.predicted_error_N : 0.0F;
+  if (std::isnan(force_N) || std::isnan(point.predicted_error_N)) return;
+  column.predicted_low_N = smaller(column.predicted_low_N, force_N - error_N);
+  column.predicted_high_N = larger(column.predicted_high_N, force_N + error_N);
+  column.predicted_over_jnd =
+      larger(column.predicted_over_jnd, error_N / static_cast<float>(jnd.at(static_cast<double>(force_N))));
+}
+
+void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column) {
   const float force_N = point.force_N[slot];
   column.low_N[slot] = smaller(column.low_N[slot], force_N);
   column.high_N[slot] = larger(column.high_N[slot], force_N);

@@ -23,6 +23,11 @@ struct CurveColumn {
   float reference_N = 0.0F;                 // the last one
   float band_low_N = 0.0F;                  // reference -/+ JND, outermost
   float band_high_N = 0.0F;
+  // Without a reference: the active model's force -/+ its predicted error (95 %),
+  // outermost, and that error over the JND; NaN: none.
+  float predicted_low_N = 0.0F;
+  float predicted_high_N = 0.0F;
+  float predicted_over_jnd = 0.0F;
   // Of each model; NaN: no force, or nothing to compare it with.
   std::array<float, kMaxModels> low_N{};
   std::array<float, kMaxModels> high_N{};
@@ -56,8 +61,9 @@ class CurveColumns {
 
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
-  void take(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
-  void take_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column);
+  void add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
+  void add_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column);
+  void add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
   void find_highest();
 
   std::vector<CurveColumn> columns_;

@@ -24,25 +24,24 @@ struct ExportArguments {
   bool force = false;
 };
 
-Result<ExportRequest> export_request(const ExportArguments& arguments) {
-  ExportRequest request;
-  request.single_precision = arguments.single_precision;
-  request.encoder_step_m = arguments.encoder_step_m;
-  if (arguments.sensor.empty()) return request;
+// What the file is to take the positions for.
+Result<PositionSensor> sensor_of(const ExportArguments& arguments, const ModelData& data) {
+  if (arguments.sensor.empty()) return sensor_with_step(data, arguments.encoder_step_m);
   Result<RecordingReader> reader = RecordingReader::open(arguments.sensor);
   if (!reader) return reader.error();
   const Result<SensorSpec> sensor = identify_sensor(*reader);
   if (!sensor) return sensor.error();
-  request.encoder_step_m = sensor->encoder_step_m;
-  request.position_noise_m = sensor->position_noise_m;
-  return request;
+  return PositionSensor{sensor->encoder_step_m, sensor->position_noise_m};
 }
 
-void print_json(const ExportArguments& arguments, const ModelData& data, const ExportedC& file) {
+void print_json(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
+                const ExportedC& file) {
   const nlohmann::ordered_json object = {
       {"file", arguments.out},
       {"model", data.name},
       {"precision", arguments.single_precision ? "float" : "double"},
+      {"encoder_step_m", request.sensor.encoder_step_m},
+      {"position_noise_m", request.sensor.position_noise_m},
       {"text_bytes", file.text.size()},
       {"table_bytes", file.table_bytes},
       {"state_bytes", file.state_bytes},
@@ -55,10 +54,21 @@ void print_json(const ExportArguments& arguments, const ModelData& data, const E
   std::printf("%s\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
-void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportedC& file) {
+std::string source_of_sensor(const ExportArguments& arguments, const ModelData& data) {
+  if (!arguments.sensor.empty()) return "as in " + arguments.sensor;
+  if (arguments.encoder_step_m > 0.0) return "as told";
+  return data.sensor ? "as in the recordings of the model" : "the model does not know its recordings' step: see --encoder-step";
+}
+
+void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
+                   const ExportedC& file) {
   const TickOperations& counted = file.operations;
   std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
               arguments.single_precision ? "single" : "double", file.text.size());
+  std::printf("takes positions in steps of %g um with a noise of %g um beside (%s);\n"
+              "a recording of such positions alone gives the forces of palpate replay\n",
+              1e6 * request.sensor.encoder_step_m, 1e6 * request.sensor.position_noise_m,
+              source_of_sensor(arguments, data).c_str());
   std::printf("tables %zu bytes, state %zu bytes\n", file.table_bytes, file.state_bytes);
   std::printf("a tick in contact, at most: %zu additions and multiplications, %zu divisions, %zu square roots, "
               "%zu exponentials, %zu logarithms\n",
@@ -68,16 +78,17 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
 Status run_export(const ExportArguments& arguments) {
   const auto model = load_model(arguments.model);
   if (!model) return model.error();
-  const Result<ExportRequest> request = export_request(arguments);
-  if (!request) return request.error();
   const ModelData& data = (*model)->data();
-  const Result<ExportedC> file = export_c(data, *request);
+  const Result<PositionSensor> sensor = sensor_of(arguments, data);
+  if (!sensor) return sensor.error();
+  const ExportRequest request{arguments.single_precision, *sensor};
+  const Result<ExportedC> file = export_c(data, request);
   if (!file) return Error{arguments.model + ": " + file.error().message};
   if (Status status = write_file_atomically(arguments.out, file->text, arguments.force); !status) return status;
   if (arguments.json) {
-    print_json(arguments, data, *file);
+    print_json(arguments, data, request, *file);
   } else {
-    print_summary(arguments, data, *file);
+    print_summary(arguments, data, request, *file);
   }
   return {};
 }
@@ -91,7 +102,7 @@ void add_export(CLI::App& app, Verbs& verbs) {
   command->add_option("--c", arguments->out, "C file to write")->required();
   command->add_flag("--float", arguments->single_precision, "Single precision");
   CLI::Option* step = command->add_option("--encoder-step", arguments->encoder_step_m,
-                                          "Steps that positions come in, metres; 0: none")
+                                          "Steps that positions come in, metres; 0: those of the model's recordings")
                           ->check(CLI::Range(0.0, 0.1))->capture_default_str();
   command->add_option("--sensor", arguments->sensor, "Recording whose encoder step and position noise to take (CSV)")
       ->excludes(step);

@@ -10,6 +10,7 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/csv_scanner.h"
 #include "engine/import/import_table.h"
+#include "engine/import/import_words.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -68,52 +69,17 @@ ImportRequest import_request(const ImportOptions& options) {
   return request;
 }
 
-std::string decimal_name(const TableLayout& layout) { return layout.decimal == ',' ? "comma" : "point"; }
-
-std::vector<std::string> flip_names(const ImportRequest& request) {
-  std::vector<std::string> flips;
-  if (request.flip_position) flips.emplace_back("position");
-  if (request.flip_force) flips.emplace_back("force");
-  return flips;
-}
-
-// Where a role's values come from: column 2 "Weg [mm]" in mm.
-std::string column_text(const ImportedColumn& column) {
-  if (column.number == 0) return "from --rate";
-  const std::string name = column.header.empty() ? "" : " \"" + printable(column.header) + "\"";
-  return "column " + std::to_string(column.number) + name + " in " + column.unit + (column.guessed ? " (guessed)" : "");
-}
-
-std::string table_text(const ImportedTable& table) {
-  const TableLayout& layout = table.layout;
-  return std::string(delimiter_name(layout.delimiter)) + " between fields, decimal " + decimal_name(layout) + ", " +
-         std::string(encoding_name(table.encoding)) + ", " +
-         (layout.header_line > 0 ? "header in line " + std::to_string(layout.header_line) : "no header") +
-         ", numbers from line " + std::to_string(layout.data_line);
-}
-
 double seconds_of(const ImportedTable& table) {
   return table.recording.rows.back().time_s - table.recording.rows.front().time_s;
 }
 
-// What the recording says of its origin, with no path and no date.
-std::vector<std::string> origin_of(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
-  std::vector<std::string> comments = {"imported by palpate import from " +
-                                       std::filesystem::path(options.file).filename().string()};
-  for (std::size_t role = 0; role < kRoles; ++role) {
-    comments.push_back(std::string(kRoleNames[role]) + ": " + column_text(table.columns[role]));
-  }
-  for (const std::string& flip : flip_names(request)) comments.push_back(flip + ": sign turned round");
-  return comments;
-}
-
 void print_text(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
-  std::cout << "table      " << table_text(table) << "\n";
+  std::cout << "table      " << table_words(table) << "\n";
   for (std::size_t role = 0; role < kRoles; ++role) {
     const std::string name = kRoleNames[role];
-    std::cout << name << std::string(11 - name.size(), ' ') << column_text(table.columns[role]) << "\n";
+    std::cout << name << std::string(11 - name.size(), ' ') << column_words(table.columns[role]) << "\n";
   }
-  for (const std::string& flip : flip_names(request)) std::cout << "flipped    " << flip << "\n";
+  for (const std::string& flip : flipped_roles(request)) std::cout << "flipped    " << flip << "\n";
   for (const std::string& note : table.notes) std::cout << "note       " << note << "\n";
   std::cout << "written    " << options.out << ": " << table.recording.rows.size() << " rows, " << seconds_of(table) << " s\n";
 }
@@ -142,7 +108,7 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
                        {"header_line", table.layout.header_line},
                        {"data_line", table.layout.data_line},
                        {"columns", columns},
-                       {"flips", flip_names(request)},
+                       {"flips", flipped_roles(request)},
                        {"notes", table.notes}};
   std::cout << object.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
 }
@@ -157,7 +123,7 @@ Status run_import(const ImportOptions& options) {
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
   const auto table = import_table(options.file, request);
   if (!table) return table.error();
-  const Status written = write_recording(options.out, table->recording, origin_of(options, request, *table), options.force);
+  const Status written = write_recording(options.out, table->recording, import_origin(options.file, request, *table), options.force);
   if (!written) return written;
   if (options.json) {
     print_import_json(options, request, *table);

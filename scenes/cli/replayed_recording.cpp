@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "models/model/file/model_io.h"
-#include "models/training/surface_search.h"
+#include "models/surface/surface_search.h"
 #include "scenes/cli/forces_file.h"
 
 namespace palpate::cli {

@@ -1,7 +1,7 @@
 // Models against one recording: error figures with positions as recorded and
 // with the surface moved to where the models have theirs.
 //
-// The offset is one for all models (models/training/surface_search.h). The
+// The offset is one for all models (models/surface/surface_search.h). The
 // moved figures come from the same tick over the same rows, each position less
 // the offset; their contact samples are those with a moved position above 0.
 // Thread guarantee: slow side; one thread per object.

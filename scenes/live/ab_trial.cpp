@@ -64,7 +64,7 @@ void AbTrial::press(int key) noexcept {
   tried_[key == 2 ? 1 : 0] = true;
 }
 
-void AbTrial::see(double force_1_N, double force_2_N, bool in_contact, const JndLine& jnd) noexcept {
+void AbTrial::update(double force_1_N, double force_2_N, bool in_contact, const JndLine& jnd) noexcept {
   if (state_ != State::exploring || !in_contact || !std::isfinite(force_1_N) || !std::isfinite(force_2_N)) return;
   const double over_jnd = std::abs(force_1_N - force_2_N) / jnd.at(0.5 * (force_1_N + force_2_N));
   largest_ = std::max(largest_, over_jnd);

@@ -57,7 +57,7 @@ class AbTrial {
 
   // One tick while exploring: the forces of the slots under 1 and 2. Ignored out of
   // contact and when a force is not finite.
-  void see(double force_1_N, double force_2_N, bool in_contact, const JndLine& jnd) noexcept;
+  void update(double force_1_N, double force_2_N, bool in_contact, const JndLine& jnd) noexcept;
 
   // Multiples of the JND; 0 without contact. The percentile is right to 0.02, and
   // at most kMostJnd.

@@ -49,7 +49,12 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
   point.out_of_domain = (snapshot.tick.out_of_domain_mask >> snapshot.selected & 1U) != 0;
   point.trouble = trouble;
   point.force_N.fill(std::nanf(""));
+  point.predicted_error_N = std::nanf("");
   if (set != nullptr) {
+    if (snapshot.selected < set->slots.size()) {
+      point.active = static_cast<std::uint8_t>(set->slots[snapshot.selected]);
+      point.predicted_error_N = static_cast<float>(snapshot.tick.predicted_error_N[snapshot.selected]);
+    }
     for (std::size_t i = 0; i < set->slots.size(); ++i) {
       point.force_N[set->slots[i]] = static_cast<float>(snapshot.tick.force_N[i]);
       add_to_slot(i, set->slots[i], snapshot, reference_N);
@@ -94,6 +99,7 @@ void Comparison::show(const LoopSnapshot& newest) {
   for (std::size_t i = 0; i < set->slots.size(); ++i) {
     SlotView& view = slots_.view(set->slots[i]);
     view.force_N = newest.tick.force_N[i];
+    view.predicted_error_N = newest.tick.predicted_error_N[i];
     view.out_of_domain = (newest.tick.out_of_domain_mask >> i & 1U) != 0;
     view.error_N = compared ? view.force_N - reference_N_ : 0.0;
     view.error_over_jnd = compared ? jnd_.error_over_jnd(view.force_N, reference_N_) : 0.0;

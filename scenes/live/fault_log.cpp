@@ -15,7 +15,7 @@ constexpr std::size_t kStall = fault_index(FaultSource::window, window_fault::kS
 
 }  // namespace
 
-TickTrouble FaultLog::see(const LoopSnapshot& snapshot) {
+TickTrouble FaultLog::update(const LoopSnapshot& snapshot) {
   TickTrouble trouble = TickTrouble::none;
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     const Fault& fault = kFaults[i];
@@ -23,7 +23,7 @@ TickTrouble FaultLog::see(const LoopSnapshot& snapshot) {
     note(i, 1, snapshot.loop_time_s);
     trouble = TickTrouble::alarm;
   }
-  see_device(snapshot.device.faults, snapshot.loop_time_s);
+  update_device(snapshot.device.faults, snapshot.loop_time_s);
   if (snapshot.device.faults != 0) trouble = TickTrouble::alarm;
   const auto missed = static_cast<double>(snapshot.missed_deadlines - missed_);
   missed_of_late_ += std::min(1.0, (missed + 1.0) / kRememberedDeadlines) * (missed / (missed + 1.0) - missed_of_late_);
@@ -36,7 +36,7 @@ TickTrouble FaultLog::see(const LoopSnapshot& snapshot) {
 }
 
 // Once when it begins, however long it lasts.
-void FaultLog::see_device(std::uint32_t faults, double at_s) {
+void FaultLog::update_device(std::uint32_t faults, double at_s) {
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     const bool begins = (faults & ~device_faults_ & kFaults[i].bit) != 0;
     if (kFaults[i].source == FaultSource::device && begins) note(i, 1, at_s);
@@ -44,12 +44,12 @@ void FaultLog::see_device(std::uint32_t faults, double at_s) {
   device_faults_ = faults;
 }
 
-void FaultLog::see_dropped(std::uint64_t dropped, double now_s) {
+void FaultLog::update_dropped(std::uint64_t dropped, double now_s) {
   if (dropped > dropped_) note(kDropped, dropped - dropped_, now_s);
   dropped_ = dropped;
 }
 
-void FaultLog::see_age(double age_s, double now_s) {
+void FaultLog::update_age(double age_s, double now_s) {
   const bool stalled = age_s > kStall_s;
   if (stalled && !stalled_) note(kStall, 1, now_s);
   stalled_ = stalled;

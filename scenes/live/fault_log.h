@@ -37,11 +37,11 @@ class FaultLog {
   static constexpr double kStall_s = 0.05;
 
   // Every snapshot in order; what it holds.
-  TickTrouble see(const LoopSnapshot& snapshot);
+  TickTrouble update(const LoopSnapshot& snapshot);
   // `dropped`: snapshots lost so far, in all.
-  void see_dropped(std::uint64_t dropped, double now_s);
+  void update_dropped(std::uint64_t dropped, double now_s);
   // `age_s`: of the last tick. A stall counts once, however long.
-  void see_age(double age_s, double now_s);
+  void update_age(double age_s, double now_s);
 
   const std::vector<FaultEvent>& events() const noexcept { return events_; }
 
@@ -55,7 +55,7 @@ class FaultLog {
   void acknowledge() noexcept { stall_unseen_ = false; }
 
  private:
-  void see_device(std::uint32_t faults, double at_s);
+  void update_device(std::uint32_t faults, double at_s);
   void note(std::size_t kind, std::uint64_t count, double at_s);
 
   struct Last {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/tick/haptics_tick.h"
@@ -19,8 +20,10 @@ struct HistoryPoint {
   float depth_m = 0.0F;
   float reference_N = 0.0F;  // NaN: none
   float rendered_N = 0.0F;
+  float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
   bool in_contact = false;
   bool out_of_domain = false;  // of the model in the hand
+  std::uint8_t active = 0;     // its slot
   TickTrouble trouble = TickTrouble::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
 };

@@ -72,6 +72,8 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
   if (std::string note = device_->note(); !note.empty()) notices_.add(std::move(note), false);
   if (Status status = models_.start(plans); !status) return status;
+  // The material answers from the first tick on, before there is any model of it.
+  if (truth_ != nullptr) publish();
   return loop_->start();
 }
 
@@ -92,7 +94,7 @@ void LiveSession::update() {
   newest_ = loop_->newest();
   comparison_.show(newest_);
   check_faults();
-  if (std::optional<Notice> outcome = recorder_->take_outcome()) {
+  if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     // It may have ended by itself.
     recording_ = 0;
     send_controls();
@@ -132,21 +134,21 @@ void LiveSession::read_snapshots() {
   // At most what the ring holds: a loop that is quicker than this is not waited for.
   for (std::size_t round = 0; round <= kSnapshotRing / kSnapshotsAtOnce; ++round) {
     const std::size_t count = loop_->read_snapshots(buffer_.data(), buffer_.size());
-    for (std::size_t i = 0; i < count; ++i) comparison_.add(buffer_[i], faults_.see(buffer_[i]));
+    for (std::size_t i = 0; i < count; ++i) comparison_.add(buffer_[i], faults_.update(buffer_[i]));
     if (count < buffer_.size()) break;
   }
 }
 
 void LiveSession::check_faults() {
   const double at_s = steady_now_s();
-  faults_.see_dropped(loop_->dropped_snapshots(), at_s);
-  faults_.see_age(loop_->age_s(), at_s);
+  faults_.update_dropped(loop_->dropped_snapshots(), at_s);
+  faults_.update_age(loop_->age_s(), at_s);
   save_fault_ticks();
 }
 
 // The last second before a fault, in a file.
 void LiveSession::save_fault_ticks() {
-  const auto ticks = loop_->take_fault_ticks();
+  const auto ticks = loop_->read_fault_ticks();
   if (!ticks || fault_files_ == kMostFaultFiles) return;
   ++fault_files_;
   const std::string path = (request_.data_folder.empty() ? "" : request_.data_folder + "/") +

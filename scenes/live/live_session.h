@@ -114,7 +114,7 @@ class LiveSession {
   RecordingStatus recording() const noexcept { return recorder_->status(); }
 
   // What happened since the last call, oldest first.
-  std::vector<Notice> take_notices() { return notices_.take(); }
+  std::vector<Notice> read_notices() { return notices_.read(); }
 
  private:
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);

@@ -64,7 +64,7 @@ void ModelSlots::cancel() noexcept { worker_->cancel(); }
 std::vector<std::size_t> ModelSlots::update() {
   show_progress();
   std::vector<std::size_t> ready;
-  for (FinishedModel& finished : worker_->take_finished()) {
+  for (FinishedModel& finished : worker_->read_finished()) {
     const bool file = finished.job_id == kNoSlot;
     // Asked for again while it was made: the newer one counts.
     const bool old = !file && slots_[finished.job_id]->view.refitting &&

@@ -23,7 +23,7 @@ class Notices {
     list_.push_back({std::move(text), problem});
   }
   // What was added since the last call.
-  std::vector<Notice> take() { return std::exchange(list_, {}); }
+  std::vector<Notice> read() { return std::exchange(list_, {}); }
 
  private:
   std::vector<Notice> list_;

@@ -1,5 +1,5 @@
 // The surface of a recording that is replayed into a session: where the models
-// that are ready fit it best (models/training/surface_search.h), found on a thread
+// that are ready fit it best (models/surface/surface_search.h), found on a thread
 // of its own once the first model is ready and again when all are, and given to the
 // device.
 //
@@ -12,7 +12,7 @@
 
 #include "engine/live/device.h"
 #include "engine/tick/jnd.h"
-#include "models/training/surface_search.h"
+#include "models/surface/surface_search.h"
 
 namespace palpate {
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kSamplesAtOnce = 1024;
 constexpr auto kPause = std::chrono::milliseconds(20);
 
-double force_of(const TakenSample& sample, WrittenForce force) {
+double force_of(const RecordedSample& sample, WrittenForce force) {
   switch (force) {
     case WrittenForce::measured: return sample.measured_N;
     case WrittenForce::reference: return sample.reference_N;
@@ -112,7 +112,7 @@ void SessionRecorder::work() {
 void SessionRecorder::drain() {
   // No more rounds than the ring is long: a loop that fills it faster than a disk
   // takes it must not keep `stop` waiting.
-  for (std::size_t round = 0; round <= kTakenRing / kSamplesAtOnce; ++round) {
+  for (std::size_t round = 0; round <= kRecordedRing / kSamplesAtOnce; ++round) {
     const std::size_t count = loop_.read_samples(buffer_.data(), buffer_.size());
     for (std::size_t i = 0; i < count; ++i) write(buffer_[i]);
     if (count < buffer_.size()) break;
@@ -121,7 +121,7 @@ void SessionRecorder::drain() {
   seconds_.store(time_.last_s() - time_.gaps_s(), std::memory_order_relaxed);
 }
 
-void SessionRecorder::write(const TakenSample& sample) {
+void SessionRecorder::write(const RecordedSample& sample) {
   if (sample.recording != number_) return;
   restart_pending_ = restart_pending_ || sample.restart;
   if (!sample.usable || !std::isfinite(sample.tool.time_s)) {
@@ -169,7 +169,7 @@ RecordingStatus SessionRecorder::status() const {
   return status;
 }
 
-std::optional<Notice> SessionRecorder::take_outcome() {
+std::optional<Notice> SessionRecorder::read_outcome() {
   std::optional<Notice> outcome;
   {
     const std::lock_guard lock(mutex_);

@@ -36,7 +36,7 @@ struct RecordingStatus {
   double seconds = 0.0;  // of motion: gaps between streams do not count
 };
 
-// Which of TakenSample's forces is written.
+// Which of RecordedSample's forces is written.
 enum class WrittenForce : std::uint8_t { measured, reference, model };
 
 struct RecorderRequest {
@@ -89,7 +89,7 @@ class SessionRecorder {
   RecordingStatus status() const;
   // What became of the recording, once, after it ended: by `stop`, or by itself
   // because the disk refused.
-  std::optional<Notice> take_outcome();
+  std::optional<Notice> read_outcome();
 
  private:
   struct Counts {
@@ -99,7 +99,7 @@ class SessionRecorder {
   };
   void work();
   void drain();
-  void write(const TakenSample& sample);
+  void write(const RecordedSample& sample);
   Notice finish();
 
   HapticsLoop& loop_;
@@ -110,7 +110,7 @@ class SessionRecorder {
   Counts counts_;
   bool restart_pending_ = false;
   std::uint64_t dropped_before_ = 0;
-  std::vector<TakenSample> buffer_;
+  std::vector<RecordedSample> buffer_;
   std::thread thread_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;

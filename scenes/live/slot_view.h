@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "engine/tick/error_figures.h"
@@ -28,6 +29,8 @@ struct SlotView {
   double error_N = 0.0;  // signed, model - reference; 0 out of contact or without reference
   double error_over_jnd = 0.0;
   bool out_of_domain = false;
+  // Of the force, 95 % (models/model); NaN: unknown. All there is without a reference.
+  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
   double evaluation_ns = 0.0;  // median over about the last second in contact
   bool refitting = false;   // with another number of centres; the old one is there until then
   bool takes_centres = false;

@@ -154,12 +154,12 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   if (!folder) return folder.error();
 
   const auto recordings = load_recordings(request.train, request.test, scene->jnd,
-                                          [&](double share) { return control.go_on(kRecordingShare * share); });
+                                          [&](double share) { return control.may_continue(kRecordingShare * share); });
   if (!recordings) return recordings.error();
   const ReportPlan plan = make_plan(request.quick, scene->features.size(), request.recipe);
   FitControl measuring;
   measuring.progress = [&](double fraction) {
-    return control.go_on(kRecordingShare + (kMeasuringShare - kRecordingShare) * fraction);
+    return control.may_continue(kRecordingShare + (kMeasuringShare - kRecordingShare) * fraction);
   };
   auto data = run_methods(*recordings, *scene, plan, measuring);
   if (!data) return data.error();
@@ -177,7 +177,7 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   const std::vector<Figure> figures = make_figures(*data);
   const auto svgs = draw(*folder, *gnuplot, figures);
   // Ctrl-C at a terminal ends gnuplot as well: that is no trouble of gnuplot's.
-  if (!control.go_on(0.99)) return interrupted();
+  if (!control.may_continue(0.99)) return interrupted();
   if (!svgs) return svgs.error();
 
   ReportOrigin origin = origin_of(request);
@@ -190,7 +190,7 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   const auto page = make_page(*data, origin, tables, figures, *svgs);
   if (!page) return page.error();
   if (const Status status = folder->write("index.html", *page); !status) return status.error();
-  if (!control.go_on(1.0)) return interrupted();
+  if (!control.may_continue(1.0)) return interrupted();
   if (const Status status = folder->commit(); !status) return status.error();
 
   ReportSummary summary;

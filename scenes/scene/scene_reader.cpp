@@ -9,6 +9,7 @@
 
 #include "engine/json/json_fields.h"
 #include "models/fit/methods.h"
+#include "scenes/material/material.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/jnd_file.h"
 
@@ -75,7 +76,10 @@ class SceneReader : private JsonFields {
 
   void read_material() {
     const JsonNode node = member(top_, "material", "the name of a virtual material, or null");
-    if (node.value != nullptr && !node.value->is_null()) scene_.material = filled_text(top_, "material");
+    if (node.value == nullptr || node.value->is_null()) return;
+    std::vector<std::string> names;
+    for (const Material& material : materials()) names.emplace_back(material.name);
+    if (const auto index = choice(node, names)) scene_.material = names[*index];
   }
 
   void read_features() {

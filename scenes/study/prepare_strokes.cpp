@@ -219,7 +219,7 @@ Result<std::vector<Model>> make_models(const Scene& scene, const std::vector<Slo
   std::vector<Model> models(plans.size());
   for (std::size_t left = plans.size(); left > 0;) {
     std::this_thread::sleep_for(kLookAgain);
-    for (FinishedModel& made : worker.take_finished()) {
+    for (FinishedModel& made : worker.read_finished()) {
       if (made.model == nullptr) return Error{made.problem};
       models[made.job_id] = std::move(made.model);
       --left;

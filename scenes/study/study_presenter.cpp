@@ -38,16 +38,16 @@ double interval_share(const StudyTiming& timing, std::uint32_t tick) noexcept {
   return 0.5 - 0.5 * std::cos(kPi * static_cast<double>(from_edge) / static_cast<double>(timing.ramp));
 }
 
-std::uint64_t StudyPresenter::present(const Pushes& pushes) noexcept {
-  orders_.write({++ordered_, pushes});
+std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
+  orders_.write({++ordered_, stimuli});
   return ordered_;
 }
 
 std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
   switch (phase) {
     case PresentationPhase::lead_in: return timing_.lead_in;
-    case PresentationPhase::reminder: return order_.pushes.has_reminder ? timing_.interval() : 0;
-    case PresentationPhase::reminder_pause: return order_.pushes.has_reminder ? timing_.pause : 0;
+    case PresentationPhase::reminder: return order_.stimuli.has_reminder ? timing_.interval() : 0;
+    case PresentationPhase::reminder_pause: return order_.stimuli.has_reminder ? timing_.pause : 0;
     case PresentationPhase::first:
     case PresentationPhase::second: return timing_.interval();
     case PresentationPhase::pause: return timing_.pause;
@@ -55,31 +55,31 @@ std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
   }
 }
 
-const Push* StudyPresenter::push() const noexcept {
+const Stimulus* StudyPresenter::stimulus() const noexcept {
   switch (state_.phase) {
-    case PresentationPhase::reminder: return &order_.pushes.reminder;
-    case PresentationPhase::first: return &order_.pushes.first;
-    case PresentationPhase::second: return &order_.pushes.second;
+    case PresentationPhase::reminder: return &order_.stimuli.reminder;
+    case PresentationPhase::first: return &order_.stimuli.first;
+    case PresentationPhase::second: return &order_.stimuli.second;
     default: return nullptr;
   }
 }
 
 bool StudyPresenter::is_held() const noexcept {
-  return push() != nullptr && in_phase_ >= timing_.ramp && in_phase_ < timing_.ramp + timing_.hold;
+  return stimulus() != nullptr && in_phase_ >= timing_.ramp && in_phase_ < timing_.ramp + timing_.hold;
 }
 
-double StudyPresenter::wanted_N() const noexcept {
-  const Push* now = push();
+double StudyPresenter::commanded_N() const noexcept {
+  const Stimulus* now = stimulus();
   if (now == nullptr) return 0.0;
   const double force_N = now->size * interval_share(timing_, in_phase_);
-  if (now->kind == PushKind::constant) return force_N;
+  if (now->kind == StimulusKind::constant) return force_N;
   if (strokes_ == nullptr) return 0.0;
   const std::vector<double>& stroke_N =
-      now->kind == PushKind::reference ? strokes_->reference_N : strokes_->comparison_N;
+      now->kind == StimulusKind::reference ? strokes_->reference_N : strokes_->comparison_N;
   return in_phase_ < stroke_N.size() ? force_N * stroke_N[in_phase_] : 0.0;
 }
 
-void StudyPresenter::take_orders() noexcept {
+void StudyPresenter::read_orders() noexcept {
   if (stopped_.load(std::memory_order_acquire)) {
     state_.phase = PresentationPhase::stopped;
     return;
@@ -96,8 +96,8 @@ void StudyPresenter::take_orders() noexcept {
 
 // Takes in what became of the last tick's force.
 void StudyPresenter::record(double rendered_N) noexcept {
-  if (!sent_push_ || !std::isfinite(rendered_N)) return;
-  state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - sent_wanted_N_));
+  if (!sent_stimulus_ || !std::isfinite(rendered_N)) return;
+  state_.worst_N = std::max(state_.worst_N, std::abs(rendered_N - sent_commanded_N_));
   if (!sent_held_) return;
   double& mean_N = sent_phase_ == PresentationPhase::first    ? state_.first_rendered_N
                    : sent_phase_ == PresentationPhase::second ? state_.second_rendered_N
@@ -116,15 +116,15 @@ void StudyPresenter::advance() noexcept {
 
 double StudyPresenter::tick(double rendered_N) noexcept {
   record(rendered_N);
-  take_orders();
+  read_orders();
   advance();
-  sent_wanted_N_ = wanted_N();
-  state_.force_N = limiter_.limit(sent_wanted_N_, kStudyTick_s);
+  sent_commanded_N_ = commanded_N();
+  state_.force_N = limiter_.limit(sent_commanded_N_, kStudyTick_s);
   if (limiter_.flags() & (force_limit::kClamped | force_limit::kSlewed | force_limit::kNotFinite)) {
     state_.limited = true;
   }
   sent_phase_ = state_.phase;
-  sent_push_ = push() != nullptr;
+  sent_stimulus_ = stimulus() != nullptr;
   sent_held_ = is_held();
   ++in_phase_;
   ++state_.tick;

@@ -54,16 +54,16 @@ Status check_study_timing(const StudyTiming& timing);
 double interval_share(const StudyTiming& timing, std::uint32_t tick) noexcept;
 
 // What an interval presents: a force of `size` newtons, or a stroke `size` times.
-enum class PushKind : std::uint8_t { constant, reference, comparison };
-struct Push {
+enum class StimulusKind : std::uint8_t { constant, reference, comparison };
+struct Stimulus {
   double size = 0.0;
-  PushKind kind = PushKind::constant;
+  StimulusKind kind = StimulusKind::constant;
 };
-struct Pushes {
-  Push first;
-  Push second;
+struct Stimuli {
+  Stimulus first;
+  Stimulus second;
   bool has_reminder = false;
-  Push reminder;
+  Stimulus reminder;
 };
 
 enum class PresentationPhase : std::uint8_t {
@@ -87,13 +87,13 @@ struct PresentationState {
 class StudyPresenter {
  public:
   // `timing`: one that check_study_timing accepts. `strokes`: forces for each tick of
-  // an interval, or null when all pushes are constant.
+  // an interval, or null when all stimuli are constant.
   explicit StudyPresenter(const StudyTiming& timing, std::shared_ptr<const StrokePair> strokes = nullptr) noexcept
       : timing_(timing), strokes_(std::move(strokes)), limiter_(kLimits) {}
 
   // Slow side. Begins a presentation at the next tick (one that runs is given up);
   // returns its number.
-  std::uint64_t present(const Pushes& pushes) noexcept;
+  std::uint64_t present(const Stimuli& stimuli) noexcept;
   void stop() noexcept { stopped_.store(true, std::memory_order_release); }
   const PresentationState& newest() noexcept { return states_.newest(); }
 
@@ -105,13 +105,13 @@ class StudyPresenter {
   static constexpr ForceLimits kLimits{kLargestStudyForce_N, kFastestStudyForce_N_per_s, 0.0};
   struct Order {
     std::uint64_t presentation = 0;
-    Pushes pushes;
+    Stimuli stimuli;
   };
   std::uint32_t length(PresentationPhase phase) const noexcept;
-  const Push* push() const noexcept;  // of this phase; null: none
+  const Stimulus* stimulus() const noexcept;  // of this phase; null: none
   bool is_held() const noexcept;
-  double wanted_N() const noexcept;
-  void take_orders() noexcept;
+  double commanded_N() const noexcept;
+  void read_orders() noexcept;
   void record(double rendered_N) noexcept;
   void advance() noexcept;
 
@@ -128,8 +128,8 @@ class StudyPresenter {
   PresentationState state_;
   std::uint32_t in_phase_ = 0;  // ticks since the phase began
   PresentationPhase sent_phase_ = PresentationPhase::idle;  // of the force sent last
-  double sent_wanted_N_ = 0.0;
-  bool sent_push_ = false;
+  double sent_commanded_N_ = 0.0;
+  bool sent_stimulus_ = false;
   bool sent_held_ = false;
 };
 

@@ -38,9 +38,9 @@ class ReminderTrials final : public StudyProcedure {
   StudyTrial next() const override { return trials_[answered_]; }
   void answered(bool) override { ++answered_; }
 
-  Pushes pushes(const StudyTrial& trial, bool training) const override {
-    const Push reference{1.0, PushKind::reference};
-    const Push comparison = training ? Push{kEasyShare, PushKind::reference} : Push{1.0, PushKind::comparison};
+  Stimuli stimuli(const StudyTrial& trial, bool training) const override {
+    const Stimulus reference{1.0, StimulusKind::reference};
+    const Stimulus comparison = training ? Stimulus{kEasyShare, StimulusKind::reference} : Stimulus{1.0, StimulusKind::comparison};
     return {trial.comparison_first ? comparison : reference, trial.comparison_first ? reference : comparison, true,
             reference};
   }
@@ -104,7 +104,7 @@ Result<ProcedureKind> find_procedure(const std::string& name) {
   return Error{"found the procedure \"" + name + "\", expected constant, adaptive or discriminate"};
 }
 
-Pushes StudyProcedure::pushes(const StudyTrial& trial, bool) const {
+Stimuli StudyProcedure::stimuli(const StudyTrial& trial, bool) const {
   return {{trial.first_N()}, {trial.second_N()}, false, {}};
 }
 

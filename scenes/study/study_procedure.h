@@ -48,7 +48,7 @@ class StudyProcedure {
   // Trials to learn the task before.
   virtual std::vector<StudyTrial> training() const = 0;
   // What is presented in a trial, of the training or not.
-  virtual Pushes pushes(const StudyTrial& trial, bool training) const;
+  virtual Stimuli stimuli(const StudyTrial& trial, bool training) const;
   virtual void answered(bool comparison_judged_larger) = 0;
 
   std::size_t answered_count() const noexcept { return answered_; }

@@ -30,13 +30,13 @@ class StudyReader {
   StudyReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
 
   Result<StudyData> read() {
-    if (take_line("# palpate-study 1") != "") return refuse("the first line of a study file, \"# palpate-study 1\"");
-    data_.header.subject = take_line("# subject ");
+    if (next_line("# palpate-study 1") != "") return refuse("the first line of a study file, \"# palpate-study 1\"");
+    data_.header.subject = next_line("# subject ");
     if (!check_subject_code(data_.header.subject)) return refuse("\"# subject \" and a code such as S01");
-    const Result<ProcedureKind> procedure = find_procedure(take_line("# procedure "));
+    const Result<ProcedureKind> procedure = find_procedure(next_line("# procedure "));
     if (!procedure) return refuse("\"# procedure \" and constant, adaptive or discriminate");
     data_.header.procedure = *procedure;
-    if (!read_timing(take_line("# timing_ms "))) {
+    if (!read_timing(next_line("# timing_ms "))) {
       return refuse("\"# timing_ms lead_in 400 ramp 100 hold 900 pause 500\" or such");
     }
     const bool strokes = *procedure == ProcedureKind::discriminate;
@@ -44,10 +44,10 @@ class StudyReader {
       if (const Status read = read_strokes(); !read) return read.error();
       columns_ += kStrokeCount;
     }
-    data_.consent = take_line("# consent accepted, ");
+    data_.consent = next_line("# consent accepted, ");
     if (failed_) return refuse("\"# consent accepted, \" and which text");
     const std::string columns = study_columns(*procedure, false);
-    const std::string more = take_line(columns);
+    const std::string more = next_line(columns);
     if (more != "" && more != kDeviceColumns) return refuse("the columns " + study_columns(*procedure));
     data_.has_device = !more.empty();
     if (data_.has_device) columns_ += kDeviceCount;
@@ -61,7 +61,7 @@ class StudyReader {
 
  private:
   // What follows `start` in the next line, which must begin so.
-  std::string take_line(std::string_view start) {
+  std::string next_line(std::string_view start) {
     line_start_ = next_;
     const std::size_t end = text_.find('\n', next_);
     const std::string_view line = text_.substr(next_, end == std::string_view::npos ? end : end - next_);
@@ -103,22 +103,22 @@ class StudyReader {
 
   Status read_strokes() {
     StrokePair strokes;
-    strokes.reference = take_line("# reference ");
+    strokes.reference = next_line("# reference ");
     if (failed_) return refuse("\"# reference \" and whose force");
-    strokes.comparison = take_line("# comparison ");
+    strokes.comparison = next_line("# comparison ");
     if (failed_) return refuse("\"# comparison \" and whose force");
-    std::istringstream stroke(take_line("# stroke "));
+    std::istringstream stroke(next_line("# stroke "));
     std::string of;
     const bool placed = read_named<double>(stroke, {{"from_s", &strokes.from_s}, {"to_s", &strokes.to_s}}) &&
                         stroke >> of && of == "of" && stroke.get() == ' ';
     if (!placed || !std::getline(stroke, strokes.recording)) return refuse("\"# stroke from_s 1.5 to_s 3 of \" and a recording");
-    std::istringstream forces(take_line("# forces "));
+    std::istringstream forces(next_line("# forces "));
     if (!read_named<double>(forces, {{"reference_mean_N", &strokes.reference_mean_N},
                                      {"comparison_mean_N", &strokes.comparison_mean_N}}) ||
         !read_named<std::uint32_t>(forces, {{"checksum", &strokes.checksum}})) {
       return refuse("\"# forces reference_mean_N 1.2 comparison_mean_N 1.3 checksum 4711\" or such");
     }
-    std::istringstream predicted(take_line("# predicted "));
+    std::istringstream predicted(next_line("# predicted "));
     if (!read_named<double>(predicted, {{"mean_over_jnd", &strokes.mean_over_jnd},
                                         {"max_over_jnd", &strokes.max_over_jnd},
                                         {"jnd_offset_N", &strokes.jnd.offset_N},

@@ -105,7 +105,7 @@ void StudySession::proceed() {
 
 void StudySession::present_next() {
   trial_ = training() ? training_[trained_] : procedure_->next();
-  presentation_ = presenter_.present(procedure_->pushes(trial_, training()));
+  presentation_ = presenter_.present(procedure_->stimuli(trial_, training()));
   state_ = StudyState::presenting;
 }
 
@@ -149,11 +149,11 @@ void StudySession::save() {
     return;
   }
   problem_.clear();
-  go_on();
+  continue_session();
 }
 
 // After an answer that is safe.
-void StudySession::go_on() {
+void StudySession::continue_session() {
   if (record_.training) {
     has_feedback_ = true;
     was_correct_ = header_.strokes != nullptr ? record_.found_reference() : record_.found_larger();

@@ -88,7 +88,7 @@ class StudySession {
   std::string message(const StudyView& view) const;
   void present_next();
   void save();
-  void go_on();
+  void continue_session();
 
   StudyHeader header_;
   std::unique_ptr<StudyStore> store_;

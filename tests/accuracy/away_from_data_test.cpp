@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 using test::fit_all;
-using test::judge_moved;
+using test::evaluate_moved;
 using test::ModelPtr;
 using test::prepare;
 using test::press_and_hold;
@@ -210,8 +210,8 @@ void expect_no_worse_than_position(const std::string& what, const RecordingPtr& 
                                    const std::string& scene) {
   const std::vector<ModelPtr> full = fit_all(prepare({train}, scene_request(scene)));
   const std::vector<ModelPtr> alone = fit_all(prepare({train}, test::position_request()));
-  const std::vector<ErrorSummary> full_errors = judge_moved(*test_run, full);
-  const std::vector<ErrorSummary> alone_errors = judge_moved(*test_run, alone);
+  const std::vector<ErrorSummary> full_errors = evaluate_moved(*test_run, full);
+  const std::vector<ErrorSummary> alone_errors = evaluate_moved(*test_run, alone);
   for (std::size_t i = 0; i < full.size(); ++i) {
     std::cout << what << ": " << test::figures(full[i]->name(), full_errors[i]) << "; position alone "
               << 1e3 * alone_errors[i].rms_error_N << " mN\n";

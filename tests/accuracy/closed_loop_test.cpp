@@ -81,8 +81,8 @@ TEST(ClosedLoop, ComesToRestOnSiliconeInEveryHand) {
   for (const ModelPtr& model : silicone_models()) {
     Rest worst;
     for (const Grip& grip : test::grips()) {
-      worst.take_worse(worst_hold(model, grip, kFirm));
-      if (held(grip)) worst.take_worse(worst_hold(model, grip, kLight));
+      worst.keep_worse(worst_hold(model, grip, kFirm));
+      if (held(grip)) worst.keep_worse(worst_hold(model, grip, kLight));
     }
     say("at rest, " + model->name(), "%.2f encoder steps, %.2f JND peak to peak", worst.position_steps,
         worst.force_jnd);
@@ -101,8 +101,8 @@ TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
     for (const ModelPtr& model : silicone_models()) {
       for (const Grip& grip : test::grips()) {
         for (const double encoder_m : kEncoders_m) {
-          worst.take_worse(hold(model, {grip, encoder_m, delay_s, Ticking::gaps}, kFirm, 2.0));
-          if (held(grip)) worst.take_worse(hold(model, {grip, encoder_m, delay_s, Ticking::gaps}, kLight, 2.0));
+          worst.keep_worse(hold(model, {grip, encoder_m, delay_s, Ticking::gaps}, kFirm, 2.0));
+          if (held(grip)) worst.keep_worse(hold(model, {grip, encoder_m, delay_s, Ticking::gaps}, kLight, 2.0));
         }
       }
     }
@@ -389,8 +389,8 @@ TEST(ClosedLoop, TheStiffBlockIsStableInAHand) {
     Rest worst, fine;
     for (const Grip& grip : test::grips()) {
       if (!held(grip)) continue;
-      worst.take_worse(worst_hold(model, grip, kFirmOnStiff, 3.0));
-      fine.take_worse(hold(model, {grip, 5e-6, kOneTick_s, Ticking::gaps}, kFirmOnStiff, 3.0));
+      worst.keep_worse(worst_hold(model, grip, kFirmOnStiff, 3.0));
+      fine.keep_worse(hold(model, {grip, 5e-6, kOneTick_s, Ticking::gaps}, kFirmOnStiff, 3.0));
     }
     const double least = least_damping_Ns_per_m(model, kFirmOnStiff.depth_m);
     say("stiff, at rest, " + model->name(), "%.2f encoder steps, %.2f JND peak to peak", worst.position_steps,

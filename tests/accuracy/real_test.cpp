@@ -13,7 +13,7 @@ namespace {
 
 using test::fit;
 using test::fit_all;
-using test::judge_moved;
+using test::evaluate_moved;
 using test::ModelPtr;
 using test::prepare;
 using test::real_recording;
@@ -42,7 +42,7 @@ TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
   double within = 0.0;
   double samples = 0.0;
   for (const RecordingPtr& recording : skin("test", {"400", "800", "900"})) {
-    const ErrorSummary summary = judge_moved(*recording, {greedy}).front();
+    const ErrorSummary summary = evaluate_moved(*recording, {greedy}).front();
     std::cout << test::figures(recording->name, summary) << "\n";
     const auto n = static_cast<double>(summary.samples);
     squares += n * summary.rms_error_N * summary.rms_error_N;
@@ -62,7 +62,7 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
   }
   const ModelPtr greedy = fit(prepare(training, default_request("silicone_block")), &kGreedyMethod);
   const ErrorSummary summary =
-      judge_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
+      evaluate_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
   std::cout << test::figures("trial 9", summary) << "\n";
   EXPECT_GE(summary.within_jnd, 0.995);
   EXPECT_LE(summary.rms_error_N, 0.015);  // measured: 8.2 mN
@@ -75,7 +75,7 @@ TEST_F(RealAccuracy, PressOnItsSecondCycle) {
       prepare({real_recording("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block"));
   const RecordingPtr recording = real_recording("ur3e_press_mit/test_cycle2.csv");
   for (const ModelPtr& model : fit_all(prepared)) {
-    const ErrorSummary summary = judge_moved(*recording, {model}).front();
+    const ErrorSummary summary = evaluate_moved(*recording, {model}).front();
     std::cout << test::figures(model->name(), summary) << "\n";
     EXPECT_LE(summary.rms_error_N, 0.5) << model->name();
     EXPECT_GE(summary.within_jnd, 0.7) << model->name() << "; required of greedy only";
@@ -90,7 +90,7 @@ TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
     double peak_N = 0.0;
     for (const RecordingRow& row : recording->rows) peak_N = std::max(peak_N, row.force_N);
     for (const ModelPtr& model : fit_all(prepared)) {
-      const ErrorSummary summary = judge_moved(*recording, {model}).front();
+      const ErrorSummary summary = evaluate_moved(*recording, {model}).front();
       std::cout << test::figures(model->name(), summary) << ", " << 100.0 * summary.rms_error_N / peak_N
                 << " % of the peak\n";
       EXPECT_LT(summary.rms_error_N, 0.01 * peak_N) << model->name() << ", " << thinner;

@@ -25,8 +25,8 @@ PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
       other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
   }
   // The share within the JND on the training data is not wanted and takes time.
-  other.judge_features.resize(1);
-  other.judge_force_N.resize(1);
+  other.evaluation_features.resize(1);
+  other.evaluation_force_N.resize(1);
   return other;
 }
 

@@ -85,7 +85,7 @@ Rest worst_hold(const ForcePtr& model, const Grip& grip, const Press& press, dou
     for (const Ticking ticking : {Ticking::even, Ticking::jittered, Ticking::gaps}) {
       LoopSettings settings{grip, encoder_m, kOneTick_s, ticking};
       settings.passivity = passivity;
-      worst.take_worse(hold(model, settings, press, seconds));
+      worst.keep_worse(hold(model, settings, press, seconds));
     }
   }
   return worst;

@@ -34,7 +34,7 @@ struct Rest {
   double force_jnd = 0.0;
   double largest_N = 0.0;  // ever
 
-  void take_worse(const Rest& other) {
+  void keep_worse(const Rest& other) {
     position_m = std::max(position_m, other.position_m);
     position_steps = std::max(position_steps, other.position_steps);
     force_jnd = std::max(force_jnd, other.force_jnd);

@@ -20,21 +20,10 @@ class CompiledModel {
     request.single_precision = sizeof(Real) == sizeof(float);
     const Result<ExportedC> file = export_c(data, request);
     EXPECT_TRUE(file.ok()) << data.name;
-    if (!file) return;
-    const std::string source = folder_.with_file("model.c", file->text);
-    const std::string library = folder_.file("model.so");
-    const auto run = run_program({PALPATE_C_COMPILER, "-std=c99", "-ffreestanding", "-O1", "-Wall", "-Wextra",
-                                        "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC",
-                                        "-shared", source, "-o", library, "-lm"});
-    EXPECT_EQ(run.exit_code, 0) << data.name << "\n" << run.err;
-    library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
-    EXPECT_NE(library_, nullptr) << data.name;
-    if (library_ == nullptr) return;
-    force = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
-    force_after = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force_after"));
-    reset = reinterpret_cast<void (*)()>(dlsym(library_.get(), "palpate_reset"));
-    out_of_domain = reinterpret_cast<int (*)()>(dlsym(library_.get(), "palpate_out_of_domain"));
+    if (file) load(file->text);
   }
+  // What `palpate export` wrote.
+  explicit CompiledModel(const std::string& text) { load(text); }
 
   Real (*force)(Real, Real) = nullptr;
   Real (*force_after)(Real, Real) = nullptr;
@@ -42,6 +31,22 @@ class CompiledModel {
   int (*out_of_domain)() = nullptr;
 
  private:
+  void load(const std::string& text) {
+    const std::string source = folder_.with_file("model.c", text);
+    const std::string library = folder_.file("model.so");
+    const auto run = run_program({PALPATE_C_COMPILER, "-std=c99", "-ffreestanding", "-O1", "-Wall", "-Wextra",
+                                        "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC",
+                                        "-shared", source, "-o", library, "-lm"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
+    EXPECT_NE(library_, nullptr);
+    if (library_ == nullptr) return;
+    force = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force"));
+    force_after = reinterpret_cast<Real (*)(Real, Real)>(dlsym(library_.get(), "palpate_force_after"));
+    reset = reinterpret_cast<void (*)()>(dlsym(library_.get(), "palpate_reset"));
+    out_of_domain = reinterpret_cast<int (*)()>(dlsym(library_.get(), "palpate_out_of_domain"));
+  }
+
   struct Close {
     void operator()(void* library) const { dlclose(library); }
   };

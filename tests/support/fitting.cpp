@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "engine/tick/replay.h"
-#include "models/training/surface_search.h"
+#include "models/surface/surface_search.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/training.h"
 
@@ -96,7 +96,7 @@ std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<Mo
   return summaries;
 }
 
-std::vector<ErrorSummary> judge_moved(const Recording& recording, const std::vector<ModelPtr>& models) {
+std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models) {
   const SurfaceLocation surface = locate_surface(thinned_rows(recording, kSearchRows), {models.begin(), models.end()},
                                                  models.front()->data().jnd);
   return judge(recording, models, surface.offset_m);

@@ -55,7 +55,7 @@ std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<Mo
                                 double surface_offset_m = 0.0);
 ErrorSummary judge(const Recording& recording, const ModelPtr& model);
 // The same with the surface of the recording moved to where the models have theirs.
-std::vector<ErrorSummary> judge_moved(const Recording& recording, const std::vector<ModelPtr>& models);
+std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models);
 
 // The worst of (mean + standard deviation) / JND over the bins that begin at
 // `from_N` or above and hold at least 100 samples.

@@ -45,14 +45,14 @@ class Firmware {
   // As often as possible.
   void loop() {
     uint8_t report[kReportBytes];
-    while (board_.receive(report)) take(report);
+    while (board_.receive(report)) receive_command(report);
     const uint32_t now_us = board_.now_us();
     if (now_us - last_valid_us_ >= kWatchdog_us || now_us - last_beat_us_ >= kHeartbeat_us) stop(true);
     if (board_.motor_fault() || board_.encoder_fault()) stop(false);
     if (now_us - last_sent_us_ >= kReportPeriod_us) {
       last_sent_us_ += kReportPeriod_us;
       if (now_us - last_sent_us_ >= kReportPeriod_us) last_sent_us_ = now_us;  // never a burst
-      tell(now_us);
+      send_state(now_us);
     }
   }
 
@@ -60,7 +60,7 @@ class Firmware {
   bool stopped() const { return stopped_; }
 
  private:
-  void take(const uint8_t* report) {
+  void receive_command(const uint8_t* report) {
     FromHost out;
     if (decode(report, out) != kGood) {
       ++rejected_;
@@ -95,7 +95,7 @@ class Firmware {
     drive_to(0, false);
   }
 
-  void tell(uint32_t now_us) {
+  void send_state(uint32_t now_us) {
     FromDevice in;
     in.status = static_cast<uint8_t>(
         (driving_ ? kDriving : 0) | (watchdog_ ? kStopped : 0) | (board_.motor_fault() ? kMotorFault : 0) |

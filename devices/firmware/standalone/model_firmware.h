@@ -75,9 +75,9 @@ class ModelFirmware {
       held_since_us_ = last_us_ - kRamp_us;  // so that the counter may wrap
     }
     const float share = static_cast<float>(held_us) / static_cast<float>(kRamp_us);
-    const float wanted_mA = -force_N_ * settings_.mA_per_N * share;
+    const float commanded_mA = -force_N_ * settings_.mA_per_N * share;
     const auto most_mA = static_cast<float>(settings_.most_mA);
-    const float clamped_mA = wanted_mA < -most_mA ? -most_mA : (wanted_mA > most_mA ? most_mA : wanted_mA);
+    const float clamped_mA = commanded_mA < -most_mA ? -most_mA : (commanded_mA > most_mA ? most_mA : commanded_mA);
     return static_cast<int16_t>(clamped_mA);
   }
 

@@ -65,17 +65,19 @@ typedef struct palpate_sensor {
   int has_acceleration;               /* samples come with a measured acceleration */
 } palpate_sensor;
 
-/* Positions alone, in steps of encoder_step_m (>= 0), else exact. 0 where unknown: every
- * position then counts as exact to 1 nm, so that the velocity of a quantised signal is
- * as noisy as its differences; give the step where it can be known. Slow side. */
+/* Positions alone, in steps of encoder_step_m (>= 0). 0 where unknown: the sensor is then
+ * that of the recordings which the model was fitted to, noise beside the steps included,
+ * and so it is when the step is theirs. The same positions as in a recording of that rig
+ * give replay's forces to the last bit. Positions that are exact, or of another sensor
+ * with noise: palpate_stream_new_with_sensor. Slow side. */
 PALPATE_API palpate_stream *palpate_stream_new(const palpate_model *, double encoder_step_m, char *error,
                                                size_t error_size);
-/* With everything that is known. NULL: a number is negative or not finite. Slow side. */
+/* With everything that is known, as it is. NULL: a number is negative or not finite. Slow side. */
 PALPATE_API palpate_stream *palpate_stream_new_with_sensor(const palpate_model *, const palpate_sensor *,
                                                            char *error, size_t error_size);
 /* The sensor that made a recording, as replay finds it from the first 30,000 rows. Its
  * encoder_step_m is 0 when the positions are not in whole steps; position_noise_m is then
- * their noise, which palpate_stream_new does not know of: use the whole sensor. Slow side.
+ * their noise. Slow side.
  * Returns 0, or -1: the file is no recording. */
 PALPATE_API int palpate_sensor_of_recording(const char *path, palpate_sensor *, char *error, size_t error_size);
 

@@ -99,6 +99,11 @@ struct Sensor : palpate_sensor {
 // One tool in one material. Movable; the model may go out of scope before it.
 class Stream {
  public:
+  // The sensor is that of the recordings which the model was fitted to.
+  explicit Stream(const Model& model)
+      : stream_(detail::checked([&](char* error, std::size_t size) {
+          return palpate_stream_new(model.handle(), 0.0, error, size);
+        })) {}
   // Throws: a number of the sensor is negative or not finite.
   Stream(const Model& model, const Sensor& sensor)
       : stream_(detail::checked([&](char* error, std::size_t size) {

@@ -70,6 +70,7 @@ class ModelReader : private JsonFields {
     data_.cover.outer_radius = number(domain, "outer_radius", Sign::kPositive);
     data_.cover.points = read_points(*this, domain, "points", dimension());
     if (top.value->contains("error_bound")) read_error_bound(member(top, "error_bound", "an object"));
+    if (top.value->contains("sensor")) read_sensor(member(top, "sensor", "an object"));
     read_correction(top);
     // After another error not all that may be there was asked for.
     if (error_count() == 0) refuse_unknown(top);
@@ -140,6 +141,13 @@ class ModelReader : private JsonFields {
   }
   DriveCurve drive_member(const JsonNode& node, const char* key) {
     return read_drive(member(node, key, "an object with reference_depth_m and coefficient_N"));
+  }
+
+  void read_sensor(const JsonNode& node) {
+    PositionSensor sensor;
+    sensor.encoder_step_m = number(node, "encoder_step_m", Sign::kNotNegative);
+    sensor.position_noise_m = number(node, "position_noise_m", Sign::kNotNegative);
+    data_.sensor = sensor;
   }
 
   void read_error_bound(const JsonNode& node) {

@@ -87,6 +87,11 @@ std::string surfaces(const std::vector<RecordingSurface>& all) {
   return items.empty() ? "" : ",\n    \"surfaces\": " + json_lines(items);
 }
 
+std::string sensor(const PositionSensor& sensor) {
+  return "{\"encoder_step_m\": " + json_number(sensor.encoder_step_m) +
+         ", \"position_noise_m\": " + json_number(sensor.position_noise_m) + "}";
+}
+
 std::string provenance(const Provenance& provenance) {
   std::string recordings;
   for (const std::string& name : provenance.recordings) {
@@ -148,6 +153,7 @@ Result<std::string> write_model_text(const ModelData& data) {
                   ", \"weber_fraction\": " + json_number(data.jnd.weber_fraction) + "}"},
       {"provenance", provenance(data.provenance)},
       {"domain", domain(data)}};
+  if (data.sensor) fields.emplace_back("sensor", sensor(*data.sensor));
   if (data.error_bound) fields.emplace_back("error_bound", error_bound(*data.error_bound));
   for (auto& field : data.correction->file_fields()) fields.push_back(std::move(field));
   std::string text = "{";

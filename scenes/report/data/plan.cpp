@@ -120,7 +120,7 @@ ReportPlan make_plan(bool quick, std::size_t features, const ReportRecipe& recip
   }
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) plan.seeds.push_back(seed);
   plan.most_sites = quick ? 1000 : 6850;  // the paper had 6,850
-  plan.site_halvings = quick ? 2 : 4;
+  plan.site_halvings = quick ? 3 : 4;
   plan.left_out_folds = quick ? 1 : 2;
   plan.most_dimensions = quick ? 4 : 6;
   plan.dimension_sites = quick ? 500 : 2500;

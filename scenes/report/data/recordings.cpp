@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "scenes/material/rig.h"
-#include "models/training/surface_estimate.h"
+#include "models/surface/surface_estimate.h"
 #include "scenes/report/data/leakage.h"
 
 namespace palpate {

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kTrainingSeconds = 5.0;
 constexpr double kTrainingRate_Hz = 125.0;
-constexpr double kJudgedSeconds = 4.0;
-constexpr double kJudgedRate_Hz = 1000.0;
+constexpr double kEvaluatedSeconds = 4.0;
+constexpr double kEvaluatedRate_Hz = 1000.0;
 
 TrainingRequest clean_request() {
   TrainingRequest request;
@@ -41,7 +41,7 @@ struct RecordingCase {
 
 Press clean_training() { return press_along(training_path(0), even_times(kTrainingSeconds, kTrainingRate_Hz)); }
 
-Press clean_press(const Path& path) { return press_along(path, even_times(kJudgedSeconds, kJudgedRate_Hz)); }
+Press clean_press(const Path& path) { return press_along(path, even_times(kEvaluatedSeconds, kEvaluatedRate_Hz)); }
 
 RecordingCase clean_case(const std::string& name) { return {name, clean_training(), clean_press(training_path(1))}; }
 
@@ -181,7 +181,7 @@ void run_recording_case(const RecordingCase& one, std::vector<HardCaseResult>& r
 struct MotionCase {
   std::string name;
   Path path;
-  double seconds = kJudgedSeconds;
+  double seconds = kEvaluatedSeconds;
 };
 
 std::vector<MotionCase> motion_cases() {
@@ -260,7 +260,7 @@ std::vector<HardCaseResult> run_hard_motions() {
   };
   for (const MotionCase& one : motion_cases()) {
     std::vector<OutcomeCounter> counters(models.size());
-    evaluate_press(press_along(one.path, even_times(one.seconds, kJudgedRate_Hz)), models, counters);
+    evaluate_press(press_along(one.path, even_times(one.seconds, kEvaluatedRate_Hz)), models, counters);
     finish(one.name, counters);
   }
   for (const bool weights : {false, true}) {

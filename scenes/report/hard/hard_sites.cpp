@@ -9,7 +9,7 @@
 #include "engine/base/random_stream.h"
 #include "scenes/report/hard/hard_cases.h"
 #include "scenes/report/hard/hard_outcome.h"
-#include "models/fit/lapack.h"
+#include "models/solve/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/fit/methods.h"
 

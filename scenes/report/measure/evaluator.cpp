@@ -12,7 +12,7 @@ Result<std::vector<Evidence>> ReplayEvaluator::evaluate(const Recording& recordi
                                                         const FitControl& control, const Interval& counted) {
   std::vector<Evidence> evidence;
   for (std::size_t first = 0; first < models.size(); first += kMaxModels) {
-    if (!control.go_on(static_cast<double>(first) / static_cast<double>(models.size()))) return interrupted();
+    if (!control.may_continue(static_cast<double>(first) / static_cast<double>(models.size()))) return interrupted();
     const std::size_t count = std::min(kMaxModels, models.size() - first);
     const auto begin = models.begin() + static_cast<std::ptrdiff_t>(first);
     std::vector<StrokeErrors> here(count, StrokeErrors(jnd_));

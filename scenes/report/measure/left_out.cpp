@@ -94,7 +94,7 @@ Result<std::vector<Evidence>> left_out_errors(const std::vector<SharedRecording>
       if (!errors) return errors.error();
     }
   }
-  if (!progress.next(0.0).go_on(1.0)) return interrupted();
+  if (!progress.next(0.0).may_continue(1.0)) return interrupted();
   std::vector<Evidence> errors(plan.models.size());
   const std::vector<Evidence> pooled = evaluator.pooled();
   for (std::size_t i = 0; i < candidates.size(); ++i) errors[candidates[i]] = pooled[i];

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/tick/replay.h"
-#include "models/training/surface_search.h"
+#include "models/surface/surface_search.h"
 #include "scenes/report/measure/coverage_finder.h"
 #include "scenes/report/measure/evaluator.h"
 #include "scenes/report/measure/left_out.h"

@@ -7,7 +7,7 @@
 
 #include "models/fit/fit_direct.h"
 #include "models/fit/fit_greedy.h"
-#include "models/fit/fill_grid.h"
+#include "models/solve/fill_grid.h"
 #include "scenes/report/data/plan.h"
 #include "scenes/report/measure/stopwatch.h"
 
@@ -42,8 +42,8 @@ PreparedTraining with_sites(const PreparedTraining& prepared, std::size_t count)
     ++to;
   }
   // The share within the JND of a fit that is only timed is not wanted.
-  some.judge_features.resize(1);
-  some.judge_force_N.resize(1);
+  some.evaluation_features.resize(1);
+  some.evaluation_force_N.resize(1);
   return some;
 }
 
@@ -100,7 +100,7 @@ Result<std::vector<SitesTime>> time_against_sites(const PreparedTraining& prepar
     if (asked < kFewestSites) continue;
     const PreparedTraining some = with_sites(prepared, asked);
     FitControl quiet;
-    quiet.progress = [&](double) { return control.go_on((done - 1.0) / (1.0 + halvings)); };
+    quiet.progress = [&](double) { return control.may_continue((done - 1.0) / (1.0 + halvings)); };
     std::map<const Method*, std::pair<MethodFit, double>> fitted;
     for (const PlannedModel& model : make_plan(true, prepared.set.features.size()).models) {
       if (!model.main || model.rung != Rung::palpate) continue;
@@ -122,7 +122,7 @@ Result<std::vector<DimensionTime>> time_against_dimension(const Sites& sites, in
   std::vector<DimensionTime> times;
   for (int dimension = 1; dimension <= most_dimensions; ++dimension) {
     FitControl quiet;
-    quiet.progress = [&](double) { return control.go_on((dimension - 1.0) / most_dimensions); };
+    quiet.progress = [&](double) { return control.may_continue((dimension - 1.0) / most_dimensions); };
     const Sites some = with_dimension(sites, dimension, most_sites);
     DimensionTime time;
     time.dimension = dimension;

@@ -21,7 +21,7 @@ class WeightedProgress {
     const double from = done_ / total_;
     const double share = weight / total_;
     const FitControl& whole = whole_;
-    return FitControl{[&whole, from, share](double fraction) { return whole.go_on(from + share * fraction); }};
+    return FitControl{[&whole, from, share](double fraction) { return whole.may_continue(from + share * fraction); }};
   }
 
  private:

@@ -86,8 +86,9 @@ std::vector<std::string> warnings(const ReportData& data) {
                    "do worse than this page says.");
   }
   if (data.quick) {
-    list.push_back("A quick report: fewer sizes, fewer sites in the cost figures, and greedy with 20 candidates over "
-                   "the seeds. Leave out --quick for all.");
+    list.push_back("A quick report: fewer sizes, fewer sites in the cost figures, greedy with 20 candidates over the "
+                   "seeds, and neither direct nor voxel models among those that may be recommended. Leave out --quick "
+                   "for all.");
   }
   return list;
 }

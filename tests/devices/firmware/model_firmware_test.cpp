@@ -39,7 +39,7 @@ struct Standalone {
   ExportedModel exported() { return {model.force_after, model.reset}; }
 
   ModelData data = test::example_models().front();
-  test::CompiledModel<float> model{data, {true, 30e-6, 0.0}};
+  test::CompiledModel<float> model{data, {true, {30e-6, 0.0}}};
   StandaloneBoard board;
   StandaloneSettings settings;
 };

@@ -250,7 +250,7 @@ TEST(HidEndpoint, EveryFaultTakesTheForceAway) {
           << injection.name << ", " << driver;
       EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
       EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault[k], 0u);
-      EXPECT_TRUE(simulated.live.fault_recorder().take().has_value());
+      EXPECT_TRUE(simulated.live.fault_recorder().read().has_value());
     }
   }
 }

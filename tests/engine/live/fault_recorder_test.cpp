@@ -21,31 +21,31 @@ FaultTick tick_at(int index) {
 TEST(FaultRecorder, KeepsTheLastSecondAroundAFault) {
   FaultRecorder recorder;
   for (int i = 0; i < 5000; ++i) recorder.add(tick_at(i), i >= 4000 && i < 4050);
-  const auto ticks = recorder.take();
+  const auto ticks = recorder.read();
   ASSERT_TRUE(ticks.has_value());
   ASSERT_EQ(ticks->size(), FaultRecorder::kTicks);
   EXPECT_EQ(ticks->back().rendered_N, 4100.0) << "until the force was gone";
   EXPECT_EQ(ticks->front().rendered_N, 3101.0);
-  EXPECT_FALSE(recorder.take().has_value());
+  EXPECT_FALSE(recorder.read().has_value());
 }
 
 TEST(FaultRecorder, KeepsTheFirstFaultUntilItIsTaken) {
   FaultRecorder recorder;
   for (int i = 0; i < 3000; ++i) recorder.add(tick_at(i), i == 500 || i == 2000);
   EXPECT_EQ(recorder.dropped(), 1u);
-  const auto ticks = recorder.take();
+  const auto ticks = recorder.read();
   ASSERT_TRUE(ticks.has_value());
   EXPECT_EQ(ticks->size(), 601u) << "the loop had not run for a second";
   for (int i = 3000; i < 4200; ++i) recorder.add(tick_at(i), i == 4000);
-  ASSERT_TRUE(recorder.take().has_value());
+  ASSERT_TRUE(recorder.read().has_value());
 }
 
 TEST(FaultRecorder, HandsOverAFaultAtTheEnd) {
   FaultRecorder recorder;
   for (int i = 0; i < 10; ++i) recorder.add(tick_at(i), i == 8);
-  EXPECT_FALSE(recorder.take().has_value());
+  EXPECT_FALSE(recorder.read().has_value());
   recorder.finish();
-  const auto ticks = recorder.take();
+  const auto ticks = recorder.read();
   ASSERT_TRUE(ticks.has_value());
   EXPECT_EQ(ticks->size(), 10u);
 }
@@ -68,7 +68,7 @@ TEST(FaultRecorder, IsTakenWhileItIsFilled) {
   });
   int taken = 0;
   while (!done || taken == 0) {
-    const auto ticks = recorder.take();
+    const auto ticks = recorder.read();
     if (!ticks) continue;
     ++taken;
     for (std::size_t i = 1; i < ticks->size(); ++i) {

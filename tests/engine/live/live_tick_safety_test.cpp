@@ -110,7 +110,7 @@ TEST(LiveTickSafety, KeepsTheTicksAroundAFault) {
     device.state.faults = i >= 1500 ? device_fault::kReset : 0;
     live.run(kTick_s * i, {});
   }
-  const auto ticks = live.fault_recorder().take();
+  const auto ticks = live.fault_recorder().read();
   ASSERT_TRUE(ticks.has_value());
   ASSERT_EQ(ticks->size(), FaultRecorder::kTicks);
   const FaultTick& before = (*ticks)[FaultRecorder::kTicks - FaultRecorder::kTicksAfter - 2];

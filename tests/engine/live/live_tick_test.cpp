@@ -297,7 +297,7 @@ TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   const Recording recording = test::example_recording(4000, 4000.0);
   ReplayDevice device(recording);
   ModelSlot<LiveModels> slot;
-  const auto taken = std::make_unique<TakenRing>();
+  const auto taken = std::make_unique<RecordedRing>();
   LiveTick live(device, slot, {{}, taken.get()});
   auto models = std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(300.0), spring(500.0)},
                                              std::make_shared<CountingReference>());
@@ -305,9 +305,9 @@ TEST(LiveTick, HandsOverEverySampleWhileRecording) {
   slot.publish(std::move(models));
   int tick = 0;
   for (; tick < 100; ++tick) live.run(kTick_s * tick, {});
-  TakenSample sample;
+  RecordedSample sample;
   EXPECT_FALSE(taken->pop(sample)) << "nobody asked";
-  std::vector<TakenSample> samples;
+  std::vector<RecordedSample> samples;
   for (; tick < 400; ++tick) {
     const LoopSnapshot& snapshot = live.run(kTick_s * tick, {1, 0, 7});
     while (taken->pop(sample)) samples.push_back(sample);

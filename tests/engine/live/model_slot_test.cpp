@@ -29,20 +29,20 @@ struct Set {
 TEST(ModelSlot, HandsOverTheNewestAndDeletesTheUntaken) {
   {
     ModelSlot<Set> slot;
-    EXPECT_EQ(slot.take(), nullptr);
+    EXPECT_EQ(slot.acquire(), nullptr);
     slot.publish(std::make_unique<Set>(1));
     slot.publish(std::make_unique<Set>(2));
     EXPECT_EQ(alive, 1) << "the first was never taken";
-    Set* taken = slot.take();
+    Set* taken = slot.acquire();
     ASSERT_NE(taken, nullptr);
     EXPECT_EQ(taken->number, 2);
-    EXPECT_EQ(slot.take(), nullptr);
+    EXPECT_EQ(slot.acquire(), nullptr);
     slot.retire(taken);
     EXPECT_EQ(alive, 1) << "not by the tick";
     EXPECT_EQ(slot.collect(), 1u);
     EXPECT_EQ(alive, 0);
     slot.publish(std::make_unique<Set>(3));
-    slot.retire(slot.take());
+    slot.retire(slot.acquire());
     slot.publish(std::make_unique<Set>(4));
     EXPECT_EQ(alive, 1) << "publishing collects as well";
   }
@@ -52,13 +52,13 @@ TEST(ModelSlot, HandsOverTheNewestAndDeletesTheUntaken) {
 TEST(ModelSlot, KeepsTheOldSetWhileTheRetireRingIsFull) {
   ModelSlot<Set> slot;
   slot.publish(std::make_unique<Set>(0));
-  Set* waiting = slot.take();
+  Set* waiting = slot.acquire();
   slot.publish(std::make_unique<Set>(9));
   // Nobody collects: the ring takes eight.
   for (int i = 1; i <= 8; ++i) slot.retire(new Set(i));
-  EXPECT_EQ(slot.take(), nullptr) << "no room for the one that would be given up";
+  EXPECT_EQ(slot.acquire(), nullptr) << "no room for the one that would be given up";
   EXPECT_EQ(slot.collect(), 8u);
-  Set* taken = slot.take();
+  Set* taken = slot.acquire();
   ASSERT_NE(taken, nullptr);
   EXPECT_EQ(taken->number, 9);
   slot.retire(waiting);
@@ -75,7 +75,7 @@ TEST(ModelSlot, UnderStressEverySetIsDeletedOnceAndNeverInTheTick) {
       in_tick = true;
       Set* current = nullptr;
       while (current == nullptr || current->number < kLast) {
-        Set* next = slot.take();
+        Set* next = slot.acquire();
         if (next != nullptr) {
           if (current != nullptr) {
             if (next->number <= current->number) ++wrong;

@@ -22,7 +22,7 @@ using Compare = std::function<void(const RecordingRow& row, double force_N, bool
 
 ExportRequest request_for(const Recording& recording) {
   const SensorSpec sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
-  return {false, sensor.encoder_step_m, sensor.position_noise_m};
+  return {false, {sensor.encoder_step_m, sensor.position_noise_m}};
 }
 
 void for_each_force(const Recording& recording, const ModelData& data, const Compare& compare) {
@@ -102,6 +102,22 @@ TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   }
 }
 
+TEST(ExportC, APressDeeperThanRecordedIsOutOfTheDomain) {
+  ModelData data = test::example_models().front();
+  data.upper(0) = 3e-3;  // of depth: recordings go to 6 mm
+  data.lower(0) = 0.0;
+  const Recording& recording = recordings().front();
+  const CompiledModel<double> compiled(data, request_for(recording));
+  ASSERT_NE(compiled.force, nullptr);
+  int flagged = 0;
+  for_each_force(recording, data, [&](const RecordingRow& row, double, bool out_of_domain) {
+    compiled.force(row.time_s, row.position_m);
+    EXPECT_EQ(compiled.out_of_domain(), out_of_domain ? 1 : 0);
+    flagged += out_of_domain ? 1 : 0;
+  });
+  EXPECT_GT(flagged, 100);
+}
+
 TEST(ExportC, StepsGiveTheSameAsTimes) {
   const Recording& recording = recordings().front();
   const ModelData data = test::example_models().front();
@@ -142,7 +158,7 @@ TEST(ExportC, TheSameModelGivesTheSameBytesAndCountsItsTables) {
   for (const ModelData& data : all_models()) {
     const Result<ExportedC> once = export_c(data, {});
     const Result<ExportedC> again = export_c(data, {});
-    const Result<ExportedC> single = export_c(data, {true, 0.0, 0.0});
+    const Result<ExportedC> single = export_c(data, {true, {}});
     ASSERT_TRUE(once.ok() && again.ok() && single.ok());
     EXPECT_EQ(once->text, again->text);
     EXPECT_GT(once->table_bytes, single->table_bytes);

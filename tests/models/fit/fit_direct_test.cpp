@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/fit/choose_smoothing.h"
-#include "models/fit/projected_kernel.h"
+#include "models/solve/choose_smoothing.h"
+#include "models/solve/projected_kernel.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "tests/support/random_points.h"
 

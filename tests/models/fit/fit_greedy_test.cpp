@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "models/fit/fit_random.h"
-#include "models/fit/solve_weights.h"
+#include "models/solve/solve_weights.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "models/fit/fit_random.h"
-#include "models/fit/site_tree.h"
-#include "models/fit/solve_weights.h"
+#include "models/solve/site_tree.h"
+#include "models/solve/solve_weights.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

@@ -212,11 +212,11 @@ TEST(Fit, TruncatedSvdAgreesWithCholeskyWithinTheNoise) {
   const FittedModel a(cholesky->data);
   const FittedModel b(tsvd->data);
   double squares = 0.0;
-  for (const auto& x : prepared->judge_features) {
+  for (const auto& x : prepared->evaluation_features) {
     const double difference_N = a.evaluate(x.data()).force_N - b.evaluate(x.data()).force_N;
     squares += difference_N * difference_N;
   }
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(prepared->judge_features.size())), 0.01);
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(prepared->evaluation_features.size())), 0.01);
 }
 
 TEST(Fit, EachRefusalSaysWhy) {

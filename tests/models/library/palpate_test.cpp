@@ -104,13 +104,25 @@ TEST_F(LibraryC, AStreamGivesReplaysForcesToTheLastBit) {
   }
 }
 
+// The step of the data sheet, not what differences of positions make of it.
 TEST_F(LibraryC, AnEncoderStepAloneIsEnoughWhenPositionsHaveNoOtherNoise) {
-  const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
-  const palpate_sensor sensor = sensor_of(recording);
-  ASSERT_EQ(sensor.position_noise_m, 0.0);
   const ModelHandle model = load(save(test::example_models().front()));
-  const StreamPtr one(palpate_stream_new(model.get(), sensor.encoder_step_m, error_, sizeof error_),
-                      &palpate_stream_free);
+  for (const double step_m : {30e-6, 1e-6, 0.1 / 4096}) {
+    const Recording recording = test::example_recording(1500, 1000.0, step_m);
+    const palpate_sensor sensor = sensor_of(recording);
+    ASSERT_EQ(sensor.position_noise_m, 0.0);
+    ASSERT_EQ(sensor.encoder_step_m, step_m);
+    const StreamPtr one(palpate_stream_new(model.get(), step_m, error_, sizeof error_), &palpate_stream_free);
+    compare(recording, model, one.get());
+  }
+}
+
+TEST_F(LibraryC, WithNoStepTheSensorIsThatOfTheModelsRecordings) {
+  ModelData data = test::example_models().front();
+  data.sensor = PositionSensor{30e-6, 0.0};
+  const ModelHandle model = load(save(data));
+  const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
+  const StreamPtr one(palpate_stream_new(model.get(), 0.0, error_, sizeof error_), &palpate_stream_free);
   compare(recording, model, one.get());
 }
 

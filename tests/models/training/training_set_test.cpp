@@ -28,9 +28,9 @@ Recording recording_of(int rows, Function position_and_force) {
 }
 
 TrainingSet set_of(const Recording& recording, const std::vector<FeatureSpec>& features, Reduction reduction,
-                   double no_force_N = 0.01) {
+                   double force_noise_floor_N = 0.01) {
   MotionSource source = source_of(recording);
-  auto set = make_training_set(source, features, reduction, no_force_N);
+  auto set = make_training_set(source, features, reduction, force_noise_floor_N);
   EXPECT_TRUE(set.ok());
   return *set;
 }

@@ -79,13 +79,32 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
 }
 
-TEST(PanelWords, ThePeakErrorNeedsAModelAndAReference) {
+TEST(PanelWords, TheBigNumberSaysWhatItIs) {
   SlotView greedy = ready_slot("greedy-100");
   greedy.recent_peak_error_over_jnd = 0.25;
-  const ModelsView models{{&greedy}, 0, true};
-  EXPECT_EQ(peak_error_words(models, 1.0).substr(0, 4), "0.25");
-  EXPECT_EQ(peak_error_words(models, kNoForce), "–");
-  EXPECT_EQ(peak_error_words({}, 1.0), "–");
+  ModelsView models{{&greedy}, 0, true};
+  EXPECT_EQ(big_number(models, {}).number, "0.25");
+  EXPECT_EQ(big_number(models, {}).below, "the error of the active model");
+  // Nothing to compare with: what the model predicts of itself, of 0.13 N at 1 N.
+  models.compared = false;
+  EXPECT_EQ(big_number(models, {}).number, "–") << "it does not know";
+  greedy.force_N = 1.0;
+  greedy.predicted_error_N = 0.5 * JndLine{}.at(1.0);
+  EXPECT_EQ(big_number(models, {}).number, "0.50");
+  EXPECT_EQ(big_number(models, {}).below, "predicted for the active model (95 %)");
+  models.in_contact = false;
+  EXPECT_EQ(big_number(models, {}).number, "–");
+  EXPECT_EQ(big_number({}, {}).number, "–");
+}
+
+TEST(PanelWords, BeforeTheFirstModelTheFitIsTheNumber) {
+  SlotView trend;
+  trend.name = "trend";
+  trend.state = SlotState::fitting;
+  trend.progress = 0.34;
+  const BigNumber big = big_number({{&trend}, 0, true}, {});
+  EXPECT_EQ(big.number, "34 %");
+  EXPECT_EQ(big.what, "of the first model, trend:");
 }
 
 TEST(PanelWords, ARecordingTellsItsLength) {

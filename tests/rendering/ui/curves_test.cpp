@@ -114,5 +114,31 @@ TEST(CurveColumns, HaveNothingToShowOfAnEmptyHistory) {
   EXPECT_EQ(curves.highest_force_N(), 0.0F);
 }
 
+TEST(CurveColumns, WithoutAReferenceHaveTheBandThatTheActiveModelPredicts) {
+  ForceHistory history;
+  for (int i = 0; i < 1000; ++i) {
+    HistoryPoint point;
+    point.loop_time_s = 100.0 + 1e-3 * i;
+    point.in_contact = i < 500;
+    point.reference_N = kNone;
+    point.force_N.fill(kNone);
+    point.force_N[1] = 2.0F;
+    point.active = 1;
+    point.predicted_error_N = 0.3F;
+    history.append(point);
+  }
+  CurveColumns curves;
+  const JndLine jnd;
+  curves.gather(history, jnd, 2, 100.0, 101.0, 50);
+  const CurveColumn* pressed = curves.at(100.25);
+  ASSERT_NE(pressed, nullptr);
+  EXPECT_FLOAT_EQ(pressed->predicted_low_N, 1.7F);
+  EXPECT_FLOAT_EQ(pressed->predicted_high_N, 2.3F);
+  EXPECT_FLOAT_EQ(pressed->predicted_over_jnd, 0.3F / static_cast<float>(jnd.at(2.0)));
+  EXPECT_EQ(curves.at(100.75)->predicted_over_jnd, 0.0F) << "out of contact there is no force to be wrong about";
+  curves.gather(example(), jnd, 2, 100.0, 101.0, 40);
+  EXPECT_TRUE(std::isnan(curves.at(100.25)->predicted_low_N)) << "a reference is better";
+}
+
 }  // namespace
 }  // namespace palpate

@@ -47,17 +47,17 @@ TEST(AbTrial, TakesWhatThereIs) {
 TEST(AbTrial, PredictsFromTheForcesThatWereMet) {
   AbTrial trial(1);
   ASSERT_TRUE(trial.begin(ready()));
-  trial.see(5.0, 1.0, false, kJnd);
-  trial.see(std::numeric_limits<double>::quiet_NaN(), 1.0, true, kJnd);
+  trial.update(5.0, 1.0, false, kJnd);
+  trial.update(std::numeric_limits<double>::quiet_NaN(), 1.0, true, kJnd);
   EXPECT_EQ(trial.largest_over_jnd(), 0.0) << "neither counts";
-  for (int i = 0; i < 1000; ++i) trial.see(1.0, 1.0 + (i % 25 == 0 ? 0.3 : 0.05), true, kJnd);
+  for (int i = 0; i < 1000; ++i) trial.update(1.0, 1.0 + (i % 25 == 0 ? 0.3 : 0.05), true, kJnd);
   EXPECT_NEAR(trial.largest_over_jnd(), 3.0, 1e-9);
   EXPECT_NEAR(trial.p95_over_jnd(), 0.5, 0.02) << "4 % are above";
   EXPECT_FALSE(trial.predicts_difference());
-  for (int i = 0; i < 100; ++i) trial.see(1.0, 1.3, true, kJnd);
+  for (int i = 0; i < 100; ++i) trial.update(1.0, 1.3, true, kJnd);
   EXPECT_NEAR(trial.p95_over_jnd(), 3.0, 0.02);
   EXPECT_TRUE(trial.predicts_difference());
-  for (int i = 0; i < 1000; ++i) trial.see(1.0, 9.0, true, kJnd);
+  for (int i = 0; i < 1000; ++i) trial.update(1.0, 9.0, true, kJnd);
   EXPECT_LE(trial.p95_over_jnd(), AbTrial::kMostJnd);
 }
 
@@ -70,7 +70,7 @@ TEST(AbTrial, TellsTheVerdict) {
   trial.press(2);
   EXPECT_EQ(trial.pressed(), 2);
   EXPECT_TRUE(trial.tried_both());
-  for (int i = 0; i < 100; ++i) trial.see(1.0, 1.25, true, kJnd);
+  for (int i = 0; i < 100; ++i) trial.update(1.0, 1.25, true, kJnd);
   trial.answer(true);
   EXPECT_EQ(trial.state(), AbTrial::State::answered);
   trial.answer(false);
@@ -90,7 +90,7 @@ TEST(AbTrial, SaysWhenThereWasNothingToCompare) {
   trial.answer(false);
   EXPECT_NE(trial.verdict().find("not touched"), std::string::npos);
   ASSERT_TRUE(trial.begin(ready()));
-  trial.see(1.0, 1.0, true, kJnd);
+  trial.update(1.0, 1.0, true, kJnd);
   trial.answer(false);
   EXPECT_NE(trial.verdict().find("Only one of them"), std::string::npos);
 }

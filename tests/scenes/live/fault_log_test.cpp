@@ -15,11 +15,11 @@ LoopSnapshot snapshot(double loop_time_s, std::uint32_t faults, std::uint64_t mi
 
 TEST(FaultLog, CountsWhatFollowsWithinASecond) {
   FaultLog log;
-  EXPECT_EQ(log.see(snapshot(10.0, loop_fault::kBadSample)), TickTrouble::alarm);
-  EXPECT_EQ(log.see(snapshot(10.001, 0)), TickTrouble::none);
-  EXPECT_EQ(log.see(snapshot(10.9, loop_fault::kBadSample)), TickTrouble::alarm);
-  EXPECT_EQ(log.see(snapshot(11.8, loop_fault::kBadSample | loop_fault::kTimeNotLater)), TickTrouble::alarm);
-  EXPECT_EQ(log.see(snapshot(13.0, loop_fault::kBadSample)), TickTrouble::alarm);
+  EXPECT_EQ(log.update(snapshot(10.0, loop_fault::kBadSample)), TickTrouble::alarm);
+  EXPECT_EQ(log.update(snapshot(10.001, 0)), TickTrouble::none);
+  EXPECT_EQ(log.update(snapshot(10.9, loop_fault::kBadSample)), TickTrouble::alarm);
+  EXPECT_EQ(log.update(snapshot(11.8, loop_fault::kBadSample | loop_fault::kTimeNotLater)), TickTrouble::alarm);
+  EXPECT_EQ(log.update(snapshot(13.0, loop_fault::kBadSample)), TickTrouble::alarm);
   ASSERT_EQ(log.events().size(), 3u);
   EXPECT_EQ(log.events()[0].loop_time_s, 10.0);
   EXPECT_EQ(log.events()[0].count, 3u);
@@ -32,39 +32,39 @@ TEST(FaultLog, TakesNormalRunningForNoFault) {
   FaultLog log;
   LoopSnapshot ramping = snapshot(1.0, loop_fault::kForceSlewed);
   ramping.ramping = true;
-  EXPECT_EQ(log.see(ramping), TickTrouble::none);
-  EXPECT_EQ(log.see(snapshot(2.0, loop_fault::kForceSlewed)), TickTrouble::none);
-  log.see_age(0.049, 2.0);
-  log.see_dropped(0, 2.0);
+  EXPECT_EQ(log.update(ramping), TickTrouble::none);
+  EXPECT_EQ(log.update(snapshot(2.0, loop_fault::kForceSlewed)), TickTrouble::none);
+  log.update_age(0.049, 2.0);
+  log.update_dropped(0, 2.0);
   EXPECT_TRUE(log.events().empty());
 }
 
 TEST(FaultLog, CountsMissedDeadlinesEvenThoseOfLostSnapshots) {
   FaultLog log;
-  EXPECT_EQ(log.see(snapshot(1.0, loop_fault::kDeadlineMissed, 2)), TickTrouble::late);
-  EXPECT_EQ(log.see(snapshot(1.5, 0, 7)), TickTrouble::late);
-  EXPECT_EQ(log.see(snapshot(1.6, 0, 7)), TickTrouble::none);
+  EXPECT_EQ(log.update(snapshot(1.0, loop_fault::kDeadlineMissed, 2)), TickTrouble::late);
+  EXPECT_EQ(log.update(snapshot(1.5, 0, 7)), TickTrouble::late);
+  EXPECT_EQ(log.update(snapshot(1.6, 0, 7)), TickTrouble::none);
   ASSERT_EQ(log.events().size(), 1u);
   EXPECT_EQ(log.events()[0].count, 7u);
 }
 
 TEST(FaultLog, ForgetsMissedDeadlinesSomeTimeAfter) {
   FaultLog log;
-  log.see(snapshot(0.0, 0, 1500));
+  log.update(snapshot(0.0, 0, 1500));
   EXPECT_NEAR(log.missed_of_late(), 0.15, 1e-3) << "of the last ten seconds";
-  for (int i = 1; i <= 40'000; ++i) log.see(snapshot(1e-3 * i, 0, 1500));
+  for (int i = 1; i <= 40'000; ++i) log.update(snapshot(1e-3 * i, 0, 1500));
   EXPECT_LT(log.missed_of_late(), 0.003);
-  for (int i = 1; i <= 100'000; ++i) log.see(snapshot(40.0 + 1e-3 * i, 0, 1500 + static_cast<std::uint64_t>(i) / 19));
+  for (int i = 1; i <= 100'000; ++i) log.update(snapshot(40.0 + 1e-3 * i, 0, 1500 + static_cast<std::uint64_t>(i) / 19));
   EXPECT_NEAR(log.missed_of_late(), 0.05, 2e-3) << "one in twenty, all the time";
 }
 
 TEST(FaultLog, AStallIsOneEvent) {
   FaultLog log;
-  for (int i = 0; i < 300; ++i) log.see_age(0.051 + 0.016 * i, 10.0 + 0.016 * i);
+  for (int i = 0; i < 300; ++i) log.update_age(0.051 + 0.016 * i, 10.0 + 0.016 * i);
   ASSERT_EQ(log.events().size(), 1u);
   EXPECT_EQ(log.events()[0].count, 1u);
-  log.see_age(0.001, 20.0);
-  log.see_age(0.2, 30.0);
+  log.update_age(0.001, 20.0);
+  log.update_age(0.2, 30.0);
   EXPECT_EQ(log.events().size(), 2u);
 }
 
@@ -77,8 +77,8 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
   const std::vector<std::string> expected = {device_fault_words(device_fault::kUnplugged).front(),
                                              "the device gave a sample that is not a number; the force let go"};
   EXPECT_EQ(log.alarms(newest), expected) << "the device first; a slewed force is no alarm";
-  log.see_age(0.2, 10.0);
-  log.see_age(0.0, 10.1);
+  log.update_age(0.2, 10.0);
+  log.update_age(0.0, 10.1);
   EXPECT_EQ(log.alarms(snapshot(20.0, 0)),
             std::vector<std::string>{"the haptics loop stood still for more than 50 ms"})
       << "the loop itself cannot latch that";
@@ -88,20 +88,20 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
 
 TEST(FaultLog, CountsLostSnapshots) {
   FaultLog log;
-  log.see_dropped(5, 1.0);
-  log.see_dropped(5, 1.1);
-  log.see_dropped(8, 1.2);
+  log.update_dropped(5, 1.0);
+  log.update_dropped(5, 1.1);
+  log.update_dropped(8, 1.2);
   ASSERT_EQ(log.events().size(), 1u);
   EXPECT_EQ(log.events()[0].count, 8u);
 }
 
 TEST(FaultLog, KeepsTheLast) {
   FaultLog log;
-  for (int i = 0; i < 500; ++i) log.see(snapshot(2.0 * i, loop_fault::kForceClamped));
+  for (int i = 0; i < 500; ++i) log.update(snapshot(2.0 * i, loop_fault::kForceClamped));
   ASSERT_EQ(log.events().size(), FaultLog::kMost);
   EXPECT_EQ(log.events().back().loop_time_s, 998.0);
   EXPECT_EQ(log.events().front().loop_time_s, 600.0);
-  log.see(snapshot(998.5, loop_fault::kForceClamped));
+  log.update(snapshot(998.5, loop_fault::kForceClamped));
   EXPECT_EQ(log.events().back().count, 2u);
 }
 

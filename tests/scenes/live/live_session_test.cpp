@@ -202,12 +202,12 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   ASSERT_EQ(session->models().size(), 3u);
   EXPECT_EQ(session->models().view(2).name, "first-2") << "names are distinct";
   EXPECT_EQ(session->models().selected(), 0u);
-  const std::vector<Notice> notices = session->take_notices();
+  const std::vector<Notice> notices = session->read_notices();
   ASSERT_EQ(notices.size(), 3u);
   EXPECT_FALSE(notices[0].problem);
   EXPECT_TRUE(notices[2].problem);
   EXPECT_NE(notices[2].text.find("bad.json"), std::string::npos);
-  EXPECT_TRUE(session->take_notices().empty());
+  EXPECT_TRUE(session->read_notices().empty());
   session->select(2);
   session->select(9);
   EXPECT_EQ(session->models().selected(), 2u);
@@ -224,7 +224,7 @@ TEST(LiveSession, RefusesMoreModelsThanTheLoopTakes) {
   request.models.assign(kMaxModels, files.folder.file("a.json"));
   const Session session = must(LiveSession::open(request));
   session->load_file(files.folder.file("b.json"));
-  const std::vector<Notice> notices = session->take_notices();
+  const std::vector<Notice> notices = session->read_notices();
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_TRUE(notices[0].problem);
 }
@@ -282,7 +282,7 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   EXPECT_GT(session->models().view(1).errors.samples(), 500u);
   session->stop_recording();
   ASSERT_TRUE(frames_until(*session, [&] { return !session->recording().saving && !session->recording().active; }));
-  const std::vector<Notice> notices = session->take_notices();
+  const std::vector<Notice> notices = session->read_notices();
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_FALSE(notices[0].problem) << notices[0].text;
   const auto recording = std::make_shared<const Recording>(must(read_recording(folder.file("live.csv"))));

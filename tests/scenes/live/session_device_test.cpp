@@ -70,7 +70,7 @@ class SessionDevice : public ::testing::Test {
   bool frames_until(const std::function<bool()>& done) {
     return test::frames_until(*session_, done, [&] {
       bus_.counts += std::clamp(target_ - bus_.counts, -kStep, kStep);
-      for (Notice& notice : session_->take_notices()) notices_.push_back(std::move(notice));
+      for (Notice& notice : session_->read_notices()) notices_.push_back(std::move(notice));
     });
   }
 

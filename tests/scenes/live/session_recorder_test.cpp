@@ -52,7 +52,7 @@ struct Rig {
   Notice finish() {
     recorder.stop();
     recorder.wait();
-    return recorder.take_outcome().value_or(Notice{"no outcome", true});
+    return recorder.read_outcome().value_or(Notice{"no outcome", true});
   }
   HapticsLoop loop;
   SessionRecorder recorder;
@@ -215,7 +215,7 @@ TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
     ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
     rig.run(30000);
     rig.recorder.wait();
-    notice = rig.recorder.take_outcome().value_or(Notice{"no outcome", false});
+    notice = rig.recorder.read_outcome().value_or(Notice{"no outcome", false});
   }
   EXPECT_TRUE(notice.problem);
   EXPECT_EQ(notice.text, "the recording was lost: cannot write " + folder.file("a.csv") + ": File too large");
@@ -241,7 +241,7 @@ TEST(SessionRecorder, RecordsBesideTheRunningLoop) {
     loop.set_controls({1, 0, 0});
     recorder.stop();
     recorder.wait();
-    const std::optional<Notice> outcome = recorder.take_outcome();
+    const std::optional<Notice> outcome = recorder.read_outcome();
     ASSERT_TRUE(outcome.has_value());
     EXPECT_FALSE(outcome->problem) << outcome->text;
     EXPECT_GE(read_recording(folder.file(name)).value().rows.size(), 100u);

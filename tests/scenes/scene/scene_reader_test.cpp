@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "scenes/material/material.h"
 #include "scenes/scene/scene.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
@@ -87,6 +88,10 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
             "x.json:3:12: title: found 3, expected a text that is not empty");
   EXPECT_EQ(complaint_after("  \"material\": null,\n", ""),
             "x.json:1:1: material: found no such field, expected the name of a virtual material, or null");
+  std::string known;
+  for (const Material& material : materials()) known.append(known.empty() ? "" : ", ").append(material.name);
+  EXPECT_EQ(complaint_after("\"material\": null", "\"material\": \"silicon\""),
+            "x.json:5:15: material: found \"silicon\", expected one of " + known);
   EXPECT_EQ(complaint_after("\"depth\"", "\"dept\""),
             "x.json:7:14: features[0].kind: found \"dept\", expected one of depth, velocity, lowpass_velocity\n"
             "x.json:6:15: features: found no feature of kind \"depth\", expected one: no force without it");

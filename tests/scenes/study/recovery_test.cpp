@@ -9,12 +9,12 @@
 namespace palpate {
 namespace {
 
-bool go_on(double) { return true; }
+bool may_continue(double) { return true; }
 
 TEST(Recovery, IntervalsOfBothProceduresHoldTheTruth) {
   for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::adaptive}) {
     const RecoverySettings settings{kind, 24, 1, test::kQuickTiming, {kJndCriterion, 0.95, 79}};
-    const auto rows = measure_recovery(settings, go_on);
+    const auto rows = measure_recovery(settings, may_continue);
     ASSERT_TRUE(rows.ok()) << rows.error().message;
     ASSERT_EQ(rows->size(), 4u);
     double coverage = 0.0;

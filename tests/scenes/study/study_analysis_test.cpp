@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 const IntervalSettings kQuick{kJndCriterion, 0.95, 50};
-bool go_on(double) { return true; }
+bool may_continue(double) { return true; }
 
 // A session of a subject whose answers come out exactly as often as they should:
 // `repetitions` of each pair in each order.
@@ -46,7 +46,7 @@ StudyData average_subject(const std::string& code, const std::vector<double>& re
 // 0.3325 and 0.225 N give 0.0633, and 1.0 N lies lowest.
 TEST(StudyAnalysis, ReproducesThePapersOutcome) {
   const std::vector<double> relative = {0.14 / 0.3, 0.17477 / 0.5, 0.1283, 0.133};
-  const auto analysis = analyse_study({average_subject("S01", relative, 1000)}, kQuick, true, go_on);
+  const auto analysis = analyse_study({average_subject("S01", relative, 1000)}, kQuick, true, may_continue);
   ASSERT_TRUE(analysis.ok()) << analysis.error().message;
   ASSERT_EQ(analysis->points.size(), 5u);
   EXPECT_NEAR(analysis->points[3].jnd_N / 2.5, 0.133, 5e-4);
@@ -57,14 +57,14 @@ TEST(StudyAnalysis, ReproducesThePapersOutcome) {
   ASSERT_TRUE(line.ok());
   EXPECT_EQ(line->offset_N, analysis->lines->conservative.offset_N);
   // Without the published point another line comes out.
-  const auto own = analyse_study({average_subject("S01", relative, 1000)}, kQuick, false, go_on);
+  const auto own = analyse_study({average_subject("S01", relative, 1000)}, kQuick, false, may_continue);
   EXPECT_GT(own->lines->fitted.weber_fraction, 0.08);
 }
 
 TEST(StudyAnalysis, AveragesOverTheSubjects) {
   const StudyData one = average_subject("S01", {0.2, 0.2, 0.2, 0.2}, 200);
   const StudyData two = average_subject("S02", {0.1, 0.1, 0.1, 0.1}, 200);
-  const auto analysis = analyse_study({one, two}, kQuick, false, go_on);
+  const auto analysis = analyse_study({one, two}, kQuick, false, may_continue);
   ASSERT_TRUE(analysis.ok());
   ASSERT_EQ(analysis->pooled.size(), 4u);
   for (const PooledJnd& pooled : analysis->pooled) {
@@ -96,14 +96,14 @@ TEST(StudyAnalysis, JudgesByWhatWasRendered) {
 
 TEST(StudyAnalysis, RefusesWhatCannotBeAnalysed) {
   const StudyData data = average_subject("S01", {0.3, 0.2, 0.15, 0.13}, 1);
-  EXPECT_EQ(analyse_study({}, kQuick, false, go_on).error().message, "found no study file, expected one or more");
-  EXPECT_EQ(analyse_study({data, data}, kQuick, false, go_on).error().message,
+  EXPECT_EQ(analyse_study({}, kQuick, false, may_continue).error().message, "found no study file, expected one or more");
+  EXPECT_EQ(analyse_study({data, data}, kQuick, false, may_continue).error().message,
             "found two files of subject S01, expected one; leave one of them out");
-  EXPECT_EQ(analyse_study({{{"S02", ProcedureKind::constant, {}}, "", {}, 0}}, kQuick, false, go_on).error().message,
+  EXPECT_EQ(analyse_study({{{"S02", ProcedureKind::constant, {}}, "", {}, 0}}, kQuick, false, may_continue).error().message,
             "found no usable answer of subject S02; leave the file out");
   StudyData other = data;
   other.records[3].trial.reference_N = 0.7;
-  EXPECT_EQ(analyse_study({other}, kQuick, false, go_on).error().message,
+  EXPECT_EQ(analyse_study({other}, kQuick, false, may_continue).error().message,
             "found a reference force of 0.7 N in the file of subject S01, expected 0.3, 0.5, 1 or 2.5 N");
   EXPECT_EQ(analyse_study({data}, kQuick, false, [](double) { return false; }).error().message, "interrupted");
 }
@@ -115,7 +115,7 @@ TEST(StudyAnalysis, TakesFilesThatEndEarly) {
     ASSERT_TRUE(records.ok());
     for (const std::size_t kept : {9u, 12u, 60u}) {
       const StudyData cut{header, "", {records->begin(), records->begin() + static_cast<std::ptrdiff_t>(kept)}, 0};
-      const auto analysis = analyse_study({cut}, kQuick, false, go_on);
+      const auto analysis = analyse_study({cut}, kQuick, false, may_continue);
       ASSERT_TRUE(analysis.ok()) << analysis.error().message;
       EXPECT_GE(analysis->pooled.size(), 1u);
     }

@@ -14,7 +14,7 @@ namespace {
 
 const StudyTiming kTiming{40, 60, 100, 50};
 
-Pushes pushes(double first_N, double second_N) { return {{first_N}, {second_N}, false, {}}; }
+Stimuli stimuli(double first_N, double second_N) { return {{first_N}, {second_N}, false, {}}; }
 
 // The forces of `ticks` ticks, each rendered as it is.
 std::vector<double> run(StudyPresenter& presenter, std::size_t ticks, double gain = 1.0) {
@@ -31,7 +31,7 @@ std::vector<double> run(StudyPresenter& presenter, std::size_t ticks, double gai
 TEST(StudyPresenter, PresentsBothForcesExactToTheTick) {
   StudyPresenter presenter(kTiming);
   for (const double force_N : run(presenter, 100)) ASSERT_EQ(force_N, 0.0) << "idle";
-  EXPECT_EQ(presenter.present(pushes(1.0, 2.5)), 1u);
+  EXPECT_EQ(presenter.present(stimuli(1.0, 2.5)), 1u);
   const std::vector<double> forces = run(presenter, kTiming.presentation() + 100);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     SCOPED_TRACE(i);
@@ -54,7 +54,7 @@ TEST(StudyPresenter, PresentsBothForcesExactToTheTick) {
 
 TEST(StudyPresenter, RecordsWhatWasRenderedNotWhatWasWanted) {
   StudyPresenter presenter(kTiming);
-  presenter.present(pushes(1.0, 2.0));
+  presenter.present(stimuli(1.0, 2.0));
   run(presenter, kTiming.presentation() + 2, 0.9);
   EXPECT_NEAR(presenter.newest().first_rendered_N, 0.9, 1e-12);
   EXPECT_NEAR(presenter.newest().second_rendered_N, 1.8, 1e-12);
@@ -62,7 +62,7 @@ TEST(StudyPresenter, RecordsWhatWasRenderedNotWhatWasWanted) {
 
 TEST(StudyPresenter, LimitsAForceThatIsTooLarge) {
   StudyPresenter presenter(kTiming);
-  presenter.present(pushes(50.0, std::nan("")));
+  presenter.present(stimuli(50.0, std::nan("")));
   const std::vector<double> forces = run(presenter, kTiming.presentation() + 2);
   EXPECT_EQ(*std::max_element(forces.begin(), forces.end()), kLargestStudyForce_N);
   for (std::size_t i = 1; i < forces.size(); ++i) ASSERT_LE(std::abs(forces[i] - forces[i - 1]), 0.1 + 1e-9);
@@ -72,14 +72,14 @@ TEST(StudyPresenter, LimitsAForceThatIsTooLarge) {
 
 TEST(StudyPresenter, NoForceOutlastsItsIntervalWhenNobodyComesBack) {
   StudyPresenter presenter(kTiming);
-  presenter.present(pushes(1.0, 2.0));
+  presenter.present(stimuli(1.0, 2.0));
   run(presenter, kTiming.presentation());
   for (const double force_N : run(presenter, 20000)) ASSERT_EQ(force_N, 0.0);
 }
 
 TEST(StudyPresenter, StopsAtOnceAndForGood) {
   StudyPresenter presenter(kTiming);
-  presenter.present(pushes(3.0, 2.0));
+  presenter.present(stimuli(3.0, 2.0));
   const std::vector<double> before = run(presenter, 150);
   ASSERT_EQ(before.back(), 3.0);
   presenter.stop();
@@ -90,7 +90,7 @@ TEST(StudyPresenter, StopsAtOnceAndForGood) {
       ASSERT_EQ(after[i], 0.0) << i;
     }
   }
-  presenter.present(pushes(1.0, 1.0));
+  presenter.present(stimuli(1.0, 1.0));
   for (const double force_N : run(presenter, 2000)) ASSERT_EQ(force_N, 0.0);
   EXPECT_EQ(presenter.newest().phase, PresentationPhase::stopped);
 }
@@ -98,11 +98,11 @@ TEST(StudyPresenter, StopsAtOnceAndForGood) {
 TEST(StudyPresenter, ATickAllocatesAndLocksNothing) {
   if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
   StudyPresenter presenter(kTiming);
-  presenter.present(pushes(1.0, 2.0));
+  presenter.present(stimuli(1.0, 2.0));
   test::RtGuard guard;
   double rendered_N = 0.0;
   for (int i = 0; i < 10000; ++i) {
-    if (i == 1000) presenter.present(pushes(0.5, 0.6));
+    if (i == 1000) presenter.present(stimuli(0.5, 0.6));
     if (i == 1200) presenter.stop();
     rendered_N = presenter.tick(rendered_N);
   }
@@ -125,8 +125,8 @@ TEST(StudyPresenter, PlaysStrokesBehindAReminderExactToTheTick) {
   const auto strokes = test::example_strokes(0.9);
   const StudyTiming& timing = test::kQuickTiming;  // lead-in 5, ramp 60, hold 20, pause 5
   StudyPresenter presenter(timing, strokes);
-  const Push reference{1.0, PushKind::reference}, comparison{1.0, PushKind::comparison};
-  presenter.present({comparison, reference, true, {0.5, PushKind::reference}});
+  const Stimulus reference{1.0, StimulusKind::reference}, comparison{1.0, StimulusKind::comparison};
+  presenter.present({comparison, reference, true, {0.5, StimulusKind::reference}});
   const std::size_t interval = timing.interval(), pause = timing.pause, lead_in = timing.lead_in;
   const std::vector<double> forces = run(presenter, lead_in + 3 * interval + 2 * pause + 50);
   const auto share = [&](std::size_t i) {  // half a cosine at either end
@@ -155,7 +155,7 @@ TEST(StudyPresenter, PlaysStrokesBehindAReminderExactToTheTick) {
 
 TEST(StudyPresenter, TellsHowFarWhatWasRenderedWasFromTheStroke) {
   StudyPresenter presenter(test::kQuickTiming, test::example_strokes(1.0));
-  presenter.present({{1.0, PushKind::reference}, {1.0, PushKind::reference}, true, {1.0, PushKind::reference}});
+  presenter.present({{1.0, StimulusKind::reference}, {1.0, StimulusKind::reference}, true, {1.0, StimulusKind::reference}});
   run(presenter, 600, 0.9);
   double largest_N = 0.0;
   for (std::uint32_t i = 0; i < 140; ++i) largest_N = std::max(largest_N, interval_share(test::kQuickTiming, i) * (1.0 + 0.01 * i));
@@ -166,7 +166,7 @@ TEST(StudyPresenter, LimitsStrokesAndEndsThem) {
   auto strong = std::make_shared<StrokePair>(*test::example_strokes(1.0));
   strong->comparison_N.assign(70, 50.0);  // too strong and too short
   StudyPresenter presenter(test::kQuickTiming, strong);
-  const Push comparison{1.0, PushKind::comparison};
+  const Stimulus comparison{1.0, StimulusKind::comparison};
   presenter.present({comparison, comparison, true, comparison});
   const std::vector<double> forces = run(presenter, 1000);
   EXPECT_EQ(*std::max_element(forces.begin(), forces.end()), kLargestStudyForce_N);
@@ -178,7 +178,7 @@ TEST(StudyPresenter, LimitsStrokesAndEndsThem) {
 TEST(StudyPresenter, ATickOfAStrokeAllocatesAndLocksNothing) {
   if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
   StudyPresenter presenter(test::kQuickTiming, test::example_strokes(0.9));
-  presenter.present({{1.0, PushKind::reference}, {1.0, PushKind::comparison}, true, {1.0, PushKind::reference}});
+  presenter.present({{1.0, StimulusKind::reference}, {1.0, StimulusKind::comparison}, true, {1.0, StimulusKind::reference}});
   test::RtGuard guard;
   double rendered_N = 0.0;
   for (int i = 0; i < 1000; ++i) rendered_N = presenter.tick(rendered_N);

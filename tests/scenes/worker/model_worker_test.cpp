@@ -19,7 +19,7 @@ namespace {
 std::vector<FinishedModel> wait_for(ModelWorker& worker, std::size_t count) {
   std::vector<FinishedModel> all;
   while (all.size() < count) {
-    for (FinishedModel& one : worker.take_finished()) all.push_back(std::move(one));
+    for (FinishedModel& one : worker.read_finished()) all.push_back(std::move(one));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return all;
@@ -43,6 +43,31 @@ TEST(ModelWorker, FitsWhatPalpateFitDoesTheQuickestFirst) {
     ASSERT_NE(made[i].model, nullptr) << made[i].problem;
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
       ASSERT_EQ(made[i].model->evaluate(&depth_m).force_N, expected[i]->evaluate(&depth_m).force_N) << i;
+    }
+  }
+}
+
+// A slider asks for one number after the other: the second one comes from the nested fit.
+TEST(ModelWorker, AnotherNumberOfCentresIsWhatPalpateFitGives) {
+  constexpr double kRounding_N = 1e-9;
+  ModelWorker worker(test::must(load_scene("elastic_block")), 1);
+  SlotPlan plan;
+  plan.method = &kKdTreeMethod;
+  ASSERT_TRUE(worker.start().ok());
+  const PreparedTraining prepared =
+      test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::scene_request("elastic_block"));
+  for (const int centres : {10, 12, 3}) {
+    plan.centres = centres;
+    worker.add_job(0, plan);
+    const std::vector<FinishedModel> made = wait_for(worker, 1);
+    ASSERT_NE(made[0].model, nullptr) << made[0].problem;
+    MethodRequest request;
+    request.method = plan.method;
+    request.centres = centres;
+    const FittedModel expected(test::must(fit_method(prepared, request)).data);
+    EXPECT_EQ(made[0].model->name(), expected.name());
+    for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
+      ASSERT_NEAR(made[0].model->evaluate(&depth_m).force_N, expected.evaluate(&depth_m).force_N, kRounding_N);
     }
   }
 }

@@ -49,10 +49,13 @@ TEST(ModelIo, FeaturesWithPartsSofteningAndTheErrorBoundAreKept) {
                                  {FeatureSpec{}, spectrum, stops, {FeatureKind::fading_peak, 6.0}}, 11);
   data.trend.softening[1] = drive;
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
+  data.sensor = PositionSensor{30e-6, 1e-6};
   const ModelData back = read_back(data);
   EXPECT_EQ(back.features, data.features);
   EXPECT_EQ(back.trend.softening, data.trend.softening);
-  ASSERT_TRUE(back.error_bound.has_value());
+  ASSERT_TRUE(back.error_bound.has_value() && back.sensor.has_value());
+  EXPECT_EQ(back.sensor->encoder_step_m, 30e-6);
+  EXPECT_EQ(back.sensor->position_noise_m, 1e-6);
   const FittedModel original(data);
   const FittedModel loaded(back);
   test::Numbers numbers(4);

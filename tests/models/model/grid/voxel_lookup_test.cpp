@@ -1,5 +1,5 @@
 #include "models/model/grid/voxel_lookup.h"
-#include "models/fit/fill_grid.h"
+#include "models/solve/fill_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,212 @@
+#include "models/solve/lapack.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <string_view>
+#include <vector>
+
+extern "C" {
+void dgemm_(const char*, const char*, const int*, const int*, const int*, const double*, const double*, const int*,
+            const double*, const int*, const double*, double*, const int*);
+void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*,
+            const double*, double*, const int*);
+void dgeqrf_(const int*, const int*, double*, const int*, double*, double*, const int*, int*);
+void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, double*, const int*, double*,
+             const int*, double*, const int*, int*, int*);
+void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
+            const int*, double*, const int*);
+void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
+            double*, const int*);
+void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*,
+             const int*, int*);
+void dpotrf_(const char*, const int*, double*, const int*, int*);
+void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
+void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
+double dlansy_(const char*, const char*, const int*, const double*, const int*, double*);
+// Only in OpenBLAS; null with another BLAS.
+[[gnu::weak]] void openblas_set_num_threads(int);
+[[gnu::weak]] int openblas_get_num_threads(void);
+[[gnu::weak]] char* openblas_get_corename(void);
+[[gnu::weak]] void gotoblas_dynamic_quit(void);
+[[gnu::weak]] void gotoblas_dynamic_init(void);
+}
+
+namespace palpate {
+namespace {
+
+std::recursive_mutex& blas_mutex() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+// OpenBLAS takes a processor that is newer than itself for a Prescott of 2004, which
+// makes fits two to three times slower (0.3.21 of Debian 12 on a Xeon of 2023). Then it
+// chooses again, with the variable of its manual set meanwhile. Before main, so that no
+// other thread computes; nothing is done when the user has set the variable, or when the
+// processor is known.
+bool choose_blas_core() {
+#ifdef __x86_64__
+  constexpr const char* kVariable = "OPENBLAS_CORETYPE";
+  if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr) return false;
+  if (std::getenv(kVariable) != nullptr || std::string_view(openblas_get_corename()) != "Prescott") return false;
+  __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return false;
+  const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+                    __builtin_cpu_supports("avx512cd");
+  setenv(kVariable, wide ? "SkylakeX" : "Haswell", 0);
+  gotoblas_dynamic_quit();
+  gotoblas_dynamic_init();
+  unsetenv(kVariable);
+  return true;
+#else
+  return false;
+#endif
+}
+
+[[maybe_unused]] const bool kBlasCoreChosen = choose_blas_core();
+
+int to_int(Eigen::Index value) { return static_cast<int>(value); }
+
+int leading(const ConstMatrixRef& a) { return std::max(1, to_int(a.outerStride())); }
+
+}  // namespace
+
+BlasThreads::BlasThreads(int count) : lock_(blas_mutex()) {
+  if (openblas_set_num_threads == nullptr || openblas_get_num_threads == nullptr) return;
+  before_ = openblas_get_num_threads();
+  if (before_ != count) openblas_set_num_threads(count);
+}
+
+BlasThreads::~BlasThreads() {
+  if (before_ > 0 && openblas_get_num_threads() != before_) openblas_set_num_threads(before_);
+}
+
+void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
+              double beta, MatrixRef c) {
+  const int m = to_int(c.rows());
+  const int n = to_int(c.cols());
+  const int k = to_int(transpose_a ? a.rows() : a.cols());
+  assert(m == (transpose_a ? a.cols() : a.rows()) && n == (transpose_b ? b.rows() : b.cols()));
+  assert(k == (transpose_b ? b.cols() : b.rows()));
+  if (m == 0 || n == 0) return;
+  const int lda = leading(a);
+  const int ldb = leading(b);
+  const int ldc = leading(c);
+  if (n == 1 && !transpose_b) {
+    // dgemm would copy all of `a` first, which takes longer than the product.
+    const int rows = to_int(a.rows());
+    const int columns = to_int(a.cols());
+    const int one = 1;
+    dgemv_(transpose_a ? "T" : "N", &rows, &columns, &alpha, a.data(), &lda, b.data(), &one, &beta, c.data(), &one);
+    return;
+  }
+  dgemm_(transpose_a ? "T" : "N", transpose_b ? "T" : "N", &m, &n, &k, &alpha, a.data(), &lda, b.data(), &ldb, &beta,
+         c.data(), &ldc);
+}
+
+void qr_in_place(MatrixRef a) {
+  assert(a.rows() >= a.cols());
+  const int m = to_int(a.rows());
+  const int n = to_int(a.cols());
+  const int lda = leading(a);
+  constexpr int kBlock = 64;  // enough for the blocked code of any LAPACK
+  const int work_size = std::max(1, n * kBlock);
+  std::vector<double> tau(static_cast<std::size_t>(std::max(1, n)));
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  int info = 0;
+  dgeqrf_(&m, &n, a.data(), &lda, tau.data(), work.data(), &work_size, &info);
+  assert(info == 0);
+}
+
+bool svd(Eigen::MatrixXd a, Svd& out) {
+  const int n = to_int(a.rows());
+  assert(a.rows() == a.cols() && n >= 1);
+  out.u.resize(n, n);
+  out.vt.resize(n, n);
+  out.s.resize(n);
+  std::vector<int> integers(static_cast<std::size_t>(8 * n));
+  double wanted = 0.0;
+  int query = -1;
+  int info = 0;
+  dgesdd_("A", &n, &n, a.data(), &n, out.s.data(), out.u.data(), &n, out.vt.data(), &n, &wanted, &query,
+          integers.data(), &info);
+  const int work_size = static_cast<int>(wanted);
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  dgesdd_("A", &n, &n, a.data(), &n, out.s.data(), out.u.data(), &n, out.vt.data(), &n, work.data(), &work_size,
+          integers.data(), &info);
+  return info == 0;
+}
+
+bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
+  const int n = to_int(a.rows());
+  values.resize(n);
+  double wanted = 0.0;
+  int wanted_integers = 0;
+  int query = -1;
+  int info = 0;
+  dsyevd_("V", "L", &n, a.data(), &n, values.data(), &wanted, &query, &wanted_integers, &query, &info);
+  const int work_size = static_cast<int>(wanted);
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
+  dsyevd_("V", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, integers.data(), &wanted_integers,
+          &info);
+  return info == 0;
+}
+
+// By panels, so that a large one can be given up: half a second each at 6,850 sites
+// on one slow core, and as quick as LAPACK's own in one go.
+bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue) {
+  constexpr int kPanel = 512;
+  const int n = to_int(a.rows());
+  const int lda = leading(a);
+  const double one = 1.0;
+  const double minus_one = -1.0;
+  for (int first = 0; first < n; first += kPanel) {
+    const int columns = std::min(kPanel, n - first);
+    const int rest = n - first - columns;
+    const double left = static_cast<double>(n - first) / n;
+    if (may_continue && !may_continue(1.0 - left * left * left)) return false;
+    double* const corner = &a.coeffRef(first, first);
+    int info = 0;
+    dpotrf_("L", &columns, corner, &lda, &info);
+    if (info != 0) return false;
+    if (rest == 0) break;
+    double* const below = corner + columns;
+    dtrsm_("R", "L", "T", "N", &rest, &columns, &one, corner, &lda, below, &lda);
+    double* const next = &a.coeffRef(first + columns, first + columns);
+    dsyrk_("L", "N", &rest, &columns, &minus_one, below, &lda, &one, next, &lda);
+  }
+  return true;
+}
+
+void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
+  const int n = to_int(factor.rows());
+  const int one = 1;
+  const int lda = leading(factor);
+  const int ldb = std::max(1, n);
+  int info = 0;
+  dpotrs_("L", &n, &one, factor.data(), &lda, b.data(), &ldb, &info);
+  assert(info == 0);
+}
+
+double cholesky_condition(const ConstMatrixRef& factor, double norm) {
+  const int n = to_int(factor.rows());
+  const int lda = leading(factor);
+  std::vector<double> work(static_cast<std::size_t>(3 * n));
+  std::vector<int> integers(static_cast<std::size_t>(n));
+  double reciprocal = 0.0;
+  int info = 0;
+  dpocon_("L", &n, factor.data(), &lda, &norm, &reciprocal, work.data(), integers.data(), &info);
+  return 1.0 / std::max(reciprocal, 1e-300);
+}
+
+double symmetric_norm(const ConstMatrixRef& a) {
+  const int n = to_int(a.rows());
+  const int lda = leading(a);
+  std::vector<double> work(static_cast<std::size_t>(std::max(1, n)));
+  return dlansy_("1", "L", &n, a.data(), &lda, work.data());
+}
+
+}  // namespace palpate

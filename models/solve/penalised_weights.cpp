@@ -1,0 +1,125 @@
+#include "models/solve/penalised_weights.h"
+
+#include <Eigen/QR>
+#include <cmath>
+
+#include "models/solve/lapack.h"
+#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/rbf/rbf_evaluate.h"
+
+namespace palpate {
+namespace {
+
+// Relative to the largest: what rounding leaves of a direction that is not there.
+constexpr double kNothing = 1e-13;
+
+Eigen::MatrixXd kernel_at_centres(KernelKind kernel, const Eigen::MatrixXd& centres) {
+  Eigen::MatrixXd values(centres.cols(), centres.cols());
+  kernel_matrix(kernel, PointArrays(centres), centres, values);
+  return values;
+}
+
+// Upper C with C^T C = `matrix`, which rounding may have made slightly indefinite.
+Eigen::MatrixXd square_root(Eigen::MatrixXd matrix) {
+  const double size = std::max(matrix.diagonal().cwiseAbs().maxCoeff(), 1e-300);
+  for (double lift = 1e-15; lift < 1.0; lift *= 10.0) {
+    Eigen::MatrixXd factor = matrix;
+    factor.diagonal().array() += lift * size;
+    if (cholesky_in_place(factor)) return factor.triangularView<Eigen::Lower>().toDenseMatrix().transpose();
+  }
+  return Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
+}
+
+// Least squares of the triangle [R z], columns scaled to length 1; directions of
+// next to nothing get no share.
+struct TriangleSolution {
+  Eigen::VectorXd unknowns;
+  Eigen::Index rank = 0;
+  double condition = 0.0;
+};
+
+TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
+  const Eigen::Index n = triangle.cols() - 1;
+  Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
+  Eigen::VectorXd scale = r.colwise().stableNorm().transpose();
+  scale = (scale.array() > 0.0).select(scale, 1.0);
+  r.array().rowwise() /= scale.transpose().array();
+  const Eigen::VectorXd diagonal = r.diagonal().cwiseAbs();
+  TriangleSolution solution;
+  if (diagonal.minCoeff() > kNothing * diagonal.maxCoeff()) {
+    solution.unknowns = r.triangularView<Eigen::Upper>().solve(triangle.col(n).head(n)).cwiseQuotient(scale);
+    solution.rank = n;
+    solution.condition = diagonal.maxCoeff() / diagonal.minCoeff();
+    return solution;
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted = [&] {
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    qr.setThreshold(kNothing);
+    qr.compute(r);
+    return qr;
+  }();
+  solution.unknowns = pivoted.solve(triangle.col(n).head(n)).cwiseQuotient(scale);
+  solution.rank = pivoted.rank();
+  const double least = std::abs(pivoted.matrixQR()(n - 1, n - 1));
+  solution.condition = least > 0.0 ? pivoted.maxPivot() / least : 1e300;
+  return solution;
+}
+
+}  // namespace
+
+PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
+  const Eigen::Index n = centres.cols();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
+      tail_matrix(tail_degree(kernel), centres));
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
+  PenaltySpace space;
+  space.basis = q.rightCols(n - qr.rank());
+  const Eigen::MatrixXd kernel_values = kernel_at_centres(kernel, centres);
+  Eigen::MatrixXd product(n, space.basis.cols());
+  multiply(kernel_values, false, space.basis, false, definiteness_sign(kernel), 0.0, product);
+  space.penalty.resize(space.basis.cols(), space.basis.cols());
+  multiply(space.basis, true, product, false, 1.0, 0.0, space.penalty);
+  space.penalty = (0.5 * (space.penalty + space.penalty.transpose())).eval();
+  return space;
+}
+
+FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  const BlasThreads one_thread(1);
+  const double smoothing = folded.smoothing.value_or(0.0);
+  const Eigen::MatrixXd& triangle = folded.triangle;
+  const Eigen::Index n = centres.cols();
+  const Eigen::Index tail = triangle.cols() - 1 - n;
+  const PenaltySpace space = n > 0 ? penalty_space(kernel, centres) : PenaltySpace{};
+  const Eigen::Index free = space.basis.cols();
+  const Eigen::Index columns = free + tail + 1;
+  // [K Z, G, f] of the sites above, the root of the penalty below.
+  Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + free, columns);
+  if (free > 0) {
+    multiply(triangle.leftCols(n), false, space.basis, false, 1.0, 0.0, stack.topLeftCorner(triangle.rows(), free));
+    stack.bottomLeftCorner(free, free) = std::sqrt(smoothing) * square_root(space.penalty);
+  }
+  stack.block(0, free, triangle.rows(), tail + 1) = triangle.rightCols(tail + 1);
+  if (stack.rows() > columns) {
+    qr_in_place(stack);
+  }
+  const Eigen::MatrixXd reduced = stack.topRows(columns).triangularView<Eigen::Upper>();
+  const TriangleSolution solution = solve_scaled(reduced);
+  FittedRbf fitted;
+  fitted.function = {kernel, centres,
+                     free > 0 ? Eigen::VectorXd(space.basis * solution.unknowns.head(free)) : Eigen::VectorXd::Zero(n),
+                     solution.unknowns.tail(tail)};
+  FitReport& report = fitted.report;
+  report.centres_asked = report.centres_used = n;
+  report.columns = n + tail;
+  report.rank = solution.rank + (n - free);
+  report.condition = solution.condition;
+  report.smoothing = smoothing;
+  const Eigen::VectorXd rest =
+      triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights - triangle.middleCols(n, tail) * fitted.function.tail;
+  report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(folded.sites));
+  fitted.function.weights *= folded.strength;
+  fitted.function.tail *= folded.strength;
+  return fitted;
+}
+
+}  // namespace palpate

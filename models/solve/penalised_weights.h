@@ -1,0 +1,31 @@
+// Weights and tail for given centres by penalised least squares:
+//   minimise sum_i row_scale_i^2 (f_i - h(x_i))^2 + smoothing w^T (sign Phi) w
+//   subject to G^T w = 0,
+// Phi and G the kernel and the tail at the centres; h is then multiplied by the
+// sites' strength. With every site a centre this
+// is the smoothing spline of fit_direct.h; with fewer it is the regression spline
+// on a subset of its basis, and comes closer to it the more there are.
+// Source: Wahba (1990), sections 1.3 and 7.2.
+// Thread guarantee: slow side, pure.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "models/solve/fit_report.h"
+#include "models/solve/solve_weights.h"
+#include "models/model/rbf/kernels.h"
+
+namespace palpate {
+
+// The part of w-space that is orthogonal to the tail at the centres, and the
+// penalty in it.
+struct PenaltySpace {
+  Eigen::MatrixXd basis;    // n x (n - rank G), orthonormal columns Z
+  Eigen::MatrixXd penalty;  // Z^T (sign Phi) Z, positive semidefinite
+};
+PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres);
+
+// With the sites' own smoothing, 0 where they have none.
+FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres);
+
+}  // namespace palpate

@@ -1,0 +1,201 @@
+#include "models/surface/surface_onset.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "models/training/fit_trend.h"
+#include "models/surface/surface_estimate.h"
+#include "models/surface/surface_numbers.h"
+
+namespace palpate {
+namespace {
+
+// A touch is followed from this far out of the first guess to this far into it.
+constexpr double kTouchOut_m = 1e-3;
+constexpr double kTouchIn_m = 2e-3;
+// The tool is going in: slower backward motion is jitter.
+constexpr double kBackward_m_per_s = 2e-3;
+constexpr std::size_t kLeastTouchRows = 4;
+// Rows of a slow touch beyond this many are thinned.
+constexpr std::size_t kMostTouchRows = 300;
+// The first guess is late where the onset is soft.
+constexpr double kScanOut_m = 1.5e-3;
+constexpr double kScanIn_m = 0.3e-3;
+constexpr double kCoarseStep_m = 0.05e-3;
+constexpr double kFineStep_m = 2e-6;
+// The curvature at the minimum is taken over this distance to either side.
+constexpr double kCurvatureStep_m = 20e-6;
+// Position and force are sampled and estimated; no onset is better than this.
+constexpr double kOnsetFloor_m = 4e-6;
+constexpr double kScale_m = 1e-3;  // x in millimetres keeps the columns alike
+// The force may bend to either side but rises up to here (in units of kScale_m).
+constexpr double kFlat = 3.0;
+constexpr Eigen::Index kTerms = 2;
+// How force begins: a flat or rough contact, a ball on a soft solid (Hertz, 1881).
+constexpr double kLinear = 1.0;
+constexpr double kBall = 1.5;
+// A drop of chi^2 by this much tells one from the other; below, half of what they
+// differ by is the error. On virtual materials a linear onset drops by 4 at least,
+// every other one by less than 1.
+constexpr double kLinearDrop = 2.5;
+constexpr double kClearDrop = 6.0;
+constexpr double kFormError = 0.5;
+// Force begins with this many rows on end beyond the noise.
+constexpr std::size_t kForceRun = 3;
+
+class OnsetCost {
+ public:
+  OnsetCost(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches, double zero_N, double exponent)
+      : zero_N_(zero_N), exponent_(exponent) {
+    for (const Touch& touch : touches) {
+      const std::size_t stride = (touch.end - touch.begin) / kMostTouchRows + 1;
+      std::vector<const SurfaceRow*> kept;
+      for (std::size_t i = touch.begin; i < touch.end; i += stride) kept.push_back(&rows[i]);
+      count_ += static_cast<double>(kept.size());
+      touches_.push_back(std::move(kept));
+    }
+  }
+
+  // J(d0), N^2.
+  double at(double offset_m) const {
+    double cost = 0.0;
+    for (const auto& touch : touches_) cost += touch_cost(touch, offset_m);
+    return cost;
+  }
+
+  double degrees_of_freedom() const {
+    return std::max(1.0, count_ - 1.0 - static_cast<double>(kTerms) * static_cast<double>(touches_.size()));
+  }
+
+ private:
+  double touch_cost(const std::vector<const SurfaceRow*>& touch, double offset_m) const {
+    Eigen::Matrix<double, kTerms, kTerms> gram = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+    Eigen::Matrix<double, kTerms, 1> right_side = Eigen::Matrix<double, kTerms, 1>::Zero();
+    double squares = 0.0;
+    const double bend = exponent_ / ((exponent_ + 1.0) * kFlat);  // the slope is 0 at kFlat
+    for (const SurfaceRow* row : touch) {
+      const double force_N = row->force_N - zero_N_;
+      squares += force_N * force_N;
+      const double x = (row->motion.position_m - offset_m) / kScale_m;
+      if (!(x > 0.0)) continue;
+      const double power = exponent_ == kLinear ? x : x * std::sqrt(x);
+      const Eigen::Matrix<double, kTerms, 1> term(power * (1.0 - bend * x), power * bend * x);
+      gram += term * term.transpose();
+      right_side += term * force_N;
+    }
+    const Eigen::VectorXd best = solve_non_negative(gram, right_side);
+    return squares - 2.0 * right_side.dot(best) + best.dot(gram * best);
+  }
+
+  double zero_N_;
+  double exponent_;
+  double count_ = 0.0;
+  std::vector<std::vector<const SurfaceRow*>> touches_;
+};
+
+// From the row at `at`, back to where the approach begins.
+std::size_t approach_begin(const std::vector<SurfaceRow>& rows, std::size_t at, double outermost_m) {
+  while (at > 0 && rows[at - 1].motion.position_m > outermost_m &&
+         rows[at - 1].motion.velocity_m_per_s > -kBackward_m_per_s) {
+    --at;
+  }
+  return at;
+}
+
+std::size_t approach_end(const std::vector<SurfaceRow>& rows, std::size_t at, double innermost_m) {
+  while (at < rows.size() && rows[at].motion.position_m < innermost_m &&
+         rows[at].motion.velocity_m_per_s > -kBackward_m_per_s) {
+    ++at;
+  }
+  return at;
+}
+
+double outermost_m(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches) {
+  double outermost_m = kUnknownError;
+  for (const Touch& touch : touches) {
+    for (std::size_t i = touch.begin; i < touch.end; ++i) {
+      outermost_m = std::min(outermost_m, rows[i].motion.position_m);
+    }
+  }
+  return outermost_m;
+}
+
+struct FormOnset {
+  double at_m = 0.0;
+  double cost = 0.0;       // N^2
+  double curvature = 0.0;  // N^2/m^2
+  double degrees_of_freedom = 1.0;
+};
+
+FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
+  FormOnset onset{first_force_m, kUnknownError, 0.0, cost.degrees_of_freedom()};
+  const auto scan = [&](double from_m, double to_m, double step_m) {
+    for (double at_m = from_m; at_m < to_m + 0.5 * step_m; at_m += step_m) {
+      const double value = cost.at(at_m);
+      if (value >= onset.cost) continue;
+      onset.cost = value;
+      onset.at_m = at_m;
+    }
+  };
+  scan(first_force_m - kScanOut_m, first_force_m + kScanIn_m, kCoarseStep_m);
+  for (double step_m = kCoarseStep_m; step_m > kFineStep_m;) {
+    const double around_m = onset.at_m;
+    step_m *= 0.25;
+    scan(around_m - 4.0 * step_m, around_m + 4.0 * step_m, step_m);
+  }
+  onset.curvature = (cost.at(onset.at_m - kCurvatureStep_m) + cost.at(onset.at_m + kCurvatureStep_m) -
+                     2.0 * onset.cost) / (kCurvatureStep_m * kCurvatureStep_m);
+  return onset;
+}
+
+}  // namespace
+
+std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double zero_N, double threshold_N) {
+  std::vector<Touch> touches;
+  bool rested = true;  // nothing is known of what came before
+  double left_s = 0.0;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double time_s = rows[i].sample.time_s;
+    if (!(rows[i].force_N - zero_N > threshold_N)) {
+      run = 0;
+      const bool out = touches.empty() || rows[i].motion.position_m < touches.front().first_force_m;
+      if (out && time_s - left_s >= kRestBeforeTouch_s) rested = true;
+      continue;
+    }
+    left_s = time_s;
+    if (++run != kForceRun || !rested) continue;
+    rested = false;
+    const std::size_t first = i + 1 - kForceRun;
+    const double first_m = rows[first].motion.position_m;
+    const Touch touch{approach_begin(rows, first, first_m - kTouchOut_m), approach_end(rows, first, first_m + kTouchIn_m),
+                      first_m};
+    if (touch.end >= first + kLeastTouchRows) touches.push_back(touch);
+  }
+  return touches;
+}
+
+Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches, double zero_N,
+                 double force_noise_N) {
+  const FormOnset linear = onset_of_form(OnsetCost(rows, touches, zero_N, kLinear), touches.front().first_force_m);
+  const FormOnset ball = onset_of_form(OnsetCost(rows, touches, zero_N, kBall), touches.front().first_force_m);
+  const double variance =
+      std::max(std::min(linear.cost, ball.cost) / linear.degrees_of_freedom, force_noise_N * force_noise_N);
+  const double drop = (ball.cost - linear.cost) / std::max(variance, 1e-18);
+  const FormOnset& chosen = drop > kLinearDrop ? linear : ball;
+  Onset onset{chosen.at_m, kUnknownError};
+  if (chosen.curvature > 0.0) {
+    // J rises by noise^2 within one standard error.
+    onset.standard_error_m = std::max(kOnsetFloor_m, std::sqrt(2.0 * variance / chosen.curvature));
+    const bool clear = drop > kClearDrop || drop < -kClearDrop;
+    if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * (linear.at_m - ball.at_m));
+    // A recording that begins in contact never saw its onset.
+    const double unseen_m = std::max(0.0, outermost_m(rows, touches) - onset.at_m);
+    onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * unseen_m);
+  }
+  return onset;
+}
+
+}  // namespace palpate

@@ -1,0 +1,36 @@
+#include "models/surface/surface_rows.h"
+
+#include "engine/tick/sensor_identification.h"
+
+namespace palpate {
+
+void GrowingStride::add(const SurfaceRow& row) {
+  if (seen_++ % stride_ != 0) return;
+  rows_.push_back(row);
+  if (rows_.size() < most_) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows_.size(); i += 2) rows_[kept++] = rows_[i];
+  rows_.resize(kept);
+  stride_ *= 2;
+}
+
+std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most) {
+  const std::size_t stride = rows.size() / most + 1;
+  std::vector<SurfaceRow> kept;
+  for (std::size_t i = 0; i < rows.size(); i += stride) kept.push_back(rows[i]);
+  return kept;
+}
+
+std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most) {
+  std::vector<SurfaceRow> rows;
+  MotionEstimator estimator(identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns));
+  const std::size_t stride = recording.rows.size() / most + 1;
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    const ToolSample sample = tool_sample(recording.rows[i]);
+    const MotionEstimate motion = estimator.update(sample);
+    if (i % stride == 0) rows.push_back({sample, motion, recording.rows[i].force_N});
+  }
+  return rows;
+}
+
+}  // namespace palpate

@@ -1,0 +1,165 @@
+// All that the window can be asked for by key or button, one row each.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/live/pacer.h"
+#include "rendering/app/demo_app.h"
+#include "rendering/panels/panel_views.h"
+
+namespace palpate {
+namespace {
+
+// While a key is held; by time, so that a slow picture changes nothing.
+constexpr double kKeySpeed_m_per_s = 0.018;
+constexpr double kScrollSpeed = 6.0;  // seconds a second
+constexpr double kSeekStep_s = 2.0;
+constexpr double kSpeedStep = 1.25;
+constexpr float kTextStep = 0.1F;
+
+void turn(bool& what) { what = !what; }
+
+}  // namespace
+
+std::vector<WindowCommand> DemoApp::make_commands() {
+  using When = WindowCommand::When;
+  return {
+      {.shown = "mouse", .help = "moves the probe, over the block; down is deeper"},
+      {.shown = "wheel", .help = "moves the probe step by step; with Ctrl the view comes nearer"},
+      {.shown = "right button", .help = "turns the view"},
+      {.keys = {GLFW_KEY_DOWN, GLFW_KEY_UP}, .help = "press deeper, and let go",
+       .run = [this](std::size_t key) { nudge_tool((key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s * frame_s_); }, .when = When::held},
+      {.keys = {GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7, GLFW_KEY_8, GLFW_KEY_9},
+       .shown = "1 ... 9", .help = "make a model the active one; a click on its block or row too",
+       .run = [this](std::size_t key) { select_listed(key); }},
+      {.keys = {GLFW_KEY_H, GLFW_KEY_SLASH}, .label = "Help", .help = "all keys",
+       .run = [this](std::size_t) { turn(view_.help); }, .on = [this] { return view_.help; }},
+      {.keys = {GLFW_KEY_R}, .label = "Record", .help = "record this session to a file that `palpate fit` reads",
+       .run = [this](std::size_t) { record(); }, .on = [this] { return session_->recording().active; },
+       .label_on = "Stop recording"},
+      {.keys = {GLFW_KEY_SPACE}, .label = "Stop", .help = "stop the curves to look back, and go on",
+       .run = [this](std::size_t) { pause_or_run(); }, .on = [this] { return view_.time.paused; }, .label_on = "Go on"},
+      {.keys = {GLFW_KEY_C}, .label = "Clear", .help = "forget the errors so far, and alarms that were seen",
+       .run = [this](std::size_t) { session_->reset_figures(); }},
+      {.keys = {GLFW_KEY_N}, .label = "Models", .help = "the next set of models: Ladder, 2009, Palpate",
+       .run = [this](std::size_t) { next_line_up(); }},
+      {.keys = {GLFW_KEY_X}, .label = "x 10", .help = "arrows that show ten times the difference, and back",
+       .run = [this](std::size_t) { turn(view_.exaggerated); }, .on = [this] { return view_.exaggerated; }},
+      {.keys = {GLFW_KEY_B}, .help = "one, two or four blocks side by side",
+       .run = [this](std::size_t) { next_block_count(); }},
+      {.keys = {GLFW_KEY_V}, .label = "View", .help = "the difference in its band, or what a hand feels of it",
+       .run = [this](std::size_t) { turn(view_.difference); }},
+      {.keys = {GLFW_KEY_F}, .label = "Reference", .help = "choose what the models are compared with",
+       .run = [this](std::size_t) { next_reference(); }},
+      {.keys = {GLFW_KEY_O}, .label = "Scene", .help = "choose another material",
+       .run = [this](std::size_t) { turn(view_.scene_list); }, .on = [this] { return view_.scene_list; }},
+      {.keys = {GLFW_KEY_M}, .label = "Load", .help = "load a model file",
+       .run = [this](std::size_t) { turn(view_.file_list); }, .on = [this] { return view_.file_list; }},
+      {.keys = {GLFW_KEY_S}, .label = "Save", .help = "save what the curves show, as a figure and as data",
+       .run = [this](std::size_t) { save_curves(); }},
+      {.shown = "a row, right button", .help = "renames a model, takes it out"},
+      {.shown = "on the curves", .help = "drag zooms, the wheel goes back, double click goes on"},
+      {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT}, .help = "scroll back and forth while the curves stand still",
+       .run = [this](std::size_t key) { scroll_curves((key == 0 ? 1.0 : -1.0) * kScrollSpeed * frame_s_); }, .when = When::held},
+      {.keys = {GLFW_KEY_P}, .label = "Pause", .help = "pause a replayed recording, and play it on",
+       .run = [this](std::size_t) { session_->replay()->pause(!session_->replay()->paused()); }, .replay = true,
+       .on = [this] { return session_->replay() != nullptr && session_->replay()->paused(); }, .label_on = "Play"},
+      {.keys = {GLFW_KEY_COMMA}, .label = "<", .help = "one sample back in a recording, which then pauses",
+       .run = [this](std::size_t) { session_->replay()->step(-1); }, .when = When::repeated, .replay = true},
+      {.keys = {GLFW_KEY_PERIOD}, .label = ">", .help = "one sample on in a recording, which then pauses",
+       .run = [this](std::size_t) { session_->replay()->step(1); }, .when = When::repeated, .replay = true},
+      {.keys = {GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN}, .help = "2 s back and on in a recording",
+       .run = [this](std::size_t key) { seek_replay(key == 0 ? -kSeekStep_s : kSeekStep_s); }, .replay = true},
+      {.keys = {GLFW_KEY_LEFT_BRACKET, GLFW_KEY_RIGHT_BRACKET}, .help = "a recording slower and faster",
+       .run = [this](std::size_t key) {
+         session_->replay()->set_speed(session_->replay()->speed() * (key == 0 ? 1.0 / kSpeedStep : kSpeedStep));
+       }, .replay = true},
+      {.keys = {GLFW_KEY_T}, .label = "Theme", .help = "light or dark",
+       .run = [this](std::size_t) { view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light; }},
+      {.keys = {GLFW_KEY_L}, .label = "Loop", .help = "all figures of the loop, and its faults",
+       .run = [this](std::size_t) { turn(view_.details); }, .on = [this] { return view_.details; }},
+      {.keys = {GLFW_KEY_Z}, .help = "the device's tool is at its rest position: zero it there",
+       .run = [this](std::size_t) { session_->start_zeroing(); }},
+      {.keys = {GLFW_KEY_D}, .help = "push only while G, then while the handle's switch is held, and off again",
+       .run = [this](std::size_t) { next_dead_man(); }},
+      {.keys = {GLFW_KEY_G}, .help = "held: the device may push, where D asks for it",
+       .run = [this](std::size_t) { if (session_->dead_man() == DeadMan::key) session_->hold(); }, .when = When::held},
+      {.keys = {GLFW_KEY_HOME}, .help = "the view as it was at the beginning",
+       .run = [this](std::size_t) { blocks_->camera().go_home(); }},
+      {.keys = {GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD}, .shown = "+", .help = "larger text",
+       .run = [this](std::size_t) { view_.text_size = std::min(kLargestText, view_.text_size + kTextStep); }},
+      {.keys = {GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT}, .shown = "-", .help = "smaller text",
+       .run = [this](std::size_t) { view_.text_size = std::max(kSmallestText, view_.text_size - kTextStep); }},
+      {.keys = {GLFW_KEY_F11}, .help = "full screen and back",
+       .run = [this](std::size_t) { window_->set_fullscreen(!window_->fullscreen()); }},
+      {.keys = {GLFW_KEY_ESCAPE}, .help = "closes lists and questions", .run = [this](std::size_t) { close_windows(); }},
+      {.shown = "drop a file", .help = "loads a model; of a recording or another program's table: fits or replays it"},
+      {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
+}
+
+void DemoApp::nudge_tool(double by_m) {
+  ToolInput* tool = session_->mouse();
+  const double at_m = session_->newest().tick.position_m;
+  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(at_m + by_m) > at_m)) tool->nudge(by_m, steady_now_s());
+}
+
+void DemoApp::select_listed(std::size_t number) {
+  const std::vector<std::size_t> listed = models_view(*session_).listed();
+  if (number < listed.size()) session_->select(listed[number]);
+}
+
+void DemoApp::pause_or_run() {
+  if (view_.time.paused) {
+    view_.time.run();
+  } else {
+    view_.time.pause(steady_now_s());
+  }
+}
+
+void DemoApp::next_block_count() {
+  view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
+  // Fewer models than blocks were asked for: no block stays away without a word.
+  const std::size_t shown = shown_slots(*session_, view_.block_count).size();
+  if (shown >= view_.block_count) return;
+  notify(std::to_string(shown) + " of " + std::to_string(view_.block_count) + " blocks: no more models are ready", false);
+}
+
+void DemoApp::scroll_curves(double by_s) {
+  const ForceHistory& history = session_->comparison().history();
+  if (history.size() > 0) view_.time.scroll_back(by_s, history[0].loop_time_s);
+}
+
+void DemoApp::seek_replay(double by_s) {
+  ReplayControl& replay = *session_->replay();
+  replay.seek(std::clamp(replay.playhead_s() + by_s, 0.0, replay.duration_s()));
+}
+
+void DemoApp::close_windows() {
+  view_.help = view_.file_list = view_.details = view_.scene_list = false;
+  view_.offered = {};
+}
+
+void DemoApp::next_dead_man() {
+  if (!session_->renders_force()) {
+    notify("there is no device that pushes: nothing to hold a switch for", false);
+    return;
+  }
+  constexpr DeadMan kNext[] = {DeadMan::key, DeadMan::grip, DeadMan::off};  // of off, key, grip
+  session_->use_dead_man(kNext[static_cast<std::size_t>(session_->dead_man())]);
+}
+
+void DemoApp::next_reference() {
+  const auto at = std::find(kReferenceKinds.begin(), kReferenceKinds.end(), session_->comparison().reference());
+  const auto index = static_cast<std::size_t>(at - kReferenceKinds.begin());
+  for (std::size_t i = 1; i < kReferenceKinds.size(); ++i) {
+    const ReferenceKind kind = kReferenceKinds[(index + i) % kReferenceKinds.size()];
+    if (!session_->has_reference(kind)) continue;
+    session_->use_reference(kind);
+    return;
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,56 @@
+#include "rendering/panels/window_command.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <utility>
+
+#include "rendering/panels/panel_parts.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::pair<int, const char*> kKeyNames[] = {
+    {GLFW_KEY_SPACE, "Space"}, {GLFW_KEY_HOME, "Home"},     {GLFW_KEY_ESCAPE, "Esc"},       {GLFW_KEY_UP, "Up"},
+    {GLFW_KEY_DOWN, "Down"},   {GLFW_KEY_LEFT, "Left"},     {GLFW_KEY_RIGHT, "Right"},      {GLFW_KEY_PAGE_UP, "Page Up"},
+    {GLFW_KEY_EQUAL, "+"},     {GLFW_KEY_KP_ADD, "keypad +"}, {GLFW_KEY_KP_SUBTRACT, "keypad -"}, {GLFW_KEY_PAGE_DOWN, "Page Down"}};
+
+}  // namespace
+
+std::string key_name(int key) {
+  for (const auto& [known, name] : kKeyNames) {
+    if (known == key) return name;
+  }
+  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) return std::string("F").append(std::to_string(key - GLFW_KEY_F1 + 1));
+  return {static_cast<char>(key)};  // printable keys have the number of their letter
+}
+
+std::string shown_keys(const WindowCommand& command) {
+  if (!command.shown.empty()) return command.shown;
+  std::string text;
+  for (const int key : command.keys) text.append(text.empty() ? "" : ", ").append(key_name(key));
+  return command.control ? std::string("Ctrl+").append(text) : text;
+}
+
+const std::string& shown_label(const WindowCommand& command) {
+  const bool other = command.on && !command.label_on.empty() && command.on();
+  return other ? command.label_on : command.label;
+}
+
+std::vector<HelpLine> help_lines(const std::vector<WindowCommand>& commands) {
+  std::vector<HelpLine> lines;
+  for (const WindowCommand& command : commands) lines.push_back({shown_keys(command), command.help});
+  return lines;
+}
+
+bool command_button(const WindowCommand& command) {
+  const bool on = command.on && command.on();
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
+  const bool pressed = ImGui::Button(shown_label(command).c_str());
+  if (on) ImGui::PopStyleColor();
+  tip((command.help + " (" + shown_keys(command) + ")").c_str());
+  return pressed;
+}
+
+}  // namespace palpate

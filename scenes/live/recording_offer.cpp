@@ -1,0 +1,51 @@
+#include "scenes/live/recording_offer.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "engine/import/import_words.h"
+#include "engine/recording/recording.h"
+#include "scenes/scene/local_time.h"
+
+namespace palpate {
+namespace {
+
+// Whether its header asks to be read as a recording, so that what is wrong with it is
+// said of that.
+bool has_our_columns(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.empty() || line.front() != '#') break;
+  }
+  return line.find("time_s") != std::string::npos && line.find("position_m") != std::string::npos &&
+         line.find("force_N") != std::string::npos;
+}
+
+}  // namespace
+
+bool is_offered(const std::string& path) {
+  const std::filesystem::path ending = std::filesystem::path(path).extension();
+  return !ending.empty() && ending != ".json";
+}
+
+Result<RecordingOffer> offer_recording(const std::string& path, const std::string& folder) {
+  const auto recording = read_recording(path);
+  if (recording) return RecordingOffer{path, {}};
+  std::error_code missing;
+  if (has_our_columns(path) || !std::filesystem::exists(path, missing)) return recording.error();
+  const ImportRequest request;
+  const auto table = import_table(path, request);
+  if (!table) return table.error();
+  RecordingOffer offer;
+  offer.path = folder + "/" + std::filesystem::path(path).stem().string() + local_time_text("-%Y%m%d-%H%M%S.csv");
+  if (Status status = write_recording(offer.path, table->recording, import_origin(path, request, *table), true); !status)
+    return status.error();
+  offer.words.push_back(table_words(*table));
+  for (std::size_t role = 0; role < kRoles; ++role)
+    offer.words.push_back(std::string(kRoleNames[role]) + ": " + column_words(table->columns[role]));
+  offer.words.insert(offer.words.end(), table->notes.begin(), table->notes.end());
+  return offer;
+}
+
+}  // namespace palpate

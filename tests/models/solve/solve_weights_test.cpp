@@ -1,0 +1,178 @@
+#include "models/solve/solve_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "models/fit/fit_random.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::random_points;
+using test::smooth_sites;
+
+Eigen::MatrixXd naive_matrix(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  Eigen::MatrixXd matrix(sites.count(), centres.cols());
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+      matrix(i, j) = kernel_value(kernel, (sites.points.col(i) - centres.col(j)).norm());
+  Eigen::MatrixXd whole(sites.count(), matrix.cols() + tail_size(tail_degree(kernel), sites.dimension()));
+  whole << matrix, tail_matrix(tail_degree(kernel), sites.points);
+  return whole.array().colwise() * sites.row_scale.array();
+}
+
+double worst_error(const RbfFunction& function, const Sites& sites) {
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < sites.count(); ++i)
+    worst = std::max(worst, std::abs(rbf_value(function, sites.points.col(i).data()) - sites.target_N[i]));
+  return worst;
+}
+
+// An SVD of the whole matrix is the definition. Values, not weights, are
+// compared: condition 1e4 leaves weights with 1e-12, values with 1e-11.
+TEST(SolveWeights, AgreesWithAnSvdOfTheWholeMatrixForEveryKernel) {
+  const Sites sites = smooth_sites(3, 2500, 0.01, 4);
+  const Eigen::MatrixXd centres = sites.points.leftCols(30);
+  for (const KernelKind kernel : kKernelKinds) {
+    const Result<FittedRbf> fitted = solve_weights(sites, kernel, centres);
+    ASSERT_TRUE(fitted.ok());
+    const Eigen::MatrixXd matrix = naive_matrix(sites, kernel, centres);
+    const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+    const Eigen::VectorXd expected = matrix.bdcSvd(Eigen::ComputeThinU | Eigen::ComputeThinV).solve(data);
+    Eigen::VectorXd found(expected.size());
+    found << fitted->function.weights, fitted->function.tail;
+    EXPECT_LE((matrix * (found - expected)).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
+    EXPECT_NEAR(fitted->report.residual_rms, (matrix * expected - data).norm() / std::sqrt(2500.0), 1e-11);
+    EXPECT_EQ(fitted->report.rank, fitted->report.columns);
+  }
+}
+
+TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
+  for (const KernelKind kernel : kKernelKinds) {
+    Sites sites = smooth_sites(2, 200, 0.0, 1);
+    const Eigen::VectorXd tail = random_points(1, tail_size(tail_degree(kernel), 2), 3).transpose();
+    sites.target_N = tail_matrix(tail_degree(kernel), sites.points) * tail;
+    const Result<FittedRbf> fitted = solve_weights(sites, kernel, sites.points.leftCols(20));
+    ASSERT_TRUE(fitted.ok());
+    EXPECT_LE((fitted->function.tail - tail).cwiseAbs().maxCoeff(), 1e-10) << kernel_name(kernel);
+    EXPECT_LE(fitted->function.weights.cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
+TEST(SolveWeights, InterpolatesWhenThereAreAsManyUnknownsAsSites) {
+  const Sites sites = smooth_sites(3, 40, 0.0, 2);
+  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_EQ(fitted->report.rank, 40);
+  EXPECT_LE(worst_error(fitted->function, sites), 1e-9);
+}
+
+TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
+  const Sites sites = smooth_sites(2, 300, 0.0, 2);
+  Eigen::MatrixXd centres(2, 6);
+  centres << sites.points.leftCols(3), sites.points.leftCols(3);
+  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, centres);
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_EQ(fitted->report.rank, fitted->report.columns - 3);
+  EXPECT_EQ(fitted->report.notes.size(), 1U);
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(fitted->function.weights[j], fitted->function.weights[j + 3], 1e-10);
+}
+
+// Forty places with six sites each, 1e-6 apart: 44 unknowns, of which the data
+// tell 40. Least squares turns the noise within a place into slopes of 1e4.
+TEST(SolveWeights, TheEvidenceKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
+  Sites sites = smooth_sites(3, 240, 0.01, 1);
+  const Sites base = smooth_sites(3, 40, 0.0, 1);
+  for (Eigen::Index i = 0; i < 240; ++i) {
+    sites.points.col(i) = base.points.col(i % 40) + 1e-6 * sites.points.col(i);
+    sites.target_N[i] = base.target_N[i % 40] + 0.01 * std::sin(1e3 * static_cast<double>(i));
+  }
+  const Sites truth = smooth_sites(3, 200, 0.0, 99);
+  const auto least_squares = solve_weights(sites, KernelKind::cubic, base.points);
+  const auto evident = solve_weights(sites, KernelKind::cubic, base.points, {}, Ridge::by_evidence);
+  ASSERT_TRUE(least_squares.ok() && evident.ok());
+  EXPECT_GT(worst_error(least_squares->function, truth), 100.0);
+  EXPECT_LT(worst_error(evident->function, truth), 2.0);  // 40 places for a cube of forces up to 5 N
+  EXPECT_GT(evident->report.smoothing, 0.0);
+  EXPECT_LT(evident->report.residual_rms, 1.1 * least_squares->report.residual_rms);
+}
+
+// Plenty of sites, hardly any noise: the ridge costs nothing.
+TEST(SolveWeights, TheEvidenceLeavesAGoodFitAlone) {
+  const Sites sites = smooth_sites(3, 2000, 0.001, 1);
+  const auto least_squares = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100));
+  const auto evident = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100), {}, Ridge::by_evidence);
+  ASSERT_TRUE(least_squares.ok() && evident.ok());
+  EXPECT_LT(evident->report.residual_rms, 1.01 * least_squares->report.residual_rms);
+}
+
+TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
+  Sites sites = smooth_sites(3, 300, 0.0, 2);
+  sites.points.row(1).setConstant(0.25);
+  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(20));
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_EQ(fitted->report.rank, fitted->report.columns - 1);
+  EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
+}
+
+TEST(SolveWeights, OneSiteGivesItsForce) {
+  const Sites sites = smooth_sites(4, 1, 0.0, 2);
+  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_NEAR(rbf_value(fitted->function, sites.points.data()), sites.target_N[0], 1e-13);
+}
+
+TEST(SolveWeights, ZeroForcesGiveAZeroFunction) {
+  Sites sites = smooth_sites(4, 100, 0.0, 2);
+  sites.target_N.setZero();
+  const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_EQ(fitted->function.weights.norm(), 0.0);
+  EXPECT_EQ(fitted->function.tail.norm(), 0.0);
+}
+
+TEST(SolveWeights, ASiteWithScaleZeroDoesNotCount) {
+  Sites sites = smooth_sites(2, 200, 0.0, 2);
+  const Result<FittedRbf> before = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  sites.row_scale[150] = 0.0;
+  const Result<FittedRbf> without = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  sites.target_N[150] = 1e6;
+  const Result<FittedRbf> wild = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(10));
+  ASSERT_TRUE(before.ok() && without.ok() && wild.ok());
+  EXPECT_EQ(without->function.weights, wild->function.weights);
+}
+
+TEST(SolveWeights, RefusesWrongSitesWithAnExplanation) {
+  Sites sites = smooth_sites(2, 20, 0.0, 2);
+  sites.target_N[7] = std::nan("");
+  const Result<FittedRbf> bad = solve_weights(sites, KernelKind::cubic, sites.points);
+  ASSERT_FALSE(bad.ok());
+  EXPECT_EQ(bad.error().message,
+            "sites: site 7 is not finite or has a negative row_scale; expected finite points, forces and factors");
+  sites.target_N.resize(3);
+  EXPECT_EQ(solve_weights(sites, KernelKind::cubic, sites.points).error().message,
+            "sites: target_N has 3 entries, expected 20, one per point");
+  EXPECT_FALSE(solve_weights({}, KernelKind::cubic, sites.points).ok());
+}
+
+TEST(SolveWeights, CanBeInterrupted) {
+  const Sites sites = smooth_sites(2, 20, 0.0, 2);
+  const Result<FittedRbf> fitted =
+      solve_weights(sites, KernelKind::cubic, sites.points, FitControl{[](double) { return false; }});
+  ASSERT_FALSE(fitted.ok());
+  EXPECT_EQ(fitted.error().message, "interrupted");
+}
+
+TEST(DistinctSites, KeepsTheFirstOfEachPoint) {
+  Sites sites;
+  sites.points.resize(2, 5);
+  sites.points << 1, 0, 1, 0, 2,  //
+      3, 5, 3, 4, 0;
+  EXPECT_EQ(distinct_sites(sites), (std::vector<Eigen::Index>{0, 1, 3, 4}));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,121 @@
+#include "models/surface/surface_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/material/material.h"
+#include "scenes/material/rig.h"
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+// One press of a spring of 500 N/m from 3 mm out to 5 mm in and back, at 20 mm/s
+// and 1 kHz, then air; begun anew `presses` times, `rest_s` apart. The surface
+// moves by `creep_m` from press to press.
+Recording spring_presses(int presses, double rest_s, double creep_m = 0.0) {
+  Recording recording;
+  recording.name = "spring";
+  double time_s = 0.0;
+  for (int press = 0; press < presses; ++press) {
+    const auto rows = static_cast<int>((0.8 + rest_s) * 1000.0);
+    for (int i = 0; i < rows; ++i) {
+      time_s += 1e-3;
+      const double into_m = 5e-3 - 20.0 * std::abs(1e-3 * i - 0.4) * 1e-3;
+      const double position_m = std::max(-3e-3, into_m);
+      const double force_N = 500.0 * std::max(0.0, position_m - press * creep_m);
+      recording.rows.push_back({time_s, position_m, force_N, 0.0, 0.0});
+    }
+  }
+  return recording;
+}
+
+Recording moved(Recording recording, double offset_m, double zero_N = 0.0) {
+  for (RecordingRow& row : recording.rows) {
+    row.position_m += offset_m;
+    row.force_N += zero_N;
+  }
+  return recording;
+}
+
+Recording rig(const std::string& material, std::uint64_t seed) {
+  RigSettings settings = test::train_settings(material);
+  settings.seed = seed;
+  settings.seconds = 10.0;
+  return *test::rig_recording(settings);
+}
+
+// The bound: 0.02 mm, with an encoder of 0.03 mm and force noise of 5 mN. What
+// one touch does not tell from 0 is 0.
+TEST(SurfaceEstimate, FindsTheShiftAndTheForceZeroOfVirtualRecordings) {
+  for (const char* material : {"maxwell", "foam", "gel", "elastic"}) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+      const Recording recording = rig(material, seed);
+      for (const double shift_m : {-1.2e-3, -0.5e-3, -0.05e-3, 0.05e-3, 0.3e-3}) {
+        const SurfaceEstimate estimate = estimate_surface(moved(recording, shift_m, 0.1));
+        EXPECT_NEAR(estimate.raw_offset_m, shift_m, 0.02e-3) << material << ", seed " << seed;
+        const bool told = std::abs(estimate.raw_offset_m) > 2.0 * estimate.standard_error_m;
+        EXPECT_EQ(estimate.offset_m, told ? estimate.raw_offset_m : 0.0) << material << ", seed " << seed;
+        EXPECT_NEAR(estimate.force_zero_N, 0.1, 1e-3) << material << ", seed " << seed;
+      }
+    }
+  }
+}
+
+// A ball on a soft solid begins so softly that a touch tells some 0.05 mm at best.
+TEST(SurfaceEstimate, FindsLargerShiftsWhereForceBeginsSoftly) {
+  for (const char* material : {"silicone", "tissue", "softening"}) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+      const SurfaceEstimate estimate = estimate_surface(moved(rig(material, seed), -0.3e-3));
+      EXPECT_NEAR(estimate.offset_m, -0.3e-3, 0.05e-3) << material << ", seed " << seed;
+    }
+  }
+}
+
+TEST(SurfaceEstimate, InventsNothing) {
+  for (const Material& material : materials()) {
+    const SurfaceEstimate estimate = estimate_surface(rig(std::string(material.name), 3));
+    EXPECT_EQ(estimate.offset_m, 0.0) << material.name;
+    EXPECT_EQ(estimate.force_zero_N, 0.0) << material.name;
+  }
+}
+
+// A surface that still recovers meets the tool late: only the touch at rest counts.
+TEST(SurfaceEstimate, OnlyTouchesAtRestCount) {
+  EXPECT_EQ(estimate_surface(spring_presses(3, 0.5)).touches, 1);
+  EXPECT_EQ(estimate_surface(spring_presses(3, kRestBeforeTouch_s)).touches, 3);
+}
+
+TEST(SurfaceEstimate, MeasuresASurfaceThatMoves) {
+  const SurfaceEstimate still = estimate_surface(spring_presses(3, 6.0));
+  EXPECT_EQ(still.offset_drift_m, 0.0);
+  const SurfaceEstimate creeping = estimate_surface(spring_presses(3, 6.0, 0.1e-3));
+  EXPECT_NEAR(creeping.offset_drift_m, 0.2e-3, 0.02e-3);
+}
+
+TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
+  Recording recording = spring_presses(3, 6.0);
+  const double end_s = recording.rows.back().time_s;
+  for (RecordingRow& row : recording.rows) row.force_N += 0.03 * row.time_s / end_s;
+  // Between the middles of the first and the last third.
+  EXPECT_NEAR(estimate_surface(recording).force_zero_drift_N, 0.02, 0.005);
+}
+
+TEST(SurfaceEstimate, SaysSoWhereThereIsNoAirAndNoForce) {
+  Recording no_force = spring_presses(1, 0.5);
+  for (RecordingRow& row : no_force.rows) row.force_N = 0.0;
+  const SurfaceEstimate nothing = estimate_surface(no_force);
+  EXPECT_EQ(nothing.offset_m, 0.0);
+  EXPECT_TRUE(std::isinf(nothing.standard_error_m));
+
+  Recording no_air = spring_presses(1, 0.5);
+  std::erase_if(no_air.rows, [](const RecordingRow& row) { return row.position_m < 0.5e-3; });
+  const SurfaceEstimate held = estimate_surface(no_air);
+  EXPECT_EQ(held.force_zero_N, 0.0);
+  EXPECT_TRUE(std::isinf(held.force_zero_error_N));
+  EXPECT_EQ(held.free_air_share, 0.0);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,158 @@
+// Keys, buttons and the list of keys.
+#include <imgui_internal.h>
+
+#include <filesystem>
+#include <set>
+
+#include "engine/recording/recording.h"
+#include "tests/support/demo_window.h"
+
+namespace palpate {
+namespace {
+
+using DemoCommandsTest = test::DemoWindowTest;
+
+TEST_F(DemoCommandsTest, EveryRowIsReachedByItsKeysAndListedInTheHelp) {
+  const std::string replayed = folder_.file("strokes.csv");
+  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
+  open("replay:" + replayed);
+  const std::vector<HelpLine> help = help_lines(app_->commands());
+  ASSERT_EQ(help.size(), app_->commands().size());
+  std::set<std::pair<int, bool>> keys;
+  for (std::size_t row = 0; row < help.size(); ++row) {
+    WindowCommand& command = app_->commands()[row];
+    EXPECT_FALSE(help[row].keys.empty()) << command.help;
+    EXPECT_FALSE(help[row].text.empty()) << help[row].keys;
+    EXPECT_TRUE(command.label.empty() || !command.keys.empty()) << command.label << " is a button without a key";
+    std::vector<std::size_t> ran;
+    command.run = [&](std::size_t key) { ran.push_back(key); };
+    for (std::size_t i = 0; i < command.keys.size(); ++i) {
+      EXPECT_TRUE(keys.insert({command.keys[i], command.control}).second) << help[row].keys << " does two things";
+      ran.clear();
+      press(command.keys[i], command.control ? GLFW_MOD_CONTROL : 0, command.when == WindowCommand::When::held);
+      EXPECT_EQ(ran, std::vector<std::size_t>{i}) << help[row].keys << ": " << command.help;
+    }
+  }
+}
+
+TEST_F(DemoCommandsTest, AButtonDoesWhatItsKeyDoes) {
+  open("hand");
+  frames(3);
+  ImGuiWindow* buttons = ImGui::FindWindowByName("buttons");
+  ASSERT_NE(buttons, nullptr);
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  // The first button is Help: its middle, from the window's corner.
+  const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+  glfwSetCursorPos(window, static_cast<double>(buttons->Pos.x + padding.x + 8.0F),
+                   static_cast<double>(buttons->Pos.y + padding.y + 6.0F));
+  frames(3);
+  click();
+  EXPECT_TRUE(app_->view().help);
+}
+
+TEST_F(DemoCommandsTest, ARecordingGoesOnByOneSample) {
+  const std::string replayed = folder_.file("strokes.csv");
+  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
+  open("replay:" + replayed);
+  ReplayControl& replay = *app_->session().replay();
+  press(GLFW_KEY_PERIOD);
+  EXPECT_TRUE(replay.paused());
+  frames(3);
+  const double before_s = replay.playhead_s();
+  press(GLFW_KEY_PERIOD);
+  ASSERT_TRUE(until([&] { return replay.playhead_s() > before_s; }));
+  EXPECT_NEAR(replay.playhead_s() - before_s, 1e-3, 1e-9);
+  press(GLFW_KEY_COMMA);
+  ASSERT_TRUE(until([&] { return replay.playhead_s() < before_s + 0.5e-3; }));
+  EXPECT_NEAR(replay.playhead_s(), before_s, 1e-9);
+}
+
+TEST_F(DemoCommandsTest, ClosingWhileRecordingLeavesTheFileWhole) {
+  const std::string replayed = folder_.file("strokes.csv");
+  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
+  open("replay:" + replayed);
+  press(GLFW_KEY_R);
+  const std::string path = app_->session().recording().path;
+  EXPECT_TRUE(app_->session().recording().active);
+  ASSERT_TRUE(until([&] { return app_->session().recording().rows > 300; }));
+  EXPECT_FALSE(std::filesystem::exists(path)) << "not before it is whole";
+  app_.reset();
+  EXPECT_EQ(path.rfind(folder_.file("palpate/session-"), 0), 0u) << path;
+  const auto recording = read_recording(path);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_GT(recording->rows.size(), 300u);
+}
+
+TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
+  open("hand");
+  press(GLFW_KEY_T);
+  EXPECT_EQ(app_->view().theme, Theme::dark);
+  press(GLFW_KEY_B);
+  EXPECT_EQ(app_->view().block_count, 2u);
+  press(GLFW_KEY_SPACE);
+  EXPECT_TRUE(app_->view().time.paused);
+  press(GLFW_KEY_H);
+  press(GLFW_KEY_L);
+  press(GLFW_KEY_M);
+  EXPECT_TRUE(app_->view().help && app_->view().details && app_->view().file_list);
+  press(GLFW_KEY_ESCAPE);
+  EXPECT_FALSE(app_->view().help || app_->view().details || app_->view().file_list);
+  EXPECT_FALSE(app_->closing());
+  press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
+  EXPECT_TRUE(app_->closing());
+}
+
+TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
+  open("hand");
+  press(GLFW_KEY_M);
+  press(GLFW_KEY_H);
+  for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
+    glfwSetWindowSize(app_->window().handle(), width, height);
+    frames(8);
+    for (const char* name : {"Keys", "Load a model", "buttons", "title"}) {
+      const ImGuiWindow* window = ImGui::FindWindowByName(name);
+      ASSERT_NE(window, nullptr) << name;
+      EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
+      EXPECT_GE(window->Pos.y, 0.0F) << name << " " << width;
+      EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << name;
+      EXPECT_LE(window->Pos.y + window->Size.y, static_cast<float>(height)) << name;
+    }
+  }
+}
+
+TEST_F(DemoCommandsTest, SavesWhatTheCurvesShow) {
+  open("hand");
+  frames(30);
+  press(GLFW_KEY_S);
+  ASSERT_TRUE(told("saved"));
+  std::size_t figures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
+    figures += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
+  EXPECT_EQ(figures, 2u);
+}
+
+TEST_F(DemoCommandsTest, StandsStillAsAWholeAndSaysWhatItShows) {
+  open("hand");
+  frames(20);
+  press(GLFW_KEY_SPACE);
+  const CurveTime time = app_->view().time;
+  frames(10);
+  EXPECT_EQ(app_->view().time.end_s(1e9), time.end_s(0.0));
+  press(GLFW_KEY_SPACE);
+  EXPECT_FALSE(app_->view().time.paused);
+}
+
+TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
+  open("hand");
+  press(GLFW_KEY_D);
+  EXPECT_EQ(app_->session().dead_man(), DeadMan::off);
+  EXPECT_TRUE(told("no device that pushes"));
+  press(GLFW_KEY_B);
+  press(GLFW_KEY_B);
+  EXPECT_EQ(app_->view().block_count, 4u);
+  EXPECT_TRUE(told("2 of 4 blocks"));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,101 @@
+// Mouse and wheel on the window.
+#include <cmath>
+
+#include "rendering/panels/panel_views.h"
+#include "tests/support/demo_window.h"
+
+namespace palpate {
+namespace {
+
+using DemoInputTest = test::DemoWindowTest;
+
+// Never more than one JND in 10 ms, whatever the models differ by.
+TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
+  open("mouse");
+  LiveSession& session = app_->session();
+  session.mouse()->set_target(0.004, steady_now_s());
+  ASSERT_TRUE(until([&] { return session.newest().tick.depth_m > 0.002; }));
+  frames(60);  // at rest
+  const double before_s = session.newest().loop_time_s;
+  const double soft_N = session.models().view(0).force_N;
+  const double firm_N = session.models().view(1).force_N;
+  ASSERT_GT(firm_N, soft_N + session.jnd().at(soft_N)) << "a difference to fade over";
+  press(GLFW_KEY_2);
+  EXPECT_EQ(session.models().selected(), 1u);
+  frames(40);
+  press(GLFW_KEY_1);
+  frames(40);
+  const ForceHistory& history = session.comparison().history();
+  const std::size_t first = history.first_at(before_s);
+  double worst = 0.0;
+  for (std::size_t i = first + 1; i < history.size(); ++i) {
+    const double step_s = history[i].loop_time_s - history[i - 1].loop_time_s;
+    const auto from_N = static_cast<double>(history[i - 1].rendered_N);
+    const auto to_N = static_cast<double>(history[i].rendered_N);
+    // A tick that comes late may go as far as the time that has passed, up to 10 ms.
+    const double allowed_N =
+        session.jnd().at(std::min(from_N, to_N)) * std::clamp(step_s, 0.001, 0.01) / 0.01;
+    worst = std::max(worst, std::abs(to_N - from_N) / allowed_N);
+  }
+  // The tool gives way while the force changes, and the models' own forces with it:
+  // a tenth more than the fade alone.
+  EXPECT_LT(worst, 1.1);
+}
+
+TEST_F(DemoInputTest, TheWheelMovesTheProbeAndWithCtrlTheCamera) {
+  open("mouse");
+  GLFWwindow* window = app_->window().handle();
+  const auto scroll = [&](double steps) {
+    const GLFWscrollfun callback = glfwSetScrollCallback(window, nullptr);
+    glfwSetScrollCallback(window, callback);
+    callback(window, 0.0, steps);
+    app_->frame();
+  };
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 380.0);
+  frames(5);
+  const double before_m = app_->session().newest().tick.position_m;
+  for (int i = 0; i < 6; ++i) scroll(-1.0);
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > before_m + 0.001; }));
+}
+
+TEST_F(DemoInputTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
+  open("mouse");
+  const double known_m = app_->session().models().trained_depth_m();
+  ASSERT_LT(known_m, 0.1);
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 360.0);
+  frames(5);
+  glfwSetCursorPos(window, 384.0, 560.0);
+  frames(60);
+  EXPECT_LT(app_->session().newest().tick.position_m, 1.1 * known_m);
+}
+
+TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
+  open("mouse");
+  EXPECT_FALSE(models_view(app_->session()).out_of_domain());
+  app_->session().mouse()->set_target(0.03, steady_now_s());  // example models know 6 mm
+  EXPECT_TRUE(until([&] { return models_view(app_->session()).out_of_domain(); }));
+}
+
+TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
+  open("auto");
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  frames(3);
+  EXPECT_TRUE(app_->session().mouse()->hand_is_exploring());
+  // Beside the block nothing happens; over it, lower is deeper.
+  glfwSetCursorPos(window, 20.0, 300.0);
+  frames(5);
+  EXPECT_TRUE(app_->session().mouse()->hand_is_exploring());
+  glfwSetCursorPos(window, 384.0, 380.0);
+  ASSERT_TRUE(until([&] { return !app_->session().mouse()->hand_is_exploring(); }));
+  frames(30);
+  const double high_m = app_->session().newest().tick.position_m;
+  glfwSetCursorPos(window, 384.0, 430.0);
+  ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,127 @@
+// palpate export with nothing but the model: the file's forces are those of palpate replay.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/tick/jnd.h"
+#include "engine/tick/replay.h"
+#include "models/fit/methods.h"
+#include "models/model/file/model_io.h"
+#include "tests/support/compiled_model.h"
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+
+class ExportVerb : public ::testing::Test {
+ protected:
+  // Positions and forces of the rig, another seed for each recording.
+  Recording recording(const std::string& material, double seconds, std::uint64_t seed, double noise_m = 0.0) {
+    RigSettings settings = test::train_settings(material);
+    settings.seconds = seconds;
+    settings.seed = seed;
+    Recording positions = *test::encoder_only(test::rig_recording(settings));
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, noise_m);
+    for (RecordingRow& row : positions.rows) row.position_m += noise_m > 0.0 ? noise(engine) : 0.0;
+    return positions;
+  }
+
+  // The text that export writes of a fit to `train`.
+  std::string exported(const Recording& train, const std::vector<std::string>& fit_options,
+                       const std::vector<std::string>& export_options = {}) {
+    EXPECT_TRUE(write_recording(folder_.file("train.csv"), train, {}, true).ok());
+    std::vector<std::string> fit = {"fit", "--recording", folder_.file("train.csv"), "--out", folder_.file("m.json"),
+                                    "--force"};
+    fit.insert(fit.end(), fit_options.begin(), fit_options.end());
+    const auto fitted = run_palpate(fit);
+    EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
+    std::vector<std::string> arguments = {"export", folder_.file("m.json"), "--c", folder_.file("m.c"), "--force"};
+    arguments.insert(arguments.end(), export_options.begin(), export_options.end());
+    const auto run = run_palpate(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    printed_ = run.out;
+    return test::read_text(folder_.file("m.c"));
+  }
+
+  bool has_feature(FeatureKind kind) {
+    const auto model = test::must(load_model(folder_.file("m.json")));
+    return std::any_of(model->features().begin(), model->features().end(),
+                       [&](const FeatureSpec& spec) { return spec.kind == kind; });
+  }
+
+  // The largest of `distance(exported force, replay's force)` over the recording.
+  template <typename Real, typename Distance>
+  double worst(const Recording& test_recording, const std::string& text, const Distance& distance) {
+    const test::CompiledModel<Real> compiled(text);
+    if (compiled.force == nullptr) return INFINITY;
+    // As the file of the recording has it, whose decimals are what replay reads.
+    EXPECT_TRUE(write_recording(folder_.file("test.csv"), test_recording, {}, true).ok());
+    const Recording read = test::must(read_recording(folder_.file("test.csv")));
+    double largest = 0.0;
+    const auto summary = replay(read, {test::must(load_model(folder_.file("m.json")))},
+                                [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+      const Real force_N = compiled.force(static_cast<Real>(row.time_s), static_cast<Real>(row.position_m));
+      largest = std::max(largest, distance(static_cast<double>(force_N), snapshot.force_N[0]));
+    });
+    EXPECT_GT(test::must(summary).contact_samples, 500U);
+    return largest;
+  }
+
+  double worst_N(const Recording& test_recording, const std::string& text) {
+    return worst<double>(test_recording, text, [](double a_N, double b_N) { return std::abs(a_N - b_N); });
+  }
+
+  test::TemporaryFolder folder_;
+  std::string printed_;
+};
+
+// Other presses than those of the fit; 1e-9 N is what the issue of the library asks for.
+TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
+  const Recording train = recording("friction", 10.0, 1);
+  const Recording other = recording("friction", 6.0, 2);
+  for (const Method* method : methods()) {
+    const std::string text = exported(train, {"--method", method->name});
+    EXPECT_LT(worst_N(other, text), 1e-9) << method->name;
+    EXPECT_TRUE(has_feature(FeatureKind::stops)) << method->name;
+    EXPECT_NE(printed_.find("steps of 30 um with a noise of 0 um"), std::string::npos) << printed_;
+  }
+}
+
+TEST_F(ExportVerb, AMaterialThatSoftensIsExportedWithItsMemory) {
+  const std::string text = exported(recording("softening", 15.0, 1), {"--method", "greedy"});
+  EXPECT_TRUE(has_feature(FeatureKind::fading_peak));
+  EXPECT_LT(worst_N(recording("softening", 8.0, 2), text), 1e-9);
+}
+
+// The noise of two recordings is never found to be quite the same; the sensor is.
+TEST_F(ExportVerb, PositionsWithNoiseGiveReplaysForcesToo) {
+  const std::string text = exported(recording("silicone", 8.0, 1, 200e-6), {"--method", "random"});
+  EXPECT_LT(worst_N(recording("silicone", 8.0, 2, 200e-6), text), 1e-9);
+}
+
+// 1 mN, or a fiftieth of what can be felt.
+TEST_F(ExportVerb, InSinglePrecisionNobodyFeelsTheDifference) {
+  const JndLine jnd;
+  const auto over_limit = [&](double a_N, double b_N) {
+    return std::abs(a_N - b_N) / std::max(1e-3, 0.02 * jnd.at(b_N));
+  };
+  for (const char* material : {"friction", "softening"}) {
+    const std::string text = exported(recording(material, 12.0, 1), {"--method", "greedy"}, {"--float"});
+    EXPECT_LT(worst<float>(recording(material, 8.0, 2), text, over_limit), 1.0) << material;
+  }
+}
+
+TEST_F(ExportVerb, AnotherStepIsWhatTheFileIsToldAndSays) {
+  const std::string text = exported(recording("silicone", 6.0, 1), {"--method", "trend"}, {"--encoder-step", "1e-6"});
+  EXPECT_NE(text.find("#define PALPATE_ENCODER_STEP_M 1e-06"), std::string::npos);
+  EXPECT_NE(text.find("Positions are taken to be in steps of 1e-06 m."), std::string::npos);
+  EXPECT_NE(printed_.find("steps of 1 um"), std::string::npos) << printed_;
+}
+
+}  // namespace
+}  // namespace palpate

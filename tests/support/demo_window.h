@@ -1,0 +1,123 @@
+// The real window on a display in memory, for tests of what people do to it.
+#pragma once
+
+#include <epoxy/gl.h>
+// After epoxy, which brings OpenGL's functions.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "models/model/file/model_io.h"
+#include "rendering/app/demo_app.h"
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace palpate::test {
+
+// Enough for a loaded machine; nothing waits so long.
+inline constexpr double kPatience_s = 60.0;
+
+class DemoWindowTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_FALSE(virtual_display().empty()) << "Xvfb does not start; apt-get install xvfb";
+    setenv("XDG_DATA_HOME", folder_.path().c_str(), 1);  // nothing of a test stays with the user
+    save("soft.json", 1, 1.0);
+    save("firm.json", 2, 1.6);
+  }
+  void TearDown() override { app_.reset(); }
+
+  // A model of the four features; `firmness` scales what it answers.
+  void save(const std::string& file, std::uint64_t seed, double firmness) {
+    ModelData data = example_model("greedy", KernelKind::cubic, paper_features(), seed);
+    data.name = file.substr(0, file.find('.'));
+    for (double& value : data.trend.elastic_N) value *= firmness;
+    ASSERT_TRUE(save_model(folder_.file(file), data, false).ok());
+  }
+
+  // A scene without a virtual material: no fit runs beside the test.
+  void open(const std::string& device, bool kiosk = false) {
+    DemoRequest request;
+    request.session.scene = "skin";
+    request.session.device = device;
+    request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
+    request.session.realtime = false;  // a test does not outrank the machine it runs on
+    request.kiosk = kiosk;
+    auto app = DemoApp::create(request);
+    ASSERT_TRUE(app.ok()) << app.error().message;
+    app_ = std::move(*app);
+    app_->view().block_count = 1;
+    ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
+  }
+
+  // Frames until `done`; whether it came to that.
+  template <typename Done>
+  bool until(Done done) {
+    const auto start = std::chrono::steady_clock::now();
+    while (!done()) {
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s)
+        return false;
+      app_->frame();
+    }
+    return true;
+  }
+  void frames(int count) {
+    for (int i = 0; i < count; ++i) app_->frame();
+  }
+
+  // As the operating system would: through the callbacks that are installed.
+  void press(int key, int modifiers = 0, bool held = false) {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
+    callback(window, key, 0, GLFW_PRESS, modifiers);
+    if (held) app_->frame();
+    callback(window, key, 0, GLFW_RELEASE, modifiers);
+    glfwSetKeyCallback(window, callback);
+    frames(2);
+  }
+  // Down until `done`.
+  template <typename Done>
+  void hold(int key, Done done) {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
+    glfwSetKeyCallback(window, callback);
+    callback(window, key, 0, GLFW_PRESS, 0);
+    EXPECT_TRUE(until(done));
+    callback(window, key, 0, GLFW_RELEASE, 0);
+    frames(2);
+  }
+  // The left button, where the mouse is.
+  void click() {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
+    glfwSetMouseButtonCallback(window, callback);
+    for (const int action : {GLFW_PRESS, GLFW_RELEASE}) {
+      callback(window, GLFW_MOUSE_BUTTON_LEFT, action, 0);
+      frames(2);
+    }
+  }
+  void drop(const std::string& path) {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWdropfun callback = glfwSetDropCallback(window, nullptr);
+    const char* paths[] = {path.c_str()};
+    callback(window, 1, paths);
+    glfwSetDropCallback(window, callback);
+  }
+  bool told(const std::string& words) const {
+    const auto& toasts = app_->toasts();
+    return std::any_of(toasts.begin(), toasts.end(),
+                       [&](const Toast& toast) { return toast.text.find(words) != std::string::npos; });
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<DemoApp> app_;
+};
+
+}  // namespace palpate::test
