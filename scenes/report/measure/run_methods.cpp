@@ -232,10 +232,15 @@ class Run {
     return {};
   }
 
-  // The main models that have learnt something say together where the surface is.
+  // The main models of the upper rung say together where the surface is, for all.
   Status evaluate_moved(const Recording& recording, const std::vector<ModelPointer>& models,
                         const std::vector<ModelPointer>& main, double share) {
-    const double offset_m = surface_of_models(recording, {main.begin() + 1, main.end()}, scene_.jnd);
+    const std::vector<bool> counts = counting(plan_);
+    std::vector<ModelPointer> upper;
+    for (std::size_t i = 0; i < main.size(); ++i) {
+      if (counts[i]) upper.push_back(main[i]);
+    }
+    const double offset_m = surface_of_models(recording, upper, scene_.jnd);
     data_.surface_offset_m.push_back(offset_m);
     const auto errors = moved_evaluator_.evaluate(with_correction(recording, {offset_m, 0.0}), models,
                                                   progress_.next(share * static_cast<double>(models.size())));
