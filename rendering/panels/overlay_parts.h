@@ -27,7 +27,7 @@ inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::str
 // Over the blocks.
 void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
                  const UiStyle& style, const SceneArea& area);
-// The error of the model in the hand as one number, in words, and the scale that its
+// The error of the active model as one number, in words, and the scale that its
 // colour is from; so far above the lower edge.
 void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift);
 
