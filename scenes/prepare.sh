@@ -12,8 +12,9 @@ packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev lib
 # For the tests and benchmarks: of the window a display in memory (xauth: for
 # xvfb-run), of devices an emulated one, of numbers a German locale.
 test_packages=(libgtest-dev libbenchmark-dev python3 locales xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev)
-# libalglib-dev: a library that palpate-bench compares with where it is there.
-ci_packages=(clang-14 libclang-rt-14-dev libalglib-dev)
+# libalglib-dev, libdlib-dev: libraries that palpate-bench compares with where they are
+# there; lintian, mmdebstrap: for tests/package/check.sh.
+ci_packages=(clang-14 libclang-rt-14-dev libalglib-dev libdlib-dev lintian mmdebstrap)
 
 say() { printf '== %s\n' "$*"; }
 

@@ -23,12 +23,17 @@ std::optional<double> share_within_jnd(const PreparedTraining& prepared, const M
 
 }  // namespace
 
-Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
-                             const FitControl& control, const MethodFit* base) {
+Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   Eigen::VectorXd jnd_N(prepared.sites.count());
   for (Eigen::Index i = 0; i < jnd_N.size(); ++i) {
     jnd_N(i) = prepared.common.jnd.at(prepared.set.sites[static_cast<std::size_t>(i)].force_N);
   }
+  return jnd_N;
+}
+
+Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
+                             const FitControl& control, const MethodFit* base) {
+  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   const Method& method = *request.method;
   std::optional<FittedCorrection> from;
   if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};

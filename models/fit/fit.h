@@ -78,6 +78,9 @@ struct MethodFit {
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control = {});
 
+// The JND at the force of each site.
+Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
+
 // Errors: the method cannot be fitted to these sites (says why); interrupted.
 // The same prepared training and request give the same bits. `base`: the fit of the
 // same prepared training, kernel and solver by the method's base (methods.h), when

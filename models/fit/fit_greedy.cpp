@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/random_stream.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/fit/methods.h"
 #include "models/solve/candidate_gains.h"
 #include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
+#include "engine/base/random_stream.h"
 #include "models/solve/solve_weights.h"
 
 namespace palpate {
@@ -136,7 +136,7 @@ bool select(Selection& selection, Eigen::Index count, const FitControl& control,
 
 }  // namespace
 
-Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
+Result<CentreSequence> choose_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   const BlasThreads one_thread(1);
   std::vector<Eigen::Index> distinct = distinct_sites(sites);
@@ -155,23 +155,35 @@ Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, c
   if (!finished) return interrupted();
   Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
   for (Eigen::Index j = 0; j < centres.cols(); ++j) centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
-  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, {}, Ridge::by_evidence);
-  if (!fitted) return fitted;
-  fitted->report.centres_asked = options.centres;
-  if (centres.cols() < options.centres)
-    fitted->report.notes.push_back("only " + std::to_string(centres.cols()) + " centres: " +
-                                   (clamped.centres < options.centres ? "there are no more distinct sites"
-                                                                      : "no other site lowers the error"));
+  CentreSequence sequence = CentreSequence::growing(std::move(centres));
+  if (sequence.most < options.centres) {
+    sequence.shortage =
+        clamped.centres < options.centres ? "there are no more distinct sites" : "no other site lowers the error";
+  }
+  return sequence;
+}
+
+Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
+  const auto sequence = choose_greedy(sites, options, control);
+  if (!sequence) return sequence.error();
+  auto fitted = solve_largest(sites, options.kernel, *sequence, options.centres);
   if (!control.may_continue(1.0)) return interrupted();
   return fitted;
 }
 
 namespace {
 
+GreedyOptions options_of(const MethodRequest& request) {
+  return {request.kernel, request.centres, request.candidates, request.seed};
+}
+
+Result<CentreSequence> greedy_sequence(const MethodTask& task, const FitControl& control) {
+  return choose_greedy(task.sites, options_of(task.request), control);
+}
+
 Result<FittedCorrection> greedy_correction(const MethodTask& task, const FitControl& control) {
   const MethodRequest& request = task.request;
-  auto fitted =
-      fit_greedy(task.sites, {request.kernel, request.centres, request.candidates, request.seed}, control);
+  auto fitted = fit_greedy(task.sites, options_of(request), control);
   if (!fitted) return fitted.error();
   return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
                           std::to_string(request.centres)};
@@ -190,6 +202,7 @@ const Method kGreedyMethod{
           return 0.1 + (0.05 + 0.001 * request.candidates) * hundreds * hundreds;
         },
     .fit = greedy_correction,
+    .choose = greedy_sequence,
 };
 
 }  // namespace palpate

@@ -15,6 +15,7 @@
 
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
@@ -27,10 +28,11 @@ struct GreedyOptions {
   std::uint64_t seed = 1;         // of the random subsets
 };
 
-// The centres, in the order chosen, with the least-squares weights of
-// solve_weights. Fewer than asked when there are no more distinct sites or no
-// remaining site adds anything; the report notes it. Errors: those of
-// solve_weights. The same seed gives the same bits. Off the tick.
+// The centres, in the order chosen. Fewer than asked when there are no more distinct
+// sites or no remaining site adds anything. Errors: those of validate_sites;
+// interrupted. The same seed gives the same bits. Off the tick.
+Result<CentreSequence> choose_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control = {});
+// The same with the weights of solve_weights; the report notes what is missing.
 Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control = {});
 
 }  // namespace palpate

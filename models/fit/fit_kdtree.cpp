@@ -155,8 +155,8 @@ Eigen::VectorXd excess_of(const GrowingFit& fit, const Sites& sites, const Eigen
 
 }  // namespace
 
-Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
-                             const FitControl& control) {
+Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
+                                     const FitControl& control) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   if (jnd_N.size() != sites.count() || !jnd_N.allFinite() || !(jnd_N.minCoeff() > 0.0))
     return Error{"jnd_N has " + std::to_string(jnd_N.size()) + " entries or one that is not positive, expected " +
@@ -165,9 +165,18 @@ Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, c
   SiteTree tree(sites.points);
   const Eigen::Index most = std::max<Eigen::Index>(1, std::min(options.centres, sites.count()));
   GrowingFit fit(sites, options.kernel, most);
-  Eigen::MatrixXd centres(sites.dimension(), most);
-  centres.col(0) = tree.barycentre(0);
-  fit.set(centres.leftCols(1), {0});
+  CentreSequence sequence;
+  sequence.pool.resize(sites.dimension(), 2 * most - 1);
+  std::vector<std::size_t> of_leaf;  // its column
+  const auto add = [&](Eigen::Index leaf) {
+    const auto place = static_cast<std::size_t>(leaf);
+    of_leaf.resize(std::max(of_leaf.size(), place + 1));
+    of_leaf[place] = sequence.stays.size();
+    sequence.stays.push_back({leaf, tree.leaf_count(), 0});
+    sequence.pool.col(static_cast<Eigen::Index>(of_leaf[place])) = tree.barycentre(leaf);
+  };
+  add(0);
+  fit.set(sequence.pool.leftCols(1), {0});
   std::vector<bool> whole;
   while (tree.leaf_count() < most) {
     if (!control.may_continue(0.95 * static_cast<double>(tree.leaf_count()) / static_cast<double>(most)))
@@ -176,23 +185,32 @@ Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, c
     const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
     if (lower < 0) break;
     const Eigen::Index upper = tree.leaf_count() - 1;
-    centres.col(lower) = tree.barycentre(lower);
-    centres.col(upper) = tree.barycentre(upper);
-    Eigen::MatrixXd pair(sites.dimension(), 2);
-    pair << centres.col(lower), centres.col(upper);
-    fit.set(pair, {lower, upper});
+    sequence.stays[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
+    const auto before = static_cast<Eigen::Index>(sequence.stays.size());
+    add(lower);
+    add(upper);
+    fit.set(sequence.pool.middleCols(before, 2), {lower, upper});
   }
-  const Eigen::Index used = options.centres > 0 ? tree.leaf_count() : 0;
-  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres.leftCols(used), {}, Ridge::by_evidence);
-  if (!fitted) return fitted;
-  fitted->report.centres_asked = options.centres;
-  if (used < options.centres)
-    fitted->report.notes.push_back("only " + std::to_string(used) + " centres: no leaf can be split further");
+  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.stays.size()));
+  sequence.most = options.centres > 0 ? tree.leaf_count() : 0;
+  if (sequence.most < options.centres) sequence.shortage = "no leaf can be split further";
+  return sequence;
+}
+
+Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
+                             const FitControl& control) {
+  const auto sequence = choose_kdtree(sites, jnd_N, options, control);
+  if (!sequence) return sequence.error();
+  auto fitted = solve_largest(sites, options.kernel, *sequence, options.centres);
   if (!control.may_continue(1.0)) return interrupted();
   return fitted;
 }
 
 namespace {
+
+Result<CentreSequence> kdtree_sequence(const MethodTask& task, const FitControl& control) {
+  return choose_kdtree(task.sites, task.jnd_N, {task.request.kernel, task.request.centres}, control);
+}
 
 Result<FittedCorrection> kdtree_correction(const MethodTask& task, const FitControl& control) {
   const MethodRequest& request = task.request;
@@ -215,6 +233,7 @@ const Method kKdTreeMethod{
           return 0.1 + 0.01 * hundreds * hundreds * hundreds;
         },
     .fit = kdtree_correction,
+    .choose = kdtree_sequence,
 };
 
 }  // namespace palpate

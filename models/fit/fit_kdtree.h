@@ -13,6 +13,7 @@
 
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
@@ -24,9 +25,11 @@ struct KdTreeOptions {
 };
 
 // `jnd_N`: N thresholds > 0; errors are compared with. Fewer centres than asked
-// when no leaf can be split, which the report notes. Errors: those of
-// solve_weights; a wrong jnd_N. Deterministic. Off the tick; O(N centres) a
-// step, memory N x centres.
+// when no leaf can be split. Errors: those of validate_sites; a wrong jnd_N;
+// interrupted. Deterministic. Off the tick; O(N centres) a step, memory N x centres.
+Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
+                                     const FitControl& control = {});
+// The same with the weights of solve_weights; the report notes what is missing.
 Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
                              const FitControl& control = {});
 

@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, const FitControl& control) {
+Result<CentreSequence> choose_random(const Sites& sites, const RandomOptions& options) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   std::vector<Eigen::Index> order = distinct_sites(sites);
   const auto distinct = static_cast<Eigen::Index>(order.size());
@@ -25,15 +25,22 @@ Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, c
     std::swap(order[static_cast<std::size_t>(j)], order[pick]);
     centres.col(j) = sites.points.col(order[static_cast<std::size_t>(j)]);
   }
-  Result<FittedRbf> fitted = solve_weights(sites, options.kernel, centres, control, Ridge::by_evidence);
-  if (!fitted) return fitted;
-  fitted->report.centres_asked = options.centres;
-  if (count < options.centres)
-    fitted->report.notes.push_back("only " + std::to_string(count) + " centres: there are no more distinct sites");
-  return fitted;
+  CentreSequence sequence = CentreSequence::growing(std::move(centres));
+  if (count < options.centres) sequence.shortage = "there are no more distinct sites";
+  return sequence;
+}
+
+Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, const FitControl& control) {
+  const auto sequence = choose_random(sites, options);
+  if (!sequence) return sequence.error();
+  return solve_largest(sites, options.kernel, *sequence, options.centres, control);
 }
 
 namespace {
+
+Result<CentreSequence> random_sequence(const MethodTask& task, const FitControl&) {
+  return choose_random(task.sites, {task.request.kernel, task.request.centres, task.request.seed});
+}
 
 Result<FittedCorrection> random_correction(const MethodTask& task, const FitControl& control) {
   const MethodRequest& request = task.request;
@@ -53,6 +60,7 @@ const Method kRandomMethod{
     .expected_seconds =
         [](const MethodRequest& request) { return 0.08 + 0.02 * (0.01 * request.centres) * (0.01 * request.centres); },
     .fit = random_correction,
+    .choose = random_sequence,
 };
 
 }  // namespace palpate

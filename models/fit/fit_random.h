@@ -8,6 +8,7 @@
 
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
@@ -19,9 +20,11 @@ struct RandomOptions {
   std::uint64_t seed = 1;
 };
 
-// Sites at the same point count once; more centres than distinct sites are cut
-// to their number, which the report notes. Errors: those of solve_weights.
-// The same seed gives the same bits. Off the tick.
+// The first of one permutation. Sites at the same point count once; more centres than
+// distinct sites are cut to their number. Errors: those of validate_sites. The same
+// seed gives the same bits. Off the tick.
+Result<CentreSequence> choose_random(const Sites& sites, const RandomOptions& options);
+// The same with the weights of solve_weights; the report notes what is missing.
 Result<FittedRbf> fit_random(const Sites& sites, const RandomOptions& options, const FitControl& control = {});
 
 }  // namespace palpate

@@ -16,6 +16,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
+#include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/model/correction.h"
 #include "models/model/rbf/kernels.h"
@@ -91,6 +92,9 @@ struct Method {
   // Errors: the sites cannot be fitted (says why); interrupted. The same task gives
   // the same bits. Call it through fit_correction.
   Result<FittedCorrection> (*fit)(const MethodTask& task, const FitControl& control) = nullptr;
+  // The centres alone, of every number up to request.centres (nested_fit.h); null: a fit
+  // does not go on from those with fewer.
+  Result<CentreSequence> (*choose)(const MethodTask& task, const FitControl& control) = nullptr;
 
   bool can_take(MethodOption option) const { return (takes & option) != 0; }
 };

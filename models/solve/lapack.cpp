@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
+#include <string_view>
 #include <vector>
 
 extern "C" {
@@ -25,6 +27,9 @@ double dlansy_(const char*, const char*, const int*, const double*, const int*, 
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
 [[gnu::weak]] int openblas_get_num_threads(void);
+[[gnu::weak]] char* openblas_get_corename(void);
+[[gnu::weak]] void gotoblas_dynamic_quit(void);
+[[gnu::weak]] void gotoblas_dynamic_init(void);
 }
 
 namespace palpate {
@@ -34,6 +39,33 @@ std::recursive_mutex& blas_mutex() {
   static std::recursive_mutex mutex;
   return mutex;
 }
+
+// OpenBLAS takes a processor that is newer than itself for a Prescott of 2004, which
+// makes fits two to three times slower (0.3.21 of Debian 12 on a Xeon of 2023). Then it
+// chooses again, with the variable of its manual set meanwhile. Before main, so that no
+// other thread computes; nothing is done when the user has set the variable, or when the
+// processor is known.
+bool choose_blas_core() {
+#ifdef __x86_64__
+  constexpr const char* kVariable = "OPENBLAS_CORETYPE";
+  if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr) return false;
+  if (std::getenv(kVariable) != nullptr || std::string_view(openblas_get_corename()) != "Prescott") return false;
+  __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return false;
+  const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+                    __builtin_cpu_supports("avx512cd");
+  setenv(kVariable, wide ? "SkylakeX" : "Haswell", 0);
+  gotoblas_dynamic_quit();
+  gotoblas_dynamic_init();
+  unsetenv(kVariable);
+  return true;
+#else
+  return false;
+#endif
+}
+
+[[maybe_unused]] const bool kBlasCoreChosen = choose_blas_core();
 
 int to_int(Eigen::Index value) { return static_cast<int>(value); }
 

@@ -2,10 +2,8 @@
 
 #include <Eigen/QR>
 #include <cmath>
-#include <string>
 
 #include "models/solve/lapack.h"
-#include "models/solve/solve_weights.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 
@@ -85,18 +83,10 @@ PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
   return space;
 }
 
-Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                    const FitControl& control) {
-  if (const Status status = validate_sites(sites); !status) return status.error();
-  if (centres.rows() != sites.points.rows() || !centres.allFinite()) {
-    return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
-                 std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
-  }
-  if (!control.may_continue(0.0)) return interrupted();
+FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
   const BlasThreads one_thread(1);
-  const double smoothing = sites.smoothing.value_or(0.0);
-  Eigen::MatrixXd triangle;
-  if (!fold_rows(sites, kernel, centres, control, triangle)) return interrupted();
+  const double smoothing = folded.smoothing.value_or(0.0);
+  const Eigen::MatrixXd& triangle = folded.triangle;
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
   const PenaltySpace space = n > 0 ? penalty_space(kernel, centres) : PenaltySpace{};
@@ -126,10 +116,9 @@ Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const
   report.smoothing = smoothing;
   const Eigen::VectorXd rest =
       triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights - triangle.middleCols(n, tail) * fitted.function.tail;
-  report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(sites.count()));
-  fitted.function.weights *= sites.strength;
-  fitted.function.tail *= sites.strength;
-  if (!control.may_continue(1.0)) return interrupted();
+  report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(folded.sites));
+  fitted.function.weights *= folded.strength;
+  fitted.function.tail *= folded.strength;
   return fitted;
 }
 

@@ -11,11 +11,9 @@
 
 #include <Eigen/Core>
 
-#include "engine/base/fit_control.h"
-#include "engine/base/result.h"
 #include "models/solve/fit_report.h"
+#include "models/solve/solve_weights.h"
 #include "models/model/rbf/kernels.h"
-#include "models/training/sites.h"
 
 namespace palpate {
 
@@ -27,8 +25,7 @@ struct PenaltySpace {
 };
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres);
 
-// With the sites' own smoothing, 0 where they have none. Errors: those of validate_sites; centres of another dimension; interrupted.
-Result<FittedRbf> penalised_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                    const FitControl& control = {});
+// With the sites' own smoothing, 0 where they have none.
+FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres);
 
 }  // namespace palpate

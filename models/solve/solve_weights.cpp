@@ -154,33 +154,36 @@ bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, Ridge ri
 }  // namespace
 
 bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
-               Eigen::MatrixXd& triangle) {
-  return RowFolder(sites, kernel, centres).fold(control, triangle);
+               FoldedRows& folded) {
+  folded.sites = sites.count();
+  folded.rows = (sites.row_scale.array() > 0.0).count();
+  folded.smoothing = sites.smoothing;
+  folded.strength = sites.strength;
+  return RowFolder(sites, kernel, centres).fold(control, folded.triangle);
 }
 
-Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                const FitControl& control, Ridge ridge, double truncation) {
-  if (ridge == Ridge::by_evidence && sites.smoothing && kernel == KernelKind::cubic) {
-    return penalised_weights(sites, kernel, centres, control);
+Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
+  if (const Status status = validate_sites(sites); !status) return status;
+  if (centres.rows() == sites.points.rows() && centres.allFinite()) return {};
+  return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
+               std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
+}
+
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres,
+                               Ridge ridge, double truncation) {
+  if (ridge == Ridge::by_evidence && folded.smoothing && kernel == KernelKind::cubic) {
+    return penalised_weights(folded, kernel, centres);
   }
-  if (const Status status = validate_sites(sites); !status) return status.error();
-  if (centres.rows() != sites.points.rows() || !centres.allFinite())
-    return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
-                 std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
-  if (!control.may_continue(0.0)) return interrupted();
   const BlasThreads one_thread(1);
-  Eigen::MatrixXd triangle;
-  if (!RowFolder(sites, kernel, centres).fold(control, triangle)) return interrupted();
   SmallSolution solution;
-  const auto rows = static_cast<double>((sites.row_scale.array() > 0.0).count());
-  if (!solve_triangle(triangle, truncation, ridge, rows, solution))
+  if (!solve_triangle(folded.triangle, truncation, ridge, static_cast<double>(folded.rows), solution))
     return Error{"the singular value decomposition did not converge; check the recording for extreme values"};
   FittedRbf fitted;
   fitted.function = {kernel, centres, solution.unknowns.head(centres.cols()),
                      solution.unknowns.tail(solution.unknowns.size() - centres.cols())};
   if (ridge == Ridge::by_evidence) {
-    fitted.function.weights *= sites.strength;
-    fitted.function.tail *= sites.strength;
+    fitted.function.weights *= folded.strength;
+    fitted.function.tail *= folded.strength;
   }
   FitReport& report = fitted.report;
   report.centres_asked = report.centres_used = centres.cols();
@@ -188,10 +191,33 @@ Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eig
   report.rank = solution.rank;
   report.condition = solution.condition;
   report.smoothing = solution.ridge;
-  report.residual_rms = std::sqrt(solution.residual_squared / static_cast<double>(sites.count()));
+  report.residual_rms = std::sqrt(solution.residual_squared / static_cast<double>(folded.sites));
   if (report.rank < report.columns)
     report.notes.push_back("the data determine " + std::to_string(report.rank) + " of " +
                            std::to_string(report.columns) + " unknowns; the rest took the shortest solution");
+  return fitted;
+}
+
+Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
+                                const FitControl& control, Ridge ridge, double truncation) {
+  if (const Status status = validate_centres(sites, centres); !status) return status.error();
+  if (!control.may_continue(0.0)) return interrupted();
+  const BlasThreads one_thread(1);
+  FoldedRows folded;
+  if (!fold_rows(sites, kernel, centres, control, folded)) return interrupted();
+  auto fitted = solve_folded(folded, kernel, centres, ridge, truncation);
+  if (!control.may_continue(1.0)) return interrupted();
+  return fitted;
+}
+
+Result<FittedRbf> solve_largest(const Sites& sites, KernelKind kernel, const CentreSequence& sequence,
+                                Eigen::Index asked, const FitControl& control) {
+  auto fitted = solve_weights(sites, kernel, sequence.centres_of(sequence.most), control, Ridge::by_evidence);
+  if (!fitted) return fitted;
+  fitted->report.centres_asked = asked;
+  if (!sequence.shortage.empty()) {
+    fitted->report.notes.push_back("only " + std::to_string(sequence.most) + " centres: " + sequence.shortage);
+  }
   return fitted;
 }
 

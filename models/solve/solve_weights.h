@@ -24,8 +24,11 @@
 // "Bayesian interpolation", for the evidence.
 #pragma once
 
+#include <optional>
+
 #include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
@@ -35,13 +38,29 @@ namespace palpate {
 // thousand columns; what lies two decades above is still data.
 inline constexpr double kDefaultTruncation = 1e-12;
 
-// R of the QR factorisation of [row_scale * (Phi G f)], n + tail + 1 columns, where
-// the columns are the kernel at the n centres, the tail and the data. False if
-// cancelled.
+// What is left of the sites once their rows are folded: all that weights need.
+struct FoldedRows {
+  // As many rows as columns, with the lengths and angles of row_scale * (Phi G f),
+  // n + tail + 1 columns: the kernel at the n centres, the tail and the data. The
+  // last row is 0 but for its last value. R of the QR factorisation, for one.
+  Eigen::MatrixXd triangle;
+  Eigen::Index sites = 0;
+  Eigen::Index rows = 0;  // the sites that count for something
+  std::optional<double> smoothing;  // of the sites
+  double strength = 1.0;
+};
+
+// False if cancelled. `sites` and `centres` must fit together.
 bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
-               Eigen::MatrixXd& triangle);
+               FoldedRows& folded);
+// Those of validate_sites; centres that are not points as the sites are.
+Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres);
 
 enum class Ridge { none, by_evidence };
+
+// solve_weights without its first step.
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres,
+                               Ridge ridge, double truncation);
 
 // `centres`: d x n, any points, n may be 0. Errors: those of validate_sites; a
 // wrong centre size; the decomposition did not converge; interrupted.
@@ -49,5 +68,9 @@ enum class Ridge { none, by_evidence };
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
                                 const FitControl& control = {}, Ridge ridge = Ridge::none,
                                 double truncation = kDefaultTruncation);
+// By evidence, for all centres of the sequence; `asked`: how many were wanted. The
+// report notes what is missing.
+Result<FittedRbf> solve_largest(const Sites& sites, KernelKind kernel, const CentreSequence& sequence,
+                                Eigen::Index asked, const FitControl& control = {});
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
@@ -44,7 +45,7 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
   if (view.requested_centres > 0 && (ImGui::IsMouseDown(ImGuiMouseButton_Left) || models.active()->refitting))
     centres = view.requested_centres;
   ImGui::SetNextItemWidth(-9.0F * ImGui::GetFontSize());
-  if (ImGui::SliderInt("##centres", &centres, 1, 200, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+  if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     view.requested_centres = centres;
     for (const std::size_t slot : models.listed()) {
       if (slot == models.selected || view.centres_together) session.refit(slot, centres);

@@ -268,7 +268,7 @@ void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport)
 void BlockView::add_resting_blocks(const TableState& state) {
   BlockPose resting;
   resting.tool_m = -1.0F;  // far above: no shadow
-  resting.judged = false;
+  resting.shows_error = false;
   const std::vector<BlockPose> blocks(state.count, resting);
   const Viewport part = standing(blocks, {0, 0, state.width, state.height}, false);
   if (part.width < 1 || part.height < 1 || !smooth_.begin(backdrop_.framebuffer(), part.x, part.y, part)) return;

@@ -215,6 +215,19 @@ Result<ModelData> ModelWorker::fit_recording(const SlotPlan& plan) {
   return std::move(fitted->data);
 }
 
+Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
+                                          const FitControl& control) {
+  std::optional<NestedFit>& nested = nested_[{request.method, paper}];
+  if (!nested) {
+    MethodRequest largest = request;
+    largest.centres = kMostCentres;
+    auto made = NestedFit::make(prepared, largest, control);
+    if (!made) return made.error();
+    nested.emplace(std::move(*made));
+  }
+  return nested->fit(request.centres);
+}
+
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   if (plan.origin == ModelOrigin::recording) return fit_recording(plan);
   std::optional<PreparedTraining> of_position;
@@ -233,8 +246,12 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   if (plan.centres > 0) request.centres = plan.centres;
   const bool own = position || plan.paper;  // prepared in another way than the bases
   const auto base = own ? bases_.end() : bases_.find(plan.method->base);
-  Result<MethodFit> fitted = fit_method(*prepared, request, control(prepared_before ? 0.0 : kPrepared, 1.0),
-                                        base == bases_.end() ? nullptr : &base->second);
+  const FitControl rest = control(prepared_before ? 0.0 : kPrepared, 1.0);
+  const bool nested = !position && plan.method->choose != nullptr && request.centres <= kMostCentres &&
+                      !nested_.try_emplace({plan.method, plan.paper}).second;
+  Result<MethodFit> fitted =
+      nested ? fit_nested(*prepared, request, plan.paper, rest)
+             : fit_method(*prepared, request, rest, base == bases_.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
   if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);

@@ -3,6 +3,10 @@
 // material, the one that `palpate synth` with the same seed writes, with the
 // code of `palpate fit`: the same bits.
 //
+// Asked for another number of centres than before (a slider), it chooses centres for the
+// largest number once; each number after that takes milliseconds (models/fit/nested_fit.h)
+// and gives the model of `palpate fit` to rounding.
+//
 // The worker runs at a lower priority than everything else in the program. A
 // fit is interrupted within some 20 ms, but for the factorisation of the direct
 // fit, which is one call into LAPACK.
@@ -20,9 +24,11 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "models/fit/fit.h"
+#include "models/fit/nested_fit.h"
 #include "models/model/fitted_model.h"
 #include "scenes/worker/slot_plan.h"
 #include "scenes/scene/scene.h"
@@ -76,6 +82,8 @@ class ModelWorker {
   std::optional<Job> next_job();
   FinishedModel make(const Job& job);
   Result<ModelData> fit(const SlotPlan& plan);
+  Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
+                               const FitControl& control);
   Status prepare_recording();
   Result<ModelData> fit_recording(const SlotPlan& plan);
   Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
@@ -88,6 +96,8 @@ class ModelWorker {
   std::optional<PreparedTraining> prepared_;
   std::optional<PreparedTraining> prepared_as_paper_;
   std::map<const Method*, MethodFit> bases_;  // fitted already, for methods that start from one
+  // By method and recipe: empty from the first fit on, filled by the second.
+  std::map<std::pair<const Method*, bool>, std::optional<NestedFit>> nested_;
 
   std::thread thread_;
   std::thread reader_;

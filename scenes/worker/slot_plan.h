@@ -20,6 +20,9 @@ enum class ModelOrigin : std::uint8_t {
   file,
 };
 
+// Up to which a model's number of centres is changed by hand.
+inline constexpr int kMostCentres = 200;
+
 struct SlotPlan {
   ModelOrigin origin = ModelOrigin::method;
   const Method* method = &kGreedyMethod;  // of a fit

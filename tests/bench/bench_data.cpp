@@ -12,10 +12,10 @@
 namespace palpate::bench {
 namespace {
 
-PreparedTraining prepare() {
+PreparedTraining prepare(const TrainingRequest& request) {
   RigSettings settings;
   settings.seconds = 60.0;
-  return test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block"));
+  return test::prepare({test::rig_recording(settings)}, request);
 }
 
 // A line "name: 123 kB" of this process's status.
@@ -29,7 +29,17 @@ double status_bytes(const std::string& name) {
 }  // namespace
 
 const PreparedTraining& recorded() {
-  static const PreparedTraining prepared = prepare();
+  static const PreparedTraining prepared = prepare(test::scene_request("silicone_block"));
+  return prepared;
+}
+
+const PreparedTraining& recorded_as_paper() {
+  static const PreparedTraining prepared = [] {
+    TrainingRequest request = test::scene_request("silicone_block");
+    request.reduction = Reduction::force;
+    request.weighting = Weighting::relative;
+    return prepare(request);
+  }();
   return prepared;
 }
 

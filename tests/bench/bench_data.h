@@ -17,6 +17,8 @@ inline constexpr Eigen::Index kPaperSites = 6850;
 
 // The prepared recording: about 7,000 sites, four features.
 const PreparedTraining& recorded();
+// The same by the paper's recipe.
+const PreparedTraining& recorded_as_paper();
 // kPaperSites of its sites, evenly spread in time, and their thresholds.
 const Sites& recorded_sites();
 const Eigen::VectorXd& recorded_jnd_N();

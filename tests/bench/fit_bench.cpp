@@ -10,6 +10,7 @@
 #include "models/fit/fit_greedy.h"
 #include "models/fit/fit_kdtree.h"
 #include "models/fit/fit_random.h"
+#include "models/fit/nested_fit.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/model/grid/voxel_lookup.h"
 #include "tests/bench/bench_data.h"
@@ -30,10 +31,30 @@ Result<FittedRbf> kdtree_fit(const Sites& sites, const Eigen::VectorXd& jnd_N) {
   return fit_kdtree(sites, jnd_N, {KernelKind::cubic, kCentres});
 }
 
-Fit greedy_fit(Eigen::Index candidates) {
-  return [candidates](const Sites& sites, const Eigen::VectorXd&) {
-    return fit_greedy(sites, {KernelKind::cubic, kCentres, candidates, 1});
+Fit greedy_fit(Eigen::Index candidates, Eigen::Index centres = kCentres) {
+  return [=](const Sites& sites, const Eigen::VectorXd&) {
+    return fit_greedy(sites, {KernelKind::cubic, centres, candidates, 1});
   };
+}
+
+// Every number of centres from 1 to that of the slider, and one step of it. The whole
+// fit of the largest is the row to compare with.
+constexpr int kMostCentres = 200;
+
+void slider_all(benchmark::State& state) {
+  for (auto _ : state) {
+    const auto chosen = choose_greedy(recorded_sites(), {KernelKind::cubic, kMostCentres, 100, 1});
+    const auto nested = NestedWeights::fold(recorded_sites(), KernelKind::cubic, *chosen);
+    for (Eigen::Index count = 1; count <= nested->most(); ++count) benchmark::DoNotOptimize(nested->solve(count));
+  }
+}
+
+void slider_step(benchmark::State& state, const Method* method, bool papers) {
+  MethodRequest request;
+  request.method = method;
+  request.centres = kMostCentres;
+  const auto nested = NestedFit::make(papers ? recorded_as_paper() : recorded(), request);
+  for (auto _ : state) benchmark::DoNotOptimize(nested->fit(state.range(0)));
 }
 
 Result<FittedRbf> direct_fit(const Sites& sites, const Eigen::VectorXd&) { return fit_direct(sites, {}); }
@@ -136,6 +157,17 @@ const int registered = [] {
   at_paper_size("kdtree-100", kdtree_fit, 7);
   at_paper_size("greedy-100_of_20", greedy_fit(20), 5);
   at_paper_size("greedy-100_of_100", greedy_fit(100), 5);
+  at_paper_size("greedy-200_of_100", greedy_fit(100, kMostCentres), 3);
+  benchmark::RegisterBenchmark("fit/greedy-1_to_200_of_100", slider_all)
+      ->Repetitions(3)->Iterations(1)->ReportAggregatesOnly()->UseRealTime()->Unit(benchmark::kMillisecond);
+  for (const Method* method : methods()) {
+    if (method->choose == nullptr) continue;
+    for (const bool papers : {false, true})
+      benchmark::RegisterBenchmark((std::string("slider/") + method->name + (papers ? "_2009" : "")).c_str(), slider_step,
+                                   method, papers)
+          ->Arg(10)->Arg(50)->Arg(100)->Arg(kMostCentres)->Repetitions(5)->ReportAggregatesOnly()->UseRealTime()
+          ->Unit(benchmark::kMillisecond);
+  }
   at_paper_size("greedy-100_of_all", greedy_fit(0), 3);
   at_paper_size("direct", direct_fit, 3);
   at_paper_size("direct+grid", direct_and_grid, 3);

@@ -1,7 +1,7 @@
 """check.py PALPATE BUILD SOURCE COMPILER LAUNCHER KIND: builds the consumer project and
 compares its forces with those of `palpate replay`, bit for bit.
-KIND: shared, static (the installed tree, moved to another folder first), pkg-config, or
-source (add_subdirectory). Folders are made below a temporary one and removed."""
+KIND: shared, static (the installed tree, moved to another folder first), pkg-config,
+source (add_subdirectory), fetch (FetchContent), or system (installed below BUILD). Folders are made below a temporary one and removed."""
 import csv
 import os
 import pathlib
@@ -61,6 +61,11 @@ def main(palpate, build, source, compiler, launcher, kind):
         folder = pathlib.Path(name)
         if kind == "source":
             program = build_consumer(source, folder, compiler, launcher, ["-DPALPATE_SOURCE=" + str(source)])
+        elif kind == "fetch":
+            program = build_consumer(source, folder, compiler, launcher,
+                                     ["-DPALPATE_SOURCE=" + str(source), "-DPALPATE_FETCH=ON"])
+        elif kind == "system":
+            program = build_consumer(source, folder, compiler, launcher, ["-DCMAKE_PREFIX_PATH=" + build])
         elif kind == "pkg-config":
             program = build_by_pkg_config(source, folder, compiler, installed(build, folder))
         else:

@@ -64,7 +64,7 @@ TEST(CheckRecording, FindsEachFault) {
       {"no_force", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = 0.0; }); }},
       {"no_motion", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); }},
       {"force_unit", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N *= 1000.0; }); }},
-      {"force_unit", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N /= 9.80665e-3; }); }},
+      {"force_unit", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N /= 9.80665e-3; }); }},
       {"clipping", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); }},
       {"force_zero", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N += 0.5; }); }},
       {"lag", "care", [](Recording& r) { delay_force(r, 0.03); }},

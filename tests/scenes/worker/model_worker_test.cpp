@@ -47,6 +47,31 @@ TEST(ModelWorker, FitsWhatPalpateFitDoesTheQuickestFirst) {
   }
 }
 
+// A slider asks for one number after the other: the second one comes from the nested fit.
+TEST(ModelWorker, AnotherNumberOfCentresIsWhatPalpateFitGives) {
+  constexpr double kRounding_N = 1e-9;
+  ModelWorker worker(test::must(load_scene("elastic_block")), 1);
+  SlotPlan plan;
+  plan.method = &kKdTreeMethod;
+  ASSERT_TRUE(worker.start().ok());
+  const PreparedTraining prepared =
+      test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::scene_request("elastic_block"));
+  for (const int centres : {10, 12, 3}) {
+    plan.centres = centres;
+    worker.add_job(0, plan);
+    const std::vector<FinishedModel> made = wait_for(worker, 1);
+    ASSERT_NE(made[0].model, nullptr) << made[0].problem;
+    MethodRequest request;
+    request.method = plan.method;
+    request.centres = centres;
+    const FittedModel expected(test::must(fit_method(prepared, request)).data);
+    EXPECT_EQ(made[0].model->name(), expected.name());
+    for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
+      ASSERT_NEAR(made[0].model->evaluate(&depth_m).force_N, expected.evaluate(&depth_m).force_N, kRounding_N);
+    }
+  }
+}
+
 TEST(ModelWorker, ReadsFilesAndSaysWhatIsWrong) {
   const test::TemporaryFolder folder;
   const ModelData data = test::example_model("greedy", KernelKind::cubic, test::position_features(), 1);

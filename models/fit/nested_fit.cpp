@@ -1,0 +1,91 @@
+#include "models/fit/nested_fit.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "models/solve/lapack.h"
+#include "models/fit/methods.h"
+#include "models/model/rbf/rbf_correction.h"
+
+namespace palpate {
+
+NestedWeights::NestedWeights(KernelKind kernel, CentreSequence sequence, FoldedRows folded)
+    : kernel_(kernel), sequence_(std::move(sequence)), folded_(std::move(folded)) {
+  const Eigen::MatrixXd& as_folded = folded_.triangle;
+  const Eigen::Index n = sequence_.pool.cols();
+  const Eigen::Index tail = as_folded.cols() - 1 - n;
+  Eigen::MatrixXd reordered(as_folded.rows(), as_folded.cols());
+  reordered << as_folded.middleCols(n, tail), as_folded.leftCols(n), as_folded.rightCols(1);
+  qr_in_place(reordered);
+  folded_.triangle = reordered.triangularView<Eigen::Upper>();
+}
+
+Result<NestedWeights> NestedWeights::fold(const Sites& sites, KernelKind kernel, CentreSequence sequence,
+                                          const FitControl& control) {
+  if (const Status status = validate_centres(sites, sequence.pool); !status) return status.error();
+  const BlasThreads one_thread(1);
+  FoldedRows folded;
+  if (!fold_rows(sites, kernel, sequence.pool, control, folded)) return interrupted();
+  return NestedWeights(kernel, std::move(sequence), std::move(folded));
+}
+
+// In the order of solve_weights: Phi of these columns, G, f.
+FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) const {
+  const Eigen::MatrixXd& all = folded_.triangle;
+  const Eigen::Index last = all.cols() - 1;
+  const Eigen::Index tail = last - sequence_.pool.cols();
+  const auto k = static_cast<Eigen::Index>(columns.size());
+  const Eigen::Index newest = k > 0 ? *std::max_element(columns.begin(), columns.end()) + 1 : 0;
+  const Eigen::Index rows = tail + newest;
+  FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1), folded_.sites, folded_.rows, folded_.smoothing,
+                    folded_.strength};
+  for (Eigen::Index j = 0; j < k; ++j) {
+    folded.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
+  }
+  folded.triangle.block(0, k, rows, tail) = all.topLeftCorner(rows, tail);
+  folded.triangle.col(k + tail).head(rows) = all.col(last).head(rows);
+  // The data's length outside these columns.
+  folded.triangle(rows, k + tail) = all.col(last).tail(last + 1 - rows).norm();
+  if (folded.triangle.rows() > folded.triangle.cols()) {
+    qr_in_place(folded.triangle);
+    folded.triangle = folded.triangle.topRows(k + tail + 1).triangularView<Eigen::Upper>().toDenseMatrix();
+  }
+  return folded;
+}
+
+Result<FittedRbf> NestedWeights::solve(Eigen::Index count) const {
+  const BlasThreads one_thread(1);
+  const std::vector<Eigen::Index> columns = sequence_.columns_of(std::clamp<Eigen::Index>(count, 0, most()));
+  return solve_folded(folded_for(columns), kernel_, sequence_.pool(Eigen::all, columns), Ridge::by_evidence,
+                      kDefaultTruncation);
+}
+
+Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const MethodRequest& request,
+                                  const FitControl& control) {
+  if (request.method->choose == nullptr) {
+    return Error{std::string("the method \"") + request.method->name + "\" does not go on from fewer centres"};
+  }
+  const Eigen::VectorXd jnd_N = site_thresholds(prepared);
+  const auto sequence =
+      request.method->choose({prepared.sites, prepared.common.features, jnd_N, request, nullptr}, control);
+  if (!sequence) return sequence.error();
+  auto weights = NestedWeights::fold(prepared.sites, request.kernel, *sequence);
+  if (!weights) return weights.error();
+  ModelData common = prepared.common;
+  common.method = request.method->name;
+  common.provenance.seed = request.seed;
+  return NestedFit(std::move(common), std::move(*weights));
+}
+
+Result<MethodFit> NestedFit::fit(Eigen::Index count) const {
+  auto fitted = weights_.solve(count);
+  if (!fitted) return fitted.error();
+  MethodFit fit{common_, std::move(fitted->report)};
+  fit.data.correction = std::make_shared<const RbfCorrection>(std::move(fitted->function));
+  fit.data.name = fit.data.method + "-" + std::to_string(fit.report.centres_used);
+  if (const Status valid = validate_model(fit.data); !valid) return valid.error();
+  return fit;
+}
+
+}  // namespace palpate

@@ -1,0 +1,148 @@
+#include "models/fit/nested_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/fit/fit_greedy.h"
+#include "models/fit/fit_kdtree.h"
+#include "models/fit/fit_random.h"
+#include "models/model/fitted_model.h"
+#include "tests/support/fitting.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::smooth_sites;
+
+// The largest difference of two functions' values at the sites.
+double difference(const RbfFunction& a, const RbfFunction& b, const Sites& sites) {
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < sites.count(); ++i)
+    worst = std::max(worst, std::abs(rbf_value(a, sites.points.col(i).data()) - rbf_value(b, sites.points.col(i).data())));
+  return worst;
+}
+
+Sites penalised_sites() {
+  Sites sites = smooth_sites(4, 900, 0.02, 3);
+  sites.smoothing = 1e-3;
+  sites.strength = 0.7;
+  return sites;
+}
+
+// Forces of about 3 N with columns of condition 1e5: values agree to 1e-11 and
+// better, as in solve_weights_test.cpp; a ten-thousandth of a nanonewton is far
+// below any threshold.
+constexpr double kRounding_N = 1e-10;
+
+void expect_direct(const NestedWeights& nested, Eigen::Index count, const Result<FittedRbf>& direct, const Sites& sites) {
+  const auto fitted = nested.solve(count);
+  ASSERT_TRUE(fitted.ok() && direct.ok());
+  EXPECT_EQ(fitted->function.centres, direct->function.centres) << count;
+  EXPECT_LE(difference(fitted->function, direct->function, sites), kRounding_N) << count;
+  EXPECT_NEAR(fitted->report.residual_rms, direct->report.residual_rms, 1e-9) << count;
+  EXPECT_EQ(fitted->report.rank, direct->report.rank) << count;
+}
+
+TEST(NestedFit, GivesEveryDirectGreedyFit) {
+  for (const Sites& sites : {penalised_sites(), smooth_sites(3, 400, 0.02, 5)}) {
+    const auto chosen = choose_greedy(sites, {.centres = 40, .candidates = 30});
+    ASSERT_TRUE(chosen.ok());
+    const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
+    ASSERT_TRUE(nested.ok());
+    for (const Eigen::Index count : {0, 1, 4, 7, 25, 40}) {
+      expect_direct(*nested, count, fit_greedy(sites, {.centres = count, .candidates = 30}), sites);
+    }
+  }
+}
+
+TEST(NestedFit, GivesEveryDirectRandomFitForEveryKernel) {
+  const Sites sites = penalised_sites();
+  for (const KernelKind kernel : kKernelKinds) {
+    const auto chosen = choose_random(sites, {kernel, 30, 2});
+    ASSERT_TRUE(chosen.ok());
+    const auto nested = NestedWeights::fold(sites, kernel, *chosen);
+    ASSERT_TRUE(nested.ok());
+    for (const Eigen::Index count : {3, 18, 30}) {
+      expect_direct(*nested, count, fit_random(sites, {kernel, count, 2}), sites);
+    }
+  }
+}
+
+TEST(NestedFit, GivesEveryDirectKdTreeFit) {
+  for (const Sites& sites : {penalised_sites(), smooth_sites(3, 400, 0.02, 5)}) {
+    const Eigen::VectorXd jnd_N = Eigen::VectorXd::Constant(sites.count(), 0.05);
+    const auto chosen = choose_kdtree(sites, jnd_N, {.centres = 40});
+    ASSERT_TRUE(chosen.ok());
+    const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
+    ASSERT_TRUE(nested.ok());
+    for (const Eigen::Index count : {0, 1, 2, 3, 17, 40}) {
+      expect_direct(*nested, count, fit_kdtree(sites, jnd_N, {.centres = count}), sites);
+    }
+  }
+}
+
+TEST(NestedFit, CountsBeyondTheFitAreItsOwn) {
+  const Sites sites = penalised_sites();
+  const auto nested =
+      NestedWeights::fold(sites, KernelKind::cubic, CentreSequence::growing(sites.points.leftCols(10)));
+  ASSERT_TRUE(nested.ok());
+  EXPECT_EQ(nested->solve(11)->report.centres_used, 10);
+  EXPECT_EQ(nested->solve(-1)->report.centres_used, 0);
+}
+
+TEST(NestedFit, DegenerateSitesGiveFiniteFunctions) {
+  for (const Sites& sites : test::degenerate_sites()) {
+    const auto chosen = choose_random(sites, {.centres = 20});
+    ASSERT_TRUE(chosen.ok());
+    const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
+    ASSERT_TRUE(nested.ok());
+    for (Eigen::Index count = 0; count <= nested->most(); ++count) {
+      const auto fitted = nested->solve(count);
+      ASSERT_TRUE(fitted.ok());
+      EXPECT_TRUE(fitted->function.weights.allFinite() && fitted->function.tail.allFinite());
+    }
+  }
+}
+
+// The whole model, name, predicted error and all.
+TEST(NestedFit, GivesTheModelOfTheDirectFit) {
+  RigSettings settings;
+  settings.seconds = 8.0;
+  const PreparedTraining prepared = test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block"));
+  for (const Method* method : {&kRandomMethod, &kKdTreeMethod, &kGreedyMethod}) {
+    MethodRequest request;
+    request.method = method;
+    request.centres = 30;
+    const auto nested = NestedFit::make(prepared, request);
+    ASSERT_TRUE(nested.ok());
+    request.centres = 12;
+    const auto direct = fit_method(prepared, request);
+    const auto fitted = nested->fit(12);
+    ASSERT_TRUE(direct.ok() && fitted.ok());
+    EXPECT_EQ(fitted->data.name, direct->data.name);
+    EXPECT_EQ(fitted->data.method, direct->data.method);
+    const FittedModel one(fitted->data);
+    const FittedModel other(direct->data);
+    for (const auto& features : prepared.evaluation_features) {
+      const ForceEstimate a = one.evaluate(features.data());
+      const ForceEstimate b = other.evaluate(features.data());
+      EXPECT_NEAR(a.force_N, b.force_N, kRounding_N);
+      EXPECT_NEAR(a.predicted_error_N, b.predicted_error_N, kRounding_N);
+    }
+  }
+}
+
+TEST(NestedFit, RefusesAMethodThatDoesNotGoOnFromFewerCentres) {
+  PreparedTraining prepared;
+  prepared.sites = penalised_sites();
+  MethodRequest request;
+  request.method = &kDirectMethod;
+  const auto nested = NestedFit::make(prepared, request);
+  ASSERT_FALSE(nested.ok());
+  EXPECT_EQ(nested.error().message, "the method \"direct\" does not go on from fewer centres");
+}
+
+}  // namespace
+}  // namespace palpate
