@@ -36,8 +36,8 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
   ImGui::TextUnformatted(session.scene().title.c_str());
   ImGui::PopFont();
   tip(session.scene().description.c_str());
-  if (!view.kiosk) draw_block_buttons(view);
-  if (view.exaggerated && !view.kiosk) {
+  draw_block_buttons(view);
+  if (view.exaggerated) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
     ImGui::TextColored(paint(kAboveJndColour), "arrows: difference x 10");
   }
@@ -212,7 +212,7 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   if (!passing && (!view.kiosk || view.hidden_choice > 0)) draw_labels(session, blocks, view, style, area);
   if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.kiosk) draw_data_warning(session, style, area);
-  draw_title(session, view, style, area);
+  if (!view.kiosk) draw_title(session, view, style, area);
   if (!view.kiosk) draw_hint(session, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
