@@ -33,6 +33,19 @@ struct MotionEstimate {
   double velocity_m_per_s = 0.0;
 };
 
+// The filters side by side, one a lane, so that each step is the same arithmetic on all
+// of them at once; the last lane belongs to none and has the probability 0.
+struct MotionFilters {
+  static constexpr std::size_t kFilters = 3;
+  static constexpr std::size_t kLanes = 4;
+  static constexpr std::size_t kStates = 4;  // position, velocity, acceleration, accelerometer bias
+  using Lanes = std::array<double, kLanes>;
+
+  std::array<Lanes, kStates> mean{};
+  std::array<Lanes, kStates*(kStates + 1) / 2> covariance{};  // row by row, up to the diagonal
+  Lanes probability{};
+};
+
 class MotionEstimator {
  public:
   explicit MotionEstimator(const SensorSpec& sensor) noexcept;
@@ -47,37 +60,13 @@ class MotionEstimator {
   const MotionEstimate& estimate() const noexcept { return estimate_; }
 
  private:
-  static constexpr int kFilters = 3;
-  static constexpr int kStates = 4;  // position, velocity, acceleration, accelerometer bias
-  using Vector = std::array<double, kStates>;
-  using Matrix = std::array<std::array<double, kStates>, kStates>;
-
-  struct Filter {
-    Vector mean{};
-    Matrix covariance{};
-    double probability = 1.0 / kFilters;
-  };
-
   void start(const ToolSample& sample) noexcept;
-  // `n`: the states that there are, 4 with an accelerometer, else 3; known to the
-  // compiler, which unrolls every loop over them.
-  template <std::size_t n>
-  void advance(const ToolSample& sample, double step_s) noexcept;
-  template <std::size_t n>
-  void mix(double step_s) noexcept;
-  template <std::size_t n>
-  void predict(Filter& filter, double jerk_density, double step_s) const noexcept;
-  // Each returns the logarithm of the likelihood of the measurement.
-  // `share`: how much of an observation it counts for, 0 to 1.
-  template <std::size_t n>
-  double measure_position(Filter& filter, double position_m, double share) const noexcept;
-  template <std::size_t n>
-  double measure_scalar(Filter& filter, const Vector& row, double value, double variance) const noexcept;
 
   SensorSpec sensor_;
-  std::array<Filter, kFilters> filters_{};
-  std::array<Filter, kFilters> mixed_{};
+  MotionFilters filters_;
   MotionEstimate estimate_;
+  double stay_step_s_ = 0.0;  // the step that `stay_` belongs to
+  double stay_ = 1.0;         // the chance that the hand is still in its regime after it
   double time_s_ = 0.0;
   double position_m_ = 0.0;  // the last reading
   bool started_ = false;

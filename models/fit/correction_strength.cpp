@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
 #include "models/solve/lapack.h"
 #include "models/solve/penalised_weights.h"
@@ -40,12 +41,14 @@ class LeftOutFits {
   Eigen::VectorXd predictions(double smoothing) const {
     const Eigen::Index free = space_.penalty.cols();
     Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(input_.samples.size()));
-    for (std::size_t k = 0; k < grams_.size(); ++k) {
+    const BlasThreads one_thread(1);
+    parallel_for(input_.folds, [&](int fold) {
+      const auto k = static_cast<std::size_t>(fold);
       Eigen::MatrixXd matrix = total_gram_ - grams_[k];
       matrix.topLeftCorner(free, free) += smoothing * space_.penalty;
       const Eigen::VectorXd coefficients = solve(std::move(matrix), total_right_ - rights_[k]);
       for (const Eigen::Index i : samples_of_[k]) values(i) = sample_columns_.row(i).dot(coefficients);
-    }
+    });
     return values;
   }
 

@@ -19,7 +19,8 @@ constexpr double kCoverGrowth = 1.25;
 std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < sites.cols(); ++i) {
-    const bool covered = std::any_of(kept.begin(), kept.end(), [&](Eigen::Index k) {
+    // Sites come in the order of time: what covers one is most often new.
+    const bool covered = std::any_of(kept.rbegin(), kept.rend(), [&](Eigen::Index k) {
       return (sites.col(i) - sites.col(k)).squaredNorm() <= radius * radius;
     });
     if (covered) continue;

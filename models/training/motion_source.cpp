@@ -146,11 +146,53 @@ Status MotionSource::arrange(const FitControl& control, double fraction) {
   return {};
 }
 
+void MotionSource::forget() {
+  kept_.clear();
+  spilled_.reset();
+  keeps_ = false;
+}
+
+// In memory, from the first row too many on in a file.
+void MotionSource::keep(const MotionRow& row) {
+  if (!keeps_) return;
+  if (!spilled_ && kept_.size() < kept_rows_) return kept_.push_back(row);
+  const auto spill = [&](const MotionRow& one) { return spilled_->add({one.sample, one.motion, one.force_N}); };
+  if (!spilled_) {
+    spilled_ = SpilledRows::create();
+    const bool moved = spilled_ && std::all_of(kept_.begin(), kept_.end(), spill);
+    kept_.clear();
+    kept_.shrink_to_fit();
+    if (!moved) return forget();
+  }
+  if (!spill(row)) forget();
+}
+
+Status MotionSource::read_spilled(const std::function<bool(const MotionRow&)>& visit) const {
+  std::vector<SpilledRows::Row> chunk(kRowsPerQuestion);
+  MotionRow row;
+  row.recording = -1;
+  for (std::size_t at = 0; at < spilled_->count(); at += chunk.size()) {
+    chunk.resize(std::min(chunk.size(), spilled_->count() - at));
+    if (Status status = spilled_->read(at, chunk); !status) return status;
+    for (std::size_t i = 0; i < chunk.size(); ++i) {
+      const auto next = static_cast<std::size_t>(row.recording + 1);
+      row.first = next < first_rows_.size() && first_rows_[next] == at + i;
+      if (row.first) ++row.recording;
+      row.sample = chunk[i].sample;
+      row.motion = chunk[i].motion;
+      row.force_N = chunk[i].force_N;
+      if (!visit(row)) return interrupted();
+    }
+  }
+  return {};
+}
+
 Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit) {
   names_.clear();
-  kept_.clear();  // of a pass that broke off
+  first_rows_.clear();
+  forget();  // what a pass that broke off has left
+  keeps_ = true;
   rows_ = 0;
-  bool keep = true;
   // One chunk is what sensor identification looks at.
   std::vector<RecordingRow> chunk(kSensorIdentificationRows);
   MotionRow row;
@@ -176,22 +218,19 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
         row.sample = tool_sample(chunk[i]);
         row.force_N = chunk[i].force_N;
         row.motion = estimator->update(row.sample);
-        if (keep && kept_.size() == kept_rows_) {
-          keep = false;
-          kept_.clear();
-          kept_.shrink_to_fit();
-        }
-        if (keep) kept_.push_back(row);
+        if (row.first) first_rows_.push_back(rows_);
+        keep(row);
         ++rows_;
         if (!visit(row)) {
-          kept_.clear();
+          forget();
           return interrupted();
         }
         row.first = false;
       }
     }
   }
-  complete_ = keep;
+  if (spilled_ && !spilled_->finish()) forget();
+  complete_ = keeps_;
   return {};
 }
 
@@ -207,6 +246,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
     return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.may_continue(fraction));
   };
   if (!complete_) return read_all(visit_and_ask);
+  if (spilled_) return read_spilled(visit_and_ask);
   for (const MotionRow& row : kept_) {
     if (!visit_and_ask(row)) return interrupted();
   }

@@ -2,15 +2,17 @@
 // data goes through here, with the estimators that replay and the live loop use.
 //
 // Each recording has its own sensor (read off its first rows) and its own filter
-// state. Recordings that fit are estimated once and kept; longer ones (ten
-// hours at 1 kHz are 36 million rows) are read and estimated again in every
-// pass, in bounded memory.
+// state. Recordings are read and estimated once and kept: in memory where they fit,
+// longer ones (ten hours at 1 kHz are 36 million rows) in a temporary file
+// (spilled_rows.h). Where there is no room for that they are read and estimated again
+// in every pass. The rows are the same, bit by bit.
 // Thread guarantee: slow side.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@
 #include "engine/base/result.h"
 #include "engine/tick/tool_sample.h"
 #include "engine/base/fit_control.h"
+#include "models/training/spilled_rows.h"
 
 namespace palpate {
 
@@ -77,18 +80,24 @@ class MotionSource {
  private:
   Status arrange(const FitControl& control, double fraction);
   Status read_all(const std::function<bool(const MotionRow&)>& visit);
+  Status read_spilled(const std::function<bool(const MotionRow&)>& visit) const;
+  void keep(const MotionRow& row);
+  void forget();
 
   std::vector<Input> inputs_;
   std::size_t kept_rows_;
   std::vector<std::string> names_;
   std::vector<MotionRow> kept_;  // as recorded
+  std::optional<SpilledRows> spilled_;
+  std::vector<std::size_t> first_rows_;  // of the recordings
+  bool keeps_ = true;                    // what the first pass reads
   std::vector<RowCorrection> corrections_;
   bool arranged_ = false;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
   double encoder_step_m_ = 0.0;
   double position_noise_m_ = 0.0;
-  bool complete_ = false;  // kept_ holds everything
+  bool complete_ = false;  // kept_ or spilled_ holds everything
 };
 
 }  // namespace palpate

@@ -9,6 +9,9 @@
 //
 // evaluate/   one query at a time, each waiting for the last
 // fit/        fits at 6,850 sites of a recording, `peak_MB` above what was there
+// slider/     another number of centres of a fit that is there
+// tick/       one sample of a replay, whole and its motion alone
+// program/    `palpate fit` from the command line to the model file
 // size/       fits against the number of sites, 1,000 to 1,000,000
 // dimension/  fits and evaluation against the number of features, 1 to 8
 // peer/       Palpate's methods beside ALGLIB, dlib and scipy where these are

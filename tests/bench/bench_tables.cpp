@@ -29,7 +29,24 @@ constexpr Goal kGoals[] = {
     {"greedy-100, 20 candidates", "fit/greedy-100_of_20", "9 min", "0.1 s", "-"},
     {"greedy-100, 100 candidates", "fit/greedy-100_of_100", "41 min", "0.2 s", "0.1 s"},
     {"greedy-100, all sites", "fit/greedy-100_of_all", "-", "1.4 s", "0.8 s"},
-    {"direct + 25x11x11x11 grid", "fit/direct+grid", "50 min", "2.5 s", "1.6 s"},
+    {"direct + 25x11x11x11 grid", "fit/direct+grid", "50 min", "1.3 s", "0.9 s"},
+    {"whole tick in replay, greedy-100", "tick/whole_greedy", "-", "0.5 us", "0.35 us"},
+    {"`fit` random, the program", "program/fit_random", "-", "90 ms", "50 ms"},
+    {"`fit` greedy, the program", "program/fit_greedy", "-", "0.25 s", "0.15 s"},
+};
+
+// Work beside the part of it that it cannot do without.
+struct Share {
+  const char* work;
+  const char* whole;
+  const char* part;
+  const char* goal;
+};
+
+constexpr Share kShares[] = {
+    {"greedy-100: model / its RBF alone", "evaluate/model/greedy", "evaluate/rbf/100", "1.35"},
+    {"voxel: model / its look-up alone", "evaluate/model/voxel", "evaluate/voxel_25x11x11x11", "2"},
+    {"every count to 200 / the fit of 200", "fit/greedy-1_to_200_of_100", "fit/greedy-200_of_100", "1.3"},
 };
 
 struct Column {
@@ -99,6 +116,19 @@ void print_ratios(const BenchRows& rows) {
     first = false;
     print_row({thousands(std::stol(centres)), duration(slow->seconds), duration(fast->seconds),
                text("%.2f", slow->seconds / fast->seconds)});
+  }
+}
+
+void print_shares(const BenchRows& rows) {
+  bool first = true;
+  for (const Share& share : kShares) {
+    const BenchRow* whole = find(rows, share.whole);
+    const BenchRow* part = find(rows, share.part);
+    if (whole == nullptr || part == nullptr) continue;
+    if (first) print_header("Whole beside bare", {"work", "whole", "bare", "ratio", "goal"});
+    first = false;
+    print_row({share.work, duration(whole->seconds), duration(part->seconds),
+               text("%.2f", whole->seconds / part->seconds), share.goal});
   }
 }
 
@@ -255,6 +285,7 @@ std::string duration(double seconds) {
 void print_tables(const BenchRows& rows) {
   print_goals(rows);
   print_ratios(rows);
+  print_shares(rows);
   print_against(rows, "Cost over N", "sites, 4-D", kSizeColumns);
   print_against(rows, "Cost over dimension", "features", kDimensionColumns);
   print_peers(rows);

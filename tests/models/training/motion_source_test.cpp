@@ -114,17 +114,33 @@ TEST(MotionSource, TheOrderOfInputsChangesNothing) {
   EXPECT_EQ(bounded.names(), one.names());
 }
 
-// More rows than may be kept: every pass reads and estimates again.
-TEST(MotionSource, LongRecordingsAreReadAgain) {
-  const Input input = in_memory(test::example_recording(40000, 1000.0, 30e-6));
-  MotionSource kept({input, input});
-  MotionSource bounded({input, input}, 50000);
-  const auto expected = rows_of(kept);
-  for (int pass = 0; pass < 3; ++pass) {
-    expect_same(rows_of(bounded), expected);
-    EXPECT_EQ(bounded.rows(), 80000u);
-    EXPECT_EQ(bounded.names().size(), 2u);
+class LongRecording : public ::testing::Test {
+ protected:
+  void TearDown() override { unsetenv("TMPDIR"); }
+
+  // More rows than may be kept in memory.
+  static void expect_the_same_rows() {
+    const Input input = in_memory(test::example_recording(40000, 1000.0, 30e-6));
+    MotionSource kept({input, input});
+    MotionSource bounded({input, input}, 50000);
+    const auto expected = rows_of(kept);
+    for (int pass = 0; pass < 3; ++pass) {
+      expect_same(rows_of(bounded), expected);
+      EXPECT_EQ(bounded.rows(), 80000u);
+      EXPECT_EQ(bounded.names().size(), 2u);
+    }
   }
+};
+
+TEST_F(LongRecording, ComesBackFromATemporaryFile) {
+  const test::TemporaryFolder folder;
+  setenv("TMPDIR", folder.file("").c_str(), 1);
+  expect_the_same_rows();
+}
+
+TEST_F(LongRecording, IsReadAgainWhereNoFileCanBeMade) {
+  setenv("TMPDIR", "/nonexistent", 1);
+  expect_the_same_rows();
 }
 
 TEST(MotionSource, APassThatBrokeOffLeavesNothingBehind) {
