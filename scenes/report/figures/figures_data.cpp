@@ -29,6 +29,7 @@ FeatureAxis feature_axis(const FeatureSpec& spec) {
                   three_digits(spec.parts[0].relaxation_time_s) + " s [N]", 1.0};
     case FeatureKind::stops: return {"Stop operators [N]", 1.0};
     case FeatureKind::fading_peak: return {"Fading peak " + time + " [mm]", 1e3};
+    case FeatureKind::surface_lag: return {"Surface lag [mm]", 1e3};
   }
   return {"", 1.0};
 }
