@@ -65,8 +65,9 @@ def make_scratch(folder, build):
     """What the READMEs' commands take for granted."""
     os.symlink(build, folder / "build")
     palpate = build / "palpate"
-    for name, seed in (("rec-of-the-rig", 1), ("other", 2), ("test", 3)):
-        must([palpate, "synth", "--material", "silicone", "--seed", str(seed), "--seconds", "6", "--out",
+    # A stroke that a still hand can be given is not in every six seconds.
+    for name, seed, seconds in (("rec-of-the-rig", 1, 6), ("other", 2, 6), ("test", 3, 20)):
+        must([palpate, "synth", "--material", "silicone", "--seed", str(seed), "--seconds", str(seconds), "--out",
               name + ".csv"], folder)
     # A table as another program writes it: millimetres, semicolons, names of its own.
     with open(folder / "rec-of-the-rig.csv", newline="") as source, open(folder / "rig.csv", "w") as target:
@@ -76,6 +77,9 @@ def make_scratch(folder, build):
     os.remove(folder / "rec-of-the-rig.csv")
     for name, method in (("a", "trend"), ("b", "random")):
         must([palpate, "fit", "--recording", "other.csv", "--method", method, "--out", name + ".json"], folder)
+    must([palpate, "study", "simulate", "--discriminate", "--subjects", "2", "--out", "subjects"], folder)
+    for subject in ("S01", "S02"):
+        os.replace(folder / "subjects" / (subject + ".csv"), folder / ("discriminate-%s.csv" % subject))
 
 
 def answers_of_subjects(folder):

@@ -67,14 +67,14 @@ class LineScanner {
   LineScanner(std::unique_ptr<ByteSource> source, std::string label,
               std::size_t buffer_bytes = kScannerBufferBytes);
 
-  // Hands over the next line; false at the end and on an error. Errors, all of
+  // Reads the next line; false at the end and on an error. Errors, all of
   // them final: UTF-16, a NUL byte, a carriage return inside a line, a line
   // beyond kMaximumLineBytes, a source that fails.
   bool next(CsvLine& line);
 
   const std::optional<Error>& error() const { return error_; }
   const std::string& label() const { return label_; }
-  // The number of the last line handed over, 0 before the first.
+  // The number of the last line read, 0 before the first.
   std::uint64_t lines() const { return lines_; }
 
   // "label:line:column: text"; columns count bytes from 1.

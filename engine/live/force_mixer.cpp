@@ -27,7 +27,7 @@ double ForceMixer::current(const Forces& forces_N) const noexcept {
 }
 
 double ForceMixer::mix(const Forces& forces_N, std::size_t selected, double step_s) noexcept {
-  // Exactly the model's own bits once it is in the hand.
+  // Exactly the model's own bits once it is the active one.
   if (settled_on(selected)) return forces_N[selected];
   const double force_N = current(forces_N);
   const double difference_N = forces_N[selected] - force_N;

@@ -1,4 +1,4 @@
-// Which model's force is in the hand, and how the hand gets from one to another.
+// Which model's force is rendered, and how one fades into the next.
 //
 // The force is a mixture, F = sum_i w_i F_i with sum_i w_i = 1, that moves
 // towards the selected model s:

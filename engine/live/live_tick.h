@@ -4,7 +4,7 @@
 // the same bits for the same samples.
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
-//   -> mix (what is in the hand) -> passivity -> limit -> write the device -> snapshot
+//   -> mix (the active model) -> passivity -> limit -> write the device -> snapshot
 //
 // Thread guarantee: built on the slow side; `run` and `release` belong to the
 // haptics thread, are wait-free, allocate nothing, lock nothing and never throw.
@@ -79,7 +79,7 @@ inline constexpr double kDeadManHold_s = 0.2;
 // What the user wants of the loop.
 struct LoopControls {
   std::uint32_t models_id = 0;  // the set that `selected` speaks of
-  std::uint32_t selected = 0;   // the model in the hand
+  std::uint32_t selected = 0;   // the active model
   std::uint32_t recording = 0;  // above 0: every sample goes into the ring under this number
   DeadMan dead_man = DeadMan::off;
   // When the dead-man key was last seen held, on the loop's steady clock: set it

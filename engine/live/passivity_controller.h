@@ -14,7 +14,7 @@
 // Controller: on the way out, v < 0, the force is lowered by min(b, debt / (v^2 T)) |v|
 // until the debt is repaid. It takes force away and never adds any, and where there
 // is no debt it does nothing at all.
-// Another model in the hand is another material: what was passed before says nothing of
+// Another active model is another material: what was passed before says nothing of
 // it, and forces that fade into each other are no leak. The observer then begins anew.
 // Source: Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); the
 // reference that follows the depth in the manner of Ryu et al. (2004).
@@ -39,7 +39,7 @@ class PassivityController {
     double depth_m = 0.0;  // of the sample, as the encoder has it
     double velocity_m_per_s = 0.0;
     bool in_contact = false;
-    bool other_material = false;  // the model in the hand is being exchanged
+    bool other_material = false;  // the active model is being exchanged
   };
 
   // Once a tick, before the limiter. `written_N`: what the device was given in the

@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-// Rows handed over at a time by read_recording: enough to forget the calls.
+// Rows returned at a time by read_recording: enough to forget the calls.
 constexpr std::size_t kBatchRows = 4096;
 
 std::string name_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }

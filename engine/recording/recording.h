@@ -67,7 +67,7 @@ class RecordingReader {
   // Reads up to `capacity` rows (at least 1) into `rows`; returns how many, 0
   // at the end. Errors: any row that breaks a rule above; fewer than 10 rows in
   // all; a rate outside the range, known at row 1,000 or at the end, so after
-  // earlier rows were handed over. After an error each call repeats it.
+  // earlier rows were returned. After an error each call repeats it.
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:

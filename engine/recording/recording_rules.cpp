@@ -77,7 +77,7 @@ RowFault RowRules::explain(const RecordingRow& row) const {
               ", expected newtons, at most 1000000 either way; check the unit of the column"};
 }
 
-// The rows from which the rate is judged.
+// The rows from which the rate is checked.
 std::optional<RowFault> RowRules::accept_early(const RecordingRow& row) {
   if (rows_ > 0) steps_s_.push_back(row.time_s - last_time_s_);
   last_time_s_ = row.time_s;

@@ -35,7 +35,7 @@ inline constexpr double kMaximumForce_N = 1e6;
 inline constexpr double kMinimumRate_Hz = 10.0;
 inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;
-// The rate is judged once, from this many rows, so that rows can stream.
+// The rate is checked once, from this many rows, so that rows can stream.
 inline constexpr std::size_t kRateRows = 1000;
 
 // A broken rule: "found ..., expected ...; what to do", and where it belongs.

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-// Text handed over at a time, so that a long recording is not held twice.
+// Text written at a time, so that a long recording is not held twice.
 constexpr std::size_t kPieceBytes = 256 * 1024;
 
 // What a comment may hold: '#', a blank and the text fit in one line.

@@ -50,12 +50,12 @@ struct RecordingCheck {
 // `recording`: at least kRecordingMinimumRows rows.
 RecordingCheck check_recording(const Recording& recording, const CheckRequest& request);
 
-// Longer recordings are judged by their first rows: 100 minutes at 1 kHz.
+// Longer recordings are checked by their first rows: 100 minutes at 1 kHz.
 inline constexpr std::size_t kMostCheckedRows = 6000000;
 
 struct CheckedFile {
   std::string path;
-  Recording recording;  // what was judged
+  Recording recording;  // what was checked
   bool whole = true;    // false: the file is longer than kMostCheckedRows
   RecordingCheck check;
 };

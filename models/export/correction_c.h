@@ -14,7 +14,7 @@ namespace palpate {
 // Errors: a kind without an emitter.
 Status write_correction(CText& out, const CorrectionPtr& correction);
 
-// "static real trust_in(const real *u)": 1 near the data, 0 away from it.
+// "static real trust_in(const real *u)": 1 near the data, 0 out of domain.
 void write_trust(CText& out, const DomainCover& cover);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
 // The step of prepare_training that decides how far the trend is corrected and how
-// wrong the models will be: from the samples kept to judge by, their folds left out in
+// wrong the models will be: from the samples kept for evaluation, their folds left out in
 // turn (correction_strength.h, calibrate_bound.h).
 // Thread guarantee: slow side.
 #pragma once

@@ -7,7 +7,7 @@
 //
 // The paper's own recipe (reduction by force and weighting 1/f, together) is
 // run as the paper has it: low-pass features and the force itself as target,
-// the trend (position alone) only away from the data. Otherwise the methods fit
+// the trend (position alone) only out of domain. Otherwise the methods fit
 // what the viscoelastic trend leaves over.
 // Thread guarantee: slow side.
 #pragma once
@@ -62,7 +62,7 @@ struct PreparedTraining {
   FeatureSelection selection;              // what each feature is worth; empty unless chosen here
   std::optional<ErrorBound> trend_bound;   // of the trend alone; that of `common` is of a correction
   std::optional<StrengthChoice> strength;  // of the correction; none for the paper's recipe
-  // In-contact feature vectors and forces to judge the fit by, at most 100,000.
+  // In-contact feature vectors and forces to evaluate the fit with, at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> evaluation_features;
   std::vector<double> evaluation_force_N;
   std::vector<int> evaluation_fold;

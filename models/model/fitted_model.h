@@ -5,11 +5,11 @@
 //   u = (x - offset) / scale                                    normalised features
 //
 // T: the trend (models/model/trend.h). h: the correction (models/model/correction.h):
-// eq. 2 of Hoever & Harders (2009), its grid, or none at all. g: trust, 1 near the data, 0 away from it (models/model/domain_guard.h). b: 0
+// eq. 2 of Hoever & Harders (2009), its grid, or none at all. g: trust, 1 near the data, 0 out of domain (models/model/domain_guard.h). b: 0
 // when h was fitted to what the trend leaves over (default), T(x) when h was
 // fitted to the force itself (the paper's own recipe). limit: the largest
 // correction that the training data called for. largest: 1.2 x the largest
-// training force. So away from its data every method is the trend: continuous,
+// training force. So out of its domain every method is the trend: continuous,
 // bounded, and never pulling the tool in.
 //
 // Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.

@@ -11,7 +11,7 @@
 // For given times and thresholds the trend is linear in its coefficients, which are
 // never negative, so all candidate columns are filtered in one pass and every set
 // of candidates is a small non-negative least-squares problem on a part of one
-// Gram matrix per fold (Lawson & Hanson 1974). A set is judged by the error of
+// Gram matrix per fold (Lawson & Hanson 1974). A set is scored by the error of
 // (f - T) / JND on the folds left out (fold_dealer.h); samples deeper than
 // anything in the other folds do not count, for there only the guess would.
 //

@@ -29,7 +29,7 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
                  const UiStyle& style, const SceneArea& area, float lift);
 // From the lower edge up to the big number's top, which stands so far above that edge.
 float big_number_height(const UiStyle& style, float lift);
-// The error of the model in the hand as one number, in words, and the scale that its
+// The error of the active model as one number, in words, and the scale that its
 // colour is from; so far above the lower edge.
 void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift);
 

@@ -53,7 +53,7 @@ struct ForceCurves::Scene {
   bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
   // Of models that are not the active one; what is dark is hard enough to see on black.
   float faint() const { return style.theme() == Theme::dark ? 0.95F : 0.75F; }
-  // The models in the order of drawing: the one in the hand on top.
+  // The models in the order of drawing: the active one on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
     const ModelsView& models = force.models;

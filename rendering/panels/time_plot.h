@@ -1,4 +1,4 @@
-// A plot over time in the hand: the mouse reads values, zooms, goes back and forth.
+// A plot over time as an instrument: the mouse reads values, zooms, goes back and forth.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 

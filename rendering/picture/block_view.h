@@ -28,7 +28,7 @@ struct BlockPose {
   float error_over_jnd = 0.0F;
   float force_N = 0.0F;
   Rgb arrow{0.0F};
-  bool chosen = false;  // in the hand
+  bool chosen = false;  // the active model
   bool shows_error = true;   // the dent shows the error's colour
 };
 

@@ -56,7 +56,7 @@ void print_check(const CheckedFile& file) {
   }
   std::cout << "  a perfect model would be within the JND in " << 100.0 * file.check.noise_floor_within_jnd
             << " % of the contact samples\n";
-  if (!file.whole) std::cout << "  judged by its first " << kMostCheckedRows << " rows\n";
+  if (!file.whole) std::cout << "  checked by its first " << kMostCheckedRows << " rows\n";
 }
 
 Status run_check(const CheckOptions& options) {

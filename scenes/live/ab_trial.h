@@ -52,7 +52,7 @@ class AbTrial {
   void press(int key) noexcept;
   // The key pressed last; 1 at the beginning.
   int pressed() const noexcept { return pressed_; }
-  // Whether both have been in the hand: only then an answer means anything.
+  // Whether both have been active: only then an answer means anything.
   bool tried_both() const noexcept { return tried_[0] && tried_[1]; }
 
   // One tick while exploring: the forces of the slots under 1 and 2. Ignored out of

@@ -76,7 +76,7 @@ void Comparison::add_to_slot(std::size_t index, std::size_t slot, const LoopSnap
   figures.felt_over_jnd = figures.felt.add(snapshot.loop_time_s, difference);
   if (!compared) return;
   SlotView& view = slots_.view(slot);
-  // Where one model knows nothing, none is judged.
+  // Where one model is out of domain, none is compared.
   if (snapshot.tick.out_of_domain_mask != 0) {
     ++view.samples_out_of_domain;
   } else {

@@ -22,7 +22,7 @@ struct HistoryPoint {
   float rendered_N = 0.0F;
   float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
   bool in_contact = false;
-  bool out_of_domain = false;  // of the model in the hand
+  bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickTrouble trouble = TickTrouble::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready

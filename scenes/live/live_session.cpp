@@ -109,7 +109,7 @@ void LiveSession::update_models() {
   publish();
 }
 
-// All begin to be judged together: the same samples for each.
+// All begin to be compared together: the same samples for each.
 void LiveSession::publish() {
   comparison_.forget_errors();
   loop_->publish_models(models_.make_set(device_->sensor(), truth_));

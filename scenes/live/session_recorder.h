@@ -79,7 +79,7 @@ class SessionRecorder {
   Status start(const RecorderRequest& request);
   std::uint32_t number() const noexcept { return number_; }
 
-  // Ends the recording with the samples that the loop has handed over by now.
+  // Ends the recording with the samples that the loop has published by now.
   // Does not wait.
   void stop();
   // Blocks until a recording that was stopped, or gave up, is on the disk or

@@ -1,4 +1,4 @@
-// From JNDs at a few reference forces to the line that everything is judged by.
+// From JNDs at a few reference forces to the line that every error is compared with.
 //
 // As Hoever & Harders (2009), section 4.1 and figure 3: a line is fitted to the JNDs
 // over the reference force by least squares, all points alike, and then shifted down
@@ -28,7 +28,7 @@ struct JndLines {
 };
 
 // Errors: fewer than two reference forces; JNDs that fall with the force; a
-// conservative line that is not above zero at no force. Nothing could be judged by
+// conservative line that is not above zero at no force. Nothing could be compared with
 // those.
 Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points);
 

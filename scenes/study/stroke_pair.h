@@ -20,7 +20,7 @@ struct StrokePair {
   double from_s = 0.0;  // in the recording
   double to_s = 0.0;
   std::uint32_t checksum = 0;  // of both forces
-  JndLine jnd;                 // what the error is judged by
+  JndLine jnd;                 // what the error is compared with
   // |comparison - reference| over the JND of the reference, as it is presented, in
   // contact: what the panel and the report show, for this stroke.
   double mean_over_jnd = 0.0;

@@ -3,9 +3,9 @@
 //
 // Three kinds of case, all made up and always the same:
 //   sites       coinciding, clustered, flat and badly scaled points; as few as
-//               one; more centres than sites. Judged at other points nearby.
+//               one; more centres than sites. Evaluated at other points nearby.
 //   recording   what sensors and hands do wrong: noise, drift, outliers, lost
-//               and jittered samples, extreme rates. Judged on a clean press.
+//               and jittered samples, extreme rates. Evaluated on a clean press.
 //   motion      presses unlike the training: deeper, faster, longer, abrupt.
 // The truth is a closed form, so the error is known. Of direct interpolation the
 // system of eq. 4 is also solved in long double, where it is small enough.
