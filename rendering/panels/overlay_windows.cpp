@@ -36,7 +36,7 @@ std::vector<std::string> model_files(const std::vector<std::string>& folders) {
 }
 
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 6.2F * height_of(style.fonts().heading);
+  float y = area.at.y + 5.2F * height_of(style.fonts().heading);
   ImFont* font = style.fonts().body;
   const float pad = 0.6F * height_of(font);
   const float wrap = 0.86F * area.size.x;
@@ -59,7 +59,7 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
   const float wrap = 0.8F * area.size.x;
   const ImVec2 size = text_size(style.fonts().body, text, wrap);
   const float pad = 0.4F * height_of(style.fonts().body);
-  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.3F * height_of(style.fonts().heading));
+  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 3.6F * height_of(style.fonts().heading));
   ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - pad},
                                                 {at.x + size.x + 2.0F * pad, at.y + size.y + pad},
                                                 ink(style.colours().raised), 6.0F);

@@ -87,7 +87,13 @@ void ForceCurves::draw(const ForceView& force, ViewState& view, const UiStyle& s
 
 void ForceCurves::draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style,
                                     float height) {
-  draw_force(begin(force, view, style), height);
+  const Scene scene = begin(force, view, style);
+  // On an axis of forces a band of a tenth of a newton is a line.
+  if (std::isnan(force.reference_N)) {
+    draw_force(scene, height);
+  } else {
+    draw_difference(scene, height);
+  }
   view.time.hover_s = std::nan("");
 }
 
