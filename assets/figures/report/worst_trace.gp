@@ -44,7 +44,7 @@ do for [medium in media] {
     set tmargin at screen top - force_height - s * strip_height
     set bmargin at screen top - force_height - (s + 1) * strip_height + 0.012
     set yrange [-limit:limit]
-    set ytics (-1, 0, 1)
+    set ytics ("-1" -1, "" 0, "1" 1)
     set ylabel s == int(strips / 2) ? "Difference [JND]" : ""
     if (s == strips - 1) {
       set format x "%g"

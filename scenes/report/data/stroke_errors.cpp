@@ -31,7 +31,7 @@ bool StrokeCounter::begins_block(double time_s, bool in_contact) {
   begins_stroke_ = in_air_ && time_s - last_contact_s_ > kStrokePause_s;
   in_air_ = false;
   last_contact_s_ = time_s;
-  if (!begins_stroke_ && time_s - block_begin_s_ <= kLongestBlock_s) return false;
+  if (!begins_stroke_ && time_s - block_begin_s_ <= longest_block_s_) return false;
   block_begin_s_ = time_s;
   return true;
 }

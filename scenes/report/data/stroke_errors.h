@@ -5,12 +5,14 @@
 //   replacement; every figure of merit over the drawn blocks; the interval holds
 //   the middle 95 % of the results.
 // A block is a stroke, from touch to release; one that lasts longer than
-// kLongestBlock_s is cut, since after that long a material has forgotten. The seed is
+// kLongestBlock_s is cut, since after that long a material has forgotten, and one longer
+// than a tenth of its recording, since of one or two blocks a resampling says nothing. The seed is
 // fixed, so the same samples give the same intervals.
 // Source: Efron & Tibshirani (1993), chapters 8 and 13; Kuensch (1989) for blocks.
 // Thread guarantee: slow side; one thread per object.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +22,7 @@ namespace palpate {
 
 inline constexpr int kResamples = 1000;
 inline constexpr double kLongestBlock_s = 2.0;
+inline constexpr double kLongestBlockShare = 0.1;  // of a recording
 // Out of contact for less is the same stroke: noise at the surface.
 inline constexpr double kStrokePause_s = 0.05;
 // With fewer strokes the intervals are too narrow to be believed.
@@ -49,11 +52,15 @@ struct Evidence : ErrorSummary {
 // Where strokes and blocks begin; one for a recording.
 class StrokeCounter {
  public:
+  explicit StrokeCounter(double recording_s)
+      : longest_block_s_(std::min(kLongestBlock_s, kLongestBlockShare * recording_s)) {}
+
   // Every row in time order. True when this row begins a block.
   bool begins_block(double time_s, bool in_contact);
   bool begins_stroke() const { return begins_stroke_; }  // of the last row asked about
 
  private:
+  double longest_block_s_;
   double last_contact_s_ = -1e300;
   double block_begin_s_ = 0.0;
   bool in_air_ = true;  // since the last row in contact

@@ -16,7 +16,7 @@ Result<std::vector<Evidence>> ReplayEvaluator::evaluate(const Recording& recordi
     const std::size_t count = std::min(kMaxModels, models.size() - first);
     const auto begin = models.begin() + static_cast<std::ptrdiff_t>(first);
     std::vector<StrokeErrors> here(count, StrokeErrors(jnd_));
-    StrokeCounter strokes;
+    StrokeCounter strokes(recording.rows.back().time_s - recording.rows.front().time_s);
     const auto replayed = replay(
         recording, ForceModels(begin, begin + static_cast<std::ptrdiff_t>(count)),
         [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {

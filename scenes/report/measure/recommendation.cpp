@@ -7,7 +7,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint64_t kFewestBlocks = 3;
 constexpr double kPoorShare = 0.9;  // within the JND
 
 std::string percent(double share) { return fixed(100.0 * share, 2) + " %"; }
@@ -69,10 +68,7 @@ void confirm(Recommendation& result, const std::vector<Candidate>& ranked, const
 
 }  // namespace
 
-bool tied(const Evidence& one, const Evidence& other) {
-  // Of one or two blocks a resampling says nothing.
-  return std::min(one.blocks, other.blocks) < kFewestBlocks || one.p99_interval.overlaps(other.p99_interval);
-}
+bool tied(const Evidence& one, const Evidence& other) { return one.p99_interval.overlaps(other.p99_interval); }
 
 int evaluation_cost(const ModelResult& model, std::size_t features) {
   const Method& method = *model.plan.request.method;

@@ -156,7 +156,9 @@ std::string about_seeds(const ReportData& data) {
   std::string text;
   for (const auto& [model, range] : ranges) {
     text += (text.empty() ? "Over " + std::to_string(counts[model]) + " seeds the RMS error of " : ", that of ") + model +
-            " lies between " + three_digits(range.first) + " and " + three_digits(range.second) + " mN";
+            (three_digits(range.first) == three_digits(range.second)
+                 ? " is always " + three_digits(range.first) + " mN"
+                 : " lies between " + three_digits(range.first) + " and " + three_digits(range.second) + " mN");
   }
   return text.empty() ? text : text + ".";
 }

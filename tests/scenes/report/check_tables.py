@@ -6,8 +6,8 @@
 Shares no code with the program: it reads the forces, applies the definitions of
 the README and compares with tables/speed_error.csv and, bin by bin, with
 tables/force_bins.csv to one part in a million; the row of a model that always says 0 N too. The
-intervals are bootstrapped anew over strokes cut into pieces of at most 2 s, with
-other random numbers: their ends must agree to a quarter of the interval's width.
+intervals are bootstrapped anew over strokes cut into pieces of at most 2 s or a tenth
+of the recording, with other random numbers: their ends must agree to a quarter of the interval's width.
 (The ends of 1,000 resamplings themselves scatter by some 5 % of it.)
 """
 import bisect
@@ -25,6 +25,9 @@ def read(path, model):
     """Blocks of (error, error / JND, measured force) of the samples in contact; without a
     model, of one that always says 0 N."""
     blocks = []
+    with open(path, newline="") as file:
+        times = [float(row["time_s"]) for row in csv.DictReader(file)]
+    longest = min(LONGEST_BLOCK_S, 0.1 * (times[-1] - times[0]))
     last_contact = begin = -math.inf
     in_air = True
     with open(path, newline="") as file:
@@ -36,7 +39,7 @@ def read(path, model):
             stroke = in_air and time - last_contact > STROKE_PAUSE_S
             in_air = False
             last_contact = time
-            if stroke or time - begin > LONGEST_BLOCK_S or not blocks:
+            if stroke or time - begin > longest or not blocks:
                 blocks.append([])
                 begin = time
             measured = float(row["force_N"])

@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 TEST(StrokeCounter, AStrokeGoesFromTouchToReleaseAndLongOnesAreCut) {
-  StrokeCounter counter;
+  StrokeCounter counter(100.0);
   int strokes = 0;
   int blocks = 0;
   for (int i = 0; i < 1000; ++i) {  // 10 Hz: the step is longer than the pause that noise may make
@@ -21,6 +21,13 @@ TEST(StrokeCounter, AStrokeGoesFromTouchToReleaseAndLongOnesAreCut) {
   }
   EXPECT_EQ(strokes, 10);
   EXPECT_EQ(blocks, 50) << "9 s are five pieces of at most 2 s";
+}
+
+TEST(StrokeCounter, AShortRecordingHasTenBlocksAtLeast) {
+  StrokeCounter counter(5.0);
+  int blocks = 0;
+  for (int i = 0; i < 5000; ++i) blocks += counter.begins_block(1e-3 * i, true) ? 1 : 0;
+  EXPECT_EQ(blocks, 10) << "half a second each";
 }
 
 TEST(StrokeErrors, NeighbouringSamplesThatAreAlikeTellLess) {

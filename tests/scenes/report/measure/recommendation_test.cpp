@@ -8,7 +8,6 @@ namespace {
 Evidence evidence(double within, double p99, double half_width) {
   Evidence result;
   result.samples = 1000;
-  result.blocks = 20;
   result.within_jnd = within;
   result.p99_error_over_jnd = p99;
   result.p99_interval = {p99 - half_width, p99 + half_width};
@@ -34,14 +33,6 @@ TEST(Recommendation, IsTheCheapestOfTheTied) {
   EXPECT_EQ(choice.recommended, "greedy-50");
   EXPECT_EQ(choice.tied, (std::vector<std::string>{"greedy-50", "greedy-200"}));
   EXPECT_TRUE(choice.left_out);
-}
-
-TEST(Recommendation, NothingIsToldApartByOneOrTwoBlocks) {
-  Evidence one = evidence(1.0, 0.5, 0.0);
-  Evidence other = evidence(1.0, 0.9, 0.0);
-  EXPECT_FALSE(tied(one, other));
-  one.blocks = other.blocks = 2;
-  EXPECT_TRUE(tied(one, other));
 }
 
 TEST(Recommendation, IsMadeWithoutTheTest) {
