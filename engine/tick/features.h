@@ -123,6 +123,10 @@ class FeatureFilter {
   // `sample` and its motion estimate; times increase. The contact state is
   // that of the raw position.
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept;
+  // After an `update`: takes over the memory that `before`, fed with the same motion, has
+  // of the same features, so that a change of models loses none. A stop's bend depends on
+  // its threshold alone; all else must be equal. Wait-free.
+  void adopt(const FeatureFilter& before) noexcept;
   // What `update` gave last.
   const FeatureVector& vector() const noexcept { return vector_; }
 
@@ -130,6 +134,7 @@ class FeatureFilter {
   using PartStates = std::array<double, kMaxFeatureParts>;
   double updated_spectrum(std::size_t index, double depth_m, double step_s, bool advance) noexcept;
   double updated_stops(std::size_t index, double depth_m, bool advance) noexcept;
+  void adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept;
 
   std::array<FeatureSpec, kMaxFeatures> specs_{};
   std::array<double, kMaxFeatures> drive_{};  // d or g(d) at the last sample
