@@ -10,6 +10,7 @@
 // evaluate/   one query at a time, each waiting for the last
 // fit/        fits at 6,850 sites of a recording, `peak_MB` above what was there
 // size/       fits against the number of sites, 1,000 to 1,000,000
+// feature/    a tick of the feature filter, one kind of feature at a time
 // dimension/  fits and evaluation against the number of features, 1 to 8
 // peer/       Palpate's methods beside ALGLIB, dlib and scipy where these are
 //             installed: fit, query and error on the same recordings
