@@ -4,7 +4,7 @@ Fenced `sh` blocks are run line by line in a scratch folder that has what the te
 for granted: build/, a table of a rig, recordings, models, answers of subjects. Lines that
 would take minutes, or need a person, are listed below with the reason. Commands between
 backticks within a sentence have placeholders for names: of these the verb and the options
-are held against --help. The `cpp` block of the front page is compiled."""
+are held against --help, scripts must be there. The `cpp` block of the front page is compiled."""
 import csv
 import os
 import pathlib
@@ -57,7 +57,7 @@ def inline_commands(text):
     without_blocks = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
     for words in re.findall(r"`([^`]+)`", without_blocks):
         command = " ".join(words.split())
-        if re.match(r"(build/)?palpate(-demo)? ", command):
+        if re.match(r"(build/)?palpate(-demo)? |(bash|python3) [a-z]", command):
             yield command.removeprefix("build/")
 
 
@@ -110,9 +110,13 @@ def window_works(build):
     return (build / WINDOW).exists() and shutil.which("xvfb-run") is not None
 
 
-def check_inline(readme, build, helps):
+def check_inline(readme, source, build, helps):
     for command in inline_commands(readme.read_text()):
         words = command.split()
+        if words[0] in ("bash", "python3"):
+            if not (source / words[1]).is_file():
+                sys.exit("%s: `%s`: there is no %s" % (readme, command, words[1]))
+            continue
         program = build / words[0]
         if not program.exists():
             continue
@@ -151,7 +155,7 @@ def main(source, build, compiler):
         environment = {**os.environ, "HOME": name, "XDG_DATA_HOME": name + "/share", "XDG_CONFIG_HOME": name + "/config"}
         for readme in readmes:
             run_blocks(readme, folder, build, environment)
-            check_inline(readme, build, helps)
+            check_inline(readme, source, build, helps)
             compile_snippet(readme, source, folder, compiler)
 
 

@@ -259,4 +259,31 @@ double FeatureFilter::updated_stops(std::size_t index, double depth_m, bool adva
   return sum;
 }
 
+void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    for (std::size_t k = 0; k < before.count_; ++k) {
+      if (specs_[i].kind == before.specs_[k].kind) adopt_feature(i, before, k);
+    }
+  }
+}
+
+void FeatureFilter::adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept {
+  if (specs_[index] == before.specs_[other]) {
+    vector_.values[index] = before.vector_.values[other];
+    if (index == lag_) surface_m_ = before.surface_m_;
+    drive_[index] = before.drive_[other];
+    part_drive_[index] = before.part_drive_[other];
+    part_state_[index] = before.part_state_[other];
+  } else if (specs_[index].kind == FeatureKind::stops) {
+    for (std::size_t p = 0; p < specs_[index].part_count; ++p) {
+      for (std::size_t q = 0; q < before.specs_[other].part_count; ++q) {
+        if (specs_[index].parts[p].threshold_m == before.specs_[other].parts[q].threshold_m) {
+          part_state_[index][p] = before.part_state_[other][q];
+        }
+      }
+    }
+    vector_.values[index] = updated_stops(index, depth_m_, false);
+  }
+}
+
 }  // namespace palpate

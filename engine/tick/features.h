@@ -153,6 +153,10 @@ class FeatureFilter {
   // `sample` and its motion estimate; times increase. The contact state is
   // that of the raw position.
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept;
+  // After an `update`: takes over the memory that `before`, fed with the same motion, has
+  // of the same features, so that a change of models loses none. A stop's bend depends on
+  // its threshold alone; all else must be equal. Wait-free.
+  void adopt(const FeatureFilter& before) noexcept;
   // What `update` gave last.
   const FeatureVector& vector() const noexcept { return vector_; }
   // s, at least the depth; it without a surface_lag.
@@ -169,6 +173,7 @@ class FeatureFilter {
   double surface_above_m(double depth_m) noexcept;
   double updated_branches(std::size_t index, double surface_m, bool advance) noexcept;
   double updated_stops(std::size_t index, double depth_m, bool advance) noexcept;
+  void adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept;
 
   std::array<FeatureSpec, kMaxFeatures> specs_{};
   std::array<double, kMaxFeatures> drive_{};  // d at the last sample

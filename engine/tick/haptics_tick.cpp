@@ -14,14 +14,6 @@ bool finite(const ToolSample& sample) noexcept {
          std::isfinite(sample.velocity_m_per_s) && std::isfinite(sample.acceleration_m_per_s2);
 }
 
-bool same_lists(const FeatureFilter& a, const FeatureFilter& b) noexcept {
-  if (a.count() != b.count()) return false;
-  for (std::size_t i = 0; i < a.count(); ++i) {
-    if (!(a.spec(i) == b.spec(i))) return false;
-  }
-  return true;
-}
-
 bool same_features(const FeatureFilter& filter, const std::vector<FeatureSpec>& specs) {
   if (filter.count() != specs.size()) return false;
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -60,13 +52,15 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   snapshot_.model_count = models;
   snapshot_.force_N.fill(0.0);
   snapshot_.predicted_error_N.fill(0.0);
+  if (!started_) return;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    for (const FeatureFilter& old : before.filters_) {
-      if (same_lists(filters_[i], old)) filters_[i] = old;
-    }
+    // At rest at the last sample, but for what is known of it.
+    filters_[i].reset();
+    filters_[i].update({time_s_, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
+    for (const FeatureFilter& old : before.filters_) filters_[i].adopt(old);
     vectors_[i] = filters_[i].vector();
   }
-  if (started_) evaluate_models();
+  evaluate_models();
 }
 
 const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {

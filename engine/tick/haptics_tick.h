@@ -60,10 +60,10 @@ class HapticsTick {
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
-  // Goes on where `before` is: same motion estimate and, for every feature list
-  // that both have, same filter state, so that a change of models in mid-press
-  // loses no memory of the material; its snapshot is that of these models. A list
-  // that is new begins at rest with the next sample. Same sensor. Wait-free.
+  // Goes on where `before` is: same motion estimate and, for every feature that both
+  // have, same memory, so that a change of models in mid-press loses none of the
+  // material's; its snapshot is that of these models. A feature that is new is at rest
+  // at the last sample. Same sensor. Wait-free.
   void continue_from(const HapticsTick& before) noexcept;
 
   // Slow side: from now on `step` also times each evaluation, in units of

@@ -13,6 +13,7 @@
 // tick/       one sample of a replay, whole and its motion alone
 // program/    `palpate fit` from the command line to the model file
 // size/       fits against the number of sites, 1,000 to 1,000,000
+// feature/    a tick of the feature filter, one kind of feature at a time
 // dimension/  fits and evaluation against the number of features, 1 to 8
 // peer/       Palpate's methods beside ALGLIB, dlib and scipy where these are
 //             installed: fit, query and error on the same recordings

@@ -184,6 +184,17 @@ void print_against(const BenchRows& rows, const std::string& title, const char* 
   }
 }
 
+// "feature/NAME": what it adds to a tick with depth alone.
+void print_features(const BenchRows& rows) {
+  const BenchRow* alone = find(rows, "feature/depth");
+  if (alone == nullptr) return;
+  print_header("Features", {"feature", "one tick of the filter", "of which the feature"});
+  for (const auto& [name, row] : rows) {
+    if (!starts_with(name, "feature/")) continue;
+    print_row({name.substr(8), duration(row.seconds), text("%.1f ns", 1e9 * (row.seconds - alone->seconds))});
+  }
+}
+
 // "peer/DATA/NAME/fit" and "/query", one line for each name.
 void print_peers(const BenchRows& rows) {
   std::string last_data;
@@ -289,6 +300,7 @@ void print_tables(const BenchRows& rows) {
   print_against(rows, "Cost over N", "sites, 4-D", kSizeColumns);
   print_against(rows, "Cost over dimension", "features", kDimensionColumns);
   print_peers(rows);
+  print_features(rows);
   print_choices(rows);
   std::fflush(stdout);
 }

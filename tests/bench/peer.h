@@ -29,8 +29,11 @@ struct Peer {
 };
 
 std::vector<Peer> palpate_peers();
+// No function at all: 0 N and, with the trend, the trend alone.
+Peer nothing_peer();
 // Defined where CMake found the library.
 std::vector<Peer> alglib_peers();
 std::vector<Peer> dlib_peers();
+std::vector<Peer> dlib_forest_peers();
 
 }  // namespace palpate::bench

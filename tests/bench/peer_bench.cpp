@@ -139,6 +139,7 @@ void register_scipy(const std::string& data) {
 
 const int registered = [] {
   std::vector<Peer> peers = palpate_peers();
+  peers.push_back(nothing_peer());
   [[maybe_unused]] const auto add = [&](const std::vector<Peer>& more) {
     peers.insert(peers.end(), more.begin(), more.end());
   };
@@ -147,6 +148,7 @@ const int registered = [] {
 #endif
 #ifdef PALPATE_WITH_DLIB
   add(dlib_peers());
+  add(dlib_forest_peers());
 #endif
   for (const std::string& data : peer_data_names()) {
     for (const Peer& peer : peers) register_peer(data, peer);

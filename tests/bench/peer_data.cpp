@@ -21,6 +21,7 @@ constexpr int kLeaveOut = 5;  // every so-manieth stroke
 PreparedTraining with_targets(const PreparedTraining& prepared, bool forces) {
   PreparedTraining other = prepared;
   if (forces) {
+    other.sites.strength = 1.0;  // was chosen for what the trend leaves
     for (std::size_t i = 0; i < other.set.sites.size(); ++i)
       other.sites.target_N[static_cast<Eigen::Index>(i)] = other.set.sites[i].force_N;
   }
@@ -60,12 +61,27 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   return data;
 }
 
+// Of physics of their own; the features are what the recording decides on.
+constexpr const char* kMaterials[] = {"friction", "softening", "tissue", "layered"};
+
 PeerData make_data(const std::string& name) {
   if (name == "silicone") {
     return make_data(name,
                      test::prepare({test::rig_recording(test::train_settings(name))},
                                    test::scene_request("silicone_block")),
                      {test::rig_recording(test::test_settings(name))});
+  }
+  if (std::find(std::begin(kMaterials), std::end(kMaterials), name) != std::end(kMaterials)) {
+    return make_data(name,
+                     test::prepare({test::rig_recording(test::train_settings(name))},
+                                   test::default_request("silicone_block")),
+                     {test::rig_recording(test::test_settings(name))});
+  }
+  if (name == "press") {
+    return make_data(name,
+                     test::prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")},
+                                   test::default_request("skin")),
+                     {test::real_recording("ur3e_press_mit/test_cycle2.csv")});
   }
   std::vector<RecordingPtr> train, tested;
   for (const char* force : {"250", "600", "1000"})
@@ -105,7 +121,9 @@ Sites some_sites(const Sites& all, const Wanted& wanted) {
 
 std::vector<std::string> peer_data_names() {
   std::vector<std::string> names{"silicone"};
+  names.insert(names.end(), std::begin(kMaterials), std::end(kMaterials));
   if (std::filesystem::exists(test::real_data() / "aurora_skin")) names.emplace_back("skin");
+  if (std::filesystem::exists(test::real_data() / "ur3e_press_mit")) names.emplace_back("press");
   return names;
 }
 

@@ -31,8 +31,8 @@ struct PeerError {
   double within_jnd = 0.0;  // share
 };
 
-// "silicone", made up, always there; "skin" where the real recordings are. Made
-// once each.
+// Virtual materials, always there; "skin" and "press" where the real recordings are.
+// Made once each.
 std::vector<std::string> peer_data_names();
 const PeerData& peer_data(const std::string& name);
 

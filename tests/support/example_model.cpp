@@ -91,6 +91,35 @@ std::vector<FeatureSpec> maxwell_features() {
           filter(FeatureKind::maxwell_branch, 1.0 / 0.9)};
 }
 
+std::vector<FeatureSpec> memory_features() {
+  FeatureSpec spectrum;
+  spectrum.kind = FeatureKind::maxwell_spectrum;
+  spectrum.part_count = 3;
+  FeatureSpec stops;
+  stops.kind = FeatureKind::stops;
+  stops.part_count = 2;
+  for (std::size_t p = 0; p < 3; ++p) {
+    const double size = static_cast<double>(p + 1);
+    spectrum.parts[p].relaxation_time_s = 0.03 * size * size;
+    spectrum.parts[p].drive = {kDepth_m, {0.3, 0.1 * size, 0.0, 0.05}};
+    if (p == stops.part_count) continue;
+    stops.parts[p].threshold_m = 2e-4 * size;
+    stops.parts[p].drive = {kDepth_m, {0.2, 0.0, 0.1 * size, 0.0}};
+  }
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, spectrum, stops, filter(FeatureKind::fading_peak, 0.9)};
+}
+
+std::vector<FeatureSpec> lagging_features() {
+  FeatureSpec slowed = memory_features()[2];
+  slowed.slowing = 1.5;
+  slowed.parts[1].drive.has_knots = true;
+  slowed.parts[1].drive.knot_N = {0.5, -0.3, 0.1, 0.0, 0.2, -0.1, 0.4};
+  FeatureSpec lag;
+  lag.kind = FeatureKind::surface_lag;
+  lag.drive = slowed.parts[1].drive;
+  return {FeatureSpec{}, lag, {FeatureKind::velocity, 0.0, {}}, slowed};
+}
+
 ModelData example_model(const std::string& method, KernelKind kernel, std::vector<FeatureSpec> features,
                         std::uint64_t seed) {
   ModelData data;
@@ -148,6 +177,13 @@ std::vector<ModelData> example_models() {
   };
   models.back().corrects_trend = false;
   models.back().name = "paper-recipe";
+  models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
+  for (std::size_t j = 0; j < models.back().trend.softening.size(); ++j) {
+    models.back().trend.softening[j] = {kDepth_m, {0.1, 0.05 * static_cast<double>(j), 0.1, 0.0}};
+  }
+  models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
+  models.back().trend.has_elastic_knots = true;
+  models.back().trend.elastic_knot_N = models.back().features[1].drive.knot_N;
   return models;
 }
 

@@ -23,13 +23,15 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
 void change_rbf(ModelData& data, const std::function<void(RbfFunction&)>& change);
 void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change);
 
-// Depth; the paper's four features; two Maxwell branches.
+// Depth; the paper's four features; two Maxwell branches; a spectrum, stops and a fading
+// deepest depth.
 std::vector<FeatureSpec> position_features();
 std::vector<FeatureSpec> paper_features();
 std::vector<FeatureSpec> maxwell_features();
+std::vector<FeatureSpec> memory_features();
 
-// One of every kind: each method, kernel, feature list, and the paper's own
-// recipe, which corrects no trend. All names differ.
+// One of every kind: each method, kernel, feature kind, term of the trend, and the
+// paper's own recipe, which corrects no trend. All names differ.
 std::vector<ModelData> example_models();
 
 // Strokes into the block and out of it, 6 mm deep at most, beginning in the air;

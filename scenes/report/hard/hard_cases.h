@@ -1,13 +1,14 @@
 // What the methods do with data that break numerics, and models with
 // motions far from their data: every method meets every case.
 //
-// Three kinds of case, all made up and always the same:
+// Four kinds of case, all made up and always the same:
 //   sites       coinciding, clustered, flat and badly scaled points; as few as
 //               one; more centres than sites. Evaluated at other points nearby.
 //   recording   what sensors and hands do wrong: noise, drift, outliers, lost
 //               and jittered samples, extreme rates. Evaluated on a clean press.
 //   motion      presses unlike the training: deeper, faster, longer, abrupt.
-// The truth is a closed form, so the error is known. Of direct interpolation the
+//   material    these motions in every virtual material, features as its recording has them.
+// The truth is a closed form, or the material, so the error is known. Of direct interpolation the
 // system of eq. 4 is also solved in long double, where it is small enough.
 //
 // `safe` means: every value finite and bounded (a site case: held-out values
@@ -19,6 +20,8 @@
 
 #include <string>
 #include <vector>
+
+#include "models/fit/fit.h"
 
 namespace palpate {
 
@@ -34,13 +37,15 @@ struct HardCaseResult {
   bool safe = false;
 };
 
-// All of them, case by case, methods in the order of methods(). Some seconds.
+// All but the materials, case by case, methods in the order of methods(). Some seconds.
 // Deterministic. Slow side.
 std::vector<HardCaseResult> run_hard_cases();
 
-// The three parts of it.
+// Its parts, and the materials.
 std::vector<HardCaseResult> run_hard_sites();
-std::vector<HardCaseResult> run_hard_recordings();
+std::vector<HardCaseResult> run_hard_recordings(FeatureChoice choice);
 std::vector<HardCaseResult> run_hard_motions();
+// Half a minute.
+std::vector<HardCaseResult> run_hard_materials();
 
 }  // namespace palpate

@@ -68,6 +68,28 @@ Press press_along(const Path& path, const std::vector<double>& times_s, const Pr
   return press;
 }
 
+Press press_into(Block& block, const Path& path, const std::vector<double>& times_s) {
+  Press press;
+  press.recording.name = "press";
+  double last_s = times_s.empty() ? 0.0 : times_s.front();
+  block.reset(path(last_s));
+  for (const double time_s : times_s) {
+    const double position_m = path(time_s);
+    const double velocity_m_per_s = (path(time_s + kStep_s) - path(time_s - kStep_s)) / (2.0 * kStep_s);
+    const double force_N = time_s > last_s ? block.step(position_m, velocity_m_per_s, time_s - last_s) : 0.0;
+    press.true_N.push_back(force_N);
+    press.recording.rows.push_back({time_s, position_m, force_N, 0.0, 0.0});
+    last_s = time_s;
+  }
+  return press;
+}
+
+Press clean_training() { return press_along(training_path(0), even_times(kTrainingSeconds, kTrainingRate_Hz)); }
+
+Path scaled(const Path& path, double factor, double offset_m) {
+  return [=](double time_s) { return offset_m + factor * path(time_s); };
+}
+
 std::vector<double> even_times(double seconds, double rate_Hz) {
   std::vector<double> times_s;
   for (double i = 0.0; i < seconds * rate_Hz; ++i) times_s.push_back(i / rate_Hz);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/recording/recording.h"
+#include "scenes/material/block.h"
 
 namespace palpate {
 
@@ -28,6 +29,20 @@ struct PressSensors {
 
 // `times_s` ascending. The material moves in steps of 50 us between them.
 Press press_along(const Path& path, const std::vector<double>& times_s, const PressSensors& sensors = {});
+
+// The same into a virtual material, without noise.
+Press press_into(Block& block, const Path& path, const std::vector<double>& times_s);
+
+inline constexpr double kTrainingSeconds = 5.0;
+inline constexpr double kTrainingRate_Hz = 125.0;
+inline constexpr double kEvaluatedSeconds = 4.0;
+inline constexpr double kEvaluatedRate_Hz = 1000.0;
+
+// A press that nothing is wrong with, to train on.
+Press clean_training();
+
+// offset + factor times the path.
+Path scaled(const Path& path, double factor, double offset_m);
 
 // Evenly spaced times from 0.
 std::vector<double> even_times(double seconds, double rate_Hz);

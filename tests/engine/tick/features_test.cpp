@@ -183,6 +183,35 @@ TEST(Features, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
   }
 }
 
+// What a change of models in mid-press does: the memory of the same features goes on.
+TEST(Features, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
+  const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()), fading_peak(2.0),
+                                                 maxwell(0.3, stiffening())};
+  const DriveCurve softer{5e-3, {0.2, 0.1, 0.0, 0.0}};
+  const std::vector<FeatureSpec> specs = {maxwell(0.3, stiffening()), stops({3e-4, 1e-4}, softer), fading_peak(2.0),
+                                          maxwell(0.3, softer)};
+  FeatureFilter before(before_specs);
+  FeatureFilter always(specs);
+  const auto at = [](int i) { return closed_motion_m(2e-4 * i); };
+  for (int i = 0; i < 2000; ++i) {
+    feed(before, 1e-3 * i, at(i));
+    feed(always, 1e-3 * i, at(i));
+  }
+  FeatureFilter after(specs);
+  feed(after, 1.999, at(1999));
+  after.adopt(before);
+  EXPECT_EQ(after.vector().values[3], 0.0) << "a branch that nobody had is at rest";
+  for (int i = 2000; i < 4000; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(after.vector().values[k], always.vector().values[k]) << feature_name(specs[k]);
+    }
+    feed(after, 1e-3 * i, at(i));
+    feed(always, 1e-3 * i, at(i));
+  }
+  EXPECT_NEAR(after.vector().values[3], always.vector().values[3], 0.01 * std::abs(always.vector().values[0]))
+      << "after seven times its relaxation time";
+}
+
 TEST(Features, LowpassOfARampIsExactAtAnyRate) {
   const double tau_s = 0.17;
   const double speed_m_per_s = 0.02;
@@ -278,13 +307,11 @@ TEST(Features, AMaxwellBranchAgreesWithFineIntegration) {
 
 // The discretisation is exact for straight motion between samples; for this one the
 // depth between two samples at 500 Hz is curved by at most a h^2 / 8 = 0.1 um, and the
-// filters forget it: 0.1 % of each feature's range is a bound with a margin of ten.
-TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
-  FeatureSpec slowing = maxwell(0.1, stiffening());
-  slowing.slowing = 2.0;
-  const std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17),
-                                          surface_lag({5e-3, {0.5, 0.5}}), slowing};
-  const auto run = [&](double rate_Hz, std::vector<std::array<double, 5>>& at_500_Hz) {
+// filters forget it: 0.1 % of each feature's range is a bound with a margin of ten. The
+// peak fades from a sample late, 2 ms of its 2 s.
+void expect_same_at_every_rate(const std::vector<FeatureSpec>& specs) {
+  using Values = std::array<double, kMaxFeatures>;
+  const auto run = [&](double rate_Hz, std::vector<Values>& at_500_Hz) {
     FeatureFilter filter(specs);
     const int every = static_cast<int>(rate_Hz / 500.0);
     for (int i = 0; i <= static_cast<int>(4.0 * rate_Hz); ++i) {
@@ -295,10 +322,10 @@ TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
       const double position_m = 3e-3 * std::sin(omega * t) + 5e-5 * std::sin(tremor * t);
       const double velocity_m_per_s = 3e-3 * omega * std::cos(omega * t) + 5e-5 * tremor * std::cos(tremor * t);
       const FeatureVector& vector = feed(filter, t, position_m, velocity_m_per_s);
-      if (i % every == 0) at_500_Hz.push_back({vector.values[0], vector.values[1], vector.values[2], vector.values[3], vector.values[4]});
+      if (i % every == 0) at_500_Hz.push_back(vector.values);
     }
   };
-  std::vector<std::array<double, 5>> slow, normal, fast;
+  std::vector<Values> slow, normal, fast;
   run(500.0, slow);
   run(1000.0, normal);
   run(2000.0, fast);
@@ -318,8 +345,20 @@ TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
   }
 }
 
+TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
+  const std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17),
+                                          lowpass(1.27), maxwell(0.1, stiffening()),
+                                          spectrum({0.02, 0.2, 2.0}, stiffening()),
+                                          stops({1e-4, 4e-4}, stiffening()), fading_peak(2.0)};
+  expect_same_at_every_rate(specs);
+  FeatureSpec slowing = maxwell(0.1, stiffening());
+  slowing.slowing = 2.0;
+  expect_same_at_every_rate({FeatureSpec{}, surface_lag({5e-3, {0.5, 0.5}}), slowing});
+}
+
 TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
-  FeatureFilter filter({FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17), maxwell(0.1, stiffening())});
+  FeatureFilter filter({FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17), maxwell(0.1, stiffening()),
+                        spectrum({0.1}, stiffening()), stops({1e-4}, stiffening()), fading_peak(0.5)});
   int i = 0;
   // Fast strokes in the air leave everything at rest.
   for (; i < 500; ++i) {
@@ -340,6 +379,9 @@ TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
     ASSERT_EQ(vector.values[1], 0.0);
     ASSERT_NEAR(vector.values[2], start * std::exp(-1e-3 * k / 0.17), std::abs(start) * kRounding);
     ASSERT_NEAR(vector.values[3], branch * std::exp(-1e-3 * k / 0.1), std::abs(branch) * kRounding);
+    ASSERT_EQ(vector.values[4], vector.values[3]);
+    ASSERT_EQ(vector.values[5], 0.0);
+    ASSERT_LT(vector.values[6], 3e-3 * std::exp(-1e-3 * (k - 1) / 0.5));
   }
 }
 

@@ -132,8 +132,8 @@ TEST(HapticsTick, ModelsOfTheSameFeaturesShareAFilter) {
   Models models;
   for (const ModelData& data : test::example_models()) models.push_back(fitted(data));
   const HapticsTick tick({}, models);
-  EXPECT_EQ(tick.model_count(), 9u);
-  EXPECT_EQ(tick.filter_count(), 3u) << "paper's four, Maxwell's four, position alone";
+  EXPECT_EQ(tick.model_count(), 10u);
+  EXPECT_EQ(tick.filter_count(), 4u) << "paper's four, Maxwell's four, position alone, memories";
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(1));
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(8));
   EXPECT_NE(&tick.features_of(0), &tick.features_of(3));
@@ -150,6 +150,32 @@ TEST(HapticsTick, OneModelsForceDoesNotDependOnItsNeighbours) {
     for (std::size_t m = 0; m < all.size(); ++m) {
       ASSERT_EQ(snapshot.force_N[m], alone[m].step(tool_sample(row)).force_N[0]);
     }
+  }
+}
+
+// In mid-press: what both models have in common is as if the second had always been there.
+TEST(HapticsTick, AnotherModelGoesOnWithTheMemoriesOfTheFirst) {
+  const ModelData first = test::example_model("greedy", KernelKind::cubic, test::memory_features(), 1);
+  ModelData second = test::example_model("random", KernelKind::linear, test::memory_features(), 2);
+  std::swap(second.features[2], second.features[4]);  // in another order
+  ModelData third = test::example_model("trend", KernelKind::cubic, test::maxwell_features(), 3);
+  const Recording recording = test::example_recording(1500, 1000.0, 30e-6);
+  const SensorSpec sensor{30e-6, 0.0};
+  HapticsTick always(sensor, {fitted(second)});
+  HapticsTick before(sensor, {fitted(first)});
+  const std::size_t change = 700;
+  ASSERT_GT(recording.rows[change].position_m, 2e-3) << "in mid-press";
+  for (std::size_t i = 0; i <= change; ++i) {
+    before.step(tool_sample(recording.rows[i]));
+    always.step(tool_sample(recording.rows[i]));
+  }
+  HapticsTick after(sensor, {fitted(second), fitted(third)});
+  after.continue_from(before);
+  EXPECT_EQ(after.snapshot().force_N[0], always.snapshot().force_N[0]);
+  EXPECT_GT(after.snapshot().force_N[1], 0.0) << "of depth and velocity at once, its branches at rest";
+  for (std::size_t i = change + 1; i < recording.rows.size(); ++i) {
+    const double expected_N = always.step(tool_sample(recording.rows[i])).force_N[0];
+    ASSERT_EQ(after.step(tool_sample(recording.rows[i])).force_N[0], expected_N) << i;
   }
 }
 

@@ -39,47 +39,8 @@ const std::vector<Recording>& recordings() {
   return list;
 }
 
-// Of every feature kind and term of the trend, beside what example_models() has.
-std::vector<ModelData> all_models() {
-  std::vector<ModelData> models = test::example_models();
-  FeatureSpec spectrum;
-  spectrum.kind = FeatureKind::maxwell_spectrum;
-  spectrum.part_count = 3;
-  FeatureSpec stops;
-  stops.kind = FeatureKind::stops;
-  stops.part_count = 2;
-  for (std::size_t p = 0; p < 3; ++p) {
-    const double size = static_cast<double>(p + 1);
-    spectrum.parts[p].relaxation_time_s = 0.03 * size * size;
-    spectrum.parts[p].drive = {6e-3, {0.3, 0.1 * size, 0.0, 0.05}};
-    stops.parts[p].threshold_m = 2e-4 * size;
-    stops.parts[p].drive = {6e-3, {0.2, 0.0, 0.1 * size, 0.0}};
-  }
-  stops.parts[2] = {};
-  FeatureSpec peak;
-  peak.kind = FeatureKind::fading_peak;
-  peak.relaxation_time_s = 0.9;
-  FeatureSpec velocity;
-  velocity.kind = FeatureKind::velocity;
-  models.push_back(test::example_model("greedy", KernelKind::cubic, {FeatureSpec{}, velocity, spectrum, stops, peak}, 21));
-  for (std::size_t j = 0; j < models.back().trend.softening.size(); ++j) {
-    models.back().trend.softening[j] = {6e-3, {0.1, 0.05 * static_cast<double>(j), 0.1, 0.0}};
-  }
-  FeatureSpec slowed = spectrum;
-  slowed.slowing = 1.5;
-  slowed.parts[1].drive.has_knots = true;
-  slowed.parts[1].drive.knot_N = {0.5, -0.3, 0.1, 0.0, 0.2, -0.1, 0.4};
-  FeatureSpec lag;
-  lag.kind = FeatureKind::surface_lag;
-  lag.drive = slowed.parts[1].drive;
-  models.push_back(test::example_model("greedy", KernelKind::cubic, {FeatureSpec{}, lag, velocity, slowed}, 22));
-  models.back().trend.has_elastic_knots = true;
-  models.back().trend.elastic_knot_N = lag.drive.knot_N;
-  return models;
-}
-
 TEST(ExportC, InDoublePrecisionItGivesReplaysForcesToANanonewton) {
-  for (const ModelData& data : all_models()) {
+  for (const ModelData& data : test::example_models()) {
     for (const Recording& recording : recordings()) {
       const CompiledModel<double> compiled(data, request_for(recording));
       ASSERT_NE(compiled.force, nullptr);
@@ -100,7 +61,7 @@ TEST(ExportC, InDoublePrecisionItGivesReplaysForcesToANanonewton) {
 TEST(ExportC, InSinglePrecisionNobodyFeelsTheDifference) {
   const Recording& recording = recordings().front();
   const JndLine jnd;
-  for (const ModelData& data : all_models()) {
+  for (const ModelData& data : test::example_models()) {
     const CompiledModel<float> compiled(data, request_for(recording));
     ASSERT_NE(compiled.force, nullptr);
     double worst = 0.0;
@@ -165,7 +126,7 @@ TEST(ExportC, ASampleThatIsNoneChangesNothingAndAResetBeginsAgain) {
 }
 
 TEST(ExportC, TheSameModelGivesTheSameBytesAndCountsItsTables) {
-  for (const ModelData& data : all_models()) {
+  for (const ModelData& data : test::example_models()) {
     const Result<ExportedC> once = export_c(data, {});
     const Result<ExportedC> again = export_c(data, {});
     const Result<ExportedC> single = export_c(data, {true, {}});

@@ -28,7 +28,7 @@ TEST(HardCases, EveryMethodIsSafeWithEverySetOfSites) { expect_safe(run_hard_sit
 
 // What a rig does wrong every day must not cost accuracy.
 TEST(HardCases, EveryMethodIsSafeWithEveryRecording) {
-  const std::vector<HardCaseResult> results = run_hard_recordings();
+  const std::vector<HardCaseResult> results = run_hard_recordings(FeatureChoice::scene);
   expect_safe(results);
   for (const HardCaseResult& r : results) {
     for (const char* name : {"nothing wrong", "one outlier of 100 N", "20 % noise", "dropped samples", "10 Hz",
@@ -38,6 +38,13 @@ TEST(HardCases, EveryMethodIsSafeWithEveryRecording) {
       }
   }
 }
+
+TEST(HardCases, EveryMethodIsSafeWithEveryRecordingThatDecidesItsFeatures) {
+  expect_safe(run_hard_recordings(FeatureChoice::automatic));
+}
+
+// Friction, softening, layers and fluids, and the memories that their recordings ask for.
+TEST(HardCases, EveryMethodIsSafeInEveryMaterial) { expect_safe(run_hard_materials()); }
 
 TEST(HardCases, AreTheSameEveryTime) {
   const std::vector<HardCaseResult> first = run_hard_motions();

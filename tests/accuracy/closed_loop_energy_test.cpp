@@ -1,0 +1,109 @@
+// Energy in the closed loop (closed_loop_test.cpp): cycles and strokes take more than they
+// give.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/support/closed_loop_energy.h"
+#include "tests/support/live_doubles.h"
+
+namespace palpate {
+namespace {
+
+using test::Grip;
+using test::held;
+using test::held_and_late_Ns_per_m;
+using test::kEncoders_m;
+using test::kFirm;
+using test::kFirmOnStiff;
+using test::kOneTick_s;
+using test::kSoftSpring_N_per_m;
+using test::kStiffSpring_N_per_m;
+using test::least_damping_Ns_per_m;
+using test::LoopSettings;
+using test::ModelPtr;
+using test::Press;
+using test::say;
+using test::silicone_models;
+using test::spring;
+using test::stiff_models;
+using test::stroke;
+using test::Strokes;
+using test::Ticking;
+
+TEST(ClosedLoop, NoCycleInSiliconeGivesEnergy) {
+  for (const ModelPtr& model : silicone_models()) {
+    // By itself: nothing is left for the controller to do.
+    const double least = least_damping_Ns_per_m(model, kFirm.depth_m, false);
+    say("cycles, " + model->name(), "damping of %.2f N s/m or more, %.2f needed", least, 0.0);
+    EXPECT_GE(least, 0.0) << model->name();
+  }
+  // What a spring does is known in closed form; at 40 Hz a tenth more.
+  for (const double stiffness : {kSoftSpring_N_per_m, kStiffSpring_N_per_m}) {
+    const double expected = held_and_late_Ns_per_m(stiffness);
+    EXPECT_NEAR(least_damping_Ns_per_m(spring(stiffness), kFirmOnStiff.depth_m, 5e-6, 5e-4, Ticking::even, false),
+                expected, -0.2 * expected);
+  }
+}
+
+// An encoder turns a step late on the way in and a step late on the way out: at
+// most that, over the largest force, may come out of a stroke for nothing.
+// Silicone keeps a fifth of every stroke and needs none of it.
+TEST(ClosedLoop, StrokesIntoSiliconeGiveLessThanTheyTake) {
+  for (const ModelPtr& model : silicone_models()) {
+    double worst_return = 0.0, worst_bounce = 0.0;
+    for (const Grip& grip : test::grips()) {
+      for (const double encoder_m : kEncoders_m) {
+        for (const Ticking ticking : {Ticking::even, Ticking::jittered, Ticking::gaps}) {
+          const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, ticking}, kFirm);
+          double& worst = held(grip) ? worst_return : worst_bounce;
+          worst = std::max(worst, strokes.worst_return);
+          if (held(grip)) {
+            EXPECT_GE(strokes.lowest_J, -encoder_m * strokes.largest_N) << model->name() << ", " << grip.name;
+          }
+        }
+      }
+    }
+    say("strokes, " + model->name(), "%.1f %% comes out again, of a thrown mass %.1f %%", 100.0 * worst_return,
+        100.0 * worst_bounce);
+    EXPECT_LE(worst_return, 1.0) << model->name();
+    // Of a mass that is thrown at the surface and never gets to where silicone is
+    // viscous one encoder step hides a part. Measured: 1.09; 1.19 without the controller.
+    EXPECT_LE(worst_bounce, 1.15) << model->name();
+  }
+  for (const Grip& grip : test::grips()) {
+    LoopSettings settings{grip, 5e-6, kOneTick_s, Ticking::even};
+    settings.passivity = false;
+    EXPECT_GT(stroke(spring(kSoftSpring_N_per_m), settings, kFirm).worst_return, 1.2) << grip.name;
+  }
+}
+
+// What the controller takes of the force in a hand, in JNDs: nothing on silicone, which
+// keeps a fifth of every stroke; on the stiff block what a held and late force gives
+// back too much, on the way out. Measured: 0 and 0 JND; 0.67 JND on the mean of all
+// ticks in contact, 13 JND in the fastest of them, out of the block within 50 ms.
+TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
+  const auto cost = [](const std::string& block, const std::vector<ModelPtr>& models, const Press& press) {
+    Strokes worst;
+    for (const ModelPtr& model : models) {
+      for (const Grip& grip : test::grips()) {
+        if (!held(grip)) continue;
+        for (const double encoder_m : kEncoders_m) {
+          const Strokes strokes = stroke(model, {grip, encoder_m, kOneTick_s, Ticking::gaps}, press);
+          worst.mean_cost_jnd = std::max(worst.mean_cost_jnd, strokes.mean_cost_jnd);
+          worst.largest_cost_jnd = std::max(worst.largest_cost_jnd, strokes.largest_cost_jnd);
+        }
+      }
+    }
+    say("passivity costs on " + block, "%.3f JND mean, %.2f JND at most", worst.mean_cost_jnd,
+        worst.largest_cost_jnd);
+    return worst;
+  };
+  EXPECT_LE(cost("silicone", silicone_models(), kFirm).largest_cost_jnd, 0.1);
+  EXPECT_LE(cost("the stiff block", stiff_models(), kFirmOnStiff).mean_cost_jnd, 1.0);
+}
+
+}  // namespace
+}  // namespace palpate

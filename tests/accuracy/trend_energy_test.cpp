@@ -1,0 +1,126 @@
+// What a trend takes and gives back: from rest on, in any motion, in and out of the
+// material, never more than was put in. The trends are those that the recording decides on
+// for materials with friction, softening, a continuous spectrum, a layer and a fluid, so
+// that every kind of feature is among them; motions are random and exact (no sensor).
+//
+// Why it holds. Elastic part: a spring. Viscosity: never negative. A branch z that is
+// driven by a rising curve g(d): it stores integral of (g^-1(g - z + s) - g^-1(g - z)) over
+// s from 0 to z and loses the rest. Stops with g >= 0: bristles that bend and slip. A
+// softening share S(d) (d / peak)^p falls as the peak rises; what healing gives, the next
+// press to the old depth has paid before. Nonnegative coefficients make all curves rise.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <numbers>
+
+#include "engine/base/random_stream.h"
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+using test::ModelPtr;
+
+constexpr double kRate_Hz = 4000.0;
+constexpr double kSeconds = 30.0;
+// The trapezoidal rule at 4 kHz on motions of at most 12 Hz: the error of a cycle is of the
+// order (w h)^2 / 12 = 3e-5 of what is put in.
+constexpr double kIntegration = 1e-4;
+
+// Sines of random frequencies, amplitudes and phases about a depth that wanders: slow
+// presses with tremor, pokes, small cycles at depth, and time in the air.
+class RandomMotion {
+ public:
+  RandomMotion(std::uint64_t seed, double deepest_m) {
+    RandomStream random(seed, 5);
+    const auto uniform = [&] { return static_cast<double>(random.index(1U << 20)) / (1U << 20); };
+    middle_m_ = deepest_m * (0.7 * uniform() - 0.1);
+    for (Sine& sine : sines_) {
+      const double rate_Hz = 0.1 * std::pow(120.0, uniform());
+      sine = {deepest_m * 0.5 * uniform() / (1.0 + rate_Hz), 2.0 * std::numbers::pi * rate_Hz,
+              2.0 * std::numbers::pi * uniform()};
+    }
+  }
+
+  MotionEstimate at(double time_s) const {
+    // From the air, within half a second.
+    const double in = std::min(1.0, 2.0 * time_s);
+    MotionEstimate motion{-1e-3 + in * (1e-3 + middle_m_), 2.0 * time_s < 1.0 ? 2.0 * (1e-3 + middle_m_) : 0.0};
+    for (const Sine& sine : sines_) {
+      const double fade = in;
+      const double rate = 2.0 * time_s < 1.0 ? 2.0 : 0.0;
+      motion.position_m += fade * sine.amplitude_m * std::sin(sine.rate_rad_per_s * time_s + sine.phase);
+      motion.velocity_m_per_s +=
+          fade * sine.amplitude_m * sine.rate_rad_per_s * std::cos(sine.rate_rad_per_s * time_s + sine.phase) +
+          rate * sine.amplitude_m * std::sin(sine.rate_rad_per_s * time_s + sine.phase);
+    }
+    return motion;
+  }
+
+ private:
+  struct Sine {
+    double amplitude_m = 0.0, rate_rad_per_s = 0.0, phase = 0.0;
+  };
+  std::array<Sine, 6> sines_{};
+  double middle_m_ = 0.0;
+};
+
+struct Balance {
+  double put_in_J = 0.0;
+  double lowest_J = 0.0;  // of what was put in less what was got out, at any time
+};
+
+Balance balance_of(const ForceModel& model, const RandomMotion& motion) {
+  FeatureFilter filter(model.features());
+  Balance balance;
+  double sum_J = 0.0, before_N = 0.0, before_m = 0.0;
+  const int count = static_cast<int>(kSeconds * kRate_Hz);
+  for (int i = 0; i < count; ++i) {
+    const double time_s = i / kRate_Hz;
+    const MotionEstimate now = motion.at(time_s);
+    const FeatureVector& vector = filter.update({time_s, now.position_m, 0.0, 0.0}, now);
+    const double force_N = vector.in_contact ? model.evaluate(vector.values.data()).force_N : 0.0;
+    const double work_J = 0.5 * (force_N + before_N) * (now.position_m - before_m);
+    if (i > 0) {
+      sum_J += work_J;
+      balance.put_in_J += std::max(0.0, work_J);
+      balance.lowest_J = std::min(balance.lowest_J, sum_J);
+    }
+    before_N = force_N;
+    before_m = now.position_m;
+  }
+  return balance;
+}
+
+ModelPtr trend_of(const std::string& material) {
+  RigSettings settings = test::train_settings(material);
+  settings.seconds = 15.0;
+  settings.rate_Hz = 500.0;
+  return test::fit(test::prepare({test::rig_recording(settings)}, test::default_request("silicone_block")),
+                   find_method("trend"));
+}
+
+TEST(TrendEnergy, NoMotionFromRestEverGetsOutMoreThanWasPutIn) {
+  unsigned kinds = 0;
+  for (const char* material : {"silicone", "friction", "softening", "tissue", "sponge", "layered", "gel"}) {
+    const ModelPtr trend = trend_of(material);
+    double worst = 0.0;
+    for (const FeatureSpec& spec : trend->features()) kinds |= 1U << static_cast<unsigned>(spec.kind);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const Balance balance = balance_of(*trend, RandomMotion(seed, 1.2 * trend->data().trend.reference_depth_m));
+      if (!(balance.put_in_J > 0.0)) continue;
+      worst = std::min(worst, balance.lowest_J / balance.put_in_J);
+      EXPECT_GE(balance.lowest_J, -kIntegration * balance.put_in_J) << material << ", motion " << seed;
+    }
+    std::printf("energy, trend of %s: at the lowest %.1e of what was put in\n", material, worst);
+  }
+  for (const FeatureKind kind : {FeatureKind::stops, FeatureKind::fading_peak}) {
+    EXPECT_NE(kinds & (1U << static_cast<unsigned>(kind)), 0U) << feature_kind_name(kind) << " was never chosen";
+  }
+}
+
+}  // namespace
+}  // namespace palpate
