@@ -115,8 +115,8 @@ void qr_in_place(MatrixRef a) {
   if (n == 0) return;
   const int lda = leading(a);
   const int block = std::min(32, n);
-  std::vector<double> reflectors(static_cast<std::size_t>(block * n));
-  std::vector<double> work(static_cast<std::size_t>(block * n));
+  Eigen::VectorXd reflectors(block * n);
+  Eigen::VectorXd work(block * n);
   int info = 0;
   dgeqrt_(&m, &n, &block, a.data(), &lda, reflectors.data(), &block, work.data(), &info);
   assert(info == 0);
@@ -135,7 +135,7 @@ bool svd(Eigen::MatrixXd a, Svd& out) {
   dgesdd_("A", &n, &n, a.data(), &n, out.s.data(), out.u.data(), &n, out.vt.data(), &n, &wanted, &query,
           integers.data(), &info);
   const int work_size = static_cast<int>(wanted);
-  std::vector<double> work(static_cast<std::size_t>(work_size));
+  Eigen::VectorXd work(work_size);
   dgesdd_("A", &n, &n, a.data(), &n, out.s.data(), out.u.data(), &n, out.vt.data(), &n, work.data(), &work_size,
           integers.data(), &info);
   return info == 0;
@@ -150,7 +150,7 @@ bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
   int info = 0;
   dsyevd_("V", "L", &n, a.data(), &n, values.data(), &wanted, &query, &wanted_integers, &query, &info);
   const int work_size = static_cast<int>(wanted);
-  std::vector<double> work(static_cast<std::size_t>(work_size));
+  Eigen::VectorXd work(work_size);
   std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
   dsyevd_("V", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, integers.data(), &wanted_integers,
           &info);
@@ -196,7 +196,7 @@ void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
 double cholesky_condition(const ConstMatrixRef& factor, double norm) {
   const int n = to_int(factor.rows());
   const int lda = leading(factor);
-  std::vector<double> work(static_cast<std::size_t>(3 * n));
+  Eigen::VectorXd work(3 * n);
   std::vector<int> integers(static_cast<std::size_t>(n));
   double reciprocal = 0.0;
   int info = 0;
@@ -207,7 +207,7 @@ double cholesky_condition(const ConstMatrixRef& factor, double norm) {
 double symmetric_norm(const ConstMatrixRef& a) {
   const int n = to_int(a.rows());
   const int lda = leading(a);
-  std::vector<double> work(static_cast<std::size_t>(std::max(1, n)));
+  Eigen::VectorXd work(std::max(1, n));
   return dlansy_("1", "L", &n, a.data(), &lda, work.data());
 }
 
