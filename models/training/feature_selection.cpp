@@ -343,11 +343,13 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   if (!scales) return scales.error();
   TrendTerms terms = candidate_terms(input, *scales);
   FeatureSelection selection;
+  std::vector<FeatureWorth> law_worth;
   if (input.turns_round) {
     auto law = find_memory_law(source, dealer, input, terms, control, fraction);
     if (!law) return law.error();
     selection.list.slowing = terms.slowing = law->slowing;
     selection.list.surface = terms.surface = law->surface;
+    law_worth = std::move(law->worth);
     terms.spline_elastic = true;
   }
   TrendRows rows(std::move(terms), kMostRows);
@@ -374,6 +376,12 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
     selection.longest_s = times_s.back();
   }
   selection.worth = table_of_worth(search, chosen);
+  for (const bool taken : {false, true}) {
+    for (FeatureWorth& worth : law_worth) {
+      if (worth.taken != taken) continue;
+      selection.worth.insert(taken ? selection.worth.begin() : selection.worth.end(), std::move(worth));
+    }
+  }
   selection.left_out_error_over_jnd = std::sqrt(chosen.error.mean());
   selection.training_error_over_jnd = std::sqrt(problem.training_error(solution));
   if (selection.turns_round) {

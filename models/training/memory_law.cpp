@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "models/training/cross_validated_trend.h"
-#include "models/training/feature_selection.h"
 #include "models/training/fit_trend.h"
 #include "models/training/trend_rows.h"
 
@@ -115,18 +115,24 @@ Result<MemoryLaw> find_memory_law(MotionSource& source, const FoldDealer& dealer
   const LawSearch search(source, dealer, input, ladder, control, fraction);
   auto best = search.fit({});
   if (!best) return best.error();
+  double best_other = std::numeric_limits<double>::infinity();  // of the answers to one question
   // Fits that answer, from the surface of an answer near it, and keeps the better one.
   const auto attempt = [&](double slowing, bool lags, std::vector<FeatureSpec> surface, int passes) -> Status {
     for (int pass = 0; pass < passes; ++pass) {
       auto answer = search.fit({slowing, lags ? surface : std::vector<FeatureSpec>{}});
       if (!answer) return answer.error();
       surface = answer->fitted;
+      if (pass + 1 == passes) best_other = std::min(best_other, answer->error.mean());
       if (pass + 1 == passes && is_better(*answer, *best)) best = std::move(answer);
     }
     return {};
   };
+  const double plain = best->error.mean();
   if (Status status = attempt(0.0, true, best->fitted, kSurfacePasses); !status) return status.error();
   const bool lags = !best->law.surface.empty();
+  const FeatureWorth lag_worth{"surface that lags", lags, std::sqrt(best_other), std::sqrt(plain)};
+  const double constant_times = best->error.mean();
+  best_other = std::numeric_limits<double>::infinity();
   const auto slowed = [&](double slowing) { return attempt(slowing, lags, best->fitted, lags ? kSurfacePasses : 1); };
   for (const double slowing : kSlowings) {
     if (Status status = slowed(slowing); !status) return status.error();
@@ -139,6 +145,7 @@ Result<MemoryLaw> find_memory_law(MotionSource& source, const FoldDealer& dealer
       if (Status status = attempt(best->law.slowing, true, best->fitted, kSurfacePasses); !status) return status.error();
     }
   }
+  best->law.worth = {lag_worth, {"slower when deeper", best->law.slowing != 0.0, std::sqrt(best_other), std::sqrt(constant_times)}};
   return best->law;
 }
 

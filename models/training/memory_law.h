@@ -17,16 +17,16 @@
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "models/training/fold_dealer.h"
+#include "models/training/feature_selection.h"
 #include "models/training/motion_source.h"
 #include "models/training/trend_rows.h"
 
 namespace palpate {
 
-struct SelectionInput;
-
 struct MemoryLaw {
   double slowing = 0.0;
-  std::vector<FeatureSpec> surface;  // TrendTerms::surface
+  std::vector<FeatureSpec> surface{};  // TrendTerms::surface
+  std::vector<FeatureWorth> worth{}; // of the surface, of the slowing; empty when nothing was asked
 };
 
 // `ladder`: all relaxation times, thresholds and healing times that may be. Errors: those of the source; interrupted.
