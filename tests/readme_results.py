@@ -100,8 +100,7 @@ def section(options, folder):
     report = folder / "report"
     run(options.palpate, "report", "--train", train, "--test", test, "--out", report, "--force", *(["--quick"] if options.quick else []))
     numbers = json.loads((report / "report.json").read_text())
-    sentences = " ".join(["The report on the silicone:", numbers["findings"][0], numbers["findings"][1],
-                          numbers["timings"]["findings"][0]])
+    sentences = " ".join(["The report on the silicone:", numbers["findings"][0], numbers["timings"]["findings"][0]])
     lines += ["", *textwrap.wrap(sentences, 90), "",
               f"![Speed against error on the virtual silicone: the 2009 recipe hollow, Palpate filled, with intervals]({FIGURE})"]
     if options.write:
