@@ -8,8 +8,20 @@
 namespace palpate {
 namespace {
 
-double drive_of(const FeatureSpec& spec, double depth_m) noexcept {
-  return spec.kind == FeatureKind::maxwell_branch ? spec.drive.at(depth_m) : depth_m;
+constexpr int kSurfaceSteps = 6;
+constexpr double kSurfaceForce_N = 1e-5;
+// Nearer than this, below an atom, the surface has come back.
+constexpr double kNoLag_m = 1e-12;
+
+// A branch alone is a spectrum of one.
+std::size_t branch_count(const FeatureSpec& spec) noexcept {
+  return spec.kind == FeatureKind::maxwell_branch ? 1 : spec.part_count;
+}
+const DriveCurve& branch_drive(const FeatureSpec& spec, std::size_t part) noexcept {
+  return spec.kind == FeatureKind::maxwell_branch ? spec.drive : spec.parts[part].drive;
+}
+double branch_time_s(const FeatureSpec& spec, std::size_t part) noexcept {
+  return spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : spec.parts[part].relaxation_time_s;
 }
 
 std::string four_digits(double value) {
@@ -20,6 +32,17 @@ std::string four_digits(double value) {
 
 }  // namespace
 
+KnotSum knot_sum(const std::array<double, kDriveKnots>& knot_N, double u) noexcept {
+  KnotSum sum;
+  for (std::size_t k = 0; k < kDriveKnots; ++k) {
+    const double beyond = std::max(0.0, u - static_cast<double>(k + 1) / (kDriveKnots + 1));
+    const double square = knot_N[k] * beyond * beyond;
+    sum.value_N += square * beyond;
+    sum.slope_N += 3.0 * square;
+  }
+  return sum;
+}
+
 double DriveCurve::at(double depth_m) const noexcept {
   const double u = depth_m / reference_depth_m;
   const double inside = std::min(u, 1.0);
@@ -28,6 +51,11 @@ double DriveCurve::at(double depth_m) const noexcept {
   for (std::size_t k = kDriveCoefficients; k-- > 0;) {
     slope = slope * inside + static_cast<double>(k + 1) * coefficient_N[k];
     value = (value + coefficient_N[k]) * inside;
+  }
+  if (has_knots) {
+    const KnotSum knots = knot_sum(knot_N, inside);
+    value += knots.value_N;
+    slope += knots.slope_N;
   }
   return u > 1.0 ? value + slope * (u - 1.0) : value;
 }
@@ -41,6 +69,7 @@ std::string_view feature_kind_name(FeatureKind kind) {
     case FeatureKind::maxwell_spectrum: return "maxwell_spectrum";
     case FeatureKind::stops: return "stops";
     case FeatureKind::fading_peak: return "fading_peak";
+    case FeatureKind::surface_lag: return "surface_lag";
   }
   return "depth";
 }
@@ -63,6 +92,7 @@ std::string feature_name(const FeatureSpec& spec) {
     case FeatureKind::stops:
       return "feature_stops_" + first_to_last([](const FeaturePart& part) { return 1e3 * part.threshold_m; }) + "mm_N";
     case FeatureKind::fading_peak: return "feature_fading_peak_" + time + "s_m";
+    case FeatureKind::surface_lag: return "feature_surface_lag_m";
   }
   return {};
 }
@@ -71,6 +101,9 @@ FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
     : count_(std::min(specs.size(), kMaxFeatures)) {
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   std::copy_n(specs.begin(), count_, specs_.begin());
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (specs_[i].kind == FeatureKind::surface_lag) lag_ = i;
+  }
 }
 
 const FeatureVector& FeatureFilter::update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
@@ -79,6 +112,8 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
   vector_.in_contact = sample.position_m > 0.0;
   const double step_s = sample.time_s - time_s_;
   const bool advance = started_ && step_s > 0.0;
+  if (advance) prepare_branches(depth_m, step_s);
+  const double surface_m = advance && lag_ < count_ ? surface_above_m(depth_m) : depth_m;
   for (std::size_t i = 0; i < count_; ++i) {
     const FeatureSpec& spec = specs_[i];
     double& value = vector_.values[i];
@@ -90,23 +125,23 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
         value = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
         break;
       case FeatureKind::lowpass_velocity:
-      case FeatureKind::maxwell_branch: {
-        const double drive = drive_of(spec, depth_m);
         if (advance) {
           const double keep = std::exp(-step_s / spec.relaxation_time_s);
-          const double gain = spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : 1.0;
-          value = keep * value + gain * (1.0 - keep) * (drive - drive_[i]) / step_s;
+          value = keep * value + (1.0 - keep) * (depth_m - drive_[i]) / step_s;
           // A filter at rest decays to zero, not into denormals, which would
           // slow every later operation on it.
           if (std::abs(value) < 1e-30) value = 0.0;
         } else if (!started_) {
           value = 0.0;
         }
-        drive_[i] = drive;
+        drive_[i] = depth_m;
         break;
-      }
+      case FeatureKind::maxwell_branch:
       case FeatureKind::maxwell_spectrum:
-        value = updated_spectrum(i, depth_m, step_s, advance);
+        value = updated_branches(i, surface_m, advance);
+        break;
+      case FeatureKind::surface_lag:
+        value = surface_m - depth_m;
         break;
       case FeatureKind::stops:
         value = updated_stops(i, depth_m, advance);
@@ -125,19 +160,79 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
   started_ = true;
   time_s_ = sample.time_s;
   depth_m_ = depth_m;
+  surface_m_ = surface_m;
   return vector_;
 }
 
-double FeatureFilter::updated_spectrum(std::size_t index, double depth_m, double step_s, bool advance) noexcept {
+void FeatureFilter::prepare_branches(double depth_m, double step_s) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const FeatureSpec& spec = specs_[i];
+    if (!is_branch(spec.kind)) continue;
+    double clock = 1.0;
+    if (spec.slowing != 0.0) {
+      // Between the samples: half of the way.
+      const double u = 0.5 * (surface_m_ + depth_m) / branch_drive(spec, 0).reference_depth_m;
+      clock = std::exp(spec.slowing * std::min(u, 1.0));
+    }
+    for (std::size_t p = 0; p < branch_count(spec); ++p) {
+      const double time_s = clock * branch_time_s(spec, p);
+      const double keep = std::exp(-step_s / time_s);
+      step_[i][p] = {keep, time_s * (1.0 - keep) / step_s};
+    }
+  }
+}
+
+// What elastic response and branches would hold with the surface there.
+double FeatureFilter::held_N(double surface_m) noexcept {
+  double force_N = specs_[lag_].drive.at(surface_m);
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!is_branch(specs_[i].kind)) continue;
+    for (std::size_t p = 0; p < branch_count(specs_[i]); ++p) {
+      const PartStep& step = step_[i][p];
+      const double drive = branch_drive(specs_[i], p).at(surface_m);
+      force_N += step.keep * part_state_[i][p] + step.gain * (drive - part_drive_[i][p]);
+    }
+  }
+  return force_N;
+}
+
+// Regula falsi with halving (Dowell & Jarratt 1971): the surface of before holds
+// nothing or pushes, since what pulls in it decays.
+double FeatureFilter::surface_above_m(double depth_m) noexcept {
+  double low_N = held_N(depth_m);
+  if (low_N >= 0.0) return depth_m;
+  double low_m = depth_m;
+  double high_m = surface_m_;
+  if (!(high_m - low_m > kNoLag_m)) return depth_m;
+  double high_N = held_N(high_m);
+  if (!(high_N > 0.0)) return high_m;
+  double middle_m = high_m;
+  for (int step = 0; step < kSurfaceSteps; ++step) {
+    middle_m = low_m - low_N * (high_m - low_m) / (high_N - low_N);
+    const double middle_N = held_N(middle_m);
+    if (std::abs(middle_N) < kSurfaceForce_N) break;
+    if (middle_N > 0.0) {
+      high_m = middle_m;
+      high_N = middle_N;
+      low_N *= 0.5;
+    } else {
+      low_m = middle_m;
+      low_N = middle_N;
+      high_N *= 0.5;
+    }
+  }
+  return middle_m;
+}
+
+double FeatureFilter::updated_branches(std::size_t index, double surface_m, bool advance) noexcept {
   const FeatureSpec& spec = specs_[index];
   double sum = 0.0;
-  for (std::size_t p = 0; p < spec.part_count; ++p) {
-    const double time_s = spec.parts[p].relaxation_time_s;
-    const double drive = spec.parts[p].drive.at(depth_m);
+  for (std::size_t p = 0; p < branch_count(spec); ++p) {
+    const double drive = branch_drive(spec, p).at(surface_m);
     double& z = part_state_[index][p];
     if (advance) {
-      const double keep = std::exp(-step_s / time_s);
-      z = keep * z + time_s * (1.0 - keep) * (drive - part_drive_[index][p]) / step_s;
+      const PartStep& step = step_[index][p];
+      z = step.keep * z + step.gain * (drive - part_drive_[index][p]);
       if (std::abs(z) < 1e-30) z = 0.0;
     } else if (!started_) {
       z = 0.0;

@@ -10,6 +10,7 @@
 //   stops             y = sum_p g_p(d) s_p / r_p, s_p a stop operator       [N]
 //   fading_peak       m = the deepest depth, fading: dm/dt = -(m - d) / tau
 //                     while d < m, m = d while d is the deepest             [m]
+//   surface_lag       s - d, s the depth of the material's surface          [m]
 //
 // The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the
 // same filter behind a spring whose stiffness g'(d) depends on depth; g is
@@ -17,9 +18,18 @@
 // low-pass. Both are driven by the depth, not by the velocity estimate: free
 // air relaxes the material and does not load it.
 //
+// With a surface_lag among the features, the branches follow the surface and not the
+// tool: s = d while the elastic response E and all branches together push the tool
+// out, and otherwise the s >= d at which they hold nothing, E(s) + sum z = 0. So a
+// tool that retreats faster than the material comes back leaves it, and meets it
+// again where it is (Johnson 1985, section 6.5: unloading of viscoelastic contacts).
+// With a `slowing` b, tau becomes tau exp(b s / reference depth): a fluid that is
+// squeezed through pores that close has one clock for all its times, which slows
+// down with the strain (Lai & Mow 1980: permeability and strain).
+//
 // A branch is dissipative: with q = g(d) - z, dq/dt = z / tau, and of the store
 // integral_0^d g ds - q d + integral_0^q g^-1 ds it loses
-// (d - g^-1(q)) (g(d) - q) / tau >= 0 while g rises.
+// (d - g^-1(q)) (g(d) - q) / tau >= 0 while g rises, whatever tau > 0 is just then.
 //
 // A stop operator of threshold r follows the depth like the tip of a bristle that
 // bends by at most r and then slips: s' = clamp(s + d' - d, -r, r), and 0 out of
@@ -54,19 +64,30 @@ namespace palpate {
 
 inline constexpr std::size_t kMaxFeatures = 8;
 inline constexpr std::size_t kDriveCoefficients = 4;
+inline constexpr std::size_t kDriveKnots = 7;
 inline constexpr std::size_t kMaxFeatureParts = 8;
 
-enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak };
+enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak, surface_lag };
 inline constexpr std::array kFeatureKinds{FeatureKind::depth,          FeatureKind::velocity,
                                           FeatureKind::lowpass_velocity, FeatureKind::maxwell_branch,
                                           FeatureKind::maxwell_spectrum, FeatureKind::stops,
-                                          FeatureKind::fading_peak};
+                                          FeatureKind::fading_peak,      FeatureKind::surface_lag};
+
+// sum_k knot_N[k] max(0, u - (k + 1) / (kDriveKnots + 1))^3, and its slope.
+struct KnotSum {
+  double value_N = 0.0;
+  double slope_N = 0.0;
+};
+KnotSum knot_sum(const std::array<double, kDriveKnots>& knot_N, double u) noexcept;
 
 // g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
-// u <= 1; beyond, g continues along its tangent at u = 1.
+// u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
+// spline: their sum comes on top.
 struct DriveCurve {
   double reference_depth_m = 1.0;
   std::array<double, kDriveCoefficients> coefficient_N{};
+  bool has_knots = false;
+  std::array<double, kDriveKnots> knot_N{};
 
   double at(double depth_m) const noexcept;
   bool operator==(const DriveCurve&) const = default;
@@ -84,20 +105,29 @@ struct FeaturePart {
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::depth;
   double relaxation_time_s = 0.0;  // lowpass_velocity, maxwell_branch, fading_peak
-  DriveCurve drive{};              // maxwell_branch only
+  DriveCurve drive{};              // maxwell_branch; of surface_lag E
   std::size_t part_count = 0;      // maxwell_spectrum and stops
   std::array<FeaturePart, kMaxFeatureParts> parts{};
+  double slowing = 0.0;  // b of maxwell_branch and maxwell_spectrum
 
   bool operator==(const FeatureSpec&) const = default;
 };
 
-// Whether the kind has one time constant, and whether it has parts.
+// Whether the kind has one time constant, parts, a drive of its own, and is made of
+// Maxwell branches.
 constexpr bool has_time(FeatureKind kind) noexcept {
   return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch ||
          kind == FeatureKind::fading_peak;
 }
 constexpr bool has_parts(FeatureKind kind) noexcept {
   return kind == FeatureKind::maxwell_spectrum || kind == FeatureKind::stops;
+}
+
+constexpr bool has_drive(FeatureKind kind) noexcept {
+  return kind == FeatureKind::maxwell_branch || kind == FeatureKind::surface_lag;
+}
+constexpr bool is_branch(FeatureKind kind) noexcept {
+  return kind == FeatureKind::maxwell_branch || kind == FeatureKind::maxwell_spectrum;
 }
 
 std::string_view feature_kind_name(FeatureKind kind);
@@ -125,17 +155,29 @@ class FeatureFilter {
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept;
   // What `update` gave last.
   const FeatureVector& vector() const noexcept { return vector_; }
+  // s, at least the depth; it without a surface_lag.
+  double surface_m() const noexcept { return surface_m_; }
 
  private:
   using PartStates = std::array<double, kMaxFeatureParts>;
-  double updated_spectrum(std::size_t index, double depth_m, double step_s, bool advance) noexcept;
+  struct PartStep {
+    double keep = 0.0;  // share of z that is left after the step
+    double gain = 0.0;  // dz over the change of g
+  };
+  void prepare_branches(double depth_m, double step_s) noexcept;
+  double held_N(double surface_m) noexcept;
+  double surface_above_m(double depth_m) noexcept;
+  double updated_branches(std::size_t index, double surface_m, bool advance) noexcept;
   double updated_stops(std::size_t index, double depth_m, bool advance) noexcept;
 
   std::array<FeatureSpec, kMaxFeatures> specs_{};
-  std::array<double, kMaxFeatures> drive_{};  // d or g(d) at the last sample
+  std::array<double, kMaxFeatures> drive_{};  // d at the last sample
   std::array<PartStates, kMaxFeatures> part_drive_{};  // g_p(d) at the last sample
   std::array<PartStates, kMaxFeatures> part_state_{};  // z_p or s_p
-  double depth_m_ = 0.0;                               // at the last sample
+  std::array<std::array<PartStep, kMaxFeatureParts>, kMaxFeatures> step_{};
+  std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
+  double depth_m_ = 0.0;            // at the last sample
+  double surface_m_ = 0.0;
   std::size_t count_ = 0;
   FeatureVector vector_;
   double time_s_ = 0.0;

@@ -16,6 +16,7 @@ constexpr const char* kFeatureHelpersC = R"C(
 static real value[FEATURES];
 static real depth_m;
 static real last_depth_m;
+static real surface_m;
 
 /* sum_k coefficient[k] u^(k+1), beyond u = 1 along its tangent. */
 static real rising_curve(const real *coefficient, int count, real u) {
@@ -28,6 +29,54 @@ static real rising_curve(const real *coefficient, int count, real u) {
     sum = (sum + coefficient[k]) * inside;
   }
   return u > R(1.0) ? sum + slope * (u - R(1.0)) : sum;
+}
+)C";
+
+constexpr const char* kSplineC = R"C(
+/* The same with sum_k knot[k] max(0, u - (k + 1) / (knots + 1))^3 on top. */
+static real rising_spline(const real *coefficient, int count, const real *knot, int knots, real u) {
+  const real inside = smaller(u, R(1.0));
+  real sum = rising_curve(coefficient, count, inside);
+  real slope = R(0.0);
+  int k;
+  for (k = count - 1; k >= 0; --k) slope = slope * inside + (real)(k + 1) * coefficient[k];
+  for (k = 0; k < knots; ++k) {
+    const real beyond = larger(R(0.0), inside - (real)(k + 1) / (real)(knots + 1));
+    sum += knot[k] * beyond * beyond * beyond;
+    slope += R(3.0) * knot[k] * beyond * beyond;
+  }
+  return u > R(1.0) ? sum + slope * (u - R(1.0)) : sum;
+}
+)C";
+
+constexpr const char* kSurfaceC = R"C(
+/* The surface of the material: under the tool, or where it has come back to. */
+static real surface_above(real step_s) {
+  real low_N = held(step_s, depth_m);
+  real low_m = depth_m;
+  real high_m = surface_m;
+  real middle_m = surface_m;
+  real high_N;
+  int k;
+  if (low_N >= R(0.0) || !(high_m - low_m > R(1e-12))) return depth_m;
+  high_N = held(step_s, high_m);
+  if (!(high_N > R(0.0))) return high_m;
+  for (k = 0; k < 6; ++k) {
+    real middle_N;
+    middle_m = low_m - low_N * (high_m - low_m) / (high_N - low_N);
+    middle_N = held(step_s, middle_m);
+    if (absolute(middle_N) < R(1e-5)) break;
+    if (middle_N > R(0.0)) {
+      high_m = middle_m;
+      high_N = middle_N;
+      low_N *= R(0.5);
+    } else {
+      low_m = middle_m;
+      low_N = middle_N;
+      high_N *= R(0.5);
+    }
+  }
+  return middle_m;
 }
 )C";
 
@@ -50,6 +99,11 @@ static real filtered(real state, real change, real step_s, real time_s, real gai
 std::string coefficients(CText& out, const std::string& name, const DriveCurve& curve,
                          const std::string& depth = "depth_m") {
   out.list(name, Eigen::Map<const Eigen::VectorXd>(curve.coefficient_N.data(), kDriveCoefficients));
+  if (curve.has_knots) {
+    out.list(name + "_knot", Eigen::Map<const Eigen::VectorXd>(curve.knot_N.data(), kDriveKnots));
+    return "rising_spline(" + name + ", " + std::to_string(kDriveCoefficients) + ", " + name + "_knot, " +
+           std::to_string(kDriveKnots) + ", " + depth + " / " + out.number(curve.reference_depth_m) + ")";
+  }
   return "rising_curve(" + name + ", " + std::to_string(kDriveCoefficients) + ", " + depth + " / " +
          out.number(curve.reference_depth_m) + ")";
 }
@@ -73,20 +127,46 @@ std::string emit_lowpass(CText& out, const FeatureSpec& spec, std::size_t index)
          out.number(spec.relaxation_time_s) + ", R(1.0));\n";
 }
 
-// A branch behind a drive: state `target`, drive of the last sample in `last`.
+// A branch behind a drive: state `target`, drive of the last sample and the next value of
+// the state in functions of `name`.
 std::string emit_branch(CText& out, const std::string& target, const std::string& name, const DriveCurve& drive,
-                        double time_s) {
-  out.count({.arithmetic = 26, .divisions = 3, .exponentials = 1});
-  const std::string curve = coefficients(out, name, drive);
-  out.add("static real " + name + "_last;\n");
-  const std::string time = out.number(time_s);
-  return "  {\n    const real drive = " + curve + ";\n    " + target + " = first ? R(0.0) : filtered(" + target +
-         ", drive - " + name + "_last, step_s, " + time + ", " + time + ");\n    " + name + "_last = drive;\n  }\n";
+                        double time_s, double slowing) {
+  out.count({.arithmetic = drive.has_knots ? std::size_t{60} : std::size_t{26}, .divisions = 3, .exponentials = 1});
+  const std::string curve = coefficients(out, name, drive, "s");
+  const std::string clock = slowing == 0.0 ? ""
+                                           : "EXP(" + out.number(slowing) + " * smaller(R(1.0), R(0.5) * (surface_m + depth_m) / " +
+                                                 out.number(drive.reference_depth_m) + ")) * ";
+  out.add("static real " + name + "_last;\nstatic real " + name + "_drive(real s) { return " + curve +
+          "; }\nstatic real " + name + "_after(real step_s, real s) {\n  const real time_s = " + clock + out.number(time_s) +
+          ";\n  return filtered(" + target + ", " + name + "_drive(s) - " + name +
+          "_last, step_s, time_s, time_s);\n}\n");
+  return "  " + target + " = first ? R(0.0) : " + name + "_after(step_s, s);\n  " + name + "_last = " + name +
+         "_drive(s);\n";
+}
+
+std::string branch_name(std::size_t index) { return "drive_" + std::to_string(index); }
+std::string branch_name(std::size_t index, std::size_t part) { return branch_name(index) + "_" + std::to_string(part); }
+
+// What decides where the surface is: all branches and the elastic response of the lag.
+void write_surface(CText& out, const std::vector<FeatureSpec>& features, const FeatureSpec& lag) {
+  const std::string elastic = coefficients(out, "surface_elastic", lag.drive, "s");
+  std::string text = "\nstatic real held(real step_s, real s) {\n  return " + elastic;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (features[i].kind == FeatureKind::maxwell_branch) text += " + " + branch_name(i) + "_after(step_s, s)";
+    for (std::size_t p = 0; features[i].kind == FeatureKind::maxwell_spectrum && p < features[i].part_count; ++p) {
+      text += " + " + branch_name(i, p) + "_after(step_s, s)";
+    }
+  }
+  out.add(text + ";\n}\n" + kSurfaceC);
+}
+
+std::string emit_surface_lag(CText&, const FeatureSpec&, std::size_t index) {
+  return "  value" + index_text(index) + " = s - depth_m;\n";
 }
 
 std::string emit_maxwell(CText& out, const FeatureSpec& spec, std::size_t index) {
-  return emit_branch(out, "value" + index_text(index), "drive_" + std::to_string(index), spec.drive,
-                     spec.relaxation_time_s);
+  return emit_branch(out, "value" + index_text(index), branch_name(index), spec.drive, spec.relaxation_time_s,
+                     spec.slowing);
 }
 
 // Of every part of a spectrum a branch, summed.
@@ -97,8 +177,8 @@ std::string emit_spectrum(CText& out, const FeatureSpec& spec, std::size_t index
   std::string sum;
   for (std::size_t p = 0; p < spec.part_count; ++p) {
     const std::string part = state + index_text(p);
-    text += emit_branch(out, part, "drive_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive,
-                        spec.parts[p].relaxation_time_s);
+    text += emit_branch(out, part, branch_name(index, p), spec.parts[p].drive, spec.parts[p].relaxation_time_s,
+                        spec.slowing);
     sum += (p == 0 ? "" : " + ") + part;
   }
   return text + "  value" + index_text(index) + " = " + sum + ";\n";
@@ -145,6 +225,7 @@ constexpr FeatureRow kFeatureRows[] = {
     {FeatureKind::maxwell_spectrum, emit_spectrum},
     {FeatureKind::stops, emit_stops},
     {FeatureKind::fading_peak, emit_fading_peak},
+    {FeatureKind::surface_lag, emit_surface_lag},
 };
 
 FeatureEmitter emitter_of(FeatureKind kind) {
@@ -172,14 +253,19 @@ std::string feature_of(const std::vector<FeatureSpec>& features, FeatureKind kin
   return text;
 }
 
-bool has_filter(FeatureKind kind) {
-  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch ||
-         kind == FeatureKind::maxwell_spectrum;
+bool has_filter(FeatureKind kind) { return kind == FeatureKind::lowpass_velocity || is_branch(kind); }
+
+bool has_splines(const std::vector<FeatureSpec>& features) {
+  return std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) {
+    const auto end = spec.parts.begin() + static_cast<std::ptrdiff_t>(spec.part_count);
+    return spec.drive.has_knots ||
+           std::any_of(spec.parts.begin(), end, [](const FeaturePart& part) { return part.drive.has_knots; });
+  });
 }
 
 // Features whose value is a force by itself.
 bool is_force(FeatureKind kind) {
-  return kind == FeatureKind::maxwell_branch || kind == FeatureKind::maxwell_spectrum || kind == FeatureKind::stops;
+  return is_branch(kind) || kind == FeatureKind::stops;
 }
 
 bool has_peak(const std::vector<FeatureSpec>& features) {
@@ -208,6 +294,7 @@ std::string softening_text(CText& out, const Trend& trend, const std::vector<Fea
 
 Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(kFeatureHelpersC);
+  if (has_splines(features)) out.add(kSplineC);
   if (std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) { return has_filter(spec.kind); })) {
     out.add(kFilterC);
   }
@@ -218,11 +305,17 @@ Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
     out.add("\n/* " + feature_name(features[i]) + " */\n");
     body += emit(out, features[i], i);
   }
+  const auto lag = std::find_if(features.begin(), features.end(), [](const FeatureSpec& spec) {
+    return spec.kind == FeatureKind::surface_lag;
+  });
+  const bool lags = lag != features.end();
+  if (lags) write_surface(out, features, *lag);
   out.add(
       "\n/* `first`: nothing came before, and every filter is at rest. */\n"
       "static void update_features(real step_s, int first) {\n  (void)step_s;\n  (void)first;\n"
-      "  depth_m = larger(R(0.0), position_estimate_m);\n" +
-      body + "  last_depth_m = depth_m;\n}\n");
+      "  real s;\n  depth_m = larger(R(0.0), position_estimate_m);\n  s = " +
+      std::string(lags ? "first ? depth_m : surface_above(step_s)" : "depth_m") + ";\n  (void)s;\n" + body +
+      "  last_depth_m = depth_m;\n  surface_m = s;\n}\n");
   return {};
 }
 
@@ -232,6 +325,13 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
     out.list(name, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
   coefficients_of("elastic", trend.elastic_N);
+  const std::string count = std::to_string(kElasticCoefficients);
+  std::string elastic = "rising_curve(elastic, " + count + ", u)";
+  if (trend.has_elastic_knots) {
+    if (!has_splines(features)) out.add(kSplineC);
+    coefficients_of("elastic_knot", trend.elastic_knot_N);
+    elastic = "rising_spline(elastic, " + count + ", elastic_knot, " + std::to_string(kDriveKnots) + ", u)";
+  }
   coefficients_of("viscosity", trend.viscosity_Ns_per_m);
   coefficients_of("thinning", trend.thinning_Ns_per_m);
   const std::string limit = out.number(trend.velocity_limit_m_per_s);
@@ -243,8 +343,7 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
       ";\n  const real inside = smaller(u, R(1.0));\n  const real v = clamped(" +
       feature_of(features, FeatureKind::velocity) + ", -" + limit + ", " + limit +
       ");\n  const real thinned = v / (R(1.0) + absolute(v) / " + out.number(trend.thinning_velocity_m_per_s) +
-      ");\n  real force_N = rising_curve(elastic, " + std::to_string(kElasticCoefficients) +
-      ", u);\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, inside) * thinned;\n";
+      ");\n  real force_N = " + elastic + ";\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, inside) * thinned;\n";
   static_assert(kViscosityCoefficients == 3, "quadratic() has three");
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (is_force(features[i].kind)) text += "  force_N += value" + index_text(i) + ";\n";

@@ -25,12 +25,14 @@ constexpr std::size_t kMaximumEvaluationSamples = 100000;
 constexpr double kLeastWayOut = 0.1;
 // Where the error on strokes left out stays above these, other lists of features are
 // tried beside the selected one.
-constexpr double kLittleIsLeft_jnd = 0.1;
+constexpr double kLittleIsLeft_jnd = 0.2;
 constexpr double kMuchIsLeft_jnd = 0.3;
 constexpr int kLadderTimes = 6;
 // As a hand moves.
 constexpr double kLadderFrom_s = 0.01;
 constexpr double kLadderTo_s = 3.0;
+// Of the trend's regression: the noise of so many averages out.
+constexpr std::size_t kTrendRows = 10000;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
 
@@ -167,11 +169,8 @@ Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const 
                         const Extent& extent, double force_noise_floor_N, const FeatureList& list, const FitControl& control) {
   const bool papers = is_papers_recipe(request);
   TrendTerms terms{extent.depth_m, 0.0, {}, {}, {}};
-  if (!papers) {
-    terms = {extent.depth_m, list.velocity ? extent.rms_velocity_m_per_s : 0.0, all_times(list),
-             list.stop_thresholds_m, list.peak_times_s};
-  }
-  TrendRows rows(terms);
+  if (!papers) terms = terms_of(list, extent.depth_m, extent.rms_velocity_m_per_s);
+  TrendRows rows(terms, kTrendRows);
   const Status status = source.for_each([&](const MotionRow& row) {
     if (row.first) rows.begin_recording();
     rows.add(row.sample, row.motion, row.force_N, row.stroke);
@@ -297,19 +296,26 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
 std::vector<FeatureList> rivals_of(const FeatureSelection& selection, const TrainingRequest& request,
                                    double left_over_jnd) {
   std::vector<FeatureList> rivals;
+  const auto add = [&](FeatureList rival) {
+    rival.slowing = selection.list.slowing;
+    rival.spline_elastic = selection.list.spline_elastic;
+    rival.spline_branches = selection.list.spline_branches;
+    rival.surface = selection.list.surface;
+    rivals.push_back(std::move(rival));
+  };
   if (selection.turns_round && left_over_jnd > kLittleIsLeft_jnd) {
-    rivals.push_back(scene_list(request.features, filter_times(request.features)));
+    add(scene_list(request.features, filter_times(request.features)));
   }
   if (selection.turns_round && left_over_jnd > kMuchIsLeft_jnd) {
     FeatureList ladder;
-    ladder.velocity = true;
+    ladder.velocity = selection.list.surface.empty();  // eight features in all
     const double shortest_s = std::max(kLadderFrom_s, selection.shortest_s);
     const double longest_s = std::min(kLadderTo_s, selection.longest_s);
     for (int i = 0; i < kLadderTimes; ++i) {
       const double share = static_cast<double>(i) / (kLadderTimes - 1);
       ladder.relaxation_times_s.push_back({shortest_s * std::pow(longest_s / shortest_s, share)});
     }
-    rivals.push_back(std::move(ladder));
+    add(std::move(ladder));
   }
   return rivals;
 }

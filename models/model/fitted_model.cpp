@@ -11,6 +11,8 @@ namespace {
 // The guard's radius is chosen by what the correction is worth beyond the data; a press
 // deeper than the deepest recorded one by this share is out of the domain in any case.
 constexpr double kDeeper = 0.15;
+// Times that grow a hundred million times with the depth are a damaged file.
+constexpr double kMostSlowing = 20.0;
 
 Error wrong(const std::string& field, const std::string& found, const std::string& expected) {
   return {field + ": found " + found + ", expected " + expected};
@@ -34,6 +36,9 @@ Status validate_drive(const std::string& field, const DriveCurve& drive) {
   for (const double coefficient : drive.coefficient_N) {
     if (!std::isfinite(coefficient)) return wrong(field, "a non-finite number", "finite numbers");
   }
+  for (const double knot : drive.knot_N) {
+    if (!std::isfinite(knot)) return wrong(field + ".knot_N", "a non-finite number", "finite numbers");
+  }
   return {};
 }
 
@@ -46,6 +51,9 @@ Status validate_features(const std::vector<FeatureSpec>& features) {
       if (Status status = validate_positive("features.relaxation_time_s", spec.relaxation_time_s); !status) return status;
     }
     if (Status status = validate_drive("features.drive", spec.drive); !status) return status;
+    if (!(std::abs(spec.slowing) <= kMostSlowing)) {
+      return wrong("features.slowing", std::to_string(spec.slowing), "a number from -20 to 20");
+    }
     if (!has_parts(spec.kind)) continue;
     if (spec.part_count < 1 || spec.part_count > kMaxFeatureParts) {
       return wrong("features.parts", std::to_string(spec.part_count) + " parts", "1 to 8");
@@ -67,6 +75,7 @@ Status validate_trend(const Trend& trend) {
   }
   const auto finite = [](double value) { return std::isfinite(value); };
   if (!std::all_of(trend.elastic_N.begin(), trend.elastic_N.end(), finite) ||
+      !std::all_of(trend.elastic_knot_N.begin(), trend.elastic_knot_N.end(), finite) ||
       !std::all_of(trend.viscosity_Ns_per_m.begin(), trend.viscosity_Ns_per_m.end(), finite) ||
       !std::all_of(trend.thinning_Ns_per_m.begin(), trend.thinning_Ns_per_m.end(), finite)) {
     return wrong("trend", "a non-finite number", "finite numbers");

@@ -15,6 +15,11 @@ double elastic_force_N(const Trend& trend, double u) noexcept {
     slope = slope * inside + static_cast<double>(k + 1) * trend.elastic_N[k];
     value = (value + trend.elastic_N[k]) * inside;
   }
+  if (trend.has_elastic_knots) {
+    const KnotSum knots = knot_sum(trend.elastic_knot_N, inside);
+    value += knots.value_N;
+    slope += knots.slope_N;
+  }
   return u > 1.0 ? value + slope * (u - 1.0) : value;
 }
 
@@ -31,6 +36,7 @@ TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
       case FeatureKind::stops: force[force_count++] = index; break;
       case FeatureKind::fading_peak: peak = index; break;
       case FeatureKind::lowpass_velocity: break;  // the paper's features carry no stiffness
+      case FeatureKind::surface_lag: break;       // the branches follow it
     }
   }
 }

@@ -137,6 +137,7 @@ void CrossValidatedTrend::accumulate(const TrendRows& rows, const std::vector<do
     const Eigen::MatrixXd all = validation + deep.finish();
     validation_[k] = {validation.topLeftCorner(n, n), validation.col(n).head(n), validation(n, n), shallow.count()};
     train_[k] = {all.topLeftCorner(n, n), all.col(n).head(n), all(n, n), shallow.count() + deep.count()};
+    rows.smooth_splines(train_[k].gram);
     total_.gram += train_[k].gram;
     total_.right_side += train_[k].right_side;
     total_.squares += train_[k].squares;

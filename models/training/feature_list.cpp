@@ -11,6 +11,7 @@ FeatureSpec spectrum_of(const FeatureSpec* branches, std::size_t count) {
   FeatureSpec spec;
   spec.kind = FeatureKind::maxwell_spectrum;
   spec.part_count = count;
+  spec.slowing = branches[0].slowing;
   for (std::size_t p = 0; p < count; ++p) spec.parts[p] = {branches[p].relaxation_time_s, 0.0, branches[p].drive};
   return spec;
 }
@@ -23,8 +24,22 @@ std::vector<double> all_times(const FeatureList& list) {
   return times_s;
 }
 
+TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s) {
+  return {reference_depth_m,    list.velocity ? rms_velocity_m_per_s : 0.0, all_times(list), list.stop_thresholds_m,
+          list.peak_times_s,    list.slowing,                                list.spline_elastic,
+          list.spline_branches, list.surface};
+}
+
 std::vector<FeatureSpec> features_of(const FeatureList& list, const FittedTrend& fitted) {
   std::vector<FeatureSpec> features{FeatureSpec{}};
+  if (!list.surface.empty()) {
+    FeatureSpec lag{FeatureKind::surface_lag};
+    lag.drive.reference_depth_m = fitted.trend.reference_depth_m;
+    std::copy_n(fitted.trend.elastic_N.begin(), kDriveCoefficients, lag.drive.coefficient_N.begin());
+    lag.drive.has_knots = true;
+    lag.drive.knot_N = fitted.trend.elastic_knot_N;
+    features.push_back(lag);
+  }
   if (list.velocity) features.push_back({FeatureKind::velocity});
   std::size_t next = 0;
   for (const auto& group : list.relaxation_times_s) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "models/training/cross_validated_trend.h"
+#include "models/training/memory_law.h"
 
 namespace palpate {
 namespace {
@@ -104,14 +105,14 @@ std::vector<Candidate> make_candidates(const TrendRows& rows) {
   const TrendTerms& terms = rows.terms();
   std::vector<Candidate> candidates;
   Candidate velocity{Family::velocity, "velocity", {}, {}};
-  append_columns(velocity.columns, kElasticCoefficients, rows.viscous_columns());
+  append_columns(velocity.columns, rows.elastic_columns(), rows.viscous_columns());
   candidates.push_back(std::move(velocity));
   const std::size_t times = terms.relaxation_times_s.size();
   for (int band = 0; band < kBands; ++band) {
     Candidate one{Family::relaxation, "", {}, {}};
     for (std::size_t t = times * static_cast<std::size_t>(band) / kBands;
          t < times * static_cast<std::size_t>(band + 1) / kBands; ++t) {
-      append_columns(one.columns, rows.first_branch() + t * kBranchTerms, kBranchTerms);
+      append_columns(one.columns, rows.first_branch() + t * rows.branch_terms(), rows.branch_terms());
       one.constants.push_back(terms.relaxation_times_s[t]);
     }
     if (one.constants.empty()) continue;
@@ -133,8 +134,8 @@ std::vector<Candidate> make_candidates(const TrendRows& rows) {
 // The search over sets of candidates.
 class Search {
  public:
-  Search(const CrossValidatedTrend& problem, std::vector<Candidate> candidates)
-      : problem_(problem), candidates_(std::move(candidates)) {}
+  Search(const CrossValidatedTrend& problem, std::vector<Candidate> candidates, std::size_t elastic_columns)
+      : problem_(problem), candidates_(std::move(candidates)), elastic_columns_(elastic_columns) {}
 
   using Set = std::vector<char>;  // by candidate: taken
   struct Scored {
@@ -146,7 +147,7 @@ class Search {
 
   ColumnList columns(const Set& set) const {
     ColumnList list;
-    append_columns(list, 0, kElasticCoefficients);
+    append_columns(list, 0, elastic_columns_);
     for (std::size_t i = 0; i < set.size(); ++i) {
       if (set[i]) list.insert(list.end(), candidates_[i].columns.begin(), candidates_[i].columns.end());
     }
@@ -188,6 +189,7 @@ class Search {
  private:
   const CrossValidatedTrend& problem_;
   std::vector<Candidate> candidates_;
+  std::size_t elastic_columns_;
 };
 
 bool as_good(const Search::Scored& small, const Search::Scored& best) {
@@ -270,8 +272,7 @@ std::vector<double> in_use(const Candidate& candidate, const Eigen::VectorXd& so
   return constants;
 }
 
-FeatureList list_of(const Search& search, const Search::Set& set, const Eigen::VectorXd& solution) {
-  FeatureList list;
+FeatureList list_of(const Search& search, const Search::Set& set, const Eigen::VectorXd& solution, FeatureList list) {
   for (std::size_t i = 0; i < set.size(); ++i) {
     if (!set[i]) continue;
     const Candidate& candidate = search.candidates()[i];
@@ -288,25 +289,73 @@ FeatureList list_of(const Search& search, const Search::Set& set, const Eigen::V
   return list;
 }
 
+Status add_rows(TrendRows& rows, MotionSource& source, const FoldDealer& dealer, const FitControl& control,
+                double fraction) {
+  FoldDealer folds = dealer;
+  return source.for_each([&](const MotionRow& row) {
+    if (row.first) rows.begin_recording();
+    rows.add(row.sample, row.motion, row.force_N, folds.next(row));
+    return true;
+  }, control, fraction);
+}
+
+// Polynomials, or splines for the elastic response or for everything: of the bases
+// within one standard error of the best the first.
+Status choose_basis(FeatureSelection& selection, MotionSource& source, const FoldDealer& dealer,
+                    const SelectionInput& input, const FitControl& control, double fraction) {
+  struct Basis {
+    FeatureList list;
+    CrossValidation error;
+    double training_error = 0.0;
+  };
+  std::vector<Basis> bases;
+  FeatureList list = selection.list;
+  if (list.surface.empty()) bases.push_back({list, {}});
+  list.spline_elastic = true;
+  bases.push_back({list, {}});
+  list.spline_branches = true;
+  if (!list.relaxation_times_s.empty()) bases.push_back({list, {}});
+  for (Basis& basis : bases) {
+    TrendRows rows(terms_of(basis.list, input.reference_depth_m, input.rms_velocity_m_per_s), kMostRows);
+    if (Status status = add_rows(rows, source, dealer, control, fraction); !status) return status;
+    ColumnList all;
+    append_columns(all, 0, rows.columns());
+    const CrossValidatedTrend problem(rows, dealer.folds(), input.weighting, input.jnd, input.force_floor_N);
+    basis.error = problem.left_out(all);
+    basis.training_error = problem.training_error(problem.solve(all));
+  }
+  const auto best = std::min_element(bases.begin(), bases.end(),
+                                     [](const Basis& a, const Basis& b) { return a.error.mean() < b.error.mean(); });
+  const auto chosen = std::find_if(bases.begin(), bases.end(), [&](const Basis& basis) {
+    return basis.error.mean() - best->error.mean() <= basis.error.standard_error_against(best->error);
+  });
+  selection.list = chosen->list;
+  selection.left_out_error_over_jnd = std::sqrt(chosen->error.mean());
+  selection.training_error_over_jnd = std::sqrt(chosen->training_error);
+  return {};
+}
+
 }  // namespace
 
 Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer& dealer, const SelectionInput& input,
                                          const FitControl& control, double fraction) {
   const auto scales = measure_times(source, control, fraction);
   if (!scales) return scales.error();
-  TrendRows rows(candidate_terms(input, *scales), kMostRows);
-  FoldDealer folds = dealer;
-  const Status status = source.for_each([&](const MotionRow& row) {
-    if (row.first) rows.begin_recording();
-    rows.add(row.sample, row.motion, row.force_N, folds.next(row));
-    return true;
-  }, control, fraction);
-  if (!status) return status.error();
+  TrendTerms terms = candidate_terms(input, *scales);
+  FeatureSelection selection;
+  if (input.turns_round) {
+    auto law = find_memory_law(source, dealer, input, terms, control, fraction);
+    if (!law) return law.error();
+    selection.list.slowing = terms.slowing = law->slowing;
+    selection.list.surface = terms.surface = law->surface;
+    terms.spline_elastic = true;
+  }
+  TrendRows rows(std::move(terms), kMostRows);
+  if (Status status = add_rows(rows, source, dealer, control, fraction); !status) return status.error();
   const CrossValidatedTrend problem(rows, dealer.folds(), input.weighting, input.jnd, input.force_floor_N);
-  const Search search(problem, make_candidates(rows));
+  const Search search(problem, make_candidates(rows), rows.elastic_columns());
 
   std::vector<Search::Scored> path{search.score(Search::Set(search.candidates().size(), 0), nullptr)};
-  FeatureSelection selection;
   selection.turns_round = input.turns_round;
   while (selection.turns_round) {
     auto more = search.best_with_one_more(path.back());
@@ -319,7 +368,7 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   const Search::Scored chosen = smallest_as_good(search, std::move(path));
 
   const Eigen::VectorXd solution = problem.solve(search.columns(chosen.set));
-  selection.list = list_of(search, chosen.set, solution);
+  selection.list = list_of(search, chosen.set, solution, selection.list);
   if (const auto& times_s = rows.relaxation_times_s(); !times_s.empty()) {
     selection.shortest_s = times_s.front();
     selection.longest_s = times_s.back();
@@ -327,6 +376,10 @@ Result<FeatureSelection> select_features(MotionSource& source, const FoldDealer&
   selection.worth = table_of_worth(search, chosen);
   selection.left_out_error_over_jnd = std::sqrt(chosen.error.mean());
   selection.training_error_over_jnd = std::sqrt(problem.training_error(solution));
+  if (selection.turns_round) {
+    const Status chosen_basis = choose_basis(selection, source, dealer, input, control, fraction);
+    if (!chosen_basis) return chosen_basis.error();
+  }
   if (!control.may_continue(fraction)) return interrupted();
   return selection;
 }

@@ -31,7 +31,7 @@ NormalEquations normal_equations(const TrendRows& rows, const std::vector<double
   Eigen::Index filled = 0;
   const auto flush = [&] {
     const auto used = block.leftCols(filled);
-    sum.gram.noalias() += used * used.transpose();
+    sum.gram.selfadjointView<Eigen::Lower>().rankUpdate(used);
     sum.right_side.noalias() += used * force.head(filled);
     filled = 0;
   };
@@ -42,6 +42,7 @@ NormalEquations normal_equations(const TrendRows& rows, const std::vector<double
     if (++filled == kRowBlock) flush();
   }
   flush();
+  sum.gram.triangularView<Eigen::StrictlyUpper>() = sum.gram.transpose();
   return sum;
 }
 
@@ -137,9 +138,17 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   Trend trend;
   trend.reference_depth_m = rows.reference_depth_m();
   Eigen::Index column = 0;
-  for (std::size_t k = 0; k < kElasticCoefficients; ++k, ++column) {
-    const auto power = bernstein_integral<kElasticCoefficients - 1>(k);
-    for (std::size_t j = 0; j < power.size(); ++j) trend.elastic_N[j] += x(column) * power[j];
+  if (rows.terms().spline_elastic) {
+    const DriveCurve spline = combined_spline(x.data(), rows.reference_depth_m());
+    std::copy(spline.coefficient_N.begin(), spline.coefficient_N.end(), trend.elastic_N.begin());
+    trend.has_elastic_knots = true;
+    trend.elastic_knot_N = spline.knot_N;
+    column = kSplineTerms;
+  } else {
+    for (std::size_t k = 0; k < kElasticCoefficients; ++k, ++column) {
+      const auto power = bernstein_integral<kElasticCoefficients - 1>(k);
+      for (std::size_t j = 0; j < power.size(); ++j) trend.elastic_N[j] += x(column) * power[j];
+    }
   }
   if (rows.viscous_columns() > 0) {
     trend.thinning_velocity_m_per_s = rows.thinning_velocity_m_per_s();
@@ -203,7 +212,8 @@ FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine&
   for (std::size_t i = 0; i < rows.count(); ++i) scale[i] = row_scale(weighting, jnd, rows.force_N(i));
   Eigen::VectorXd x;
   for (int pass = 0; pass < kActiveSetPasses; ++pass) {
-    const NormalEquations equations = normal_equations(rows, scale, fitted.active);
+    NormalEquations equations = normal_equations(rows, scale, fitted.active);
+    rows.smooth_splines(equations.gram);
     x = directions * solve_non_negative(directions.transpose() * equations.gram * directions,
                                         directions.transpose() * equations.right_side);
     bool changed = false;
@@ -224,9 +234,12 @@ FittedTrend fit_trend(const TrendRows& rows, Weighting weighting, const JndLine&
   fitted.trend = trend_from(rows, x);
   const std::size_t first = rows.first_branch();
   for (std::size_t b = 0; b < rows.relaxation_times_s().size(); ++b) {
-    const double* weights = x.data() + first + b * kBranchTerms;
-    fitted.branches.push_back({FeatureKind::maxwell_branch, rows.relaxation_times_s()[b],
-                               combined_drive(weights, rows.reference_depth_m())});
+    const double* weights = x.data() + first + b * rows.branch_terms();
+    FeatureSpec branch{FeatureKind::maxwell_branch, rows.relaxation_times_s()[b],
+                       rows.terms().spline_branches ? combined_spline(weights, rows.reference_depth_m())
+                                                    : combined_drive(weights, rows.reference_depth_m())};
+    branch.slowing = rows.terms().slowing;
+    fitted.branches.push_back(branch);
   }
   for (std::size_t s = 0; s < rows.terms().stop_thresholds_m.size(); ++s) {
     const double* weights = x.data() + rows.first_stop() + s * kStopTerms;

@@ -19,7 +19,75 @@ void keep_every_other(std::vector<T>& values, std::size_t width) {
   values.resize(kept * width);
 }
 
+// Of the weight of the data themselves: it decides only where they say nothing.
+constexpr double kSmoothness = 1e-4;
+constexpr std::size_t kSplinePieces = kDriveKnots + 1;
+constexpr double kSplinePiece = 1.0 / kSplinePieces;
+
+// The knots of the quadratic B-splines: the ends three times.
+double knot_at(std::size_t i) {
+  const auto inner = static_cast<double>(std::clamp<std::size_t>(i, 2, kSplinePieces + 2) - 2);
+  return inner * kSplinePiece;
+}
+
+// N_i of a degree at u (Cox-de Boor recursion); at u = 1 its limit from the left.
+double b_spline(std::size_t i, int degree, double u) {
+  const double first = knot_at(i);
+  if (degree == 0) {
+    const double next = knot_at(i + 1);
+    return (u >= first && u < next) || (u >= 1.0 && first < next && next >= 1.0) ? 1.0 : 0.0;
+  }
+  const auto width = static_cast<std::size_t>(degree);
+  double value = 0.0;
+  if (const double rise = knot_at(i + width) - first; rise > 0.0) value += (u - first) / rise * b_spline(i, degree - 1, u);
+  const double end = knot_at(i + width + 1);
+  if (const double fall = end - knot_at(i + 1); fall > 0.0) value += (end - u) / fall * b_spline(i + 1, degree - 1, u);
+  return value;
+}
+
+std::vector<DriveCurve> branch_curves(const TrendTerms& terms) {
+  if (terms.spline_branches) return spline_basis(terms.reference_depth_m);
+  std::vector<DriveCurve> curves;
+  for (const FeatureSpec& spec : branch_basis(1.0, terms.reference_depth_m)) curves.push_back(spec.drive);
+  return curves;
+}
+
 }  // namespace
+
+std::vector<DriveCurve> spline_basis(double reference_depth_m) {
+  std::vector<DriveCurve> basis(kSplineTerms);
+  for (std::size_t i = 0; i < kSplineTerms; ++i) {
+    DriveCurve& curve = basis[i];
+    curve.reference_depth_m = reference_depth_m;
+    curve.has_knots = true;
+    double before = 0.0;  // coefficient of the square on the piece before
+    for (std::size_t piece = 0; piece < kSplinePieces; ++piece) {
+      const double begin = kSplinePiece * static_cast<double>(piece);
+      const double at_begin = b_spline(i, 2, begin);
+      const double at_end = b_spline(i, 2, piece + 1 == kSplinePieces ? 1.0 : begin + kSplinePiece);
+      const double square = 2.0 * (at_begin - 2.0 * b_spline(i, 2, begin + 0.5 * kSplinePiece) + at_end) / (kSplinePiece * kSplinePiece);
+      if (piece == 0) {
+        curve.coefficient_N = {at_begin, 0.5 * ((at_end - at_begin) / kSplinePiece - square * kSplinePiece), square / 3.0, 0.0};
+      } else {
+        curve.knot_N[piece - 1] = (square - before) / 3.0;
+      }
+      before = square;
+    }
+  }
+  return basis;
+}
+
+DriveCurve combined_spline(const double* weights, double reference_depth_m) {
+  DriveCurve sum;
+  sum.reference_depth_m = reference_depth_m;
+  sum.has_knots = true;
+  const std::vector<DriveCurve> basis = spline_basis(reference_depth_m);
+  for (std::size_t i = 0; i < kSplineTerms; ++i) {
+    for (std::size_t j = 0; j < kDriveCoefficients; ++j) sum.coefficient_N[j] += weights[i] * basis[i].coefficient_N[j];
+    for (std::size_t j = 0; j < kDriveKnots; ++j) sum.knot_N[j] += weights[i] * basis[i].knot_N[j];
+  }
+  return sum;
+}
 
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m) {
   std::vector<FeatureSpec> specs(kBranchTerms);
@@ -56,11 +124,12 @@ TrendRows::TrendRows(double reference_depth_m, double thinning_velocity_m_per_s,
                      std::vector<double> relaxation_times_s)
     : TrendRows(TrendTerms{reference_depth_m, thinning_velocity_m_per_s, std::move(relaxation_times_s), {}, {}}) {}
 
-TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows) : terms_(std::move(terms)), most_rows_(most_rows) {
-  static_assert(kStopTerms == kBranchTerms);
-  for (const double time_s : terms_.relaxation_times_s) {
-    branches_.emplace_back(branch_basis(time_s, terms_.reference_depth_m));
-  }
+TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows)
+    : terms_(std::move(terms)),
+      most_rows_(most_rows),
+      ladder_(terms_.relaxation_times_s, branch_curves(terms_), terms_.slowing) {
+  if (!terms_.surface.empty()) surface_.emplace_back(terms_.surface);
+  if (terms_.spline_elastic) elastic_basis_ = spline_basis(terms_.reference_depth_m);
   for (std::size_t k = 0; k < kBranchTerms; ++k) {
     std::array<double, kBranchTerms> one{};
     one[k] = 1.0;
@@ -75,7 +144,7 @@ TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows) : terms_(std::move
       specs[k].part_count = 1;
       specs[k].parts[0] = {0.0, threshold_m, combined_friction(one.data(), terms_.reference_depth_m)};
     }
-    branches_.emplace_back(specs);
+    stops_.emplace_back(specs);
   }
   for (const double time_s : terms_.peak_times_s) {
     peaks_.emplace_back(std::vector<FeatureSpec>{{FeatureKind::fading_peak, time_s}});
@@ -88,13 +157,18 @@ std::size_t TrendRows::viscous_columns() const {
 }
 
 void TrendRows::begin_recording() {
-  for (FeatureFilter& branch : branches_) branch.reset();
-  for (FeatureFilter& peak : peaks_) peak.reset();
+  ladder_.reset();
+  for (auto* filters : {&surface_, &stops_, &peaks_}) {
+    for (FeatureFilter& filter : *filters) filter.reset();
+  }
 }
 
 void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
-  for (FeatureFilter& branch : branches_) branch.update(sample, motion);
-  for (FeatureFilter& peak : peaks_) peak.update(sample, motion);
+  for (auto* filters : {&surface_, &stops_, &peaks_}) {
+    for (FeatureFilter& filter : *filters) filter.update(sample, motion);
+  }
+  const double depth_m = std::max(0.0, motion.position_m);
+  ladder_.update(sample.time_s, depth_m, surface_.empty() ? depth_m : surface_.front().surface_m());
 }
 
 void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke) {
@@ -104,7 +178,8 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   const double depth_m = std::max(0.0, motion.position_m);
   const double velocity_m_per_s = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
   const double u = std::min(depth_m / terms_.reference_depth_m, 1.0);
-  for (std::size_t k = 0; k < kElasticCoefficients; ++k) {
+  for (const DriveCurve& curve : elastic_basis_) values_.push_back(curve.at(depth_m));
+  for (std::size_t k = 0; k < kElasticCoefficients && elastic_basis_.empty(); ++k) {
     values_.push_back(u * polynomial(bernstein_integral<kElasticCoefficients - 1>(k), u));
   }
   if (viscous_columns() > 0) {
@@ -114,9 +189,10 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
       }
     }
   }
-  for (const FeatureFilter& branch : branches_) {
-    const auto& branch_values = branch.vector().values;
-    values_.insert(values_.end(), branch_values.begin(), branch_values.begin() + kBranchTerms);
+  values_.insert(values_.end(), ladder_.values().begin(), ladder_.values().end());
+  for (const FeatureFilter& stop : stops_) {
+    const auto& stop_values = stop.vector().values;
+    values_.insert(values_.end(), stop_values.begin(), stop_values.begin() + kStopTerms);
   }
   add_softening(depth_m);
   force_N_.push_back(force_N);
@@ -132,6 +208,22 @@ void TrendRows::add_softening(double depth_m) {
       for (const DriveCurve& basis : softening_basis_) values_.push_back(share * basis.at(depth_m));
     }
   }
+}
+
+void TrendRows::smooth_splines(Eigen::MatrixXd& gram) const {
+  const auto smooth = [&](std::size_t first) {
+    const auto begin = static_cast<Eigen::Index>(first);
+    const double weight = kSmoothness * gram.diagonal().segment(begin, kSplineTerms).mean();
+    for (auto i = begin; i + 1 < begin + static_cast<Eigen::Index>(kSplineTerms); ++i) {
+      gram(i, i) += weight;
+      gram(i + 1, i + 1) += weight;
+      gram(i, i + 1) -= weight;
+      gram(i + 1, i) -= weight;
+    }
+  };
+  if (terms_.spline_elastic) smooth(0);
+  if (!terms_.spline_branches) return;
+  for (std::size_t t = 0; t < terms_.relaxation_times_s.size(); ++t) smooth(first_branch() + t * kSplineTerms);
 }
 
 void TrendRows::halve() {

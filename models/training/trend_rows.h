@@ -8,18 +8,24 @@
 //   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
 //   stop       s / r times 1 - (1 - u)^4, u and u^2, per threshold r
 //   softening  (d / m)^p int_0^u B_k,2, k = 0..2 for each p, per fading time of m
-// The filters are the features' own code. When more than
+// As splines, elastic response and branches have int_0^u of the quadratic B-splines on
+// kDriveKnots inner knots instead: they follow a layer below the surface that no
+// polynomial of few terms does. With a `surface`, branches follow the material's
+// surface instead of the tool (engine/tick/features.h).
+// The filters are the features' own code, or that of branch_ladder.h. When more than
 // kMaximumTrendRows rows (or as many as asked for) come, every other one is dropped and the stride
 // doubles.
 // Thread guarantee: slow side.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
 #include "engine/tick/features.h"
 #include "engine/tick/tool_sample.h"
 #include "models/model/trend.h"
+#include "models/training/branch_ladder.h"
 
 namespace palpate {
 
@@ -31,13 +37,25 @@ inline constexpr std::size_t kBranchTerms = 3;
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m);
 DriveCurve combined_drive(const double* weights, double reference_depth_m);
 
-// What a trend may consist of besides its elastic response.
+// int_0^u of the quadratic B-splines, and of their weighted sum: a rising cubic spline
+// where no weight is negative.
+inline constexpr std::size_t kSplineTerms = kDriveKnots + 3;
+std::vector<DriveCurve> spline_basis(double reference_depth_m);
+DriveCurve combined_spline(const double* weights, double reference_depth_m);
+
+// What a trend may consist of besides its elastic response, and in which basis.
 struct TrendTerms {
   double reference_depth_m = 1.0;
   double thinning_velocity_m_per_s = 0.0;  // v_0; 0: no viscosity
   std::vector<double> relaxation_times_s;
   std::vector<double> stop_thresholds_m;
   std::vector<double> peak_times_s;
+  double slowing = 0.0;          // of the relaxation times with depth
+  bool spline_elastic = false;   // kSplineTerms columns instead of kElasticCoefficients
+  bool spline_branches = false;  // kSplineTerms columns a time instead of kBranchTerms
+  // A surface_lag and the branches that decide where the surface is; none: it is
+  // under the tool.
+  std::vector<FeatureSpec> surface{};
 };
 
 inline constexpr std::size_t kStopTerms = 3;
@@ -63,6 +81,10 @@ class TrendRows {
   std::size_t columns() const { return columns_; }
   std::size_t viscous_columns() const;
   std::size_t count() const { return force_N_.size(); }
+  // Adds to a Gram matrix of all columns what keeps the coefficients of a spline near
+  // their neighbours' where the data do not say: kSmoothness times the mean of the
+  // curve's diagonal, on the squared differences.
+  void smooth_splines(Eigen::MatrixXd& gram) const;
   const double* row(std::size_t index) const { return values_.data() + index * columns_; }
   double force_N(std::size_t index) const { return force_N_[index]; }
   double velocity_m_per_s(std::size_t index) const { return velocity_m_per_s_[index]; }
@@ -73,8 +95,10 @@ class TrendRows {
   double thinning_velocity_m_per_s() const { return terms_.thinning_velocity_m_per_s; }
   const std::vector<double>& relaxation_times_s() const { return terms_.relaxation_times_s; }
   // Where the columns of each kind begin; those of the elastic response begin at 0.
-  std::size_t first_branch() const { return kElasticCoefficients + viscous_columns(); }
-  std::size_t first_stop() const { return first_branch() + kBranchTerms * terms_.relaxation_times_s.size(); }
+  std::size_t elastic_columns() const { return terms_.spline_elastic ? kSplineTerms : kElasticCoefficients; }
+  std::size_t branch_terms() const { return terms_.spline_branches ? kSplineTerms : kBranchTerms; }
+  std::size_t first_branch() const { return elastic_columns() + viscous_columns(); }
+  std::size_t first_stop() const { return first_branch() + branch_terms() * terms_.relaxation_times_s.size(); }
   std::size_t first_softening() const { return first_stop() + kStopTerms * terms_.stop_thresholds_m.size(); }
 
  private:
@@ -83,9 +107,12 @@ class TrendRows {
 
   TrendTerms terms_;
   std::size_t most_rows_;
-  std::vector<FeatureFilter> branches_;  // and the stops, kBranchTerms values each
+  BranchLadder ladder_;
+  std::vector<FeatureFilter> surface_;   // one or none
+  std::vector<FeatureFilter> stops_;     // kStopTerms values each
   std::vector<FeatureFilter> peaks_;
   DriveCurve softening_basis_[kBranchTerms];
+  std::vector<DriveCurve> elastic_basis_;  // of splines
   std::size_t columns_;
   std::vector<double> values_;
   std::vector<double> force_N_;

@@ -14,7 +14,7 @@ namespace {
 // before it, over its tool; of a single block, in the picture's upper right corner,
 // where nothing else is.
 ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count, const SceneArea& area,
-                   const ImVec2& size) {
+                   const ImVec2& size, float lift) {
   if (count == 1) return {area.at.x + area.size.x - 1.15F * size.x - size.y, area.at.y + 2.6F * size.y};
   const bool behind = count > 2 && index < 2;
   if (behind) {
@@ -36,7 +36,7 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
   const glm::vec2 front = blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half},
                                            {area.size.x, area.size.y});
   const float x = std::clamp(front.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
-  const float y = std::clamp(front.y + 0.25F * size.y, 4.0F, area.size.y - size.y - 4.0F);
+  const float y = std::clamp(front.y + 0.25F * size.y, 4.0F, area.size.y - lift - 1.2F * size.y);
   return {area.at.x + x, area.at.y + y};
 }
 
@@ -49,7 +49,7 @@ std::string label_text(const LiveSession& session, std::size_t slot) {
 }  // namespace
 
 void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
-                 const UiStyle& style, const SceneArea& area) {
+                 const UiStyle& style, const SceneArea& area, float lift) {
   const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
   ImFont* font = style.fonts().heading;
   for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -57,7 +57,7 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
     const std::string text =
         secret ? view.hidden_name : label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
-    const ImVec2 at = label_place(blocks, i, slots.size(), area, size);
+    const ImVec2 at = label_place(blocks, i, slots.size(), area, size, lift);
     const bool chosen = slots[i] == session.models().selected();
     const Rgb colour = secret ? style.colours().text : (slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme()));
     const float pad = 0.25F * height_of(font);
@@ -75,6 +75,10 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
   }
 }
 
+float big_number_height(const UiStyle& style, float lift) {
+  return lift + height_of(style.fonts().big) + 1.9F * height_of(style.fonts().body);
+}
+
 // The big number, in words, and the scale that its colour is from.
 void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift) {
   const Palette& p = style.colours();
@@ -85,7 +89,7 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   const BigNumber shown = big_number(models_view(session), session.jnd());
   ImVec2 size = text_size(big, "0.00");
   size.x = std::max(size.x, text_size(big, shown.number).x);
-  const float y = corner.y - size.y - 1.9F * line;
+  const float y = area.at.y + area.size.y - big_number_height(style, lift);
   text_at(big, {corner.x, y}, ink(shown.error_over_jnd > 1.0 ? kAboveJndColour : p.text), shown.number);
   const float beside = corner.x + size.x + 0.7F * line;
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), shown.what);

@@ -36,7 +36,7 @@ std::vector<std::string> model_files(const std::vector<std::string>& folders) {
 }
 
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 6.2F * height_of(style.fonts().heading);
+  float y = area.at.y + 5.2F * height_of(style.fonts().heading);
   ImFont* font = style.fonts().body;
   const float pad = 0.6F * height_of(font);
   const float wrap = 0.86F * area.size.x;
@@ -59,7 +59,7 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
   const float wrap = 0.8F * area.size.x;
   const ImVec2 size = text_size(style.fonts().body, text, wrap);
   const float pad = 0.4F * height_of(style.fonts().body);
-  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 4.3F * height_of(style.fonts().heading));
+  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 3.6F * height_of(style.fonts().heading));
   ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - pad},
                                                 {at.x + size.x + 2.0F * pad, at.y + size.y + pad},
                                                 ink(style.colours().raised), 6.0F);
@@ -88,19 +88,34 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
   if (!view.help) return;
   const std::vector<HelpLine> lines = help_lines(commands);
   float keys = 0.0F;
-  for (const HelpLine& line : lines) keys = std::max(keys, ImGui::CalcTextSize(line.keys.c_str()).x);
+  float text = 0.0F;
+  for (const HelpLine& line : lines) {
+    keys = std::max(keys, ImGui::CalcTextSize(line.keys.c_str()).x);
+    text = std::max(text, ImGui::CalcTextSize(line.text.c_str()).x);
+  }
   begin_in_the_middle();
   ImGui::SetNextWindowFocus();
   ImGui::Begin("Keys", &view.help, kDialog);
-  const float all = ImGui::GetIO().DisplaySize.x;
-  const float from = ImGui::GetCursorPosX() + keys + ImGui::GetFontSize();
-  const float room = all - from - 3.0F * ImGui::GetFontSize();
-  for (const HelpLine& line : lines) {
-    ImGui::TextColored(paint(style.colours().text), "%s", line.keys.c_str());
-    ImGui::SameLine(from);
-    ImGui::PushTextWrapPos(from + room);
-    ImGui::TextUnformatted(line.text.c_str());
-    ImGui::PopTextWrapPos();
+  // Beside each other where they are too many below each other.
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float high = (static_cast<float>(lines.size()) + 3.0F) * ImGui::GetTextLineHeightWithSpacing();
+  const std::size_t columns = high > all.y ? 2 : 1;
+  const float room = (all.x - 4.0F * ImGui::GetFontSize()) / static_cast<float>(columns) - keys - 2.0F * ImGui::GetFontSize();
+  const std::size_t rows = (lines.size() + columns - 1) / columns;
+  if (ImGui::BeginTable("keys", 2 * static_cast<int>(columns), ImGuiTableFlags_NoSavedSettings)) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, keys + 0.5F * ImGui::GetFontSize());
+      ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, std::min(text, room));
+    }
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t i = row; i < lines.size(); i += rows) {
+        ImGui::TableNextColumn();
+        ImGui::TextColored(paint(style.colours().text), "%s", lines[i].keys.c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextWrapped("%s", lines[i].text.c_str());
+      }
+    }
+    ImGui::EndTable();
   }
   ImGui::End();
 }

@@ -46,6 +46,10 @@ struct ForceCurves::Scene {
   }
   // Nothing to compare with: what the active model predicts of its own error.
   bool predicts() const { return std::isnan(force.reference_N) && force.models.active() != nullptr; }
+  template <typename Low, typename High>
+  void paint_prediction(const CurvePainter& paint_on, Low low, High high) const {
+    if (predicts()) paint_on.band(ink(colour(force.models.selected), kPredictedAlpha), low, high);
+  }
   bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
   // Of models that are not the active one; what is dark is hard enough to see on black.
   float faint() const { return style.theme() == Theme::dark ? 0.95F : 0.75F; }
@@ -83,7 +87,13 @@ void ForceCurves::draw(const ForceView& force, ViewState& view, const UiStyle& s
 
 void ForceCurves::draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style,
                                     float height) {
-  draw_force(begin(force, view, style), height);
+  const Scene scene = begin(force, view, style);
+  // On an axis of forces a band of a tenth of a newton is a line.
+  if (std::isnan(force.reference_N)) {
+    draw_force(scene, height);
+  } else {
+    draw_difference(scene, height);
+  }
   view.time.hover_s = std::nan("");
 }
 
@@ -128,7 +138,9 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
 
 void ForceCurves::draw_titles_of_error(const Scene& scene) const {
   const bool difference = scene.view.difference;
-  section_title(scene.style, scene.predicts() ? "PREDICTED ERROR / JND" : difference ? "DIFFERENCE / JND" : "FELT ERROR / JND");
+  section_title(scene.style, scene.predicts() ? "PREDICTED ERROR / JND"
+                             : difference    ? "DIFFERENCE / JND"
+                                             : "FELT ERROR / JND");
   ImGui::SameLine();
   if (scene.force.models.out_of_domain()) {
     ImGui::TextColored(paint(scene.style.colours().fault), "away from the recorded data");
@@ -175,9 +187,9 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
   paint_on.jnd_band(ink(p.band));
-  if (scene.predicts() && !scene.view.kiosk) {
-    paint_on.band(
-        ink(scene.colour(scene.force.models.selected), kPredictedAlpha), [](const CurveColumn& c) { return c.predicted_low_N; },
+  if (!scene.view.kiosk) {
+    scene.paint_prediction(
+        paint_on, [](const CurveColumn& c) { return c.predicted_low_N; },
         [](const CurveColumn& c) { return c.predicted_high_N; });
   }
   paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
@@ -200,13 +212,10 @@ void ForceCurves::draw_difference(const Scene& scene, float height) {
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
-  if (scene.predicts()) {
-    paint_on.band(
-        ink(scene.colour(scene.force.models.selected), kPredictedAlpha),
-        [](const CurveColumn& c) { return -c.predicted_over_jnd; }, [](const CurveColumn& c) { return c.predicted_over_jnd; });
-  } else {
-    plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
-  }
+  scene.paint_prediction(
+      paint_on, [](const CurveColumn& c) { return -c.predicted_over_jnd; },
+      [](const CurveColumn& c) { return c.predicted_over_jnd; });
+  if (!scene.predicts()) plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
     const ImU32 colour = ink(scene.colour(slot), selected ? 1.0F : scene.faint());
@@ -229,11 +238,9 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
   const Palette& p = scene.style.colours();
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
   plot.level(1.0, ink(p.text), 1.5F * thin);
-  if (scene.predicts()) {
-    paint_on.band(
-        ink(scene.colour(scene.force.models.selected), kPredictedAlpha), [](const CurveColumn& c) { return 0.0F * c.predicted_over_jnd; },
-        [](const CurveColumn& c) { return c.predicted_over_jnd; });
-  }
+  scene.paint_prediction(
+      paint_on, [](const CurveColumn&) { return 0.0F; },
+      [](const CurveColumn& c) { return c.predicted_over_jnd; });
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
     for (const CurveColumn& column : curves_.columns()) {

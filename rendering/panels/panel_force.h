@@ -16,8 +16,8 @@ class ForceCurves {
  public:
   void draw(const ForceView& force, ViewState& view, const UiStyle& style, float force_height,
             float error_height);
-  // The force plot alone, with the reference and the active model, which has no
-  // colour of its own while it is a secret.
+  // One plot, of the revealed models: their difference from the reference in its band;
+  // their force where there is none.
   void draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style, float height);
 
   const CurveColumns& columns() const noexcept { return curves_; }

@@ -36,8 +36,8 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
   ImGui::TextUnformatted(session.scene().title.c_str());
   ImGui::PopFont();
   tip(session.scene().description.c_str());
-  if (!view.kiosk) draw_block_buttons(view);
-  if (view.exaggerated && !view.kiosk) {
+  draw_block_buttons(view);
+  if (view.exaggerated) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
     ImGui::TextColored(paint(kAboveJndColour), "arrows: difference x 10");
   }
@@ -209,10 +209,11 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
   // Who only passes by needs no model's name.
   const bool passing = view.kiosk && (session.mouse() != nullptr) && session.mouse()->hand_is_exploring();
-  if (!passing && (!view.kiosk || view.hidden_choice > 0)) draw_labels(session, blocks, view, style, area);
+  if (!passing && (!view.kiosk || view.hidden_choice > 0))
+    draw_labels(session, blocks, view, style, area, view.kiosk ? 0.0F : big_number_height(style, bars));
   if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.kiosk) draw_data_warning(session, style, area);
-  draw_title(session, view, style, area);
+  if (!view.kiosk) draw_title(session, view, style, area);
   if (!view.kiosk) draw_hint(session, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);

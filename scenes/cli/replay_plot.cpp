@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "engine/base/atomic_file.h"
-#include "scenes/report/binned_errors.h"
-#include "scenes/report/figure.h"
-#include "scenes/report/report_folder.h"
+#include "scenes/report/data/binned_errors.h"
+#include "scenes/report/figures/figure.h"
+#include "scenes/report/page/report_folder.h"
 #include "scenes/scene/gnuplot.h"
 
 namespace palpate::cli {

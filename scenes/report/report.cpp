@@ -11,10 +11,10 @@
 #include <thread>
 
 #include "scenes/scene/gnuplot.h"
-#include "scenes/report/report_folder.h"
-#include "scenes/report/model_facts.h"
-#include "scenes/report/run_methods.h"
-#include "scenes/report/tables.h"
+#include "scenes/report/page/report_folder.h"
+#include "scenes/report/measure/model_facts.h"
+#include "scenes/report/measure/run_methods.h"
+#include "scenes/report/page/tables.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/base/fit_control.h"
-#include "scenes/report/page.h"
-#include "scenes/report/plan.h"
+#include "scenes/report/page/page.h"
+#include "scenes/report/data/plan.h"
 
 namespace palpate {
 

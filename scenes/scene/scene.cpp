@@ -46,6 +46,7 @@ std::string describe_features(const Scene& scene) {
       case FeatureKind::maxwell_spectrum:
       case FeatureKind::stops:
       case FeatureKind::fading_peak:
+      case FeatureKind::surface_lag:
         break;
     }
   }

@@ -91,11 +91,11 @@ TEST(SyntheticAccuracy, ForeignPhysicsByDefault) {
     double within_jnd;
     double max_error_over_jnd;
   };
-  // What is asked of each, but: tissue reached 99.78 % of 99.8, layered 2.54 JND of 2.5,
-  // sponge 83.0 % of 88.
-  constexpr Law kLaws[] = {{"foam", 0.995, 3.0},      {"gel", 0.995, 3.0},     {"tissue", 0.997, 2.5},
-                           {"softening", 0.995, 2.5}, {"layered", 0.993, 2.7}, {"friction", 0.96, 4.0},
-                           {"sponge", 0.80, 25.0}};
+  // Some room below what is reached: 100, 99.96, 99.98, 100, 99.98, 98.8 and 96.9 %, worst
+  // 0.9, 2.0, 1.4, 0.4, 1.3, 1.7 and 7.3 JND.
+  constexpr Law kLaws[] = {{"foam", 0.9990, 2.0},      {"gel", 0.9985, 2.5},     {"tissue", 0.9990, 2.0},
+                           {"softening", 0.9990, 1.5}, {"layered", 0.9985, 2.0}, {"friction", 0.98, 2.5},
+                           {"sponge", 0.93, 12.0}};
   for (const Law& law : kLaws) {
     SCOPED_TRACE(law.material);
     const RecordingPtr recording = rig_recording(test::test_settings(law.material));

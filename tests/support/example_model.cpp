@@ -21,7 +21,8 @@ double typical_size(FeatureKind kind) {
     case FeatureKind::maxwell_branch:
     case FeatureKind::maxwell_spectrum:
     case FeatureKind::stops: return 1.0;
-    case FeatureKind::fading_peak: return kDepth_m;
+    case FeatureKind::fading_peak:
+    case FeatureKind::surface_lag: return kDepth_m;
   }
   return 1.0;
 }

@@ -9,7 +9,6 @@ set xlabel x_label
 set ylabel "Seconds"
 if (x_log) {
   set logscale x
-  set xtics (500, 1000, 2000, 4000, 6850)
 } else {
   set xtics 1
 }

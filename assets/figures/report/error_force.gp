@@ -16,7 +16,7 @@ do for [medium in media] {
     set lmargin at screen left(p)
     set rmargin at screen right(p)
     set tmargin at screen 0.92
-    set bmargin at screen 0.34
+    set bmargin at screen 0.36
     set logscale y
     set xrange [0:force_high]
     set yrange [y_low:y_high]
@@ -28,20 +28,22 @@ do for [medium in media] {
     only(x) = column("panel") == p ? x : NaN
     if (over_jnd) {
       plot [x = 0:force_high] '+' using 1:(y_low):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
+        '+' using 1:(1000 * noise_N / jnd_mN($1)) with lines dashtype 3 linewidth 2 linecolor rgb muted, \
         "FIGURE.csv" using (only(column("force_N"))):"error":"colour" with lines linewidth 1.5 linecolor rgb variable, \
         "" using (only(column("force_N"))):"error":"colour" with points pointtype 7 pointsize 0.5 linecolor rgb variable, \
         "" using (column("few") == 1 ? only(column("force_N")) : NaN):"error" with points pointtype 7 pointsize 0.25 linecolor rgb paper, \
         "FIGURE_labels.csv" using (only(column("force_N"))):"error":"label":"colour" with labels left offset 0.5,0 noenhanced textcolor rgb variable
     } else {
       plot [x = 0:force_high] '+' using 1:(y_low):(jnd_mN($1)) with filledcurves fillcolor rgb band fillstyle solid noborder, \
+        '+' using 1:(1000 * noise_N) with lines dashtype 3 linewidth 2 linecolor rgb muted, \
         "FIGURE.csv" using (only(column("force_N"))):"error":"colour" with lines linewidth 1.5 linecolor rgb variable, \
         "" using (only(column("force_N"))):"error":"colour" with points pointtype 7 pointsize 0.5 linecolor rgb variable, \
         "" using (column("few") == 1 ? only(column("force_N")) : NaN):"error" with points pointtype 7 pointsize 0.25 linecolor rgb paper, \
         "FIGURE_labels.csv" using (only(column("force_N"))):"error":"label":"colour" with labels left offset 0.5,0 noenhanced textcolor rgb variable
     }
     unset label
-    set tmargin at screen 0.31
-    set bmargin at screen 0.155
+    set tmargin at screen 0.30
+    set bmargin at screen 74.0 / height
     set format x "%g"
     set xlabel "Measured force [N]"
     set ylabel p == 0 ? "samples" : ""

@@ -6,7 +6,7 @@ set grid noytics nomytics
 unset ylabel
 do for [medium in media] {
   eval open(medium, "evidence")
-  set multiplot layout 1,4 margins 0.27,0.985,0.16,0.93 spacing 0.025,0
+  set multiplot layout 1,4 margins 0.275,0.985,60.0 / height,0.97 spacing 0.04,0
   do for [c = 0:3] {
     unset arrow
     unset label
@@ -26,11 +26,11 @@ do for [medium in media] {
     set yrange [rows - 0.4:-0.6]
     set logscale x
     set xrange [least * 0.7:highest * 1.4]
-    set xtics autofreq
+    set xtics autofreq font ",13"
     set format x "%g"
-    set xlabel (c == 0 ? "beyond the JND [%]" : c == 1 ? "99 % up to [JND]" : c == 2 ? "RMS [mN]" : "worst [JND]")
+    set xlabel (c == 0 ? "beyond JND [%]" : c == 1 ? "99 % up to [JND]" : c == 2 ? "RMS [mN]" : "worst [JND]") font ",13"
     if (c == 0) {
-      set ytics out scale 0 offset 0.5,0
+      set ytics out scale 0 offset 0.5,0 font ",13"
     } else {
       set ytics scale 0 format ""
     }

@@ -20,6 +20,9 @@ open(medium, name) = medium eq "svg" ? \
           2 * width, 2 * height, name)
 # In here, since gnuplot takes a # in a block for a comment.
 hexadecimal(colour) = sprintf("#%06x", int(colour))
+# Distance of tics up to `high`, 1, 2 or 5 times a power of ten, for some `count` of them.
+tic_step(high, count) = (raw = (high > 0 ? high : 1.0) / count, decade = 10 ** floor(log10(raw)), \
+  raw / decade < 1.5 ? decade : raw / decade < 3.5 ? 2 * decade : raw / decade < 7.5 ? 5 * decade : 10 * decade)
 set key off
 set samples 200
 set border 3 linecolor rgb ink linewidth 1

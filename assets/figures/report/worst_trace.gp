@@ -7,7 +7,9 @@ set xrange [from_s:to_s]
 set lmargin at screen 0.09
 set rmargin at screen 0.86
 top = 0.98
-bottom = 55.0 / height
+# Out of contact there is no figure: the line breaks.
+shown(c) = valid(c) ? column(c) : NaN
+bottom = 74.0 / height
 force_height = (top - bottom) * 1.6 / (strips + 1.6)
 strip_height = (top - bottom) / (strips + 1.6)
 do for [medium in media] {
@@ -22,9 +24,8 @@ do for [medium in media] {
   set yrange [*:*]
   set xrange [*:*]
   stats "worst_trace.csv" using 3 nooutput
-  decade = 10 ** floor(log10(STATS_max > 0 ? STATS_max : 1))
   set xrange [from_s:to_s]
-  set ytics STATS_max / decade < 2 ? decade / 2 : STATS_max / decade < 5 ? decade : 2 * decade
+  set ytics tic_step(STATS_max, 2)
   set grid noytics nomytics
   set label 1 "measured" at graph 1.015,0.5 left textcolor rgb green
   plot "worst_trace.csv" using 1:3 with lines linewidth 2 linecolor rgb green
@@ -43,7 +44,7 @@ do for [medium in media] {
     set tmargin at screen top - force_height - s * strip_height
     set bmargin at screen top - force_height - (s + 1) * strip_height + 0.012
     set yrange [-limit:limit]
-    set ytics (-1, 0, 1)
+    set ytics ("-1" -1, "" 0, "1" 1)
     set ylabel s == int(strips / 2) ? "Difference [JND]" : ""
     if (s == strips - 1) {
       set format x "%g"
@@ -52,11 +53,11 @@ do for [medium in media] {
     set label 1 strip_name at graph 1.015,0.5 left noenhanced textcolor rgb hue
     if (first == last) {
       plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
-        "worst_trace.csv" using 1:(column(last)) with lines linewidth 1.6 linecolor rgb hue
+        "worst_trace.csv" using 1:(shown(last)) with lines linewidth 1.6 linecolor rgb hue
     } else {
       plot '+' using 1:(-1):(1) with filledcurves fillcolor rgb band fillstyle solid noborder, \
-        "worst_trace.csv" using 1:(column(first)) with lines linewidth 0.7 linecolor rgb muted, \
-        "" using 1:(column(last)) with lines linewidth 1.6 linecolor rgb hue
+        "worst_trace.csv" using 1:(shown(first)) with lines linewidth 0.7 linecolor rgb muted, \
+        "" using 1:(shown(last)) with lines linewidth 1.6 linecolor rgb hue
     }
   }
   unset multiplot

@@ -128,7 +128,8 @@ class ModelReader : private JsonFields {
       complain(node.pointer + "/kind", "found \"" + printable(kind) + "\", expected one of " + known_kinds);
     }
     if (has_time(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
-    if (spec.kind == FeatureKind::maxwell_branch) spec.drive = drive_member(node, "drive");
+    if (is_branch(spec.kind) && optional_member(node, "slowing").value != nullptr) spec.slowing = number(node, "slowing");
+    if (has_drive(spec.kind)) spec.drive = drive_member(node, "drive");
     if (has_parts(spec.kind)) read_parts(node, spec);
     data_.features.push_back(spec);
   }
@@ -137,6 +138,8 @@ class ModelReader : private JsonFields {
     DriveCurve drive;
     drive.reference_depth_m = number(node, "reference_depth_m", Sign::kPositive);
     coefficients(node, "coefficient_N", drive.coefficient_N);
+    drive.has_knots = optional_member(node, "knot_N").value != nullptr;
+    if (drive.has_knots) coefficients(node, "knot_N", drive.knot_N);
     return drive;
   }
   DriveCurve drive_member(const JsonNode& node, const char* key) {
@@ -181,6 +184,8 @@ class ModelReader : private JsonFields {
   void read_trend(const JsonNode& node) {
     data_.trend.reference_depth_m = number(node, "reference_depth_m", Sign::kPositive);
     coefficients(node, "elastic_N", data_.trend.elastic_N);
+    data_.trend.has_elastic_knots = optional_member(node, "elastic_knot_N").value != nullptr;
+    if (data_.trend.has_elastic_knots) coefficients(node, "elastic_knot_N", data_.trend.elastic_knot_N);
     coefficients(node, "viscosity_Ns_per_m", data_.trend.viscosity_Ns_per_m);
     coefficients(node, "thinning_Ns_per_m", data_.trend.thinning_Ns_per_m);
     data_.trend.thinning_velocity_m_per_s = number(node, "thinning_velocity_m_per_s", Sign::kPositive);

@@ -13,7 +13,8 @@ namespace {
 
 std::string drive(const DriveCurve& curve) {
   return "{\"reference_depth_m\": " + json_number(curve.reference_depth_m) +
-         ", \"coefficient_N\": " + json_list(curve.coefficient_N) + "}";
+         ", \"coefficient_N\": " + json_list(curve.coefficient_N) +
+         (curve.has_knots ? ", \"knot_N\": " + json_list(curve.knot_N) : "") + "}";
 }
 
 std::string parts(const FeatureSpec& spec) {
@@ -33,7 +34,8 @@ std::string features(const std::vector<FeatureSpec>& specs) {
   for (const FeatureSpec& spec : specs) {
     std::string text = "{\"kind\": " + json_quoted(std::string(feature_kind_name(spec.kind)));
     if (has_time(spec.kind)) text += ", \"relaxation_time_s\": " + json_number(spec.relaxation_time_s);
-    if (spec.kind == FeatureKind::maxwell_branch) text += ", \"drive\": " + drive(spec.drive);
+    if (is_branch(spec.kind) && spec.slowing != 0.0) text += ", \"slowing\": " + json_number(spec.slowing);
+    if (has_drive(spec.kind)) text += ", \"drive\": " + drive(spec.drive);
     if (has_parts(spec.kind)) text += ", \"parts\": " + parts(spec);
     items.push_back(text + "}");
   }
@@ -67,6 +69,7 @@ std::string trend(const ModelData& data) {
   const Trend& trend = data.trend;
   return "{\n    \"reference_depth_m\": " + json_number(trend.reference_depth_m) +
          ",\n    \"elastic_N\": " + json_list(trend.elastic_N) +
+         (trend.has_elastic_knots ? ",\n    \"elastic_knot_N\": " + json_list(trend.elastic_knot_N) : "") +
          ",\n    \"viscosity_Ns_per_m\": " + json_list(trend.viscosity_Ns_per_m) +
          ",\n    \"thinning_Ns_per_m\": " + json_list(trend.thinning_Ns_per_m) +
          ",\n    \"thinning_velocity_m_per_s\": " + json_number(trend.thinning_velocity_m_per_s) +

@@ -123,6 +123,66 @@ TEST(Features, AClosedCycleNeverGivesBackMoreThanItTook) {
   }
 }
 
+FeatureSpec surface_lag(const DriveCurve& elastic) {
+  FeatureSpec spec{FeatureKind::surface_lag};
+  spec.drive = elastic;
+  return spec;
+}
+
+// A spring of 300 N/m beside a branch of 600 N/m and 0.2 s, relaxed at 4 mm: at once the
+// surface comes back to s with 300 s + 600 (s - 4 mm) = 0, then it creeps back by
+// ds/dt = -s / (3 x 0.2 s) until it meets the tool.
+TEST(Features, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
+  const DriveCurve elastic{5e-3, {1.5}};
+  const DriveCurve branch{5e-3, {3.0}};
+  FeatureFilter filter({surface_lag(elastic), maxwell(0.2, branch)});
+  int i = 0;
+  for (; i < 4000; ++i) feed(filter, 1e-3 * i, 4e-3);
+  EXPECT_EQ(filter.vector().values[0], 0.0) << "it lies against a tool that presses";
+  for (int k = 0; k <= 300; ++k, ++i) {
+    const auto& values = feed(filter, 1e-3 * i, 2e-3).values;
+    const double free_m = 4e-3 * (2.0 / 3.0) * std::exp(-1e-3 * k / 0.6);
+    // The surface is found to 10 uN, and the first step relaxes for 1 ms.
+    ASSERT_NEAR(values[0], std::max(0.0, free_m - 2e-3), 5e-6) << k;
+    ASSERT_NEAR(filter.surface_m(), 2e-3 + values[0], 1e-15);
+  }
+}
+
+TEST(Features, ABranchMaySlowDownWithDepth) {
+  FeatureSpec slow = maxwell(0.2, DriveCurve{5e-3, {3.0}});
+  slow.slowing = 2.0;
+  FeatureFilter filter({slow});
+  feed(filter, 0.0, 0.0);
+  const double start_N = feed(filter, 1e-3, 2.5e-3).values[0];
+  for (int i = 2; i <= 1001; ++i) feed(filter, 1e-3 * i, 2.5e-3);
+  EXPECT_NEAR(filter.vector().values[0], start_N * std::exp(-1.0 / (0.2 * std::exp(1.0))), 1e-9);
+}
+
+// Of a whole material, force never below zero: what it gave in the first cycles it had
+// to be given first, so that the sum over all of them counts.
+TEST(Features, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
+  const DriveCurve elastic{5e-3, {0.5, 0.4}};
+  for (const double slowing : {0.0, 3.0, -2.0}) {
+    for (const double duration_s : {0.05, 0.5, 5.0}) {
+      FeatureSpec branches = spectrum({0.01, 0.1, 1.0}, stiffening());
+      branches.slowing = slowing;
+      FeatureFilter filter({surface_lag(elastic), branches});
+      double before_N = 0.0;
+      double work = 0.0;
+      constexpr int kSteps = 20000;
+      feed(filter, 0.0, closed_motion_m(0.0));
+      for (int i = 1; i <= 4 * kSteps; ++i) {
+        const double phase = static_cast<double>(i) / kSteps;
+        const double position_m = closed_motion_m(phase);
+        const double force_N = std::max(0.0, elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[1]);
+        work += 0.5 * (force_N + before_N) * (position_m - closed_motion_m(phase - 1.0 / kSteps));
+        before_N = force_N;
+      }
+      EXPECT_GT(work, 0.0) << slowing << " " << duration_s;
+    }
+  }
+}
+
 TEST(Features, LowpassOfARampIsExactAtAnyRate) {
   const double tau_s = 0.17;
   const double speed_m_per_s = 0.02;
@@ -220,8 +280,10 @@ TEST(Features, AMaxwellBranchAgreesWithFineIntegration) {
 // depth between two samples at 500 Hz is curved by at most a h^2 / 8 = 0.1 um, and the
 // filters forget it: 0.1 % of each feature's range is a bound with a margin of ten.
 TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
+  FeatureSpec slowing = maxwell(0.1, stiffening());
+  slowing.slowing = 2.0;
   const std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17),
-                                          lowpass(1.27), maxwell(0.1, stiffening())};
+                                          surface_lag({5e-3, {0.5, 0.5}}), slowing};
   const auto run = [&](double rate_Hz, std::vector<std::array<double, 5>>& at_500_Hz) {
     FeatureFilter filter(specs);
     const int every = static_cast<int>(rate_Hz / 500.0);
@@ -311,6 +373,7 @@ TEST(Features, HaveNamesWithUnits) {
   EXPECT_EQ(feature_name(spectrum({0.02, 0.3}, stiffening())), "feature_maxwell_spectrum_0.02-0.3s_N");
   EXPECT_EQ(feature_name(stops({1e-4}, stiffening())), "feature_stops_0.1mm_N");
   EXPECT_EQ(feature_name(fading_peak(6.0)), "feature_fading_peak_6s_m");
+  EXPECT_EQ(feature_name(surface_lag(stiffening())), "feature_surface_lag_m");
 }
 
 // A million ticks of a sine: the low-pass's steady state is the closed form

@@ -65,6 +65,16 @@ std::vector<ModelData> all_models() {
   for (std::size_t j = 0; j < models.back().trend.softening.size(); ++j) {
     models.back().trend.softening[j] = {6e-3, {0.1, 0.05 * static_cast<double>(j), 0.1, 0.0}};
   }
+  FeatureSpec slowed = spectrum;
+  slowed.slowing = 1.5;
+  slowed.parts[1].drive.has_knots = true;
+  slowed.parts[1].drive.knot_N = {0.5, -0.3, 0.1, 0.0, 0.2, -0.1, 0.4};
+  FeatureSpec lag;
+  lag.kind = FeatureKind::surface_lag;
+  lag.drive = slowed.parts[1].drive;
+  models.push_back(test::example_model("greedy", KernelKind::cubic, {FeatureSpec{}, lag, velocity, slowed}, 22));
+  models.back().trend.has_elastic_knots = true;
+  models.back().trend.elastic_knot_N = lag.drive.knot_N;
   return models;
 }
 

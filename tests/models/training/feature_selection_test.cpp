@@ -77,12 +77,45 @@ TEST(FeatureSelection, ABranchIsFoundWithItsTime) {
     return x > 0.0 ? 300.0 * d + z : 0.0;
   }));
   ASSERT_FALSE(selection.list.relaxation_times_s.empty());
+  EXPECT_TRUE(selection.list.surface.empty()) << "this one follows the tool";
+  EXPECT_EQ(selection.list.slowing, 0.0);
   double nearest = 1e9;
   for (const auto& group : selection.list.relaxation_times_s) {
     for (const double time_s : group) nearest = std::min(nearest, std::abs(std::log(time_s / 0.2)));
   }
   EXPECT_LT(nearest, std::log(10.0) / 4.0) << "one step of the ladder";
   EXPECT_TRUE(selection.list.stop_thresholds_m.empty());
+}
+
+// A spring of 300 N/m beside a branch of 900 N/m; where they would pull, the surface
+// stays behind the tool at the depth at which they hold nothing.
+TEST(FeatureSelection, ASurfaceThatLeavesTheToolIsFound) {
+  double z = 0.0;
+  double surface_m = 0.0;
+  const double keep = std::exp(-1.0 / kRate_Hz / 0.2);
+  const double gain = 900.0 * 0.2 * (1.0 - keep) * kRate_Hz;
+  const auto selection = selected(recorded(press_m, [&](double, double x) {
+    const double free_m = (gain * surface_m - keep * z) / (300.0 + gain);
+    const double next_m = std::max({0.0, x, free_m});
+    z = keep * z + gain * (next_m - surface_m);
+    surface_m = next_m;
+    return x >= free_m && x > 0.0 ? 300.0 * x + z : 0.0;
+  }));
+  EXPECT_FALSE(selection.list.surface.empty());
+}
+
+TEST(FeatureSelection, TimesThatGrowWithTheDepthAreFound) {
+  double z = 0.0;
+  double last_m = 0.0;
+  const auto selection = selected(recorded(press_m, [&](double, double x) {
+    const double d = std::max(0.0, x);
+    const double time_s = 0.05 * std::exp(2.5 * 0.5 * (d + last_m) / 4e-3);
+    const double e = std::exp(-1.0 / kRate_Hz / time_s);
+    z = e * z + 600.0 * time_s * (1.0 - e) * kRate_Hz * (d - last_m);
+    last_m = d;
+    return x > 0.0 ? 300.0 * d + z : 0.0;
+  }));
+  EXPECT_NEAR(selection.list.slowing, 2.5, 1.0);
 }
 
 TEST(FeatureSelection, DryFrictionNeedsStops) {

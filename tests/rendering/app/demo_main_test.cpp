@@ -78,7 +78,7 @@ TEST_F(DemoMain, RunsForItsSecondsAndWritesStatsAndPicture) {
     EXPECT_TRUE(json["haptics"]["lateness_us"].contains(key));
     EXPECT_TRUE(json["haptics"]["tick_us"].contains(key));
   }
-  EXPECT_GT(json.at("graphics").at("frames"), 2);
+  EXPECT_GT(json.at("graphics").at("frames"), 0);
   for (const char* key : {"p50", "p99", "max"}) EXPECT_TRUE(json["graphics"]["frame_ms"].contains(key));
   EXPECT_TRUE(json.at("models").is_array());
   for (const auto& model : json["models"]) {

@@ -91,7 +91,7 @@ TEST_F(ReportVerb, PageNeedsNothingElse) {
 
 TEST_F(ReportVerb, LeadsWithTheLadder) {
   const Json report = Json::parse(test::read_text(out() + "/report.json"));
-  EXPECT_EQ(report["findings"][0].get<std::string>().rfind("A model that always says 0 N has ", 0), 0u);
+  EXPECT_EQ(report["findings"][0].get<std::string>().rfind("Within the JND of the test: a model that always says 0 N has ", 0), 0u);
   std::map<std::string, int> rungs;
   for (const Json& row : report["tables"]["ladder"]) ++rungs[row["rung"]];
   EXPECT_EQ(rungs, (std::map<std::string, int>{{"Palpate", 5}, {"floor", 1}, {"no force", 1}, {"the paper's recipe", 5}, {"trend", 1}}));

@@ -34,7 +34,7 @@ ModelData read_back(const ModelData& data) {
   return back ? *back : ModelData{};
 }
 
-TEST(ModelIo, FeaturesWithPartsSofteningAndTheErrorBoundAreKept) {
+TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   const DriveCurve drive{5e-3, {0.1, 0.2, 1.0 / 3.0, 0.4}};
   FeatureSpec spectrum;
   spectrum.kind = FeatureKind::maxwell_spectrum;
@@ -45,9 +45,16 @@ TEST(ModelIo, FeaturesWithPartsSofteningAndTheErrorBoundAreKept) {
   stops.kind = FeatureKind::stops;
   stops.part_count = 1;
   stops.parts[0] = {0.0, 1e-4, drive};
+  spectrum.slowing = 1.7;
+  spectrum.parts[1].drive.has_knots = true;
+  spectrum.parts[1].drive.knot_N = {0.1, -0.2, 1.0 / 7.0, 0.0, 0.5, 0.25, 1.0};
+  FeatureSpec lag{FeatureKind::surface_lag};
+  lag.drive = spectrum.parts[1].drive;
   ModelData data = example_model("greedy", KernelKind::cubic,
-                                 {FeatureSpec{}, spectrum, stops, {FeatureKind::fading_peak, 6.0}}, 11);
+                                 {FeatureSpec{}, spectrum, stops, {FeatureKind::fading_peak, 6.0}, lag}, 11);
   data.trend.softening[1] = drive;
+  data.trend.has_elastic_knots = true;
+  data.trend.elastic_knot_N = lag.drive.knot_N;
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
   data.sensor = PositionSensor{30e-6, 1e-6};
   const ModelData back = read_back(data);
@@ -60,7 +67,7 @@ TEST(ModelIo, FeaturesWithPartsSofteningAndTheErrorBoundAreKept) {
   const FittedModel loaded(back);
   test::Numbers numbers(4);
   for (int query = 0; query < 500; ++query) {
-    const double x[] = {5e-3 * std::abs(numbers.next()), numbers.next(), numbers.next(), 5e-3};
+    const double x[] = {5e-3 * std::abs(numbers.next()), numbers.next(), numbers.next(), 5e-3, 0.0};
     const ForceEstimate one = original.evaluate(x);
     const ForceEstimate other = loaded.evaluate(x);
     ASSERT_EQ(bits(one.force_N), bits(other.force_N));

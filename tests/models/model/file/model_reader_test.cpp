@@ -103,7 +103,8 @@ TEST(ModelReader, RefusesWrongNamesAndFeatures) {
        "commas and quotes; fit the model again"},
       {"\"kind\": \"velocity\"", "\"kind\": \"speed\"",
        "m.json:8:14: features[1].kind: found \"speed\", expected one of depth, velocity, "
-       "lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak; fit the model again"},
+       "lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak, surface_lag; fit "
+       "the model again"},
       {"{\"kind\": \"velocity\"}", "7",
        "m.json:8:5: features[1]: found 7, expected an object with \"kind\"; fit the model again"},
       {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": 0",
