@@ -132,8 +132,8 @@ TEST(HapticsTick, ModelsOfTheSameFeaturesShareAFilter) {
   Models models;
   for (const ModelData& data : test::example_models()) models.push_back(fitted(data));
   const HapticsTick tick({}, models);
-  EXPECT_EQ(tick.model_count(), 10u);
-  EXPECT_EQ(tick.filter_count(), 4u) << "paper's four, Maxwell's four, position alone, memories";
+  EXPECT_EQ(tick.model_count(), 11u);
+  EXPECT_EQ(tick.filter_count(), 5u) << "paper's four, Maxwell's four, position alone, memories, a lag";
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(1));
   EXPECT_EQ(&tick.features_of(0), &tick.features_of(8));
   EXPECT_NE(&tick.features_of(0), &tick.features_of(3));
