@@ -31,7 +31,7 @@ ProjectedKernel::ProjectedKernel(const Sites& sites, KernelKind kernel)
 
 void ProjectedKernel::find_tail_space() {
   // Directions weaker than this come from a constant or repeated feature.
-  constexpr double kDependent = 1e-10;
+  constexpr double kWeakestDirection = 1e-10;
   Eigen::MatrixXd tail = tail_matrix(tail_degree(kernel_), sites_.points);
   tail.array().colwise() *= sites_.row_scale.array();
   Eigen::VectorXd scale = tail.colwise().norm().transpose();
@@ -43,7 +43,7 @@ void ProjectedKernel::find_tail_space() {
   const Eigen::MatrixXd r = qr.matrixQR().topRows(small).triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Eigen::MatrixXd> parts(r, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& sizes = parts.singularValues();
-  const Eigen::Index rank = (sizes.array() > kDependent * std::max(sizes[0], 1e-300)).count();
+  const Eigen::Index rank = (sizes.array() > kWeakestDirection * std::max(sizes[0], 1e-300)).count();
   q_ = thin_q * parts.matrixU().leftCols(rank);
   to_tail_ = parts.matrixV().leftCols(rank) * sizes.head(rank).cwiseInverse().asDiagonal();
   to_tail_.array().colwise() /= scale.array();
