@@ -60,6 +60,16 @@ double DriveCurve::at(double depth_m) const noexcept {
   return u > 1.0 ? value + slope * (u - 1.0) : value;
 }
 
+BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
+  const double keep = std::exp(-step_s / relaxation_time_s);
+  return {keep, relaxation_time_s * (1.0 - keep) / step_s};
+}
+
+double branch_clock(double slowing, double surface_m, double depth_m, double reference_depth_m) noexcept {
+  if (slowing == 0.0) return 1.0;
+  return std::exp(slowing * std::min(0.5 * (surface_m + depth_m) / reference_depth_m, 1.0));
+}
+
 std::string_view feature_kind_name(FeatureKind kind) {
   switch (kind) {
     case FeatureKind::depth: return "depth";
@@ -168,16 +178,9 @@ void FeatureFilter::prepare_branches(double depth_m, double step_s) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     const FeatureSpec& spec = specs_[i];
     if (!is_branch(spec.kind)) continue;
-    double clock = 1.0;
-    if (spec.slowing != 0.0) {
-      // Between the samples: half of the way.
-      const double u = 0.5 * (surface_m_ + depth_m) / branch_drive(spec, 0).reference_depth_m;
-      clock = std::exp(spec.slowing * std::min(u, 1.0));
-    }
+    const double clock = branch_clock(spec.slowing, surface_m_, depth_m, branch_drive(spec, 0).reference_depth_m);
     for (std::size_t p = 0; p < branch_count(spec); ++p) {
-      const double time_s = clock * branch_time_s(spec, p);
-      const double keep = std::exp(-step_s / time_s);
-      step_[i][p] = {keep, time_s * (1.0 - keep) / step_s};
+      step_[i][p] = branch_step(clock * branch_time_s(spec, p), step_s);
     }
   }
 }
@@ -188,7 +191,7 @@ double FeatureFilter::held_N(double surface_m) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     if (!is_branch(specs_[i].kind)) continue;
     for (std::size_t p = 0; p < branch_count(specs_[i]); ++p) {
-      const PartStep& step = step_[i][p];
+      const BranchStep& step = step_[i][p];
       const double drive = branch_drive(specs_[i], p).at(surface_m);
       force_N += step.keep * part_state_[i][p] + step.gain * (drive - part_drive_[i][p]);
     }
@@ -231,7 +234,7 @@ double FeatureFilter::updated_branches(std::size_t index, double surface_m, bool
     const double drive = branch_drive(spec, p).at(surface_m);
     double& z = part_state_[index][p];
     if (advance) {
-      const PartStep& step = step_[index][p];
+      const BranchStep& step = step_[index][p];
       z = step.keep * z + step.gain * (drive - part_drive_[index][p]);
       if (std::abs(z) < 1e-30) z = 0.0;
     } else if (!started_) {

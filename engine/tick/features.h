@@ -130,6 +130,15 @@ constexpr bool is_branch(FeatureKind kind) noexcept {
   return kind == FeatureKind::maxwell_branch || kind == FeatureKind::maxwell_spectrum;
 }
 
+// One step of a Maxwell branch: z' = keep z + gain (g(s') - g(s)).
+struct BranchStep {
+  double keep = 0.0;
+  double gain = 0.0;
+};
+BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
+// What a `slowing` makes of the relaxation times between a surface and a depth, halfway.
+double branch_clock(double slowing, double surface_m, double depth_m, double reference_depth_m) noexcept;
+
 std::string_view feature_kind_name(FeatureKind kind);
 // Column name with unit, e.g. "depth_m", "lowpass_velocity_0.17s_m_per_s".
 std::string feature_name(const FeatureSpec& spec);
@@ -164,10 +173,6 @@ class FeatureFilter {
 
  private:
   using PartStates = std::array<double, kMaxFeatureParts>;
-  struct PartStep {
-    double keep = 0.0;  // share of z that is left after the step
-    double gain = 0.0;  // dz over the change of g
-  };
   void prepare_branches(double depth_m, double step_s) noexcept;
   double held_N(double surface_m) noexcept;
   double surface_above_m(double depth_m) noexcept;
@@ -179,7 +184,7 @@ class FeatureFilter {
   std::array<double, kMaxFeatures> drive_{};  // d at the last sample
   std::array<PartStates, kMaxFeatures> part_drive_{};  // g_p(d) at the last sample
   std::array<PartStates, kMaxFeatures> part_state_{};  // z_p or s_p
-  std::array<std::array<PartStep, kMaxFeatureParts>, kMaxFeatures> step_{};
+  std::array<std::array<BranchStep, kMaxFeatureParts>, kMaxFeatures> step_{};
   std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
   double depth_m_ = 0.0;            // at the last sample
   double surface_m_ = 0.0;

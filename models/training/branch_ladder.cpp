@@ -25,18 +25,12 @@ void BranchLadder::update(double time_s, double depth_m, double surface_m) {
   if (!started_) {
     std::fill(values_.begin(), values_.end(), 0.0);
   } else if (step_s > 0.0) {
-    double clock = 1.0;
-    if (slowing_ != 0.0) {
-      const double u = 0.5 * (surface_m_ + depth_m) / curves_.front().reference_depth_m;
-      clock = std::exp(slowing_ * std::min(u, 1.0));
-    }
+    const double clock = branch_clock(slowing_, surface_m_, depth_m, curves_.front().reference_depth_m);
     double* value = values_.data();
-    for (const double unslowed_s : times_s_) {
-      const double relaxation_s = clock * unslowed_s;
-      const double keep = std::exp(-step_s / relaxation_s);
-      const double gain = relaxation_s * (1.0 - keep) / step_s;
+    for (const double relaxation_time_s : times_s_) {
+      const BranchStep step = branch_step(clock * relaxation_time_s, step_s);
       for (std::size_t k = 0; k < curves_.size(); ++k, ++value) {
-        *value = keep * *value + gain * change_[k];
+        *value = step.keep * *value + step.gain * change_[k];
         if (std::abs(*value) < 1e-30) *value = 0.0;
       }
     }

@@ -1,6 +1,6 @@
 // The basis of a branch for many relaxation times at once: z_tk of every time tau_t and
 // every curve g_k, driven by the depth of the material's surface as in
-// engine/tick/features.h. The curves are evaluated once a sample and the decay once a
+// engine/tick/features.h, by the steps of that file. The curves are evaluated once a sample and the decay once a
 // time, so a ladder of twenty times costs little more than one.
 // Thread guarantee: value type, slow side.
 #pragma once

@@ -3,7 +3,7 @@
 // tool (engine/tick/features.h).
 //
 // The trend with a coarse ladder of relaxation times is fitted with each answer and
-// judged on strokes left out (cross_validated_trend.h). The surface follows from the
+// scored on strokes left out (cross_validated_trend.h). The surface follows from the
 // fitted trend itself, so that answer takes a second fit, whose branches follow the
 // surface of the first. An answer other than "constant times, surface under the tool"
 // must lower the error by more than one standard error of the differences between the

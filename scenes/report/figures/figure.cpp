@@ -154,8 +154,8 @@ std::string AxisRange::tics(const std::string& axis) const {
   return text.append(")\n");
 }
 
-AxisRange log_range(const std::vector<double>& values) {
-  double low = 1e300;
+AxisRange cropped_log_range(const std::vector<double>& values, double below, double above) {
+  double low = HUGE_VAL;
   double high = 0.0;
   for (const double value : values) {
     if (!(value > 0.0) || !std::isfinite(value)) continue;
@@ -163,7 +163,12 @@ AxisRange log_range(const std::vector<double>& values) {
     high = std::max(high, value);
   }
   if (high <= 0.0) return {0.1, 10.0, true};
-  return {round_down(low / 1.15), round_up(high * 1.15), true};
+  return {low / below, high * above, true};
+}
+
+AxisRange log_range(const std::vector<double>& values) {
+  const AxisRange range = cropped_log_range(values, 1.15, 1.15);
+  return {round_down(range.low), round_up(range.high), true};
 }
 
 AxisRange zero_range(const std::vector<double>& values) {

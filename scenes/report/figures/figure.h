@@ -68,7 +68,9 @@ struct AxisRange {
   // the rest as minor tics. Nothing for a linear one.
   std::string tics(const std::string& axis) const;
 };
-// Just beyond the positive ones of `values`, at 1, 2 or 5 times a power of ten.
+// Around the positive ones of `values`, beyond them by these factors.
+AxisRange cropped_log_range(const std::vector<double>& values, double below, double above);
+// The same by 1.15, out to 1, 2 or 5 times a power of ten.
 AxisRange log_range(const std::vector<double>& values);
 // From 0 to just beyond the largest.
 AxisRange zero_range(const std::vector<double>& values);

@@ -186,19 +186,6 @@ void add_panel(Builder& b, const ReportData& data, const Panel& panel, std::uint
   b.panels.rows.push_back({number, panel.title, panel.floor});
 }
 
-// Beyond the data by these factors, so that nothing sits on the frame.
-AxisRange cropped(const std::vector<double>& values, double below, double above) {
-  double low = HUGE_VAL;
-  double high = 0.0;
-  for (const double value : values) {
-    if (!(value > 0.0) || !std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  if (high <= 0.0) return {0.1, 10.0, true};
-  return {low / below, high * above, true};
-}
-
 // Both axes just around what the models have, and one JND.
 void crop(Builder& b, const ReportData& data, const std::vector<Panel>& panels, TimeOf time) {
   std::vector<double> errors{1.0};
@@ -213,8 +200,8 @@ void crop(Builder& b, const ReportData& data, const std::vector<Panel>& panels, 
   for (const Panel& panel : panels) {
     if (panel.floor > kNearFloor * least) errors.push_back(panel.floor);
   }
-  b.x = cropped(times, 1.4, 2.2);
-  b.y = cropped(errors, 1.35, 1.35);
+  b.x = cropped_log_range(times, 1.4, 2.2);
+  b.y = cropped_log_range(errors, 1.35, 1.35);
 }
 
 Figure make_figure(const ReportData& data, const std::string& name, TimeOf time) {

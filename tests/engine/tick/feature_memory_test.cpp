@@ -1,0 +1,101 @@
+// What features remember of the material: a surface that lags, times that slow with the
+// depth, and the memory that a change of models keeps (engine/tick/features.h).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/tick/features.h"
+#include "tests/support/feature_specs.h"
+
+namespace palpate {
+namespace {
+
+using namespace test;
+
+// A spring of 300 N/m beside a branch of 600 N/m and 0.2 s, relaxed at 4 mm: at once the
+// surface comes back to s with 300 s + 600 (s - 4 mm) = 0, then it creeps back by
+// ds/dt = -s / (3 x 0.2 s) until it meets the tool.
+TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
+  const DriveCurve elastic{5e-3, {1.5}};
+  const DriveCurve branch{5e-3, {3.0}};
+  FeatureFilter filter({surface_lag(elastic), maxwell(0.2, branch)});
+  int i = 0;
+  for (; i < 4000; ++i) feed(filter, 1e-3 * i, 4e-3);
+  EXPECT_EQ(filter.vector().values[0], 0.0) << "it lies against a tool that presses";
+  for (int k = 0; k <= 300; ++k, ++i) {
+    const auto& values = feed(filter, 1e-3 * i, 2e-3).values;
+    const double free_m = 4e-3 * (2.0 / 3.0) * std::exp(-1e-3 * k / 0.6);
+    // The surface is found to 10 uN, and the first step relaxes for 1 ms.
+    ASSERT_NEAR(values[0], std::max(0.0, free_m - 2e-3), 5e-6) << k;
+    ASSERT_NEAR(filter.surface_m(), 2e-3 + values[0], 1e-15);
+  }
+}
+
+TEST(FeatureMemory, ABranchMaySlowDownWithDepth) {
+  FeatureSpec slow = maxwell(0.2, DriveCurve{5e-3, {3.0}});
+  slow.slowing = 2.0;
+  FeatureFilter filter({slow});
+  feed(filter, 0.0, 0.0);
+  const double start_N = feed(filter, 1e-3, 2.5e-3).values[0];
+  for (int i = 2; i <= 1001; ++i) feed(filter, 1e-3 * i, 2.5e-3);
+  EXPECT_NEAR(filter.vector().values[0], start_N * std::exp(-1.0 / (0.2 * std::exp(1.0))), 1e-9);
+}
+
+// Of a whole material, force never below zero: what it gave in the first cycles it had
+// to be given first, so that the sum over all of them counts.
+TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
+  const DriveCurve elastic{5e-3, {0.5, 0.4}};
+  for (const double slowing : {0.0, 3.0, -2.0}) {
+    for (const double duration_s : {0.05, 0.5, 5.0}) {
+      FeatureSpec branches = spectrum({0.01, 0.1, 1.0}, stiffening());
+      branches.slowing = slowing;
+      FeatureFilter filter({surface_lag(elastic), branches});
+      double before_N = 0.0;
+      double work = 0.0;
+      constexpr int kSteps = 20000;
+      feed(filter, 0.0, closed_motion_m(0.0));
+      for (int i = 1; i <= 4 * kSteps; ++i) {
+        const double phase = static_cast<double>(i) / kSteps;
+        const double position_m = closed_motion_m(phase);
+        const double force_N = std::max(0.0, elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[1]);
+        work += 0.5 * (force_N + before_N) * (position_m - closed_motion_m(phase - 1.0 / kSteps));
+        before_N = force_N;
+      }
+      EXPECT_GT(work, 0.0) << slowing << " " << duration_s;
+    }
+  }
+}
+
+// What a change of models in mid-press does: the memory of the same features goes on.
+TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
+  const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()), fading_peak(2.0),
+                                                 maxwell(0.3, stiffening())};
+  const DriveCurve softer{5e-3, {0.2, 0.1, 0.0, 0.0}};
+  const std::vector<FeatureSpec> specs = {maxwell(0.3, stiffening()), stops({3e-4, 1e-4}, softer), fading_peak(2.0),
+                                          maxwell(0.3, softer)};
+  FeatureFilter before(before_specs);
+  FeatureFilter always(specs);
+  const auto at = [](int i) { return closed_motion_m(2e-4 * i); };
+  for (int i = 0; i < 2000; ++i) {
+    feed(before, 1e-3 * i, at(i));
+    feed(always, 1e-3 * i, at(i));
+  }
+  FeatureFilter after(specs);
+  feed(after, 1.999, at(1999));
+  after.adopt(before);
+  EXPECT_EQ(after.vector().values[3], 0.0) << "a branch that nobody had is at rest";
+  for (int i = 2000; i < 4000; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(after.vector().values[k], always.vector().values[k]) << feature_name(specs[k]);
+    }
+    feed(after, 1e-3 * i, at(i));
+    feed(always, 1e-3 * i, at(i));
+  }
+  EXPECT_NEAR(after.vector().values[3], always.vector().values[3], 0.01 * std::abs(always.vector().values[0]))
+      << "after seven times its relaxation time";
+}
+
+}  // namespace
+}  // namespace palpate
