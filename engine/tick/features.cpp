@@ -70,6 +70,13 @@ double branch_clock(double slowing, double surface_m, double depth_m, double ref
   return std::exp(slowing * std::min(0.5 * (surface_m + depth_m) / reference_depth_m, 1.0));
 }
 
+double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
+  for (const FeatureSpec& spec : specs) {
+    if (spec.kind == FeatureKind::depth) return spec.surface_position_m;
+  }
+  return 0.0;
+}
+
 std::string_view feature_kind_name(FeatureKind kind) {
   switch (kind) {
     case FeatureKind::depth: return "depth";
@@ -108,7 +115,7 @@ std::string feature_name(const FeatureSpec& spec) {
 }
 
 FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
-    : count_(std::min(specs.size(), kMaxFeatures)) {
+    : surface_position_m_(surface_position_m(specs)), count_(std::min(specs.size(), kMaxFeatures)) {
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   std::copy_n(specs.begin(), count_, specs_.begin());
   for (std::size_t i = 0; i < count_; ++i) {
@@ -117,9 +124,9 @@ FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
 }
 
 const FeatureVector& FeatureFilter::update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
-  const double depth_m = std::max(0.0, motion.position_m);
-  vector_.depth_m = std::max(0.0, sample.position_m);
-  vector_.in_contact = sample.position_m > 0.0;
+  const double depth_m = std::max(0.0, motion.position_m - surface_position_m_);
+  vector_.depth_m = std::max(0.0, sample.position_m - surface_position_m_);
+  vector_.in_contact = sample.position_m > surface_position_m_;
   const double step_s = sample.time_s - time_s_;
   const bool advance = started_ && step_s > 0.0;
   if (advance) prepare_branches(depth_m, step_s);
@@ -263,6 +270,7 @@ double FeatureFilter::updated_stops(std::size_t index, double depth_m, bool adva
 }
 
 void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
+  if (before.surface_position_m_ != surface_position_m_) return;
   for (std::size_t i = 0; i < count_; ++i) {
     for (std::size_t k = 0; k < before.count_; ++k) {
       if (specs_[i].kind == before.specs_[k].kind) adopt_feature(i, before, k);

@@ -2,7 +2,7 @@
 // choice of one to eight features. Recording, fitting, replay and the live
 // loop run this code and no other.
 //
-//   depth             d = max(0, estimated position)                        [m]
+//   depth             d = max(0, estimated position - surface)              [m]
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
 //   lowpass_velocity  y with dy/dt = (dd/dt - y) / tau                      [m/s]
 //   maxwell_branch    z with dz/dt = g'(d) dd/dt - z / tau                  [N]
@@ -17,6 +17,9 @@
 // identified from the recording (models/training/fit_trend.h), and with g = d / tau it is the
 // low-pass. Both are driven by the depth, not by the velocity estimate: free
 // air relaxes the material and does not load it.
+//
+// The surface is where position_m is 0, or, for a model of recordings whose surface lay
+// deeper, at the depth feature's `surface_position_m`: the tool is in contact beyond it.
 //
 // With a surface_lag among the features, the branches follow the surface and not the
 // tool: s = d while the elastic response E and all branches together push the tool
@@ -109,6 +112,7 @@ struct FeatureSpec {
   std::size_t part_count = 0;      // maxwell_spectrum and stops
   std::array<FeaturePart, kMaxFeatureParts> parts{};
   double slowing = 0.0;  // b of maxwell_branch and maxwell_spectrum
+  double surface_position_m = 0.0;  // depth: >= 0, for all features beside it
 
   bool operator==(const FeatureSpec&) const = default;
 };
@@ -139,13 +143,16 @@ BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
 // What a `slowing` makes of the relaxation times between a surface and a depth, halfway.
 double branch_clock(double slowing, double surface_m, double depth_m, double reference_depth_m) noexcept;
 
+// Where the surface lies on the axis of position_m: what the depth feature says.
+double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
+
 std::string_view feature_kind_name(FeatureKind kind);
 // Column name with unit, e.g. "depth_m", "lowpass_velocity_0.17s_m_per_s".
 std::string feature_name(const FeatureSpec& spec);
 
 struct FeatureVector {
   std::array<double, kMaxFeatures> values{};
-  double depth_m = 0.0;  // from the raw position: max(0, position)
+  double depth_m = 0.0;  // from the raw position: max(0, position - surface)
   bool in_contact = false;
 };
 
@@ -160,11 +167,11 @@ class FeatureFilter {
   void reset() noexcept { started_ = false; }
 
   // `sample` and its motion estimate; times increase. The contact state is
-  // that of the raw position.
+  // that of the raw position at this surface.
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept;
   // After an `update`: takes over the memory that `before`, fed with the same motion, has
   // of the same features, so that a change of models loses none. A stop's bend depends on
-  // its threshold alone; all else must be equal. Wait-free.
+  // its threshold alone; all else, and where the surface lies, must be equal. Wait-free.
   void adopt(const FeatureFilter& before) noexcept;
   // What `update` gave last.
   const FeatureVector& vector() const noexcept { return vector_; }
@@ -186,7 +193,8 @@ class FeatureFilter {
   std::array<PartStates, kMaxFeatures> part_state_{};  // z_p or s_p
   std::array<std::array<BranchStep, kMaxFeatureParts>, kMaxFeatures> step_{};
   std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
-  double depth_m_ = 0.0;            // at the last sample
+  double surface_position_m_ = 0.0;
+  double depth_m_ = 0.0;  // at the last sample
   double surface_m_ = 0.0;
   std::size_t count_ = 0;
   FeatureVector vector_;

@@ -99,11 +99,13 @@ void HapticsTick::evaluate_models() noexcept {
     double predicted_error_N = 0.0;
     if (snapshot_.in_contact) {
       const std::uint64_t before = timed_ ? cycle_count() : 0;
-      const ForceEstimate estimate = models_[i]->evaluate(vectors_[filter_of_[i]].values.data());
+      const FeatureVector& vector = vectors_[filter_of_[i]];
+      const ForceEstimate estimate = models_[i]->evaluate(vector.values.data());
       if (timed_) cycles_[i] = cycle_count() - before;
-      force_N = estimate.force_N;
+      // Its surface may lie deeper than where positions are 0.
+      force_N = vector.in_contact ? estimate.force_N : 0.0;
       predicted_error_N = estimate.predicted_error_N;
-      if (estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
+      if (vector.in_contact && estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;
       if (!std::isfinite(force_N)) {
         force_N = 0.0;
         snapshot_.fault = TickFault::force_not_finite;

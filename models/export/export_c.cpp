@@ -43,7 +43,8 @@ std::string head(const ModelData& data, const ExportRequest& request) {
          " * Features: " + features + "\n"
          " *\n"
          " * " + real + " palpate_force(" + real + " time_s, " + real + " position_m): the force in N, positive out of the\n"
-         " *   material. position_m: 0 at the undisturbed surface, positive inside. A value that is\n"
+         " *   material. position_m: as in the recordings, whose undisturbed surface lies at\n"
+         " *   " + exact.number(surface_position_m(data.features)) + " m, positive inside. A value that is\n"
          " *   not finite, or a time that is not later than the last one: 0, and nothing changes.\n"
          " * " + real + " palpate_force_after(" + real + " step_s, " + real + " position_m): the same, `step_s` after the last\n"
          " *   call; better in single precision, where a large time has coarse steps.\n"
@@ -120,7 +121,7 @@ static real force_of(real step_s, real position_m) {
   last_position_m = position_m;
   started = 1;
   is_out_of_domain = 0;
-  return position_m > R(0.0) ? model_force() : R(0.0);
+  return position_m > SURFACE_POSITION_M ? model_force() : R(0.0);
 }
 
 void palpate_reset(void) {
@@ -169,6 +170,7 @@ Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request) 
   out.add(head(data, request));
   out.add(request.single_precision ? kFloatC : kDoubleC);
   out.add("#define R(x) ((real)(x))\n#define FEATURES " + std::to_string(data.features.size()) +
+          "\n#define SURFACE_POSITION_M " + out.number(surface_position_m(data.features)) +
           "\n\nreal palpate_force(real time_s, real position_m);\n"
           "real palpate_force_after(real step_s, real position_m);\n"
           "void palpate_reset(void);\nint palpate_out_of_domain(void);\n");

@@ -313,7 +313,7 @@ Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(
       "\n/* `first`: nothing came before, and every filter is at rest. */\n"
       "static void update_features(real step_s, int first) {\n  (void)step_s;\n  (void)first;\n"
-      "  real s;\n  depth_m = larger(R(0.0), position_estimate_m);\n  s = " +
+      "  real s;\n  depth_m = larger(R(0.0), position_estimate_m - SURFACE_POSITION_M);\n  s = " +
       std::string(lags ? "first ? depth_m : surface_above(step_s)" : "depth_m") + ";\n  (void)s;\n" + body +
       "  last_depth_m = depth_m;\n  surface_m = s;\n}\n");
   return {};

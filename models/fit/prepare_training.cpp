@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "models/fit/decide_strength.h"
@@ -207,6 +208,19 @@ Status find_surfaces(MotionSource& source, const TrainingRequest& request, Prove
   return {};
 }
 
+// Positions of a model are those of its recordings: a surface that all of them have
+// deeper than 0 is the model's own place of contact, and a recording of the same rig
+// needs no moving. (A surface above 0 cannot be: the tool is in contact beyond 0 at the
+// latest, so such recordings are moved to it.)
+void keep_position_zero(ModelData& common) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const RecordingSurface& one : common.provenance.surfaces) least_m = std::min(least_m, one.offset_m);
+  if (!(least_m > 0.0) || !std::isfinite(least_m)) return;
+  for (FeatureSpec& spec : common.features) {
+    if (spec.kind == FeatureKind::depth) spec.surface_position_m = least_m;
+  }
+}
+
 Status keep_evaluation_samples(PreparedTraining& prepared, MotionSource& source, const FoldDealer& dealer,
                            const FitControl& control) {
   FeatureFilter filter(prepared.common.features);
@@ -380,6 +394,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
     if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
   }
 
+  keep_position_zero(prepared.common);
   prepared.common.sensor = PositionSensor{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;
   provenance.recordings = source.names();

@@ -54,6 +54,9 @@ Status validate_features(const std::vector<FeatureSpec>& features) {
     if (!(std::abs(spec.slowing) <= kMostSlowing)) {
       return wrong("features.slowing", std::to_string(spec.slowing), "a number from -20 to 20");
     }
+    if (!(spec.surface_position_m >= 0.0) || !std::isfinite(spec.surface_position_m)) {
+      return wrong("features.surface_position_m", std::to_string(spec.surface_position_m), "0 or more");
+    }
     if (!has_parts(spec.kind)) continue;
     if (spec.part_count < 1 || spec.part_count > kMaxFeatureParts) {
       return wrong("features.parts", std::to_string(spec.part_count) + " parts", "1 to 8");

@@ -1,7 +1,8 @@
 // The model file's text: ModelData to JSON and back.
 //
 // One object; "format": "palpate-model", "version": 1; then
-//   name, method, features [{kind, relaxation_time_s, drive}], normalisation
+//   name, method, features [{kind, relaxation_time_s, drive}, the depth with its
+//   surface_position_m where that is not 0], normalisation
 //   {offset, scale}, domain {lower, upper, inner_radius, outer_radius, points},
 //   trend, corrects_trend, correction_limit_N, largest_force_N, jnd,
 //   provenance, and the correction: kernel, tail, centres and weights, or grid

@@ -129,6 +129,9 @@ class ModelReader : private JsonFields {
     }
     if (has_time(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
     if (is_branch(spec.kind) && optional_member(node, "slowing").value != nullptr) spec.slowing = number(node, "slowing");
+    if (spec.kind == FeatureKind::depth && optional_member(node, "surface_position_m").value != nullptr) {
+      spec.surface_position_m = number(node, "surface_position_m", Sign::kPositive);
+    }
     if (has_drive(spec.kind)) spec.drive = drive_member(node, "drive");
     if (has_parts(spec.kind)) read_parts(node, spec);
     data_.features.push_back(spec);
