@@ -30,9 +30,11 @@ class LeftOutFits {
     choose_centres();
     space_ = penalty_space(input.kernel, centres_);
     unit_ = mean_eigenvalue();
-    columns_ = design(sites_.points);
-    columns_.array().colwise() *= sites_.row_scale.array();
-    gather();
+    points_.resize(sites_.dimension(), static_cast<Eigen::Index>(input_.samples.size()));
+    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
+      points_.col(static_cast<Eigen::Index>(i)) = input_.samples[i].point;
+    }
+    parallel_for(2, [&](int half) { half == 0 ? gather_sites() : gather_samples(); });
   }
 
   double unit() const { return unit_; }
@@ -40,15 +42,16 @@ class LeftOutFits {
   // The correction at every sample, from the sites of the other folds.
   Eigen::VectorXd predictions(double smoothing) const {
     const Eigen::Index free = space_.penalty.cols();
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(input_.samples.size()));
-    const BlasThreads one_thread(1);
-    parallel_for(input_.folds, [&](int fold) {
-      const auto k = static_cast<std::size_t>(fold);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(points_.cols());
+    for (std::size_t k = 0; k < grams_.size(); ++k) {
       Eigen::MatrixXd matrix = total_gram_ - grams_[k];
       matrix.topLeftCorner(free, free) += smoothing * space_.penalty;
       const Eigen::VectorXd coefficients = solve(std::move(matrix), total_right_ - rights_[k]);
-      for (const Eigen::Index i : samples_of_[k]) values(i) = sample_columns_.row(i).dot(coefficients);
-    });
+      // Column by column: the samples of a fold stand below one another.
+      Eigen::VectorXd of_fold = Eigen::VectorXd::Zero(sample_columns_[k].rows());
+      for (Eigen::Index j = 0; j < coefficients.size(); ++j) of_fold += coefficients(j) * sample_columns_[k].col(j);
+      values(samples_of_[k]) = of_fold;
+    }
     return values;
   }
 
@@ -86,18 +89,19 @@ class LeftOutFits {
     return all;
   }
 
-  void gather() {
-    const auto n = static_cast<Eigen::Index>(columns_.cols());
+  void gather_sites() {
+    Eigen::MatrixXd columns = design(sites_.points);
+    columns.array().colwise() *= sites_.row_scale.array();
+    const auto n = columns.cols();
     const Eigen::VectorXd data = sites_.row_scale.cwiseProduct(sites_.target_N);
     total_gram_ = Eigen::MatrixXd::Zero(n, n);
     total_right_ = Eigen::VectorXd::Zero(n);
-    samples_of_.resize(static_cast<std::size_t>(input_.folds));
     for (int k = 0; k < input_.folds; ++k) {
       std::vector<Eigen::Index> rows;
       for (std::size_t i = 0; i < sites_.group.size(); ++i) {
         if (sites_.group[i] == k) rows.push_back(static_cast<Eigen::Index>(i));
       }
-      const Eigen::MatrixXd part = columns_(rows, Eigen::all);
+      const Eigen::MatrixXd part = columns(rows, Eigen::all);
       Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
       if (part.rows() > 0) multiply(part, true, part, false, 1.0, 0.0, gram);
       const Eigen::VectorXd right = part.transpose() * data(rows);
@@ -106,12 +110,15 @@ class LeftOutFits {
       grams_.push_back(std::move(gram));
       rights_.push_back(right);
     }
-    Eigen::MatrixXd points(sites_.dimension(), static_cast<Eigen::Index>(input_.samples.size()));
+  }
+
+  void gather_samples() {
+    samples_of_.resize(static_cast<std::size_t>(input_.folds));
     for (std::size_t i = 0; i < input_.samples.size(); ++i) {
-      points.col(static_cast<Eigen::Index>(i)) = input_.samples[i].point;
       samples_of_[static_cast<std::size_t>(input_.samples[i].fold)].push_back(static_cast<Eigen::Index>(i));
     }
-    sample_columns_ = design(points);
+    const Eigen::MatrixXd columns = design(points_);
+    for (const auto& samples : samples_of_) sample_columns_.push_back(columns(samples, Eigen::all));
   }
 
   static Eigen::VectorXd solve(Eigen::MatrixXd matrix, Eigen::VectorXd right) {
@@ -134,8 +141,8 @@ class LeftOutFits {
   Eigen::MatrixXd centres_;
   PenaltySpace space_;
   double unit_ = 1.0;
-  Eigen::MatrixXd columns_;
-  Eigen::MatrixXd sample_columns_;
+  Eigen::MatrixXd points_;  // of the samples
+  std::vector<Eigen::MatrixXd> sample_columns_;  // by fold
   Eigen::MatrixXd total_gram_;
   Eigen::VectorXd total_right_;
   std::vector<Eigen::MatrixXd> grams_;
@@ -240,8 +247,6 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   const LeftOutFits fits(input);
   const std::vector<double> distance = distances(input);
   const std::vector<char> counts = inside_depth(input);
-  std::vector<Variant> variants;
-  std::vector<Eigen::VectorXd> predictions;
   const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
     Variant variant{smoothing, strength, radius, std::vector<double>(static_cast<std::size_t>(input.folds), 0.0)};
     for (std::size_t i = 0; i < input.samples.size(); ++i) {
@@ -252,17 +257,25 @@ StrengthChoice choose_strength(const StrengthInput& input) {
       const double error = input.jnd.error_over_jnd(force_N, sample.force_N);
       variant.fold_squares[static_cast<std::size_t>(sample.fold)] += saturated_square(error);
     }
-    variants.push_back(std::move(variant));
+    return variant;
   };
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(input.samples.size()));
-  score(fits.unit(), 0.0, input.least_radius, nothing);
-  for (int decade = kHighestDecade; decade >= kLowestDecade; --decade) {
-    const double smoothing = fits.unit() * std::pow(10.0, decade);
-    predictions.push_back(fits.predictions(smoothing));
+  constexpr int kDecades = kHighestDecade - kLowestDecade + 1;
+  std::array<Eigen::VectorXd, kDecades> predictions;
+  std::array<std::vector<Variant>, kDecades> of_decade;
+  parallel_for(kDecades, [&](int part) {
+    const auto at = static_cast<std::size_t>(part);
+    const double smoothing = fits.unit() * std::pow(10.0, kHighestDecade - part);
+    predictions[at] = fits.predictions(smoothing);
     for (const double factor : kRadiusFactors) {
-      for (const double strength : kStrengths) score(smoothing, strength, factor * input.least_radius, predictions.back());
+      for (const double strength : kStrengths) {
+        of_decade[at].push_back(score(smoothing, strength, factor * input.least_radius, predictions[at]));
+      }
     }
-  }
+  });
+  // "None" first, then from the most smoothing to the least.
+  std::vector<Variant> variants{score(fits.unit(), 0.0, input.least_radius, nothing)};
+  for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const auto best = std::min_element(variants.begin(), variants.end(),
                                      [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
   // "None" if it is as good; else the most smoothing that is.
@@ -284,7 +297,9 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.fold_squares = chosen->fold_squares;
   choice.trend_error_over_jnd = std::sqrt(variants.front().total() / counted);
   choice.error_over_jnd = std::sqrt(chosen->total() / counted);
-  const Eigen::VectorXd h = chosen->strength > 0.0 ? fits.predictions(chosen->smoothing) : nothing;
+  const auto place = static_cast<std::size_t>(chosen - variants.data());
+  const std::size_t of_each = kRadiusFactors.size() * kStrengths.size();
+  const Eigen::VectorXd& h = place > 0 ? predictions[(place - 1) / of_each] : nothing;
   for (std::size_t i = 0; i < input.samples.size(); ++i) {
     if (!std::isfinite(distance[i])) continue;
     const LeftOutSample& sample = input.samples[i];

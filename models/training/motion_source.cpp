@@ -203,6 +203,7 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
     row.recording = static_cast<int>(index);
     row.first = true;
     std::optional<MotionEstimator> estimator;
+    const MotionEstimate* known = inputs_[index].motion ? inputs_[index].motion->data() : nullptr;
     while (true) {
       const auto count = stream->next(chunk);
       if (!count) return count.error();
@@ -217,7 +218,7 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
       for (std::size_t i = 0; i < *count; ++i) {
         row.sample = tool_sample(chunk[i]);
         row.force_N = chunk[i].force_N;
-        row.motion = estimator->update(row.sample);
+        row.motion = known != nullptr ? *known++ : estimator->update(row.sample);
         if (row.first) first_rows_.push_back(rows_);
         keep(row);
         ++rows_;

@@ -53,6 +53,8 @@ class MotionSource {
   struct Input {
     std::string path;                        // used when `loaded` is empty
     std::shared_ptr<const Recording> loaded;
+    // Of every row of `loaded`, when it is known already.
+    std::shared_ptr<const std::vector<MotionEstimate>> motion{};
   };
 
   // `kept_rows`: how many rows may stay in memory between the passes.
