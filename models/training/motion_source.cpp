@@ -58,6 +58,11 @@ class RowStream {
 // Files up to this many rows together are read once, when they are put in order.
 constexpr std::size_t kRowsReadOnce = 500000;
 
+// Of a sample: at least so many stretches of a recording where they are not too short.
+constexpr std::size_t kStretches = 4;
+constexpr std::size_t kShortestStretch = 256;
+constexpr std::size_t kLongestStretch = 16384;
+
 // FNV-1a over the numbers of the rows.
 class ContentHash {
  public:
@@ -193,6 +198,9 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
   forget();  // what a pass that broke off has left
   keeps_ = true;
   rows_ = 0;
+  std::size_t loaded = 0;
+  for (const Input& input : inputs_) loaded += input.loaded ? input.loaded->rows.size() : kept_rows_;
+  kept_.reserve(std::min(loaded, kept_rows_));  // what stays untouched takes no memory
   // One chunk is what sensor identification looks at.
   std::vector<RecordingRow> chunk(kSensorIdentificationRows);
   MotionRow row;
@@ -243,15 +251,47 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
   }
   std::size_t seen = 0;
   CorrectedRows corrected(corrections_);
-  const auto visit_and_ask = [&](const MotionRow& row) {
+  return visit_recorded([&](const MotionRow& row) {
     return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.may_continue(fraction));
-  };
-  if (!complete_) return read_all(visit_and_ask);
-  if (spilled_) return read_spilled(visit_and_ask);
+  });
+}
+
+Status MotionSource::visit_recorded(const std::function<bool(const MotionRow&)>& visit) {
+  if (!complete_) return read_all(visit);
+  if (spilled_) return read_spilled(visit);
   for (const MotionRow& row : kept_) {
-    if (!visit_and_ask(row)) return interrupted();
+    if (!visit(row)) return interrupted();
   }
   return {};
+}
+
+Result<MotionSource> MotionSource::sample(std::size_t most, const FitControl& control, double fraction) {
+  // Half of them in stretches, half on the way to these.
+  const std::size_t sparse = 2 * rows_ / most + 1;
+  const std::size_t mean_rows = rows_ / std::max<std::size_t>(1, names_.size());
+  const std::size_t stretch = std::clamp(mean_rows / (kStretches * sparse), kShortestStretch, kLongestStretch);
+  MotionSource result({}, most);
+  std::size_t at = 0;  // in its recording
+  std::size_t seen = 0;
+  const Status status = visit_recorded([&](const MotionRow& row) {
+    if (row.first) at = 0;
+    const bool in_stretch = at % (sparse * stretch) < stretch;
+    if (in_stretch || at % sparse == 0) {
+      result.kept_.push_back(row);
+      result.kept_.back().run_up = !in_stretch;
+    }
+    ++at;
+    return ++seen % kRowsPerQuestion != 0 || control.may_continue(fraction);
+  });
+  if (!status) return status.error();
+  result.names_ = names_;
+  result.corrections_ = corrections_;
+  result.rows_ = result.kept_.size();
+  result.force_noise_N_ = force_noise_N_;
+  result.encoder_step_m_ = encoder_step_m_;
+  result.position_noise_m_ = position_noise_m_;
+  result.arranged_ = result.complete_ = true;
+  return result;
 }
 
 }  // namespace palpate
