@@ -65,9 +65,14 @@ BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
   return {keep, relaxation_time_s * (1.0 - keep) / step_s};
 }
 
-double branch_clock(double slowing, double surface_m, double depth_m, double reference_depth_m) noexcept {
+double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept {
+  const bool apart = last_surface_m > last_depth_m && last_surface_m > depth_m;
+  return apart ? last_surface_m : 0.5 * (last_surface_m + depth_m);
+}
+
+double branch_clock(double slowing, double surface_m, double reference_depth_m) noexcept {
   if (slowing == 0.0) return 1.0;
-  return std::exp(slowing * std::min(0.5 * (surface_m + depth_m) / reference_depth_m, 1.0));
+  return std::exp(slowing * std::min(surface_m / reference_depth_m, 1.0));
 }
 
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
@@ -182,10 +187,11 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
 }
 
 void FeatureFilter::prepare_branches(double depth_m, double step_s) noexcept {
+  const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
   for (std::size_t i = 0; i < count_; ++i) {
     const FeatureSpec& spec = specs_[i];
     if (!is_branch(spec.kind)) continue;
-    const double clock = branch_clock(spec.slowing, surface_m_, depth_m, branch_drive(spec, 0).reference_depth_m);
+    const double clock = branch_clock(spec.slowing, halfway_m, branch_drive(spec, 0).reference_depth_m);
     for (std::size_t p = 0; p < branch_count(spec); ++p) {
       step_[i][p] = branch_step(clock * branch_time_s(spec, p), step_s);
     }

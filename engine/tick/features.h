@@ -140,8 +140,11 @@ struct BranchStep {
   double gain = 0.0;
 };
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
-// What a `slowing` makes of the relaxation times between a surface and a depth, halfway.
-double branch_clock(double slowing, double surface_m, double depth_m, double reference_depth_m) noexcept;
+// The material's surface halfway through a step: between the last surface and the tool, or,
+// where the tool had left it and has not come back, still there.
+double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
+// What a `slowing` makes of the relaxation times with the surface there.
+double branch_clock(double slowing, double surface_m, double reference_depth_m) noexcept;
 
 // Where the surface lies on the axis of position_m: what the depth feature says.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;

@@ -127,6 +127,10 @@ std::string emit_lowpass(CText& out, const FeatureSpec& spec, std::size_t index)
          out.number(spec.relaxation_time_s) + ", R(1.0));\n";
 }
 
+// As surface_halfway() of engine/tick/features.h.
+constexpr const char* kSurfaceHalfwayC =
+    "(surface_m > last_depth_m && surface_m > depth_m ? surface_m : R(0.5) * (surface_m + depth_m))";
+
 // A branch behind a drive: state `target`, drive of the last sample and the next value of
 // the state in functions of `name`.
 std::string emit_branch(CText& out, const std::string& target, const std::string& name, const DriveCurve& drive,
@@ -134,7 +138,7 @@ std::string emit_branch(CText& out, const std::string& target, const std::string
   out.count({.arithmetic = drive.has_knots ? std::size_t{60} : std::size_t{26}, .divisions = 3, .exponentials = 1});
   const std::string curve = coefficients(out, name, drive, "s");
   const std::string clock = slowing == 0.0 ? ""
-                                           : "EXP(" + out.number(slowing) + " * smaller(R(1.0), R(0.5) * (surface_m + depth_m) / " +
+                                           : "EXP(" + out.number(slowing) + " * smaller(R(1.0), " + kSurfaceHalfwayC + " / " +
                                                  out.number(drive.reference_depth_m) + ")) * ";
   out.add("static real " + name + "_last;\nstatic real " + name + "_drive(real s) { return " + curve +
           "; }\nstatic real " + name + "_after(real step_s, real s) {\n  const real time_s = " + clock + out.number(time_s) +

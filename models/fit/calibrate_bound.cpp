@@ -11,7 +11,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kFewest = 50;
-constexpr double kHeld = 0.97;
+constexpr double kHeld = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
 constexpr double kLeastFloor_N = 1e-3;
 
@@ -35,7 +35,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
   for (const LeftOutPrediction& one : predictions) {
     ratios.push_back(one.error_N / bound.at(one.predicted_N, beyond(one)));
   }
-  // The smallest that holds ceil((n + 1) 97 %) of them.
+  // The smallest that holds ceil((n + 1) 97.5 %) of them.
   const auto n = static_cast<double>(ratios.size());
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());

@@ -3,8 +3,8 @@
 //
 // The three coefficients, never negative, follow the absolute errors by least
 // squares, each row scaled by 1 / JND; then all of them are multiplied by the
-// quantile of error over bound at which 97 % of the samples left out are held: two
-// in a hundred in reserve, since a new recording differs from the training more than
+// quantile of error over bound at which 97.5 % of the samples left out are held: some
+// in reserve, since a new recording differs from the training more than
 // its strokes among themselves. Away from the data the bound grows by at least a
 // quarter of the largest force per unit of normalised distance, whether strokes that
 // were left out had been there or not.

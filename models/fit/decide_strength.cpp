@@ -18,10 +18,10 @@ constexpr double kSpreadPower = 2.0;
 constexpr double kUnknownSpread = 1.25;  // when the features were given
 constexpr std::size_t kFewStrokes = 5;
 constexpr double kFewStrokesSpread = 1.2;
-// One or two presses say nothing of how the next differs: 2 % of the force, as two
+// One or two presses say nothing of how the next differs: 5 % of the force, as two
 // specimens of a cast silicone do.
 constexpr std::size_t kFewPresses = 3;
-constexpr double kLeastPerForce = 0.02;
+constexpr double kLeastPerForce = 0.05;
 
 double spread_of(const FeatureSelection& selection, std::size_t strokes) {
   const double few = strokes < kFewStrokes ? kFewStrokesSpread : 1.0;

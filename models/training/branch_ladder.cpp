@@ -25,7 +25,8 @@ void BranchLadder::update(double time_s, double depth_m, double surface_m) {
   if (!started_) {
     std::fill(values_.begin(), values_.end(), 0.0);
   } else if (step_s > 0.0) {
-    const double clock = branch_clock(slowing_, surface_m_, depth_m, curves_.front().reference_depth_m);
+    const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
+    const double clock = branch_clock(slowing_, halfway_m, curves_.front().reference_depth_m);
     double* value = values_.data();
     for (const double relaxation_time_s : times_s_) {
       const BranchStep step = branch_step(clock * relaxation_time_s, step_s);
@@ -37,6 +38,7 @@ void BranchLadder::update(double time_s, double depth_m, double surface_m) {
   }
   started_ = true;
   time_s_ = time_s;
+  depth_m_ = depth_m;
   surface_m_ = surface_m;
 }
 

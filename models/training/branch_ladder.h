@@ -30,6 +30,7 @@ class BranchLadder {
   std::vector<double> drive_;  // g_k at the last sample
   std::vector<double> change_;
   double time_s_ = 0.0;
+  double depth_m_ = 0.0;
   double surface_m_ = 0.0;
   bool started_ = false;
 };

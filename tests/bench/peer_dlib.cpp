@@ -1,37 +1,24 @@
 // dlib's kernel ridge regression with a Gaussian kernel. It picks its basis, a
 // linearly independent subset of the samples, and by leaving out one sample its
 // ridge; the kernel's width is chosen here.
-#include <dlib/matrix.h>
 #include <dlib/svm/krr_trainer.h>
 
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
-#include "tests/bench/peer.h"
+#include "tests/bench/peer_dlib.h"
 
 namespace palpate::bench {
 namespace {
 
-using Sample = dlib::matrix<double, 0, 1>;
-using Kernel = dlib::radial_basis_kernel<Sample>;
+using Kernel = dlib::radial_basis_kernel<DlibSample>;
 
 Result<Function> train(const Sites& sites, double gamma, unsigned long basis_size) {
-  const long d = sites.dimension();
-  std::vector<Sample> samples;
-  for (Eigen::Index i = 0; i < sites.count(); ++i) {
-    Sample sample(d);
-    for (long k = 0; k < d; ++k) sample(k) = sites.points(k, i);
-    samples.push_back(std::move(sample));
-  }
   const std::vector<double> targets(sites.target_N.begin(), sites.target_N.end());
   dlib::krr_trainer<Kernel> trainer;
   trainer.set_kernel(Kernel(gamma));
   trainer.set_max_basis_size(basis_size);
-  return Function([trained = trainer.train(samples, targets), query = Sample(d), d](const double* x) mutable {
-    for (long k = 0; k < d; ++k) query(k) = x[k];
-    return trained(query);
-  });
+  return dlib_function(trainer.train(dlib_samples(sites), targets), sites.dimension());
 }
 
 }  // namespace

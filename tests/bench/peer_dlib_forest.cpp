@@ -1,38 +1,25 @@
 // dlib's random forest: averages of regression trees, each grown on a resample of the
 // sites. What the literature since 2009 fits to such recordings (Cha, Bhardwaj, Park & Choi,
 // AsiaHaptics 2018).
-#include <dlib/matrix.h>
 #include <dlib/random_forest.h>
 
 #include <cstdio>
-#include <utility>
 
-#include "tests/bench/peer.h"
+#include "tests/bench/peer_dlib.h"
 
 namespace palpate::bench {
 namespace {
 
-using Sample = dlib::matrix<double, 0, 1>;
 using Trainer = dlib::random_forest_regression_trainer<dlib::dense_feature_extractor>;
 
 Result<Function> train(const Sites& sites, int trees, int leaf, double fraction) {
-  const long d = sites.dimension();
-  std::vector<Sample> samples;
-  for (Eigen::Index i = 0; i < sites.count(); ++i) {
-    Sample sample(d);
-    for (long k = 0; k < d; ++k) sample(k) = sites.points(k, i);
-    samples.push_back(std::move(sample));
-  }
   const std::vector<double> targets(sites.target_N.begin(), sites.target_N.end());
   Trainer trainer;
   trainer.set_num_trees(static_cast<std::size_t>(trees));
   trainer.set_min_samples_per_leaf(static_cast<std::size_t>(leaf));
   trainer.set_feature_subsampling_fraction(fraction);
   trainer.set_seed("1");
-  return Function([forest = trainer.train(samples, targets), query = Sample(d), d](const double* x) mutable {
-    for (long k = 0; k < d; ++k) query(k) = x[k];
-    return forest(query);
-  });
+  return dlib_function(trainer.train(dlib_samples(sites), targets), sites.dimension());
 }
 
 }  // namespace

@@ -33,6 +33,42 @@ TEST(FeatureMemory, TheSurfaceLeavesAToolThatRetreatsFastAndComesBack) {
   }
 }
 
+// As above, with a time that grows e-fold in every 2 mm: while the tool is away, by the
+// depth of the surface that comes back, not by that of the tool.
+TEST(FeatureMemory, ASurfaceOnItsOwnRelaxesByItsOwnDepth) {
+  const DriveCurve elastic{5e-3, {1.5}};
+  FeatureSpec branch = maxwell(0.2, DriveCurve{5e-3, {3.0}});
+  branch.slowing = 2.5;
+  FeatureFilter filter({surface_lag(elastic), branch});
+  int i = 0;
+  for (; i < 60000; ++i) feed(filter, 1e-3 * i, 4e-3);
+  double free_m = 4e-3 * (2.0 / 3.0);
+  for (int k = 0; k <= 2000; ++k, ++i) {
+    feed(filter, 1e-3 * i, 0.1e-3);
+    // A lag of one step, and 10 uN.
+    ASSERT_NEAR(filter.surface_m(), free_m, 1e-5) << k;
+    for (int part = 0; part < 10; ++part) free_m -= 1e-4 * free_m / (3.0 * 0.2 * std::exp(2.5 * free_m / 5e-3));
+  }
+  EXPECT_LT(free_m, 1.5e-3) << "it came back a good way";
+}
+
+// The same touches in the frame of a rig whose zero lies half a millimetre above.
+TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
+  std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity}, fading_peak(2.0), maxwell(0.3, stiffening()),
+                                    stops({1e-4}, stiffening())};
+  FeatureFilter plain(specs);
+  specs[0].surface_position_m = 0.5e-3;
+  FeatureFilter moved(specs);
+  for (int i = 0; i < 5000; ++i) {
+    const double position_m = closed_motion_m(1e-3 * i) - 3e-3;
+    const FeatureVector& a = feed(plain, 1e-3 * i, position_m, 0.01);
+    const FeatureVector& b = feed(moved, 1e-3 * i, position_m + 0.5e-3, 0.01);
+    ASSERT_EQ(a.in_contact, b.in_contact);
+    // Positions differ by rounding, 1e-19 m of some N/mm.
+    for (std::size_t k = 0; k < specs.size(); ++k) ASSERT_NEAR(a.values[k], b.values[k], 1e-12) << k;
+  }
+}
+
 TEST(FeatureMemory, ABranchMaySlowDownWithDepth) {
   FeatureSpec slow = maxwell(0.2, DriveCurve{5e-3, {3.0}});
   slow.slowing = 2.0;

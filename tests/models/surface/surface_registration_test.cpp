@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/tick/evaluation.h"
+#include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "models/model/file/model_json.h"
 #include "scenes/material/material.h"
@@ -106,6 +108,32 @@ TEST(SurfaceRegistration, AModelSaysWhereTheSurfacesWere) {
   EXPECT_EQ(back.provenance.surfaces[0].offset_m, surfaces[0].offset_m);
   EXPECT_EQ(back.provenance.surfaces[0].standard_error_m, surfaces[0].standard_error_m);
   EXPECT_EQ(back.provenance.surfaces[0].force_zero_N, surfaces[0].force_zero_N);
+}
+
+// What one rig records, its model gives back where that rig has it.
+TEST(SurfaceRegistration, AModelTouchesWhereItsRecordingsDo) {
+  const auto depth_zero = [](const std::vector<RecordingPtr>& recordings) {
+    return surface_position_m(test::prepare(recordings, test::scene_request("silicone_block")).common.features);
+  };
+  EXPECT_NEAR(depth_zero({rig("maxwell", 2, 0.5e-3)}), 0.5e-3, 0.02e-3);
+  // Of several the first to be met.
+  EXPECT_NEAR(depth_zero({rig("maxwell", 1, 0.8e-3), rig("maxwell", 2, 0.5e-3)}), 0.5e-3, 0.03e-3);
+  EXPECT_EQ(depth_zero({rig("maxwell", 1), rig("maxwell", 2, 0.5e-3)}), 0.0);
+  EXPECT_EQ(depth_zero({rig("maxwell", 2, -0.5e-3)}), 0.0) << "the tool is in contact at 0";
+
+  // Share within the JND of another recording of the same rig, as recorded.
+  const auto within_jnd = [](double offset_m) {
+    const RecordingPtr next = rig("silicone", 2, offset_m);
+    const auto model =
+        test::fit(test::prepare({rig("silicone", 1, offset_m)}, test::scene_request("silicone_block")), &kRandomMethod);
+    ErrorStatistics errors(model->data().jnd);
+    test::must(replay(*next, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+      if (row.position_m > offset_m) errors.add(snapshot.force_N[0], row.force_N, false);
+    }));
+    return errors.summary().within_jnd;
+  };
+  // A shift that is found to 0.02 mm costs no more.
+  EXPECT_NEAR(within_jnd(0.6e-3), within_jnd(0.0), 0.005);
 }
 
 // A recording that was shifted gives the model of the one that was not, but for

@@ -187,7 +187,7 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
        "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, jnd, provenance, domain, kernel, "
        "tail, centres, weights; fit the model again"},
       {"{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"time\": 1}",
-       "m.json:7:31: features[0].time: found an unknown field, expected one of kind; fit the model again"},
+       "m.json:7:31: features[0].time: found an unknown field, expected one of kind, surface_position_m; fit the model again"},
   });
 }
 
