@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/base/parallel.h"
 #include "engine/recording/press_direction.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/check/force_lag.h"
@@ -195,20 +196,24 @@ Recording every_so_many(const Recording& recording, std::size_t step) {
 
 // A late force hides the surface and the zero, so both are estimated without the lag.
 void Checker::check_lag() {
-  const ForceLag lag = find_force_lag(recording_);
-  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
   // Of a long recording every so-many-th row: the onset needs no more, and the motion of
   // every row costs more than reading it.
   const std::size_t step = (recording_.rows.size() + kSurfaceRows - 1) / kSurfaceRows;
+  ForceLag lag;
+  std::vector<SurfaceRow> rows;
+  parallel_for(step > 1 ? 1 : 2, [&](int part) {
+    if (part == 0) lag = find_force_lag(recording_);
+    if (part == 1) rows = all_rows(recording_);
+  });
+  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
   if (late) {
     surface_ = estimate_surface(every_so_many(without_lag(recording_, lag.lag_s), step));
   } else if (step > 1) {
     surface_ = estimate_surface(every_so_many(recording_, step));
   } else {
-    const std::vector<SurfaceRow> rows = all_rows(recording_);
     surface_ = estimate_surface(rows, noise_N_);
-    for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   }
+  for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   if (!late) return;
   add("lag", Severity::warning, lag.lag_s,
       words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,

@@ -34,19 +34,23 @@ class LeftOutFits {
     for (std::size_t i = 0; i < input_.samples.size(); ++i) {
       points_.col(static_cast<Eigen::Index>(i)) = input_.samples[i].point;
     }
-    parallel_for(2, [&](int half) { half == 0 ? gather_sites() : gather_samples(); });
+    samples_of_.resize(static_cast<std::size_t>(input_.folds));
+    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
+      samples_of_[static_cast<std::size_t>(input_.samples[i].fold)].push_back(static_cast<Eigen::Index>(i));
+    }
   }
+
+  // Before the first prediction both of these, which touch nothing in common.
+  void gather_sites();
+  void gather_samples();
 
   double unit() const { return unit_; }
 
   // The correction at every sample, from the sites of the other folds.
   Eigen::VectorXd predictions(double smoothing) const {
-    const Eigen::Index free = space_.penalty.cols();
     Eigen::VectorXd values = Eigen::VectorXd::Zero(points_.cols());
     for (std::size_t k = 0; k < grams_.size(); ++k) {
-      Eigen::MatrixXd matrix = total_gram_ - grams_[k];
-      matrix.topLeftCorner(free, free) += smoothing * space_.penalty;
-      const Eigen::VectorXd coefficients = solve(std::move(matrix), total_right_ - rights_[k]);
+      const Eigen::VectorXd coefficients = solve(grams_[k], smoothing, total_right_ - rights_[k]);
       // Column by column: the samples of a fold stand below one another.
       Eigen::VectorXd of_fold = Eigen::VectorXd::Zero(sample_columns_[k].rows());
       for (Eigen::Index j = 0; j < coefficients.size(); ++j) of_fold += coefficients(j) * sample_columns_[k].col(j);
@@ -89,51 +93,28 @@ class LeftOutFits {
     return all;
   }
 
-  void gather_sites() {
-    Eigen::MatrixXd columns = design(sites_.points);
-    columns.array().colwise() *= sites_.row_scale.array();
-    const auto n = columns.cols();
-    const Eigen::VectorXd data = sites_.row_scale.cwiseProduct(sites_.target_N);
-    total_gram_ = Eigen::MatrixXd::Zero(n, n);
-    total_right_ = Eigen::VectorXd::Zero(n);
-    for (int k = 0; k < input_.folds; ++k) {
-      std::vector<Eigen::Index> rows;
-      for (std::size_t i = 0; i < sites_.group.size(); ++i) {
-        if (sites_.group[i] == k) rows.push_back(static_cast<Eigen::Index>(i));
-      }
-      const Eigen::MatrixXd part = columns(rows, Eigen::all);
-      Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
-      if (part.rows() > 0) multiply(part, true, part, false, 1.0, 0.0, gram);
-      const Eigen::VectorXd right = part.transpose() * data(rows);
-      total_gram_ += gram;
-      total_right_ += right;
-      grams_.push_back(std::move(gram));
-      rights_.push_back(right);
-    }
-  }
-
-  void gather_samples() {
-    samples_of_.resize(static_cast<std::size_t>(input_.folds));
-    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
-      samples_of_[static_cast<std::size_t>(input_.samples[i].fold)].push_back(static_cast<Eigen::Index>(i));
-    }
-    const Eigen::MatrixXd columns = design(points_);
-    for (const auto& samples : samples_of_) sample_columns_.push_back(columns(samples, Eigen::all));
-  }
-
-  static Eigen::VectorXd solve(Eigen::MatrixXd matrix, Eigen::VectorXd right) {
-    Eigen::VectorXd scale = matrix.diagonal();
+  // (`gram` + smoothing * penalty) x = right, scaled to a diagonal of ones.
+  Eigen::VectorXd solve(const Eigen::MatrixXd& gram, double smoothing, Eigen::VectorXd right) const {
+    const Eigen::Index n = gram.cols();
+    const Eigen::Index free = space_.penalty.cols();
+    Eigen::VectorXd scale = gram.diagonal();
+    scale.head(free) += smoothing * space_.penalty.diagonal();
     for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
-    matrix = (scale.asDiagonal() * matrix * scale.asDiagonal()).eval();
     right = right.cwiseProduct(scale).eval();
+    Eigen::MatrixXd factor(n, n);
     for (double lift = 1e-14; lift < 1.0; lift *= 100.0) {
-      Eigen::MatrixXd factor = matrix;
+      for (Eigen::Index j = 0; j < n; ++j) {  // below the diagonal
+        auto column = factor.col(j).tail(n - j);
+        column = gram.col(j).tail(n - j);
+        if (j < free) column.head(free - j) += smoothing * space_.penalty.col(j).tail(free - j);
+        column = (column.cwiseProduct(scale.tail(n - j)) * scale(j)).eval();
+      }
       factor.diagonal().array() += lift;
       if (!cholesky_in_place(factor)) continue;
       cholesky_solve(factor, right);
       return right.cwiseProduct(scale);
     }
-    return Eigen::VectorXd::Zero(right.size());
+    return Eigen::VectorXd::Zero(n);
   }
 
   const StrengthInput& input_;
@@ -143,28 +124,52 @@ class LeftOutFits {
   double unit_ = 1.0;
   Eigen::MatrixXd points_;  // of the samples
   std::vector<Eigen::MatrixXd> sample_columns_;  // by fold
-  Eigen::MatrixXd total_gram_;
   Eigen::VectorXd total_right_;
-  std::vector<Eigen::MatrixXd> grams_;
+  std::vector<Eigen::MatrixXd> grams_;  // without each fold
   std::vector<Eigen::VectorXd> rights_;
   std::vector<std::vector<Eigen::Index>> samples_of_;
 };
 
-// Distance of every sample to the nearest site of another fold.
-std::vector<double> distances(const StrengthInput& input) {
-  std::vector<double> result(input.samples.size(), std::numeric_limits<double>::infinity());
-  for (int k = 0; k < input.folds; ++k) {
-    std::vector<Eigen::Index> others;
-    for (std::size_t i = 0; i < input.sites.group.size(); ++i) {
-      if (input.sites.group[i] != k) others.push_back(static_cast<Eigen::Index>(i));
+void LeftOutFits::gather_sites() {
+  Eigen::MatrixXd columns = design(sites_.points);
+  columns.array().colwise() *= sites_.row_scale.array();
+  const auto n = columns.cols();
+  const Eigen::VectorXd data = sites_.row_scale.cwiseProduct(sites_.target_N);
+  Eigen::MatrixXd total_gram = Eigen::MatrixXd::Zero(n, n);
+  total_right_ = Eigen::VectorXd::Zero(n);
+  for (int k = 0; k < input_.folds; ++k) {
+    std::vector<Eigen::Index> rows;
+    for (std::size_t i = 0; i < sites_.group.size(); ++i) {
+      if (sites_.group[i] == k) rows.push_back(static_cast<Eigen::Index>(i));
     }
-    if (others.empty()) continue;
-    const NearestDistance nearest(input.sites.points(Eigen::all, others));
-    for (std::size_t i = 0; i < input.samples.size(); ++i) {
-      if (input.samples[i].fold == k) result[i] = std::sqrt(nearest.nearest_squared(input.samples[i].point.data()));
-    }
+    const Eigen::MatrixXd part = columns(rows, Eigen::all);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+    if (part.rows() > 0) multiply(part, true, part, false, 1.0, 0.0, gram);
+    const Eigen::VectorXd right = part.transpose() * data(rows);
+    total_gram += gram;
+    total_right_ += right;
+    grams_.push_back(std::move(gram));
+    rights_.push_back(right);
   }
-  return result;
+  for (Eigen::MatrixXd& gram : grams_) gram = total_gram - gram;
+}
+
+void LeftOutFits::gather_samples() {
+  const Eigen::MatrixXd columns = design(points_);
+  for (const auto& samples : samples_of_) sample_columns_.push_back(columns(samples, Eigen::all));
+}
+
+// Distance of every sample of a fold to the nearest site of another fold.
+void add_distances(const StrengthInput& input, int fold, std::vector<double>& distance) {
+  std::vector<Eigen::Index> others;
+  for (std::size_t i = 0; i < input.sites.group.size(); ++i) {
+    if (input.sites.group[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (others.empty()) return;
+  const NearestDistance nearest(input.sites.points(Eigen::all, others));
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {
+    if (input.samples[i].fold == fold) distance[i] = std::sqrt(nearest.nearest_squared(input.samples[i].point.data()));
+  }
 }
 
 double trust(double distance, double inner, double outer) {
@@ -244,8 +249,13 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.strength = 0.0;
   if (input.samples.empty() || input.sites.count() < 2 || input.folds < 2) return choice;
   const BlasThreads one_thread(1);
-  const LeftOutFits fits(input);
-  const std::vector<double> distance = distances(input);
+  LeftOutFits fits(input);
+  std::vector<double> distance(input.samples.size(), std::numeric_limits<double>::infinity());
+  parallel_for(2 + input.folds, [&](int part) {
+    if (part == 0) return fits.gather_sites();
+    if (part == 1) return fits.gather_samples();
+    add_distances(input, part - 2, distance);
+  });
   const std::vector<char> counts = inside_depth(input);
   const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
     Variant variant{smoothing, strength, radius, std::vector<double>(static_cast<std::size_t>(input.folds), 0.0)};

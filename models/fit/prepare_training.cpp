@@ -3,9 +3,11 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/parallel.h"
 #include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
 #include "models/fit/fit_random.h"
+#include "models/solve/solve_weights.h"
 #include "models/training/feature_list.h"
 #include "models/training/relaxation.h"
 #include "models/training/training_extent.h"
@@ -85,6 +87,21 @@ void release_one_sided(PreparedTraining& prepared, const RbfEvaluator& model, co
   }
 }
 
+// The centres of the quick fit stay, and so they are chosen once.
+Status find_sides(PreparedTraining& prepared, const Eigen::VectorXd& base_N) {
+  const Eigen::Index n = prepared.sites.count();
+  RandomOptions quick;
+  quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
+  const auto sequence = choose_random(prepared.sites, quick);
+  if (!sequence) return sequence.error();
+  for (int pass = 0; pass < kOneSidedPasses; ++pass) {
+    const auto fitted = solve_largest(prepared.sites, quick.kernel, *sequence, quick.centres);
+    if (!fitted) return fitted.error();
+    release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
+  }
+  return {};
+}
+
 Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const TrainingSet& set = prepared.set;
   const auto n = static_cast<Eigen::Index>(set.sites.size());
@@ -110,15 +127,12 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     sites.group[i] = prepared.strength ? site.fold : site.stroke;
     any_one_sided = any_one_sided || site.no_force;
   }
-  if (any_one_sided && n > 1) {
-    RandomOptions quick;
-    quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
-    for (int pass = 0; pass < kOneSidedPasses; ++pass) {
-      const auto fitted = fit_random(sites, quick);
-      if (!fitted) return fitted.error();
-      release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
-    }
-  }
+  Status sides;
+  parallel_for(2, [&](int part) {
+    if (part == 0 && any_one_sided && n > 1) sides = find_sides(prepared, base_N);
+    if (part == 1) prepared.common.cover = make_cover(sites.points);
+  });
+  if (!sides) return sides;
   double largest_N = 0.0;
   for (Eigen::Index k = 0; k < n; ++k) {
     const double correction_N = sites.target_N(k) - (prepared.common.corrects_trend ? 0.0 : base_N(k));
@@ -266,7 +280,6 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
   common.jnd = request.jnd;
   if (!papers) prepared.strength.emplace();
   if (Status status = make_sites(prepared, request); !status) return status;
-  common.cover = make_cover(prepared.sites.points);
   if (!papers) decide_strength(prepared, request.jnd, ground.dealer.folds(), ground.extent.strokes);
   return {};
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <future>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -25,6 +27,7 @@ class RowStream {
     return stream;
   }
 
+  bool in_memory() const { return loaded_ != nullptr; }
   const std::string& name() const { return loaded_ ? loaded_->name : reader_->name(); }
   RecordingColumns columns() const { return loaded_ ? loaded_->columns : reader_->columns(); }
 
@@ -57,6 +60,40 @@ class RowStream {
 
 // Files up to this many rows together are read once, when they are put in order.
 constexpr std::size_t kRowsReadOnce = 500000;
+
+// The rows of a stream, of which the next chunk is read while the last one is worked on.
+class ReadAhead {
+ public:
+  ReadAhead(RowStream& stream, std::size_t chunk_rows) : stream_(stream), ready_(chunk_rows), next_(chunk_rows) {
+    begin();
+  }
+  ReadAhead(const ReadAhead&) = delete;
+  ReadAhead& operator=(const ReadAhead&) = delete;
+  ~ReadAhead() {
+    if (coming_.valid()) coming_.wait();
+  }
+
+  // Empty at the end.
+  Result<std::span<const RecordingRow>> next() {
+    const auto count = coming_.get();
+    if (!count) return count.error();
+    std::swap(ready_, next_);
+    if (*count > 0) begin();
+    return std::span<const RecordingRow>(ready_.data(), *count);
+  }
+
+ private:
+  // Memory is there sooner than a thread is.
+  void begin() {
+    const auto policy = stream_.in_memory() ? std::launch::deferred : std::launch::async | std::launch::deferred;
+    coming_ = std::async(policy, [this] { return stream_.next(next_); });
+  }
+
+  RowStream& stream_;
+  std::vector<RecordingRow> ready_;
+  std::vector<RecordingRow> next_;
+  std::future<Result<std::size_t>> coming_;
+};
 
 // Of a sample: at least so many stretches of a recording where they are not too short.
 constexpr std::size_t kStretches = 4;
@@ -201,8 +238,6 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
   std::size_t loaded = 0;
   for (const Input& input : inputs_) loaded += input.loaded ? input.loaded->rows.size() : kept_rows_;
   kept_.reserve(std::min(loaded, kept_rows_));  // what stays untouched takes no memory
-  // One chunk is what sensor identification looks at.
-  std::vector<RecordingRow> chunk(kSensorIdentificationRows);
   MotionRow row;
   for (std::size_t index = 0; index < inputs_.size(); ++index) {
     auto stream = RowStream::open(inputs_[index]);
@@ -212,20 +247,22 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
     row.first = true;
     std::optional<MotionEstimator> estimator;
     const MotionEstimate* known = inputs_[index].motion ? inputs_[index].motion->data() : nullptr;
+    // One chunk is what sensor identification looks at.
+    ReadAhead chunks(*stream, kSensorIdentificationRows);
     while (true) {
-      const auto count = stream->next(chunk);
-      if (!count) return count.error();
-      if (*count == 0) break;
+      const auto chunk = chunks.next();
+      if (!chunk) return chunk.error();
+      if (chunk->empty()) break;
       if (!estimator) {
-        const SensorSpec sensor = identify_sensor(chunk.data(), *count, stream->columns());
+        const SensorSpec sensor = identify_sensor(chunk->data(), chunk->size(), stream->columns());
         estimator.emplace(sensor);
         std::tie(encoder_step_m_, position_noise_m_) = std::max(
             std::pair{encoder_step_m_, position_noise_m_}, std::pair{sensor.encoder_step_m, sensor.position_noise_m});
-        force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk.data(), *count));
+        force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk->data(), chunk->size()));
       }
-      for (std::size_t i = 0; i < *count; ++i) {
-        row.sample = tool_sample(chunk[i]);
-        row.force_N = chunk[i].force_N;
+      for (const RecordingRow& recorded : *chunk) {
+        row.sample = tool_sample(recorded);
+        row.force_N = recorded.force_N;
         row.motion = known != nullptr ? *known++ : estimator->update(row.sample);
         if (row.first) first_rows_.push_back(rows_);
         keep(row);
