@@ -288,14 +288,22 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const auto best = std::min_element(variants.begin(), variants.end(),
                                      [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
-  // "None" if it is as good; else the most smoothing that is.
+  // "None" if it is as good; else the shortest reach that is, and there the most smoothing.
+  // (Strokes that are all alike say nothing of how far the correction may reach.)
+  const auto as_good = [&](const Variant& variant) {
+    if (variant.strength != best->strength && variant.strength != 0.0) return false;
+    return variant.total() - best->total() <= standard_error(variant.fold_squares, best->fold_squares);
+  };
   const Variant* chosen = &*best;
   for (const Variant& variant : variants) {
-    if (variant.strength != best->strength && variant.strength != 0.0) continue;
-    if (variant.inner_radius != best->inner_radius && variant.strength != 0.0) continue;
-    if (variant.total() - best->total() <= standard_error(variant.fold_squares, best->fold_squares)) {
+    if (!as_good(variant)) continue;
+    if (variant.strength == 0.0) {
       chosen = &variant;
       break;
+    }
+    if (variant.inner_radius < chosen->inner_radius ||
+        (variant.inner_radius == chosen->inner_radius && variant.smoothing > chosen->smoothing)) {
+      chosen = &variant;
     }
   }
   double counted = 0.0;
