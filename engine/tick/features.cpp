@@ -13,9 +13,10 @@ constexpr double kSurfaceForce_N = 1e-5;
 // Nearer than this, below an atom, the surface has come back.
 constexpr double kNoLag_m = 1e-12;
 
-// A branch alone is a spectrum of one.
-std::size_t branch_count(const FeatureSpec& spec) noexcept {
-  return spec.kind == FeatureKind::maxwell_branch ? 1 : spec.part_count;
+// What stands in lanes: branches, of which one alone is a spectrum of one, and stops.
+std::size_t lane_count(const FeatureSpec& spec) noexcept {
+  if (spec.kind == FeatureKind::maxwell_branch) return 1;
+  return has_parts(spec.kind) ? spec.part_count : 0;
 }
 const DriveCurve& branch_drive(const FeatureSpec& spec, std::size_t part) noexcept {
   return spec.kind == FeatureKind::maxwell_branch ? spec.drive : spec.parts[part].drive;
@@ -32,37 +33,8 @@ std::string four_digits(double value) {
 
 }  // namespace
 
-KnotSum knot_sum(const std::array<double, kDriveKnots>& knot_N, double u) noexcept {
-  KnotSum sum;
-  for (std::size_t k = 0; k < kDriveKnots; ++k) {
-    const double beyond = std::max(0.0, u - static_cast<double>(k + 1) / (kDriveKnots + 1));
-    const double square = knot_N[k] * beyond * beyond;
-    sum.value_N += square * beyond;
-    sum.slope_N += 3.0 * square;
-  }
-  return sum;
-}
-
 double DriveCurve::at(double depth_m) const noexcept {
-  const double u = depth_m / reference_depth_m;
-  const double inside = std::min(u, 1.0);
-  double value = 0.0;
-  double slope = 0.0;
-  for (std::size_t k = kDriveCoefficients; k-- > 0;) {
-    slope = slope * inside + static_cast<double>(k + 1) * coefficient_N[k];
-    value = (value + coefficient_N[k]) * inside;
-  }
-  if (has_knots) {
-    const KnotSum knots = knot_sum(knot_N, inside);
-    value += knots.value_N;
-    slope += knots.slope_N;
-  }
-  return u > 1.0 ? value + slope * (u - 1.0) : value;
-}
-
-BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
-  const double keep = std::exp(-step_s / relaxation_time_s);
-  return {keep, relaxation_time_s * (1.0 - keep) / step_s};
+  return rising_curve(coefficient_N, has_knots ? &knot_N : nullptr, depth_m / reference_depth_m);
 }
 
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept {
@@ -124,7 +96,14 @@ FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
   std::copy_n(specs.begin(), count_, specs_.begin());
   for (std::size_t i = 0; i < count_; ++i) {
-    if (specs_[i].kind == FeatureKind::surface_lag) lag_ = i;
+    const FeatureSpec& spec = specs_[i];
+    if (spec.kind == FeatureKind::surface_lag) lag_ = i;
+    slows_ = slows_ || (is_branch(spec.kind) && spec.slowing != 0.0);
+    for (std::size_t p = 0; p < lane_count(spec); ++p) {
+      const std::size_t place = is_branch(spec.kind) ? branches_.add(branch_drive(spec, p), branch_time_s(spec, p))
+                                                     : stops_.add(spec.parts[p].drive, spec.parts[p].threshold_m);
+      if (p == 0) place_[i] = place;
+    }
   }
 }
 
@@ -136,6 +115,7 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
   const bool advance = started_ && step_s > 0.0;
   if (advance) prepare_branches(depth_m, step_s);
   const double surface_m = advance && lag_ < count_ ? surface_above_m(depth_m) : depth_m;
+  advance_parts(depth_m, surface_m, advance);
   for (std::size_t i = 0; i < count_; ++i) {
     const FeatureSpec& spec = specs_[i];
     double& value = vector_.values[i];
@@ -149,24 +129,23 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
       case FeatureKind::lowpass_velocity:
         if (advance) {
           const double keep = std::exp(-step_s / spec.relaxation_time_s);
-          value = keep * value + (1.0 - keep) * (depth_m - drive_[i]) / step_s;
+          value = keep * value + (1.0 - keep) * (depth_m - depth_m_) / step_s;
           // A filter at rest decays to zero, not into denormals, which would
           // slow every later operation on it.
           if (std::abs(value) < 1e-30) value = 0.0;
         } else if (!started_) {
           value = 0.0;
         }
-        drive_[i] = depth_m;
         break;
       case FeatureKind::maxwell_branch:
       case FeatureKind::maxwell_spectrum:
-        value = updated_branches(i, surface_m, advance);
+        value = branches_.force_N(place_[i], lane_count(spec));
         break;
       case FeatureKind::surface_lag:
         value = surface_m - depth_m;
         break;
       case FeatureKind::stops:
-        value = updated_stops(i, depth_m, advance);
+        value = stops_.force_N(place_[i], lane_count(spec));
         break;
       case FeatureKind::fading_peak:
         if (advance) {
@@ -187,29 +166,20 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
 }
 
 void FeatureFilter::prepare_branches(double depth_m, double step_s) noexcept {
+  if (branches_.empty()) return;
   const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; slows_ && i < count_; ++i) {
     const FeatureSpec& spec = specs_[i];
     if (!is_branch(spec.kind)) continue;
     const double clock = branch_clock(spec.slowing, halfway_m, branch_drive(spec, 0).reference_depth_m);
-    for (std::size_t p = 0; p < branch_count(spec); ++p) {
-      step_[i][p] = branch_step(clock * branch_time_s(spec, p), step_s);
-    }
+    for (std::size_t p = 0; p < lane_count(spec); ++p) branches_.set_clock(place_[i] + p, clock);
   }
+  branches_.prepare(step_s);
 }
 
 // What elastic response and branches would hold with the surface there.
 double FeatureFilter::held_N(double surface_m) noexcept {
-  double force_N = specs_[lag_].drive.at(surface_m);
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (!is_branch(specs_[i].kind)) continue;
-    for (std::size_t p = 0; p < branch_count(specs_[i]); ++p) {
-      const BranchStep& step = step_[i][p];
-      const double drive = branch_drive(specs_[i], p).at(surface_m);
-      force_N += step.keep * part_state_[i][p] + step.gain * (drive - part_drive_[i][p]);
-    }
-  }
-  return force_N;
+  return specs_[lag_].drive.at(surface_m) + branches_.held_N(surface_m);
 }
 
 // Regula falsi with halving (Dowell & Jarratt 1971): the surface of before holds
@@ -240,39 +210,22 @@ double FeatureFilter::surface_above_m(double depth_m) noexcept {
   return middle_m;
 }
 
-double FeatureFilter::updated_branches(std::size_t index, double surface_m, bool advance) noexcept {
-  const FeatureSpec& spec = specs_[index];
-  double sum = 0.0;
-  for (std::size_t p = 0; p < branch_count(spec); ++p) {
-    const double drive = branch_drive(spec, p).at(surface_m);
-    double& z = part_state_[index][p];
+void FeatureFilter::advance_parts(double depth_m, double surface_m, bool advance) noexcept {
+  if (!branches_.empty()) {
     if (advance) {
-      const BranchStep& step = step_[index][p];
-      z = step.keep * z + step.gain * (drive - part_drive_[index][p]);
-      if (std::abs(z) < 1e-30) z = 0.0;
-    } else if (!started_) {
-      z = 0.0;
+      branches_.advance(surface_m);
+    } else {
+      branches_.stay(surface_m, !started_);
     }
-    part_drive_[index][p] = drive;
-    sum += z;
   }
-  return sum;
-}
-
-double FeatureFilter::updated_stops(std::size_t index, double depth_m, bool advance) noexcept {
-  const FeatureSpec& spec = specs_[index];
-  double sum = 0.0;
-  for (std::size_t p = 0; p < spec.part_count; ++p) {
-    const double threshold_m = spec.parts[p].threshold_m;
-    double& s = part_state_[index][p];
-    if (!started_ || !(depth_m > 0.0)) {
-      s = 0.0;
-    } else if (advance) {
-      s = std::clamp(s + depth_m - depth_m_, -threshold_m, threshold_m);
-    }
-    sum += spec.parts[p].drive.at(depth_m) * s / threshold_m;
+  if (stops_.empty()) return;
+  if (!started_ || !(depth_m > 0.0)) {
+    stops_.release();
+  } else if (advance) {
+    stops_.advance(depth_m_, depth_m);
+  } else {
+    stops_.stay(depth_m);
   }
-  return sum;
 }
 
 void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
@@ -285,21 +238,23 @@ void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
 }
 
 void FeatureFilter::adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept {
-  if (specs_[index] == before.specs_[other]) {
-    vector_.values[index] = before.vector_.values[other];
-    if (index == lag_) surface_m_ = before.surface_m_;
-    drive_[index] = before.drive_[other];
-    part_drive_[index] = before.part_drive_[other];
-    part_state_[index] = before.part_state_[other];
-  } else if (specs_[index].kind == FeatureKind::stops) {
-    for (std::size_t p = 0; p < specs_[index].part_count; ++p) {
-      for (std::size_t q = 0; q < before.specs_[other].part_count; ++q) {
-        if (specs_[index].parts[p].threshold_m == before.specs_[other].parts[q].threshold_m) {
-          part_state_[index][p] = before.part_state_[other][q];
-        }
+  const FeatureSpec& spec = specs_[index];
+  const FeatureSpec& old = before.specs_[other];
+  if (spec.kind == FeatureKind::stops) {
+    for (std::size_t p = 0; p < spec.part_count; ++p) {
+      for (std::size_t q = 0; q < old.part_count; ++q) {
+        if (spec.parts[p].threshold_m != old.parts[q].threshold_m) continue;
+        stops_.adopt(place_[index] + p, before.stops_, before.place_[other] + q);
       }
     }
-    vector_.values[index] = updated_stops(index, depth_m_, false);
+    stops_.stay(depth_m_);
+    vector_.values[index] = stops_.force_N(place_[index], spec.part_count);
+  } else if (spec == old) {
+    vector_.values[index] = before.vector_.values[other];
+    if (index == lag_) surface_m_ = before.surface_m_;
+    for (std::size_t p = 0; is_branch(spec.kind) && p < lane_count(spec); ++p) {
+      branches_.adopt(place_[index] + p, before.branches_, before.place_[other] + p);
+    }
   }
 }
 

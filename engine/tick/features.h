@@ -62,13 +62,12 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/tick/feature_lanes.h"
 #include "engine/tick/motion_estimator.h"
 
 namespace palpate {
 
 inline constexpr std::size_t kMaxFeatures = 8;
-inline constexpr std::size_t kDriveCoefficients = 4;
-inline constexpr std::size_t kDriveKnots = 7;
 inline constexpr std::size_t kMaxFeatureParts = 8;
 
 enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak, surface_lag };
@@ -77,16 +76,9 @@ inline constexpr std::array kFeatureKinds{FeatureKind::depth,          FeatureKi
                                           FeatureKind::maxwell_spectrum, FeatureKind::stops,
                                           FeatureKind::fading_peak,      FeatureKind::surface_lag};
 
-// sum_k knot_N[k] max(0, u - (k + 1) / (kDriveKnots + 1))^3, and its slope.
-struct KnotSum {
-  double value_N = 0.0;
-  double slope_N = 0.0;
-};
-KnotSum knot_sum(const std::array<double, kDriveKnots>& knot_N, double u) noexcept;
-
 // g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
 // u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
-// spline: their sum comes on top.
+// spline (rising_curve.h): their sum comes on top.
 struct DriveCurve {
   double reference_depth_m = 1.0;
   std::array<double, kDriveCoefficients> coefficient_N{};
@@ -135,12 +127,6 @@ constexpr bool is_branch(FeatureKind kind) noexcept {
   return kind == FeatureKind::maxwell_branch || kind == FeatureKind::maxwell_spectrum;
 }
 
-// One step of a Maxwell branch: z' = keep z + gain (g(s') - g(s)).
-struct BranchStep {
-  double keep = 0.0;
-  double gain = 0.0;
-};
-BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
 // The material's surface halfway through a step: between the last surface and the tool, or,
 // where the tool had left it and has not come back, still there.
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
@@ -185,19 +171,17 @@ class FeatureFilter {
   double surface_m() const noexcept { return surface_m_; }
 
  private:
-  using PartStates = std::array<double, kMaxFeatureParts>;
   void prepare_branches(double depth_m, double step_s) noexcept;
   double held_N(double surface_m) noexcept;
   double surface_above_m(double depth_m) noexcept;
-  double updated_branches(std::size_t index, double surface_m, bool advance) noexcept;
-  double updated_stops(std::size_t index, double depth_m, bool advance) noexcept;
+  void advance_parts(double depth_m, double surface_m, bool advance) noexcept;
   void adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept;
 
   std::array<FeatureSpec, kMaxFeatures> specs_{};
-  std::array<double, kMaxFeatures> drive_{};  // d at the last sample
-  std::array<PartStates, kMaxFeatures> part_drive_{};  // g_p(d) at the last sample
-  std::array<PartStates, kMaxFeatures> part_state_{};  // z_p or s_p
-  std::array<std::array<BranchStep, kMaxFeatureParts>, kMaxFeatures> step_{};
+  std::array<std::size_t, kMaxFeatures> place_{};  // of its first part in the lanes
+  BranchLanes branches_;
+  StopLanes stops_;
+  bool slows_ = false;              // some branch has a slowing
   std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
   double surface_position_m_ = 0.0;
   double depth_m_ = 0.0;  // at the last sample

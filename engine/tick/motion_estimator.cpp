@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "engine/tick/lanes.h"
 #include "engine/tick/normal_tail.h"
 
 namespace palpate {
@@ -29,11 +29,7 @@ constexpr double kRepeatedStep_s = 1e-3;
 // No filter is ever ruled out for good.
 constexpr double kProbabilityFloor = 1e-6;
 constexpr std::size_t kFilters = MotionFilters::kFilters;
-constexpr std::size_t kLanes = MotionFilters::kLanes;
-
-// Passed by reference only: by value their ABI depends on the instructions.
-using V4 [[gnu::vector_size(kLanes * sizeof(double))]] = double;
-#define PALPATE_INLINE [[gnu::always_inline]] inline
+static_assert(kLanes == MotionFilters::kLanes);
 
 double square(double x) noexcept { return x * x; }
 
@@ -66,7 +62,6 @@ struct States {
   V4 exponent;
 };
 
-PALPATE_INLINE void store(MotionFilters::Lanes& to, const V4& from) noexcept { std::memcpy(to.data(), &from, sizeof from); }
 PALPATE_INLINE void square_root(V4& x) noexcept {
   for (std::size_t lane = 0; lane < kLanes; ++lane) x[lane] = std::sqrt(x[lane]);
 }
@@ -286,8 +281,7 @@ template <std::size_t n>
 
 template <std::size_t n>
 Advance best_advance() noexcept {
-  __builtin_cpu_init();
-  return __builtin_cpu_supports("avx2") ? &advance_wide<n> : &advance<n>;
+  return has_wide_lanes() ? &advance_wide<n> : &advance<n>;
 }
 #else
 template <std::size_t n>
@@ -357,7 +351,5 @@ MotionEstimate MotionEstimator::update(const ToolSample& sample) noexcept {
   }
   return estimate_;
 }
-
-#undef PALPATE_INLINE
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include "engine/base/random_stream.h"
 #include "models/solve/lapack.h"
 #include "models/solve/penalised_weights.h"
+#include "models/model/nearest_points.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/training/weighting.h"

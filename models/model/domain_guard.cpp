@@ -50,6 +50,7 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
 DomainGuard::DomainGuard(DomainCover cover)
     : cover_(std::move(cover)),
       inner_squared_(cover_.inner_radius * cover_.inner_radius),
+      near_(cover_.points, cover_.inner_radius),
       nearest_(cover_.points) {}
 
 double DomainGuard::trust_at(double squared) const noexcept {

@@ -17,9 +17,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 
-#include "models/model/rbf/rbf_evaluate.h"
+#include "models/model/nearest_points.h"
 
 namespace palpate {
 
@@ -42,9 +41,11 @@ class DomainGuard {
   double trust(const double* x) const noexcept { return trust_at(squared_distance(x)); }
 
   // The squared distance to the cover, infinite when x is not finite, and the trust
-  // that goes with it. Within the inner radius it is that of some point near enough,
-  // not of the nearest: a tick on known ground looks at one leaf of the points.
-  double squared_distance(const double* x) const noexcept { return nearest_.nearest_squared(x, inner_squared_); }
+  // that goes with it. Within the inner radius, where trust is whole and the error bound
+  // does not grow, it is not told: there 0 may stand for it.
+  double squared_distance(const double* x) const noexcept {
+    return near_.found(x) ? 0.0 : nearest_.nearest_squared(x);
+  }
   double trust_at(double squared_distance) const noexcept;
 
   const DomainCover& cover() const noexcept { return cover_; }
@@ -52,6 +53,7 @@ class DomainGuard {
  private:
   DomainCover cover_;
   double inner_squared_ = 0.0;
+  NearPoints near_;
   NearestDistance nearest_;
 };
 

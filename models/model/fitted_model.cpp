@@ -178,12 +178,14 @@ int FittedModel::centre_count() const noexcept { return data_.correction->size()
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   std::array<double, kMaxFeatures> u{};
   for (std::size_t i = 0; i < dimension_; ++i) u[i] = (features[i] - offset_[i]) * inverse_scale_[i];
+  // First what takes longest: what the processor waits for in the rest fills its queues.
+  double correction_N = correction_ != nullptr ? correction_->evaluate(u.data()) : 0.0;
   const double trend_N = data_.trend.at(features, trend_inputs_);
   const double squared_distance = guard_.squared_distance(u.data());
   const double trust = guard_.trust_at(squared_distance);
   double force_N = trend_N;
   if (trust > 0.0 && correction_ != nullptr) {
-    const double correction_N = correction_->evaluate(u.data()) - (data_.corrects_trend ? 0.0 : trend_N);
+    if (!data_.corrects_trend) correction_N -= trend_N;
     force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
   }
   // A comparison that fails for NaN, so that nothing but a force leaves.

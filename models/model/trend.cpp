@@ -8,19 +8,7 @@ namespace palpate {
 namespace {
 
 double elastic_force_N(const Trend& trend, double u) noexcept {
-  const double inside = std::min(u, 1.0);
-  double value = 0.0;
-  double slope = 0.0;
-  for (std::size_t k = kElasticCoefficients; k-- > 0;) {
-    slope = slope * inside + static_cast<double>(k + 1) * trend.elastic_N[k];
-    value = (value + trend.elastic_N[k]) * inside;
-  }
-  if (trend.has_elastic_knots) {
-    const KnotSum knots = knot_sum(trend.elastic_knot_N, inside);
-    value += knots.value_N;
-    slope += knots.slope_N;
-  }
-  return u > 1.0 ? value + slope * (u - 1.0) : value;
+  return rising_curve(trend.elastic_N, trend.has_elastic_knots ? &trend.elastic_knot_N : nullptr, u);
 }
 
 }  // namespace

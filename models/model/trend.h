@@ -56,7 +56,7 @@ struct Trend {
   double reference_depth_m = 1.0;  // greatest recorded depth; u = d / reference_depth_m
   std::array<double, kElasticCoefficients> elastic_N{};             // E = sum e_k u^(k+1)
   bool has_elastic_knots = false;
-  std::array<double, kDriveKnots> elastic_knot_N{};  // of a cubic spline, on top (features.h, KnotSum)
+  std::array<double, kDriveKnots> elastic_knot_N{};  // of a cubic spline, on top (engine/tick/rising_curve.h)
   std::array<double, kViscosityCoefficients> viscosity_Ns_per_m{};  // eta = sum c_k u^k, u <= 1
   std::array<double, kViscosityCoefficients> thinning_Ns_per_m{};   // mu, likewise
   double thinning_velocity_m_per_s = 1.0;                           // v_0

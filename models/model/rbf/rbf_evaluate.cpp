@@ -2,40 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <limits>
-#include <new>
-#include <numeric>
 
 #include "engine/base/parallel.h"
+#include "models/model/aligned_array.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::align_val_t kAlignment{64};
-
-// Zeroed, aligned to a cache line and to the widest vector.
-template <typename T>
-std::shared_ptr<T[]> aligned_array(std::size_t count) {
-  void* memory = ::operator new[](std::max<std::size_t>(1, count) * sizeof(T), kAlignment);
-  T* first = static_cast<T*>(memory);
-  std::uninitialized_value_construct_n(first, count);
-  return std::shared_ptr<T[]>(first, [](T* p) { ::operator delete[](static_cast<void*>(p), kAlignment); });
-}
-
 std::size_t round_up(Eigen::Index count, std::size_t multiple) {
   return (static_cast<std::size_t>(count) + multiple - 1) / multiple * multiple;
 }
-
-// Two floats that differ and are both 0 or at least this differ by 1e-18 or
-// more, so that their squared distance is not denormal.
-constexpr double kTinyFloat = 1e-11;
-
-// A leaf of the nearest point's tree has so many of the widest vector at least, and
-// less than twice as many: on recordings 1 in 25 queries needs more than its leaf.
-constexpr std::size_t kBlocksOfLeaf = 2;
-
-float to_float(double value) { return std::abs(value) < kTinyFloat ? 0.0F : static_cast<float>(value); }
 
 }  // namespace
 
@@ -117,83 +93,6 @@ Eigen::VectorXd KernelProduct::multiply(const Eigen::VectorXd& v) const {
   for (int part = 0; part < kParts; ++part)
     result += Eigen::Map<const Eigen::VectorXd>(sums.get() + padded * static_cast<std::size_t>(part), v.size());
   return result;
-}
-
-NearestDistance::NearestDistance(const Eigen::MatrixXd& points)
-    : stride_(round_up(points.cols(), simd::kSimdPadFloat)),
-      dimension_(static_cast<int>(points.rows())),
-      nearest_(simd::nearest_function(dimension_)) {
-  assert(points.cols() >= 1);
-  const std::size_t blocks = stride_ / simd::kSimdPadFloat;
-  std::size_t leaves = 1;
-  while (blocks / (2 * leaves) >= kBlocksOfLeaf) leaves *= 2;
-  splits_.resize(leaves - 1);
-  leaf_begin_.assign(leaves + 1, stride_);
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(points.cols()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  split(points, order, 0, 0, blocks);
-  order.resize(stride_, order.back());  // padded with copies of the last point
-  auto memory = aligned_array<float>(stride_ * static_cast<std::size_t>(points.rows()));
-  for (std::size_t i = 0; i < stride_; ++i)
-    for (Eigen::Index k = 0; k < points.rows(); ++k)
-      memory[static_cast<std::ptrdiff_t>(stride_ * static_cast<std::size_t>(k) + i)] = to_float(points(k, order[i]));
-  memory_ = std::move(memory);
-}
-
-// Sorts the points of a node, which has whole blocks of the widest vector, into two
-// halves at the median of their widest dimension, and these likewise.
-void NearestDistance::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index>& order, std::size_t node,
-                            std::size_t first_block, std::size_t last_block) {
-  if (node >= splits_.size()) {
-    leaf_begin_[node - splits_.size()] = first_block * simd::kSimdPadFloat;
-    return;
-  }
-  const std::size_t middle_block = (first_block + last_block) / 2;
-  const auto place = [&](std::size_t block) {
-    return order.begin() + static_cast<std::ptrdiff_t>(std::min(block * simd::kSimdPadFloat, order.size()));
-  };
-  const auto first = place(first_block);
-  const auto middle = place(middle_block);
-  const auto last = place(last_block);
-  Eigen::Index widest = 0;
-  double width = -1.0;
-  for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    const auto [low, high] = std::minmax_element(
-        first, last, [&](Eigen::Index a, Eigen::Index b) { return points(k, a) < points(k, b); });
-    if (points(k, *high) - points(k, *low) > width) {
-      width = points(k, *high) - points(k, *low);
-      widest = k;
-    }
-  }
-  std::nth_element(first, middle, last, [&](Eigen::Index a, Eigen::Index b) {
-    return points(widest, a) != points(widest, b) ? points(widest, a) < points(widest, b) : a < b;
-  });
-  splits_[node] = {static_cast<int>(widest), to_float(points(widest, *middle))};
-  split(points, order, 2 * node + 1, first_block, middle_block);
-  split(points, order, 2 * node + 2, middle_block, last_block);
-}
-
-double NearestDistance::nearest_squared(const double* x, double enough) const noexcept {
-  constexpr double kFarthest = 1e19;  // its square is the last that fits a float
-  std::array<float, kMaxFeatures> query;
-  for (int k = 0; k < dimension_; ++k) {
-    if (!(std::abs(x[k]) < kFarthest)) return std::numeric_limits<double>::infinity();
-    query[static_cast<std::size_t>(k)] = to_float(x[k]);
-  }
-  if (enough >= 0.0) {
-    std::size_t node = 0;
-    while (node < splits_.size()) {
-      const Split& split = splits_[node];
-      node = 2 * node + 1 + (query[static_cast<std::size_t>(split.dimension)] >= split.value ? 1 : 0);
-    }
-    const std::size_t leaf = node - splits_.size();
-    const float of_leaf = nearest_(memory_.get() + leaf_begin_[leaf], stride_,
-                                   leaf_begin_[leaf + 1] - leaf_begin_[leaf], query.data());
-    if (static_cast<double>(of_leaf) <= enough) return static_cast<double>(of_leaf);
-  }
-  const float squared = nearest_(memory_.get(), stride_, stride_, query.data());
-  return squared < std::numeric_limits<float>::max() ? static_cast<double>(squared)
-                                                     : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace palpate

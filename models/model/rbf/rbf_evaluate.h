@@ -15,7 +15,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -93,43 +92,6 @@ class KernelProduct {
  private:
   PointArrays points_;
   simd::ProductFunction product_;
-};
-
-// Distance from a query to the nearest of a set of points.
-//
-// Points are stored and compared in single precision: the distance is off by
-// at most 3e-7 (|x| + largest |point|) + 1e-10. They are sorted into the leaves of a
-// tree of median splits, of some 45 points each, so that who only asks whether a
-// point is near has the answer from one leaf nearly always. Immutable, any thread.
-class NearestDistance {
- public:
-  // `points`: d x N, N >= 1.
-  explicit NearestDistance(const Eigen::MatrixXd& points);
-
-  // min_i |x - point_i|^2; infinite when x is not finite or further than 1e19
-  // away. Haptics thread, wait-free, O(N), no allocation.
-  double nearest_squared(const double* x) const noexcept { return nearest_squared(x, -1.0); }
-  // The same, to the bit, unless it is at most `enough`: then some value that is not
-  // more than `enough`.
-  double nearest_squared(const double* x, double enough) const noexcept;
-
- private:
-  // x[dimension] >= value: the upper half.
-  struct Split {
-    int dimension = 0;
-    float value = 0.0F;
-  };
-  void split(const Eigen::MatrixXd& points, std::vector<Eigen::Index>& order, std::size_t node, std::size_t first_block,
-             std::size_t last_block);
-
-  std::shared_ptr<const float[]> memory_;
-  std::size_t stride_ = 0;
-  int dimension_ = 0;
-  simd::NearestFunction nearest_ = nullptr;
-  // A complete tree: the children of split i are 2 i + 1 and 2 i + 2, and leaf j is
-  // the points from leaf_begin_[j] to leaf_begin_[j + 1].
-  std::vector<Split> splits_;
-  std::vector<std::size_t> leaf_begin_;
 };
 
 }  // namespace palpate

@@ -10,7 +10,6 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include <limits>
 #include <utility>
 
 #include "models/model/rbf/polynomial_tail.h"
@@ -22,7 +21,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Doubles = hn::CappedTag<double, kSimdPad>;
 using Vector = hn::Vec<Doubles>;
-using Floats = hn::CappedTag<float, kSimdPadFloat>;
 
 // Squared distances are lifted to this: keeps 1/sqrt and log finite, every power
 // of it that is used well above the denormal range, and itself in that of a
@@ -246,22 +244,6 @@ void product(const Points& points, size_t row_begin, size_t row_end, size_t colu
     product_tile<kKind, kDimension, true>(points, row_begin, row_end, column_begin, column_end, v, y);
 }
 
-template <int kDimension>
-float nearest(const float* coordinates, size_t stride, size_t count, const float* x) noexcept {
-  const Floats d;
-  auto smallest = hn::Set(d, std::numeric_limits<float>::max());
-  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-    auto sum = hn::Zero(d);
-    for (int k = 0; k < kDimension; ++k) {
-      const auto difference =
-          hn::Sub(hn::Set(d, x[k]), hn::Load(d, coordinates + static_cast<size_t>(k) * stride + i));
-      sum = hn::MulAdd(difference, difference, sum);
-    }
-    smallest = hn::Min(sum, smallest);
-  }
-  return hn::GetLane(hn::MinOfLanes(d, smallest));
-}
-
 template <KernelKind kKind, int... kIndex>
 EvaluateFunction pick_evaluate(int dimension, std::integer_sequence<int, kIndex...>) {
   static constexpr EvaluateFunction kTable[] = {&evaluate<kKind, kIndex + 1>...};
@@ -312,14 +294,6 @@ ProductFunction get_product(KernelKind kind, int dimension) {
   return nullptr;
 }
 
-template <int... kIndex>
-NearestFunction pick_nearest(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr NearestFunction kTable[] = {&nearest<kIndex + 1>...};
-  return kTable[dimension - 1];
-}
-
-NearestFunction get_nearest(int dimension) { return pick_nearest(dimension, Dimensions{}); }
-
 double get_refined_root(double squared, double estimate, int terms) {
   const Doubles d;
   const Vector s = hn::Set(d, squared);
@@ -339,7 +313,6 @@ namespace palpate::simd {
 HWY_EXPORT(get_evaluate);
 HWY_EXPORT(get_column);
 HWY_EXPORT(get_product);
-HWY_EXPORT(get_nearest);
 HWY_EXPORT(get_refined_root);
 HWY_EXPORT(get_target);
 
@@ -352,7 +325,6 @@ ColumnFunction column_function(KernelKind kind, int dimension) {
 ProductFunction product_function(KernelKind kind, int dimension) {
   return HWY_DYNAMIC_DISPATCH(get_product)(kind, dimension);
 }
-NearestFunction nearest_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
 
 double refined_root(double squared, double estimate, int terms) {
   return HWY_DYNAMIC_DISPATCH(get_refined_root)(squared, estimate, terms);

@@ -18,8 +18,6 @@ namespace palpate::simd {
 
 // Doubles in the widest vector used; every narrower one divides it.
 inline constexpr std::size_t kSimdPad = 8;
-// Floats, for the nearest-point loop.
-inline constexpr std::size_t kSimdPadFloat = 16;
 
 // Smaller than this in size counts as 0: no product of such numbers is denormal.
 inline constexpr double kTiny = 1e-100;
@@ -47,15 +45,11 @@ using ColumnFunction = void (*)(const Points& points, std::size_t count, const d
 using ProductFunction = void (*)(const Points& points, std::size_t row_begin, std::size_t row_end,
                                  std::size_t column_begin, std::size_t column_end, const double* v,
                                  double* y) noexcept;
-// min_i |x - point_i|^2 in single precision; `count` a multiple of kSimdPadFloat.
-using NearestFunction = float (*)(const float* coordinates, std::size_t stride, std::size_t count,
-                                  const float* x) noexcept;
 
 // The loops for this kernel and dimension (1 to 8) on the chosen target.
 EvaluateFunction evaluate_function(KernelKind kind, int dimension);
 ColumnFunction column_function(KernelKind kind, int dimension);
 ProductFunction product_function(KernelKind kind, int dimension);
-NearestFunction nearest_function(int dimension);
 
 // sqrt(squared) from an estimate of 1/sqrt(squared), as the loops take some of
 // their roots: with 3 terms from one good to 14 bits (AVX-512), with 4 from one

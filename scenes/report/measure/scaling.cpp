@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/fit/fit_direct.h"
 #include "models/fit/fit_greedy.h"
 #include "models/solve/fill_grid.h"

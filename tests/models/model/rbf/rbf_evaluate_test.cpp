@@ -164,47 +164,6 @@ TEST_P(RbfEvaluatorOnTarget, KernelProductAgreesWithTheMatrix) {
     }
 }
 
-TEST_P(RbfEvaluatorOnTarget, NearestDistanceIsThatOfABruteForceSearch) {
-  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
-    for (const int count : {1, 15, 16, 17, 200}) {
-      const Eigen::MatrixXd points = random_points(d, count, 1);
-      const NearestDistance nearest(points);
-      const Eigen::MatrixXd queries = random_points(d, 20, 9);
-      for (int i = 0; i < 20; ++i) {
-        const double expected = (points.colwise() - queries.col(i)).colwise().norm().minCoeff();
-        const double scale = queries.col(i).norm() + points.colwise().norm().maxCoeff();
-        EXPECT_NEAR(std::sqrt(nearest.nearest_squared(queries.col(i).data())), expected, 3e-7 * scale + 1e-10);
-      }
-    }
-}
-
-// Not nearly: a force must not depend on which way its trust was found.
-TEST_P(RbfEvaluatorOnTarget, NearestDistanceWithALimitIsTheSameToTheBitBeyondIt) {
-  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
-    for (const int count : {1, 16, 63, 64, 65, 130, 500, 768}) {
-      const Eigen::MatrixXd points = random_points(d, count, 1);
-      const NearestDistance nearest(points);
-      const Eigen::MatrixXd queries = random_points(d, 50, 9);
-      for (int i = 0; i < 50; ++i) {
-        const double* query = queries.col(i).data();
-        const double exact = nearest.nearest_squared(query);
-        for (const double limit : {0.0, 0.5 * exact, std::nextafter(exact, 0.0)})
-          EXPECT_EQ(nearest.nearest_squared(query, limit), exact);
-        for (const double limit : {exact, 1.5 * exact, 100.0}) {
-          EXPECT_LE(nearest.nearest_squared(query, limit), limit);
-          EXPECT_GE(nearest.nearest_squared(query, limit), exact);
-        }
-      }
-    }
-}
-
-TEST(NearestDistance, IsInfiniteFarAwayAndForNonFiniteQueries) {
-  const NearestDistance nearest(random_points(2, 5, 1));
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double bad[][2] = {{1e30, 0}, {infinity, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
-  for (const auto& x : bad) EXPECT_EQ(nearest.nearest_squared(x), infinity);
-}
-
 TEST(SimdTargets, UnknownNameIsRefused) {
   EXPECT_FALSE(simd::choose_target("abacus"));
   EXPECT_TRUE(simd::choose_target(""));

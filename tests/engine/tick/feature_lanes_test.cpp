@@ -1,0 +1,70 @@
+// Parts four at a time against the equations of features.h one at a time.
+#include "engine/tick/feature_lanes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/tick/features.h"
+
+namespace palpate {
+namespace {
+
+DriveCurve drive_of(std::size_t i) {
+  const double size = static_cast<double>(i + 1);
+  DriveCurve drive{4e-3 + 5e-4 * size, {0.3 * size, 0.1, 0.02 * size, 0.05}};
+  drive.has_knots = i % 3 == 1;
+  for (std::size_t k = 0; drive.has_knots && k < kDriveKnots; ++k) drive.knot_N[k] = 0.1 * size - 0.2 * static_cast<double>(k);
+  return drive;
+}
+double time_of(std::size_t i) { return 1e-3 * std::pow(2.5, static_cast<double>(i)); }
+
+// In and out again, beyond some of the drives' reference depths.
+double depth_at(int i) { return std::max(0.0, 9e-3 * std::sin(0.01 * i)); }
+
+class FeatureLanes : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Parts, FeatureLanes, testing::Values(1, 2, 3, 4, 5, 13, 64),
+                         [](const auto& instance) { return std::to_string(instance.param); });
+
+TEST_P(FeatureLanes, BranchesFollowTheirEquation) {
+  BranchLanes lanes;
+  std::vector<double> z(GetParam(), 0.0);
+  for (std::size_t i = 0; i < z.size(); ++i) lanes.add(drive_of(i), time_of(i % 13));
+  lanes.stay(depth_at(0), true);
+  for (int t = 1; t < 1000; ++t) {
+    const double step_s = 1e-3 * (1.0 + 0.5 * std::sin(1.0 * t));
+    lanes.prepare(step_s);
+    double held = 0.0;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const BranchStep step = branch_step(time_of(i % 13), step_s);
+      z[i] = step.keep * z[i] + step.gain * (drive_of(i).at(depth_at(t)) - drive_of(i).at(depth_at(t - 1)));
+      held += z[i];
+    }
+    // Two exponentials, each within an ulp, of a thousand steps.
+    const double rounding = 1e-12 * static_cast<double>(z.size());
+    ASSERT_NEAR(lanes.held_N(depth_at(t)), held, rounding);
+    lanes.held_N(0.123e-3);  // asked in vain
+    lanes.advance(depth_at(t));
+    for (std::size_t i = 0; i < z.size(); ++i) ASSERT_NEAR(lanes.force_N(i, 1), z[i], 1e-12) << i << " at " << t;
+  }
+}
+
+TEST_P(FeatureLanes, StopsFollowTheirEquation) {
+  StopLanes lanes;
+  std::vector<double> bend(GetParam(), 0.0);
+  const auto threshold = [](std::size_t i) { return 1e-4 * static_cast<double>(i + 1); };
+  for (std::size_t i = 0; i < bend.size(); ++i) lanes.add(drive_of(i), threshold(i));
+  for (int t = 1; t < 1000; ++t) {
+    lanes.advance(depth_at(t - 1), depth_at(t));
+    for (std::size_t i = 0; i < bend.size(); ++i) {
+      bend[i] = std::clamp(bend[i] + depth_at(t) - depth_at(t - 1), -threshold(i), threshold(i));
+      ASSERT_EQ(lanes.force_N(i, 1), drive_of(i).at(depth_at(t)) * bend[i] / threshold(i)) << i << " at " << t;
+    }
+  }
+  lanes.release();
+  EXPECT_EQ(lanes.force_N(0, bend.size()), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate

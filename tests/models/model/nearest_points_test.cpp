@@ -1,0 +1,89 @@
+#include "models/model/nearest_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "engine/tick/features.h"
+#include "models/model/rbf/rbf_simd.h"
+#include "tests/support/random_points.h"
+
+namespace palpate {
+namespace {
+
+using test::random_points;
+
+class NearestPointsOnTarget : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { ASSERT_TRUE(simd::choose_target(GetParam())); }
+  void TearDown() override { simd::choose_target(""); }
+};
+
+TEST_P(NearestPointsOnTarget, TheDistanceIsThatOfABruteForceSearch) {
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
+    for (const int count : {1, 15, 16, 17, 200}) {
+      const Eigen::MatrixXd points = random_points(d, count, 1);
+      const NearestDistance nearest(points);
+      const Eigen::MatrixXd queries = random_points(d, 20, 9);
+      for (int i = 0; i < 20; ++i) {
+        const double expected = (points.colwise() - queries.col(i)).colwise().norm().minCoeff();
+        const double scale = queries.col(i).norm() + points.colwise().norm().maxCoeff();
+        EXPECT_NEAR(std::sqrt(nearest.nearest_squared(queries.col(i).data())), expected, 3e-7 * scale + 1e-10);
+      }
+    }
+}
+
+// Not nearly: a force must not depend on which way its trust was found.
+TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurtherToTheBit) {
+  for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
+    for (const int count : {1, 2, 16, 63, 65, 500, 768, 5000}) {
+      const Eigen::MatrixXd points = random_points(d, count, 1);
+      const NearestDistance nearest(points);
+      const Eigen::MatrixXd queries = random_points(d, 10, 9);
+      for (int i = 0; i < 10; ++i) {
+        const double* query = queries.col(i).data();
+        const double exact = std::sqrt(nearest.nearest_squared(query));
+        for (const double radius : {0.0, 0.5 * exact, 0.999999 * exact})
+          EXPECT_FALSE(NearPoints(points, radius).found(query)) << d << "-D, " << count << " points";
+        EXPECT_TRUE(NearPoints(points, 100.0).found(query)) << d << "-D, " << count << " points";
+      }
+    }
+}
+
+// What the overlap of the leaves is for: hardly a query has its near points elsewhere.
+TEST_P(NearestPointsOnTarget, HardlyOneThatIsNearIsMissed) {
+  const double radius = 0.3;
+  const Eigen::MatrixXd points = random_points(3, 768, 1);
+  const NearestDistance nearest(points);
+  const NearPoints near(points, radius);
+  const Eigen::MatrixXd queries = random_points(3, 5000, 9);
+  int inside = 0;
+  int found = 0;
+  for (int i = 0; i < 5000; ++i) {
+    inside += nearest.nearest_squared(queries.col(i).data()) <= radius * radius ? 1 : 0;
+    found += near.found(queries.col(i).data()) ? 1 : 0;
+  }
+  EXPECT_GT(inside, 4000);
+  EXPECT_LE(found, inside);
+  EXPECT_GT(found, inside - inside / 20);
+}
+
+TEST_P(NearestPointsOnTarget, NothingIsNearFarAwayOrToWhatIsNoNumber) {
+  const Eigen::MatrixXd points = random_points(2, 5, 1);
+  const NearestDistance nearest(points);
+  const NearPoints near(points, 1e15);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double bad[][2] = {{1e30, 0}, {infinity, 0}, {0, std::numeric_limits<double>::quiet_NaN()}};
+  for (const auto& x : bad) {
+    EXPECT_EQ(nearest.nearest_squared(x), infinity);
+    EXPECT_FALSE(near.found(x));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, NearestPointsOnTarget, testing::ValuesIn(simd::target_names()),
+                         [](const auto& instance) { return instance.param; });
+
+}  // namespace
+}  // namespace palpate
