@@ -5,7 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -57,16 +58,42 @@ struct FeatureMoments {
 };
 
 using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
-struct CellHash {
-  std::size_t operator()(const CellKey& key) const noexcept {
-    std::uint64_t hash = 0x9E3779B97F4A7C15ULL;
-    for (const std::int32_t value : key) {
-      hash ^= static_cast<std::uint32_t>(value);
-      hash *= 0xBF58476D1CE4E5B9ULL;
-      hash ^= hash >> 29;
+// The cells that have been visited, numbered as they came; at most kCoverageSites + 1 of
+// them. A std::unordered_map takes a block of memory for each, again after each coarsening.
+class CellTable {
+ public:
+  // The number of the cell, and whether it is a new one.
+  std::pair<std::size_t, bool> place_of(const CellKey& key) {
+    std::size_t slot = hash(key) % kSlots;
+    for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
+      if (keys_[slots_[slot] - 1] == key) return {slots_[slot] - 1, false};
     }
-    return hash;
+    keys_.push_back(key);
+    slots_[slot] = static_cast<std::uint32_t>(keys_.size());
+    return {keys_.size() - 1, true};
   }
+
+  void clear() {
+    keys_.clear();
+    std::fill(slots_.begin(), slots_.end(), 0);
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 32768;  // so many that a neighbour is most often free
+  static_assert(kSlots > 2 * (kCoverageSites + 1));
+
+  static std::size_t hash(const CellKey& key) {
+    std::uint64_t value = 0x9E3779B97F4A7C15ULL;
+    for (const std::int32_t one : key) {
+      value ^= static_cast<std::uint32_t>(one);
+      value *= 0xBF58476D1CE4E5B9ULL;
+      value ^= value >> 29;
+    }
+    return value;
+  }
+
+  std::vector<CellKey> keys_;
+  std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(kSlots, 0);  // number + 1; 0: free
 };
 
 // One mean per visited cube of the feature space.
@@ -75,12 +102,7 @@ class CoverageReduction {
   explicit CoverageReduction(const Normalisation& normalisation) : normalisation_(normalisation) {}
 
   void add(const TrainingSite& site) {
-    const auto [where, fresh] = cells_.try_emplace(key(site), sites_.size());
-    if (fresh) {
-      sites_.push_back(site);
-    } else {
-      merge(sites_[where->second], site);
-    }
+    place(site);
     if (sites_.size() > kCoverageSites) coarsen();
   }
 
@@ -100,6 +122,12 @@ class CoverageReduction {
     return result;
   }
 
+  void place(const TrainingSite& site) {
+    const auto [number, fresh] = cells_.place_of(key(site));
+    if (fresh) sites_.push_back(site);
+    else merge(sites_[number], site);
+  }
+
   static void merge(TrainingSite& into, const TrainingSite& site) {
     into.count += site.count;
     const double share = site.count / into.count;
@@ -113,19 +141,12 @@ class CoverageReduction {
       const std::vector<TrainingSite> old = std::move(sites_);
       sites_.clear();
       cells_.clear();
-      for (const TrainingSite& site : old) {
-        const auto [where, fresh] = cells_.try_emplace(key(site), sites_.size());
-        if (fresh) {
-          sites_.push_back(site);
-        } else {
-          merge(sites_[where->second], site);
-        }
-      }
+      for (const TrainingSite& site : old) place(site);
     }
   }
 
   const Normalisation& normalisation_;
-  std::unordered_map<CellKey, std::size_t, CellHash> cells_;
+  CellTable cells_;
   std::vector<TrainingSite> sites_;
   double step_ = kCoverageStep;
 };
