@@ -28,14 +28,30 @@ PALPATE_INLINE void curve_at(V4& value, const CurveLanes& curve, double depth_m)
   }
 }
 
+PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s, double per_step) noexcept {
+  keep = -step_s / time_s;
+  to_exponential(keep);
+  gain = time_s * (1.0 - keep) * per_step;
+}
+
+PALPATE_INLINE void steps_of(const double* time_s, std::size_t count, double clock, double step_s,
+                             BranchStep* steps) noexcept {
+  const double per_step = 1.0 / step_s;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const std::size_t lanes = std::min(kLanes, count - i);
+    V4 time{1.0, 1.0, 1.0, 1.0};
+    for (std::size_t lane = 0; lane < lanes; ++lane) time[lane] = time_s[i + lane];
+    V4 keep;
+    V4 gain;
+    step_of(keep, gain, time * clock, step_s, per_step);
+    for (std::size_t lane = 0; lane < lanes; ++lane) steps[i + lane] = {keep[lane], gain[lane]};
+  }
+}
+
 PALPATE_INLINE void prepare_groups(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {
   const double per_step = 1.0 / step_s;
   for (std::size_t i = 0; i < count; ++i) {
-    const V4 time_s = group[i].relaxation_time_s * group[i].clock;
-    V4 keep = -step_s / time_s;
-    to_exponential(keep);
-    group[i].keep = keep;
-    group[i].gain = time_s * (1.0 - keep) * per_step;
+    step_of(group[i].keep, group[i].gain, group[i].relaxation_time_s * group[i].clock, step_s, per_step);
   }
 }
 
@@ -75,6 +91,10 @@ PALPATE_INLINE void bend_groups(StopLanes::Group* group, std::size_t count, cons
   attribute void prepare_##suffix(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {         \
     prepare_groups(group, count, step_s);                                                                         \
   }                                                                                                               \
+  attribute void steps_##suffix(const double* time_s, std::size_t count, double clock, double step_s,             \
+                                BranchStep* steps) noexcept {                                                     \
+    steps_of(time_s, count, clock, step_s, steps);                                                                \
+  }                                                                                                               \
   attribute double held_##suffix(const BranchLanes::Group* group, std::size_t count, double surface_m,            \
                                  const BranchStates& from, BranchStates& to) noexcept {                                       \
     return held_by_groups(group, count, surface_m, from, to);                                                     \
@@ -88,10 +108,12 @@ PALPATE_LANE_LOOPS(, plain)
 #ifdef __x86_64__
 PALPATE_LANE_LOOPS([[gnu::target("avx2")]], wide)
 const bool kWide = has_wide_lanes();
+const auto kSteps = kWide ? &steps_wide : &steps_plain;
 const auto kPrepare = kWide ? &prepare_wide : &prepare_plain;
 const auto kHeld = kWide ? &held_wide : &held_plain;
 const auto kBend = kWide ? &bend_wide : &bend_plain;
 #else
+constexpr auto kSteps = &steps_plain;
 constexpr auto kPrepare = &prepare_plain;
 constexpr auto kHeld = &held_plain;
 constexpr auto kBend = &bend_plain;
@@ -111,6 +133,11 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
   const double keep = std::exp(-step_s / relaxation_time_s);
   return {keep, relaxation_time_s * (1.0 - keep) / step_s};
+}
+
+void branch_steps(const std::vector<double>& times_s, double clock, double step_s, std::vector<BranchStep>& steps) {
+  steps.resize(times_s.size());
+  kSteps(times_s.data(), times_s.size(), clock, step_s, steps.data());
 }
 
 void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
