@@ -57,6 +57,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -154,6 +155,8 @@ class FeatureFilter {
   std::size_t count() const noexcept { return count_; }
   const FeatureSpec& spec(std::size_t index) const noexcept { return specs_[index]; }
   void reset() noexcept { started_ = false; }
+  // Of the last sample; minus infinity before the first.
+  double time_s() const noexcept { return started_ ? time_s_ : -std::numeric_limits<double>::infinity(); }
 
   // `sample` and its motion estimate; times increase. The contact state is
   // that of the raw position at this surface.

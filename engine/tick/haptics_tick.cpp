@@ -9,6 +9,10 @@
 namespace palpate {
 namespace {
 
+// From what was recalled to the change of models: a slow picture, and the way through
+// the model slot. In longer ones the tool may have been anywhere.
+constexpr double kLongestGap_s = 5.0;
+
 bool finite(const ToolSample& sample) noexcept {
   return std::isfinite(sample.time_s) && std::isfinite(sample.position_m) &&
          std::isfinite(sample.velocity_m_per_s) && std::isfinite(sample.acceleration_m_per_s2);
@@ -43,6 +47,12 @@ void HapticsTick::reset() noexcept {
   started_ = false;
 }
 
+void HapticsTick::recall(const PastMotion& motion) noexcept {
+  for (FeatureFilter& filter : filters_) {
+    filter.update({motion.time_s, motion.position_m, 0.0, 0.0}, {motion.position_m, motion.velocity_m_per_s});
+  }
+}
+
 void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   motion_ = before.motion_;
   time_s_ = before.time_s_;
@@ -52,10 +62,14 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   snapshot_.model_count = models;
   snapshot_.force_N.fill(0.0);
   snapshot_.predicted_error_N.fill(0.0);
-  if (!started_) return;
+  if (!started_) {
+    for (FeatureFilter& filter : filters_) filter.reset();
+    return;
+  }
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     // At rest at the last sample, but for what is known of it.
-    filters_[i].reset();
+    const double since_s = time_s_ - filters_[i].time_s();
+    if (!(since_s >= 0.0 && since_s < kLongestGap_s)) filters_[i].reset();
     filters_[i].update({time_s_, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
     for (const FeatureFilter& old : before.filters_) filters_[i].adopt(old);
     vectors_[i] = filters_[i].vector();

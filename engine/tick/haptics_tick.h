@@ -50,6 +50,13 @@ struct TickSnapshot {
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
 
+// Where the tool was, for the memory of models that were not there.
+struct PastMotion {
+  double time_s = 0.0;
+  double position_m = 0.0;
+  double velocity_m_per_s = 0.0;
+};
+
 class HapticsTick {
  public:
   // `models`: up to kMaxModels, kept alive by the caller's shared pointers.
@@ -60,10 +67,14 @@ class HapticsTick {
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
+  // Slow side, before `continue_from`: the filters meet the tool there; times increase.
+  void recall(const PastMotion& motion) noexcept;
+
   // Goes on where `before` is: same motion estimate and, for every feature that both
   // have, same memory, so that a change of models in mid-press loses none of the
-  // material's; its snapshot is that of these models. A feature that is new is at rest
-  // at the last sample. Same sensor. Wait-free.
+  // material's; its snapshot is that of these models. A feature that is new has the
+  // memory of what was recalled, up to a few seconds ago, or is at rest at the last
+  // sample. Same sensor. Wait-free.
   void continue_from(const HapticsTick& before) noexcept;
 
   // Slow side: from now on `step` also times each evaluation, in units of

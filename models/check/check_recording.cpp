@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/base/parallel.h"
 #include "engine/recording/press_direction.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/check/force_lag.h"
@@ -186,10 +187,8 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
-// At most `rows` rows, evenly spread.
-Recording every_so_many(const Recording& recording, std::size_t rows) {
-  const std::size_t step = (recording.rows.size() + rows - 1) / rows;
-  if (step < 2) return recording;
+// Every `step`-th row.
+Recording every_so_many(const Recording& recording, std::size_t step) {
   Recording thin{recording.name, recording.columns, {}};
   for (std::size_t i = 0; i < recording.rows.size(); i += step) thin.rows.push_back(recording.rows[i]);
   return thin;
@@ -197,11 +196,24 @@ Recording every_so_many(const Recording& recording, std::size_t rows) {
 
 // A late force hides the surface and the zero, so both are estimated without the lag.
 void Checker::check_lag() {
-  const ForceLag lag = find_force_lag(recording_);
-  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
   // Of a long recording every so-many-th row: the onset needs no more, and the motion of
   // every row costs more than reading it.
-  surface_ = estimate_surface(every_so_many(late ? without_lag(recording_, lag.lag_s) : recording_, kSurfaceRows));
+  const std::size_t step = (recording_.rows.size() + kSurfaceRows - 1) / kSurfaceRows;
+  ForceLag lag;
+  std::vector<SurfaceRow> rows;
+  parallel_for(step > 1 ? 1 : 2, [&](int part) {
+    if (part == 0) lag = find_force_lag(recording_);
+    if (part == 1) rows = all_rows(recording_);
+  });
+  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
+  if (late) {
+    surface_ = estimate_surface(every_so_many(without_lag(recording_, lag.lag_s), step));
+  } else if (step > 1) {
+    surface_ = estimate_surface(every_so_many(recording_, step));
+  } else {
+    surface_ = estimate_surface(rows, noise_N_);
+  }
+  for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   if (!late) return;
   add("lag", Severity::warning, lag.lag_s,
       words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,

@@ -14,6 +14,8 @@
 #include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
+#include "engine/tick/motion_estimator.h"
+#include "models/training/motion_source.h"
 
 namespace palpate {
 
@@ -42,6 +44,8 @@ struct RecordingCheck {
   double surface_offset_m = 0.0;  // to be subtracted from position_m
   double force_zero_N = 0.0;      // to be subtracted from force_N
   std::uint64_t content_hash = 0;  // of all rows; equal for copies under other names
+  // Of all rows, as a fit estimates it, when the check had to know it; otherwise empty.
+  std::vector<MotionEstimate> motion;
 
   // "usable", "care" (a warning) or "unusable" (fatal).
   const char* verdict() const;
@@ -66,6 +70,10 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
 // Several recordings of one set; the same rows twice are a finding of the later one.
 // Errors: those of the first file that cannot be read.
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths, const CheckRequest& request);
+
+// Files that were checked as training recordings: what the check has read and estimated
+// need not be read and estimated again.
+std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files);
 
 // An error of the first fatal finding: "path: force_sign: ...; ...".
 Status refuse_unusable(const std::vector<CheckedFile>& files);

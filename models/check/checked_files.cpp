@@ -1,5 +1,6 @@
 // Recordings read and checked, for the verbs.
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "models/check/check_recording.h"
@@ -62,6 +63,19 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
   }
   add_repetitions(files);
   return files;
+}
+
+std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files) {
+  std::vector<MotionSource::Input> inputs;
+  for (CheckedFile& file : files) {
+    MotionSource::Input input{std::move(file.path), nullptr};
+    if (file.whole) input.loaded = std::make_shared<const Recording>(std::move(file.recording));
+    if (file.whole && !file.check.motion.empty()) {
+      input.motion = std::make_shared<const std::vector<MotionEstimate>>(std::move(file.check.motion));
+    }
+    inputs.push_back(std::move(input));
+  }
+  return inputs;
 }
 
 Status refuse_unusable(const std::vector<CheckedFile>& files) {

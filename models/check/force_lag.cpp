@@ -50,6 +50,9 @@ using Square = Eigen::Matrix<double, kTerms, kTerms>;
 // The terms of every step without a lag; a lag only moves them along.
 std::vector<Terms> terms_of(const EvenSeries& series, double surface_m, double deepest_m) {
   std::vector<Terms> all;
+  all.reserve(series.position_m.size());
+  std::array<double, 2> share{};
+  for (std::size_t r = 0; r < share.size(); ++r) share[r] = 1.0 - std::exp(-kStep_s / kRelaxation_s[r]);
   std::array<std::array<double, kPowers>, 2> relaxed{};
   for (const double position_m : series.position_m) {
     const double u = std::max(0.0, position_m - surface_m) / deepest_m;
@@ -61,7 +64,7 @@ std::vector<Terms> terms_of(const EvenSeries& series, double surface_m, double d
       terms(1 + k) = power;
       for (std::size_t r = 0; r < relaxed.size(); ++r) {
         double& state = relaxed[r][static_cast<std::size_t>(k)];
-        state += (power - state) * (1.0 - std::exp(-kStep_s / kRelaxation_s[r]));
+        state += (power - state) * share[r];
         terms(1 + kPowers * (1 + static_cast<int>(r)) + k) = state;
       }
     }
@@ -70,23 +73,43 @@ std::vector<Terms> terms_of(const EvenSeries& series, double surface_m, double d
   return all;
 }
 
-double residual(const EvenSeries& series, const std::vector<Terms>& terms, int lag) {
-  Square normal = Square::Zero();
-  Terms right = Terms::Zero();
-  double squares = 0.0;
-  const int count = static_cast<int>(terms.size());
-  for (int i = kMostLag; i < count + kLeastLag; ++i) {
-    const Terms& row = terms[static_cast<std::size_t>(i - lag)];
-    const double force_N = series.force_N[static_cast<std::size_t>(i)];
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
-    right += row * force_N;
-    squares += force_N * force_N;
+// The regressions of the force on the terms, for every lag: steps `kMostLag` to
+// `count + kLeastLag` of the force, each on the terms `lag` steps earlier.
+class LaggedRegressions {
+ public:
+  LaggedRegressions(const EvenSeries& series, const std::vector<Terms>& terms)
+      : terms_(terms), force_N_(series.force_N), end_(static_cast<int>(terms.size()) + kLeastLag) {
+    for (int i = kMostLag; i < end_; ++i) squares_ += force(i) * force(i);
+    // What all lags have in common.
+    common_ = gram(kMostLag - kLeastLag, end_ - kMostLag);
   }
-  // The terms are of order one; this keeps a term that never changes harmless.
-  normal.diagonal().array() += 1e-9 * static_cast<double>(count);
-  const Terms weights = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  return std::sqrt(std::max(0.0, squares - weights.dot(right)));
-}
+
+  double residual(int lag) const {
+    Square normal = common_ + gram(kMostLag - lag, kMostLag - kLeastLag) + gram(end_ - kMostLag, end_ - lag);
+    Terms right = Terms::Zero();
+    for (int i = kMostLag; i < end_; ++i) right += term(i - lag) * force(i);
+    // The terms are of order one; this keeps a term that never changes harmless.
+    normal.diagonal().array() += 1e-9 * static_cast<double>(terms_.size());
+    const Terms weights = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    return std::sqrt(std::max(0.0, squares_ - weights.dot(right)));
+  }
+
+ private:
+  const Terms& term(int i) const { return terms_[static_cast<std::size_t>(i)]; }
+  double force(int i) const { return force_N_[static_cast<std::size_t>(i)]; }
+
+  Square gram(int begin, int end) const {
+    Square sum = Square::Zero();
+    for (int i = begin; i < end; ++i) sum += term(i) * term(i).transpose();
+    return sum;
+  }
+
+  const std::vector<Terms>& terms_;
+  const std::vector<double>& force_N_;
+  int end_;
+  double squares_ = 0.0;
+  Square common_;
+};
 
 }  // namespace
 
@@ -105,8 +128,9 @@ ForceLag find_force_lag(const Recording& recording) {
   // A late force makes the surface seem to lie elsewhere, so it is looked for here.
   for (const double share : {-0.15, -0.05, 0.0, 0.05, 0.15}) {
     const auto terms = terms_of(series, share * deepest_m, deepest_m);
+    const LaggedRegressions regressions(series, terms);
     for (int lag = kLeastLag; lag <= kMostLag; ++lag) {
-      const double one = residual(series, terms, lag);
+      const double one = regressions.residual(lag);
       if (lag == 0) without = std::min(without, one);
       if (one >= best) continue;
       best = one;

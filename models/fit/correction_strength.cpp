@@ -31,25 +31,32 @@ class LeftOutFits {
     choose_centres();
     space_ = penalty_space(input.kernel, centres_);
     unit_ = mean_eigenvalue();
-    columns_ = design(sites_.points);
-    columns_.array().colwise() *= sites_.row_scale.array();
-    gather();
+    points_.resize(sites_.dimension(), static_cast<Eigen::Index>(input_.samples.size()));
+    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
+      points_.col(static_cast<Eigen::Index>(i)) = input_.samples[i].point;
+    }
+    samples_of_.resize(static_cast<std::size_t>(input_.folds));
+    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
+      samples_of_[static_cast<std::size_t>(input_.samples[i].fold)].push_back(static_cast<Eigen::Index>(i));
+    }
   }
+
+  // Before the first prediction both of these, which touch nothing in common.
+  void gather_sites();
+  void gather_samples();
 
   double unit() const { return unit_; }
 
   // The correction at every sample, from the sites of the other folds.
   Eigen::VectorXd predictions(double smoothing) const {
-    const Eigen::Index free = space_.penalty.cols();
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(input_.samples.size()));
-    const BlasThreads one_thread(1);
-    parallel_for(input_.folds, [&](int fold) {
-      const auto k = static_cast<std::size_t>(fold);
-      Eigen::MatrixXd matrix = total_gram_ - grams_[k];
-      matrix.topLeftCorner(free, free) += smoothing * space_.penalty;
-      const Eigen::VectorXd coefficients = solve(std::move(matrix), total_right_ - rights_[k]);
-      for (const Eigen::Index i : samples_of_[k]) values(i) = sample_columns_.row(i).dot(coefficients);
-    });
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(points_.cols());
+    for (std::size_t k = 0; k < grams_.size(); ++k) {
+      const Eigen::VectorXd coefficients = solve(grams_[k], smoothing, total_right_ - rights_[k]);
+      // Column by column: the samples of a fold stand below one another.
+      Eigen::VectorXd of_fold = Eigen::VectorXd::Zero(sample_columns_[k].rows());
+      for (Eigen::Index j = 0; j < coefficients.size(); ++j) of_fold += coefficients(j) * sample_columns_[k].col(j);
+      values(samples_of_[k]) = of_fold;
+    }
     return values;
   }
 
@@ -87,47 +94,28 @@ class LeftOutFits {
     return all;
   }
 
-  void gather() {
-    const auto n = static_cast<Eigen::Index>(columns_.cols());
-    const Eigen::VectorXd data = sites_.row_scale.cwiseProduct(sites_.target_N);
-    total_gram_ = Eigen::MatrixXd::Zero(n, n);
-    total_right_ = Eigen::VectorXd::Zero(n);
-    samples_of_.resize(static_cast<std::size_t>(input_.folds));
-    for (int k = 0; k < input_.folds; ++k) {
-      std::vector<Eigen::Index> rows;
-      for (std::size_t i = 0; i < sites_.group.size(); ++i) {
-        if (sites_.group[i] == k) rows.push_back(static_cast<Eigen::Index>(i));
-      }
-      const Eigen::MatrixXd part = columns_(rows, Eigen::all);
-      Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
-      if (part.rows() > 0) multiply(part, true, part, false, 1.0, 0.0, gram);
-      const Eigen::VectorXd right = part.transpose() * data(rows);
-      total_gram_ += gram;
-      total_right_ += right;
-      grams_.push_back(std::move(gram));
-      rights_.push_back(right);
-    }
-    Eigen::MatrixXd points(sites_.dimension(), static_cast<Eigen::Index>(input_.samples.size()));
-    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
-      points.col(static_cast<Eigen::Index>(i)) = input_.samples[i].point;
-      samples_of_[static_cast<std::size_t>(input_.samples[i].fold)].push_back(static_cast<Eigen::Index>(i));
-    }
-    sample_columns_ = design(points);
-  }
-
-  static Eigen::VectorXd solve(Eigen::MatrixXd matrix, Eigen::VectorXd right) {
-    Eigen::VectorXd scale = matrix.diagonal();
+  // (`gram` + smoothing * penalty) x = right, scaled to a diagonal of ones.
+  Eigen::VectorXd solve(const Eigen::MatrixXd& gram, double smoothing, Eigen::VectorXd right) const {
+    const Eigen::Index n = gram.cols();
+    const Eigen::Index free = space_.penalty.cols();
+    Eigen::VectorXd scale = gram.diagonal();
+    scale.head(free) += smoothing * space_.penalty.diagonal();
     for (double& value : scale) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
-    matrix = (scale.asDiagonal() * matrix * scale.asDiagonal()).eval();
     right = right.cwiseProduct(scale).eval();
+    Eigen::MatrixXd factor(n, n);
     for (double lift = 1e-14; lift < 1.0; lift *= 100.0) {
-      Eigen::MatrixXd factor = matrix;
+      for (Eigen::Index j = 0; j < n; ++j) {  // below the diagonal
+        auto column = factor.col(j).tail(n - j);
+        column = gram.col(j).tail(n - j);
+        if (j < free) column.head(free - j) += smoothing * space_.penalty.col(j).tail(free - j);
+        column = (column.cwiseProduct(scale.tail(n - j)) * scale(j)).eval();
+      }
       factor.diagonal().array() += lift;
       if (!cholesky_in_place(factor)) continue;
       cholesky_solve(factor, right);
       return right.cwiseProduct(scale);
     }
-    return Eigen::VectorXd::Zero(right.size());
+    return Eigen::VectorXd::Zero(n);
   }
 
   const StrengthInput& input_;
@@ -135,30 +123,54 @@ class LeftOutFits {
   Eigen::MatrixXd centres_;
   PenaltySpace space_;
   double unit_ = 1.0;
-  Eigen::MatrixXd columns_;
-  Eigen::MatrixXd sample_columns_;
-  Eigen::MatrixXd total_gram_;
+  Eigen::MatrixXd points_;  // of the samples
+  std::vector<Eigen::MatrixXd> sample_columns_;  // by fold
   Eigen::VectorXd total_right_;
-  std::vector<Eigen::MatrixXd> grams_;
+  std::vector<Eigen::MatrixXd> grams_;  // without each fold
   std::vector<Eigen::VectorXd> rights_;
   std::vector<std::vector<Eigen::Index>> samples_of_;
 };
 
-// Distance of every sample to the nearest site of another fold.
-std::vector<double> distances(const StrengthInput& input) {
-  std::vector<double> result(input.samples.size(), std::numeric_limits<double>::infinity());
-  for (int k = 0; k < input.folds; ++k) {
-    std::vector<Eigen::Index> others;
-    for (std::size_t i = 0; i < input.sites.group.size(); ++i) {
-      if (input.sites.group[i] != k) others.push_back(static_cast<Eigen::Index>(i));
+void LeftOutFits::gather_sites() {
+  Eigen::MatrixXd columns = design(sites_.points);
+  columns.array().colwise() *= sites_.row_scale.array();
+  const auto n = columns.cols();
+  const Eigen::VectorXd data = sites_.row_scale.cwiseProduct(sites_.target_N);
+  Eigen::MatrixXd total_gram = Eigen::MatrixXd::Zero(n, n);
+  total_right_ = Eigen::VectorXd::Zero(n);
+  for (int k = 0; k < input_.folds; ++k) {
+    std::vector<Eigen::Index> rows;
+    for (std::size_t i = 0; i < sites_.group.size(); ++i) {
+      if (sites_.group[i] == k) rows.push_back(static_cast<Eigen::Index>(i));
     }
-    if (others.empty()) continue;
-    const NearestDistance nearest(input.sites.points(Eigen::all, others));
-    for (std::size_t i = 0; i < input.samples.size(); ++i) {
-      if (input.samples[i].fold == k) result[i] = std::sqrt(nearest.nearest_squared(input.samples[i].point.data()));
-    }
+    const Eigen::MatrixXd part = columns(rows, Eigen::all);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+    if (part.rows() > 0) multiply(part, true, part, false, 1.0, 0.0, gram);
+    const Eigen::VectorXd right = part.transpose() * data(rows);
+    total_gram += gram;
+    total_right_ += right;
+    grams_.push_back(std::move(gram));
+    rights_.push_back(right);
   }
-  return result;
+  for (Eigen::MatrixXd& gram : grams_) gram = total_gram - gram;
+}
+
+void LeftOutFits::gather_samples() {
+  const Eigen::MatrixXd columns = design(points_);
+  for (const auto& samples : samples_of_) sample_columns_.push_back(columns(samples, Eigen::all));
+}
+
+// Distance of every sample of a fold to the nearest site of another fold.
+void add_distances(const StrengthInput& input, int fold, std::vector<double>& distance) {
+  std::vector<Eigen::Index> others;
+  for (std::size_t i = 0; i < input.sites.group.size(); ++i) {
+    if (input.sites.group[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
+  }
+  if (others.empty()) return;
+  const NearestDistance nearest(input.sites.points(Eigen::all, others));
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {
+    if (input.samples[i].fold == fold) distance[i] = std::sqrt(nearest.nearest_squared(input.samples[i].point.data()));
+  }
 }
 
 double trust(double distance, double inner, double outer) {
@@ -238,11 +250,14 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.strength = 0.0;
   if (input.samples.empty() || input.sites.count() < 2 || input.folds < 2) return choice;
   const BlasThreads one_thread(1);
-  const LeftOutFits fits(input);
-  const std::vector<double> distance = distances(input);
+  LeftOutFits fits(input);
+  std::vector<double> distance(input.samples.size(), std::numeric_limits<double>::infinity());
+  parallel_for(2 + input.folds, [&](int part) {
+    if (part == 0) return fits.gather_sites();
+    if (part == 1) return fits.gather_samples();
+    add_distances(input, part - 2, distance);
+  });
   const std::vector<char> counts = inside_depth(input);
-  std::vector<Variant> variants;
-  std::vector<Eigen::VectorXd> predictions;
   const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
     Variant variant{smoothing, strength, radius, std::vector<double>(static_cast<std::size_t>(input.folds), 0.0)};
     for (std::size_t i = 0; i < input.samples.size(); ++i) {
@@ -253,27 +268,43 @@ StrengthChoice choose_strength(const StrengthInput& input) {
       const double error = input.jnd.error_over_jnd(force_N, sample.force_N);
       variant.fold_squares[static_cast<std::size_t>(sample.fold)] += saturated_square(error);
     }
-    variants.push_back(std::move(variant));
+    return variant;
   };
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(input.samples.size()));
-  score(fits.unit(), 0.0, input.least_radius, nothing);
-  for (int decade = kHighestDecade; decade >= kLowestDecade; --decade) {
-    const double smoothing = fits.unit() * std::pow(10.0, decade);
-    predictions.push_back(fits.predictions(smoothing));
+  constexpr int kDecades = kHighestDecade - kLowestDecade + 1;
+  std::array<Eigen::VectorXd, kDecades> predictions;
+  std::array<std::vector<Variant>, kDecades> of_decade;
+  parallel_for(kDecades, [&](int part) {
+    const auto at = static_cast<std::size_t>(part);
+    const double smoothing = fits.unit() * std::pow(10.0, kHighestDecade - part);
+    predictions[at] = fits.predictions(smoothing);
     for (const double factor : kRadiusFactors) {
-      for (const double strength : kStrengths) score(smoothing, strength, factor * input.least_radius, predictions.back());
+      for (const double strength : kStrengths) {
+        of_decade[at].push_back(score(smoothing, strength, factor * input.least_radius, predictions[at]));
+      }
     }
-  }
+  });
+  // "None" first, then from the most smoothing to the least.
+  std::vector<Variant> variants{score(fits.unit(), 0.0, input.least_radius, nothing)};
+  for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const auto best = std::min_element(variants.begin(), variants.end(),
                                      [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
-  // "None" if it is as good; else the most smoothing that is.
+  // "None" if it is as good; else the shortest reach that is, and there the most smoothing.
+  // (Strokes that are all alike say nothing of how far the correction may reach.)
+  const auto as_good = [&](const Variant& variant) {
+    if (variant.strength != best->strength && variant.strength != 0.0) return false;
+    return variant.total() - best->total() <= standard_error(variant.fold_squares, best->fold_squares);
+  };
   const Variant* chosen = &*best;
   for (const Variant& variant : variants) {
-    if (variant.strength != best->strength && variant.strength != 0.0) continue;
-    if (variant.inner_radius != best->inner_radius && variant.strength != 0.0) continue;
-    if (variant.total() - best->total() <= standard_error(variant.fold_squares, best->fold_squares)) {
+    if (!as_good(variant)) continue;
+    if (variant.strength == 0.0) {
       chosen = &variant;
       break;
+    }
+    if (variant.inner_radius < chosen->inner_radius ||
+        (variant.inner_radius == chosen->inner_radius && variant.smoothing > chosen->smoothing)) {
+      chosen = &variant;
     }
   }
   double counted = 0.0;
@@ -285,7 +316,9 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.fold_squares = chosen->fold_squares;
   choice.trend_error_over_jnd = std::sqrt(variants.front().total() / counted);
   choice.error_over_jnd = std::sqrt(chosen->total() / counted);
-  const Eigen::VectorXd h = chosen->strength > 0.0 ? fits.predictions(chosen->smoothing) : nothing;
+  const auto place = static_cast<std::size_t>(chosen - variants.data());
+  const std::size_t of_each = kRadiusFactors.size() * kStrengths.size();
+  const Eigen::VectorXd& h = place > 0 ? predictions[(place - 1) / of_each] : nothing;
   for (std::size_t i = 0; i < input.samples.size(); ++i) {
     if (!std::isfinite(distance[i])) continue;
     const LeftOutSample& sample = input.samples[i];

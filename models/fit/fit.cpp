@@ -1,8 +1,13 @@
 #include "models/fit/fit.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <utility>
+
+#include "engine/base/parallel.h"
 
 namespace palpate {
 namespace {
@@ -10,15 +15,25 @@ namespace {
 // Nothing when cancelled.
 std::optional<double> share_within_jnd(const PreparedTraining& prepared, const ModelData& data,
                                        const FitControl& control) {
-  constexpr std::size_t kBetweenQuestions = 4096;
+  constexpr std::size_t kBetweenQuestions = 16384;
+  constexpr std::size_t kParts = 4;
   const FittedModel model(data);
+  const std::size_t count = prepared.evaluation_force_N.size();
   std::size_t within = 0;
-  for (std::size_t i = 0; i < prepared.evaluation_force_N.size(); ++i) {
-    if (i % kBetweenQuestions == 0 && !control.may_continue(0.99)) return std::nullopt;
-    const double force_N = model.evaluate(prepared.evaluation_features[i].data()).force_N;
-    if (data.jnd.error_over_jnd(force_N, prepared.evaluation_force_N[i]) <= 1.0) ++within;
+  for (std::size_t first = 0; first < count; first += kBetweenQuestions) {
+    if (!control.may_continue(0.99)) return std::nullopt;
+    const std::size_t some = std::min(kBetweenQuestions, count - first);
+    std::array<std::size_t, kParts> of_part{};
+    parallel_for(kParts, [&](int part) {
+      const auto p = static_cast<std::size_t>(part);
+      for (std::size_t i = first + some * p / kParts; i < first + some * (p + 1) / kParts; ++i) {
+        const double force_N = model.evaluate(prepared.evaluation_features[i].data()).force_N;
+        if (data.jnd.error_over_jnd(force_N, prepared.evaluation_force_N[i]) <= 1.0) ++of_part[p];
+      }
+    });
+    within = std::accumulate(of_part.begin(), of_part.end(), within);
   }
-  return static_cast<double>(within) / static_cast<double>(prepared.evaluation_force_N.size());
+  return static_cast<double>(within) / static_cast<double>(count);
 }
 
 }  // namespace

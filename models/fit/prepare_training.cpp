@@ -3,11 +3,14 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/parallel.h"
 #include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
 #include "models/fit/fit_random.h"
+#include "models/solve/solve_weights.h"
 #include "models/training/feature_list.h"
 #include "models/training/relaxation.h"
+#include "models/training/training_extent.h"
 #include "models/surface/surface_registration.h"
 
 namespace palpate {
@@ -22,8 +25,6 @@ constexpr Eigen::Index kQuickCentres = 100;
 constexpr int kOneSidedPasses = 3;
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumEvaluationSamples = 100000;
-// Of the way in: with less way out in contact the tool never turns round.
-constexpr double kLeastWayOut = 0.1;
 // Where the error on strokes left out stays above these, other lists of features are
 // tried beside the selected one.
 constexpr double kLittleIsLeft_jnd = 0.2;
@@ -86,6 +87,21 @@ void release_one_sided(PreparedTraining& prepared, const RbfEvaluator& model, co
   }
 }
 
+// The centres of the quick fit stay, and so they are chosen once.
+Status find_sides(PreparedTraining& prepared, const Eigen::VectorXd& base_N) {
+  const Eigen::Index n = prepared.sites.count();
+  RandomOptions quick;
+  quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
+  const auto sequence = choose_random(prepared.sites, quick);
+  if (!sequence) return sequence.error();
+  for (int pass = 0; pass < kOneSidedPasses; ++pass) {
+    const auto fitted = solve_largest(prepared.sites, quick.kernel, *sequence, quick.centres);
+    if (!fitted) return fitted.error();
+    release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
+  }
+  return {};
+}
+
 Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const TrainingSet& set = prepared.set;
   const auto n = static_cast<Eigen::Index>(set.sites.size());
@@ -111,15 +127,12 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     sites.group[i] = prepared.strength ? site.fold : site.stroke;
     any_one_sided = any_one_sided || site.no_force;
   }
-  if (any_one_sided && n > 1) {
-    RandomOptions quick;
-    quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
-    for (int pass = 0; pass < kOneSidedPasses; ++pass) {
-      const auto fitted = fit_random(sites, quick);
-      if (!fitted) return fitted.error();
-      release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
-    }
-  }
+  Status sides;
+  parallel_for(2, [&](int part) {
+    if (part == 0 && any_one_sided && n > 1) sides = find_sides(prepared, base_N);
+    if (part == 1) prepared.common.cover = make_cover(sites.points);
+  });
+  if (!sides) return sides;
   double largest_N = 0.0;
   for (Eigen::Index k = 0; k < n; ++k) {
     const double correction_N = sites.target_N(k) - (prepared.common.corrects_trend ? 0.0 : base_N(k));
@@ -129,52 +142,16 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   return {};
 }
 
-struct Extent {
-  double depth_m = 0.0;
-  double force_N = 0.0;
-  double rms_velocity_m_per_s = 0.0;  // in contact
-  std::size_t contact_samples = 0;
-  std::size_t strokes = 0;
-  double way_in_m = 0.0;  // in contact
-  double way_out_m = 0.0;
-
-  bool turns_round() const { return way_out_m > kLeastWayOut * way_in_m; }
-};
-
-Result<Extent> measure_extent(MotionSource& source, const FitControl& control) {
-  Extent extent;
-  double squares = 0.0;
-  double count = 0.0;
-  double last_m = 0.0;
-  const Status status = source.for_each([&](const MotionRow& row) {
-    if (row.sample.position_m > 0.0) {
-      extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
-      extent.force_N = std::max(extent.force_N, row.force_N);
-      squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
-      count += 1.0;
-      extent.strokes = static_cast<std::size_t>(row.stroke);
-      const double way_m = row.motion.position_m - last_m;
-      if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
-    }
-    last_m = row.motion.position_m;
-    return true;
-  }, control, 0.0);
-  extent.contact_samples = static_cast<std::size_t>(count);
-  if (!status) return status.error();
-  // A tool that never moved still needs a scale: 1 um/s.
-  extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
-  return extent;
-}
-
 Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const TrainingRequest& request,
-                        const Extent& extent, double force_noise_floor_N, const FeatureList& list, const FitControl& control) {
+                        const TrainingExtent& extent, double force_noise_floor_N, const FeatureList& list, const FitControl& control) {
   const bool papers = is_papers_recipe(request);
   TrendTerms terms{extent.depth_m, 0.0, {}, {}, {}};
   if (!papers) terms = terms_of(list, extent.depth_m, extent.rms_velocity_m_per_s);
   TrendRows rows(terms, kTrendRows);
   const Status status = source.for_each([&](const MotionRow& row) {
     if (row.first) rows.begin_recording();
-    rows.add(row.sample, row.motion, row.force_N, row.stroke);
+    if (row.run_up) rows.advance(row.sample, row.motion);
+    else rows.add(row.sample, row.motion, row.force_N, row.stroke);
     return true;
   }, control, 0.15);
   if (!status) return status;
@@ -221,29 +198,29 @@ void keep_position_zero(ModelData& common) {
   }
 }
 
-Status keep_evaluation_samples(PreparedTraining& prepared, MotionSource& source, const FoldDealer& dealer,
-                           const FitControl& control) {
-  FeatureFilter filter(prepared.common.features);
-  FoldDealer folds = dealer;
-  const std::size_t stride = prepared.set.contact_samples / kMaximumEvaluationSamples + 1;
-  std::size_t seen = 0;
-  return source.for_each([&](const MotionRow& row) {
-    if (row.first) filter.reset();
-    const FeatureVector& vector = filter.update(row.sample, row.motion);
-    if (vector.in_contact) {
-      const int fold = folds.next(row);
-      if (seen++ % stride == 0) {
-        prepared.evaluation_features.push_back(vector.values);
-        prepared.evaluation_force_N.push_back(row.force_N);
-        prepared.evaluation_fold.push_back(fold);
-      }
-    }
-    return true;
-  }, control, 0.28);
-}
+// Keeps samples to evaluate the fit with, of as many in contact as there will be.
+class EvaluationSamples {
+ public:
+  EvaluationSamples(PreparedTraining& prepared, const FoldDealer& dealer, std::size_t contact_samples)
+      : prepared_(prepared), folds_(dealer), stride_(contact_samples / kMaximumEvaluationSamples + 1) {}
+
+  void add(const MotionRow& row, const FeatureVector& vector) {
+    const int fold = folds_.next(row);
+    if (seen_++ % stride_ != 0) return;
+    prepared_.evaluation_features.push_back(vector.values);
+    prepared_.evaluation_force_N.push_back(row.force_N);
+    prepared_.evaluation_fold.push_back(fold);
+  }
+
+ private:
+  PreparedTraining& prepared_;
+  FoldDealer folds_;
+  std::size_t stride_;
+  std::size_t seen_ = 0;
+};
 
 // The relaxation times of the scene, given ones instead, or identified ones.
-Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequest& request, const Extent& extent,
+Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequest& request, const TrainingExtent& extent,
                                         double force_noise_floor_N, Provenance& provenance, const FitControl& control) {
   std::vector<double> times_s = filter_times(request.features);
   if (request.relaxation != Relaxation::scene && times_s.empty()) {
@@ -270,9 +247,10 @@ Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequ
 // What all candidate lists of features share.
 struct Ground {
   MotionSource& source;
+  DecisionRows& decisions;
   const TrainingRequest& request;
-  const Extent& extent;
-  const FoldDealer& dealer;
+  const TrainingExtent& extent;
+  const FoldDealer& dealer;  // of the source
   double force_noise_floor_N;
 };
 
@@ -281,13 +259,16 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
                     const FitControl& control) {
   const TrainingRequest& request = ground.request;
   ModelData& common = prepared.common;
-  if (Status status = fit_common_trend(prepared, ground.source, request, ground.extent, ground.force_noise_floor_N, list, control);
+  if (Status status = fit_common_trend(prepared, ground.decisions.rows(), request, ground.extent,
+                                       ground.force_noise_floor_N, list, control);
       !status) {
     return status;
   }
   const bool papers = is_papers_recipe(request);
-  auto set = make_training_set(ground.source, common.features, request.reduction, ground.force_noise_floor_N, control, 0.2,
-                               papers ? nullptr : &ground.dealer);
+  EvaluationSamples evaluation(prepared, ground.dealer, ground.extent.contact_samples);
+  TrainingSetOptions options{0.2, papers ? nullptr : &ground.dealer, ground.decisions.sample(), {}};
+  options.also = [&](const MotionRow& row, const FeatureVector& vector) { evaluation.add(row, vector); };
+  auto set = make_training_set(ground.source, common.features, request.reduction, ground.force_noise_floor_N, control, options);
   if (!set) return set.error();
   prepared.set = std::move(*set);
   if (!control.may_continue(0.25)) return interrupted();
@@ -299,8 +280,6 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
   common.jnd = request.jnd;
   if (!papers) prepared.strength.emplace();
   if (Status status = make_sites(prepared, request); !status) return status;
-  common.cover = make_cover(prepared.sites.points);
-  if (Status status = keep_evaluation_samples(prepared, ground.source, ground.dealer, control); !status) return status;
   if (!papers) decide_strength(prepared, request.jnd, ground.dealer.folds(), ground.extent.strokes);
   return {};
 }
@@ -340,7 +319,7 @@ Result<PreparedTraining> prepare_automatic(const PreparedTraining& begun, const 
   const TrainingRequest& request = ground.request;
   const SelectionInput input{ground.extent.depth_m,       ground.extent.rms_velocity_m_per_s, ground.force_noise_floor_N,
                              ground.extent.turns_round(), request.weighting,                  request.jnd};
-  auto selection = select_features(ground.source, ground.dealer, input, control, 0.1);
+  auto selection = select_features(ground.decisions.rows(), ground.decisions.dealer(), input, control, 0.1);
   if (!selection) return selection.error();
   const auto prepare = [&](const FeatureList& list) -> Result<PreparedTraining> {
     PreparedTraining prepared = begun;
@@ -375,8 +354,10 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
                  "record a press, or check the sign and zero of position_m"};
   }
   const double force_noise_floor_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
-  const FoldDealer dealer(source.names().size(), extent->strokes, extent->contact_samples, extent->turns_round());
-  const Ground ground{source, request, *extent, dealer, force_noise_floor_N};
+  const FoldDealer dealer = dealer_for(source, *extent);
+  auto decisions = DecisionRows::of(source, *extent, control);
+  if (!decisions) return decisions.error();
+  const Ground ground{source, *decisions, request, *extent, dealer, force_noise_floor_N};
   if (request.choice == FeatureChoice::automatic) {
     auto automatic = prepare_automatic(prepared, ground, control);
     if (!automatic) return automatic.error();

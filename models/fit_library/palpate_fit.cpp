@@ -90,11 +90,7 @@ Status fit_to(const std::vector<std::string>& recordings, const palpate_fit_opti
   auto checked = check_recording_files(recordings, default_check());
   if (!checked) return checked.error();
   if (Status status = refuse_unusable(*checked); !status) return status;
-  std::vector<MotionSource::Input> inputs;
-  for (CheckedFile& file : *checked) {
-    inputs.push_back({file.path, file.whole ? std::make_shared<const Recording>(std::move(file.recording)) : nullptr});
-  }
-  MotionSource source(std::move(inputs));
+  MotionSource source(training_inputs(std::move(*checked)));
   const auto prepared = prepare_training(source, default_training(), control_of(options, 0.0, 0.3));
   if (!prepared) return prepared.error();
   const auto fit = fit_method(*prepared, *method, control_of(options, 0.3, 1.0));

@@ -88,7 +88,8 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
         kernel_matrix(kernel_, points_, centres.leftCols(size), columns, row);
         columns.array().colwise() *= sites_.row_scale.segment(row, rows).array();
         Sums& sum = mine[static_cast<std::size_t>(batch)];
-        sum.length_squared += columns.colwise().squaredNorm().transpose();
+        // The lengths of what has been looked at before are known.
+        if (known_to(batch * kBatch) == 0) sum.length_squared += columns.colwise().squaredNorm().transpose();
         multiply(basis.columns_and_residual().block(row, known_to(batch * kBatch), rows, sum.shares.rows()), true,
                  columns, false, 1.0, 1.0, sum.shares);
       }

@@ -27,6 +27,7 @@ double dlansy_(const char*, const char*, const int*, const double*, const int*, 
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
 [[gnu::weak]] int openblas_get_num_threads(void);
+[[gnu::weak]] int blas_thread_shutdown_(void);
 [[gnu::weak]] char* openblas_get_corename(void);
 [[gnu::weak]] void gotoblas_dynamic_quit(void);
 [[gnu::weak]] void gotoblas_dynamic_init(void);
@@ -81,6 +82,12 @@ BlasThreads::BlasThreads(int count) : lock_(blas_mutex()) {
 
 BlasThreads::~BlasThreads() {
   if (before_ > 0 && openblas_get_num_threads() != before_) openblas_set_num_threads(before_);
+}
+
+void end_idle_blas_threads() {
+  if (openblas_set_num_threads == nullptr || blas_thread_shutdown_ == nullptr) return;
+  openblas_set_num_threads(1);
+  blas_thread_shutdown_();  // starts them again when more are asked for
 }
 
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,

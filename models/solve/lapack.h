@@ -29,6 +29,12 @@ class BlasThreads {
   int before_ = 0;
 };
 
+// Ends the threads that OpenBLAS has started with the program, which spin on the other
+// cores for some 30 ms whether anything is computed or not. From then on products are on
+// one thread, but within BlasThreads. For programs, at their beginning: in a library the
+// setting would be that of whoever loads it.
+void end_idle_blas_threads();
+
 // c = alpha op(a) op(b) + beta c, op being the transpose where asked.
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);

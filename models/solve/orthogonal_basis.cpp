@@ -51,20 +51,30 @@ void OrthogonalBasis::project_out(Eigen::MatrixXd& columns) const {
     for (int part = 0; part < kColumnParts; ++part) work(part);
   };
   std::array<Eigen::MatrixXd, kColumnParts> shares;
-  for (int pass = 0; pass < 2; ++pass) {
-    for_parts([&](int part) {
-      const auto [first, rows] = rows_of(part);
-      Eigen::MatrixXd& mine = shares[static_cast<std::size_t>(part)];
-      mine.resize(size_, columns.cols());
-      multiply(memory_.block(first, 0, rows, size_), true, columns.middleRows(first, rows), false, 1.0, 0.0, mine);
-    });
-    for (int part = 1; part < kColumnParts; ++part) shares[0] += shares[static_cast<std::size_t>(part)];
-    for_parts([&](int part) {
-      const auto [first, rows] = rows_of(part);
-      multiply(memory_.block(first, 0, rows, size_), false, shares[0], false, -1.0, 1.0,
-               columns.middleRows(first, rows));
-    });
-  }
+  const auto share = [&](int part) {
+    const auto [first, rows] = rows_of(part);
+    Eigen::MatrixXd& mine = shares[static_cast<std::size_t>(part)];
+    mine.resize(size_, columns.cols());
+    multiply(memory_.block(first, 0, rows, size_), true, columns.middleRows(first, rows), false, 1.0, 0.0, mine);
+  };
+  Eigen::MatrixXd sum;
+  const auto add_up = [&] {
+    sum = shares[0];
+    for (int part = 1; part < kColumnParts; ++part) sum += shares[static_cast<std::size_t>(part)];
+  };
+  const auto subtract = [&](int part) {
+    const auto [first, rows] = rows_of(part);
+    multiply(memory_.block(first, 0, rows, size_), false, sum, false, -1.0, 1.0, columns.middleRows(first, rows));
+  };
+  for_parts(share);
+  add_up();
+  // While the rows of a part are in the cache, its shares of the second pass.
+  for_parts([&](int part) {
+    subtract(part);
+    share(part);
+  });
+  add_up();
+  for_parts(subtract);
 }
 
 Eigen::VectorXd OrthogonalBasis::add(const Outside& part) {

@@ -92,6 +92,7 @@ SurfaceEstimate estimate_surface(const std::vector<SurfaceRow>& rows, double for
   estimate.touches = static_cast<int>(touches.size());
   estimate.raw_offset_m = onset.at_m;
   estimate.standard_error_m = onset.standard_error_m;
+  estimate.onset_seen = onset.seen;
   const bool significant = std::abs(onset.at_m) > std::max(kLeastOffset_m, kSignificantErrors * onset.standard_error_m);
   if (significant) estimate.offset_m = onset.at_m;
   estimate_drift(estimate, rows, touches, force_noise_N);

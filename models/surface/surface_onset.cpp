@@ -185,7 +185,7 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
       std::max(std::min(linear.cost, ball.cost) / linear.degrees_of_freedom, force_noise_N * force_noise_N);
   const double drop = (ball.cost - linear.cost) / std::max(variance, 1e-18);
   const FormOnset& chosen = drop > kLinearDrop ? linear : ball;
-  Onset onset{chosen.at_m, kUnknownError};
+  Onset onset{chosen.at_m, kUnknownError, false};
   if (chosen.curvature > 0.0) {
     // J rises by noise^2 within one standard error.
     onset.standard_error_m = std::max(kOnsetFloor_m, std::sqrt(2.0 * variance / chosen.curvature));
@@ -194,6 +194,7 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
     // A recording that begins in contact never saw its onset.
     const double unseen_m = std::max(0.0, outermost_m(rows, touches) - onset.at_m);
     onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * unseen_m);
+    onset.seen = unseen_m <= kLeastOffset_m;
   }
   return onset;
 }

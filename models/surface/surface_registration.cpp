@@ -130,7 +130,7 @@ std::vector<RegisteredSurface> registered(const std::vector<RegisteredMember>& m
                                           const std::vector<FeatureSpec>& features, double force_noise_floor_N) {
   std::vector<RegisteredSurface> surfaces;
   for (const RegisteredMember& member : members) {
-    const bool told = members.size() > 1 || std::abs(member.own.offset_m) > kLeastCommonShift_m;
+    const bool told = members.size() > 1 || (member.own.onset_seen && std::abs(member.own.offset_m) > kLeastCommonShift_m);
     surfaces.push_back({told ? member.own.offset_m : 0.0, member.own.standard_error_m, member.own.force_zero_N});
   }
   if (members.size() < 2) return surfaces;

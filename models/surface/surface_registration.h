@@ -10,7 +10,7 @@
 // Consistency says nothing of a shift common to all; the onsets decide it, weighted
 // by their errors. Of the shifts within their errors or 0.25 mm, the one that
 // leaves most recordings as they are: it changes no force of the model, only where
-// its zero lies. One recording: its own onset, likewise. Where no offset of a set can
+// its zero lies. One recording: its own onset, likewise, if the tool was out of contact. Where no offset of a set can
 // be told from 0 all are 0.
 // Standard errors: delete-one-fold jackknife over pieces of the recordings, and a
 // share of what the trend cannot follow.

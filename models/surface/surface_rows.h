@@ -34,7 +34,8 @@ class GrowingStride {
 
 // Every n-th row, at most `most` of them.
 std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
-// Every n-th row of a recording, at most `most` of them.
+// Every row of a recording, or every n-th, at most `most` of them.
+std::vector<SurfaceRow> all_rows(const Recording& recording);
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
 
 }  // namespace palpate

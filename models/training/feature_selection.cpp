@@ -46,16 +46,18 @@ Result<TimeScales> measure_times(MotionSource& source, const FitControl& control
   double last_s = 0.0;
   double duration_s = 0.0;
   std::size_t steps = 0;
+  bool run_up = false;
   TimeScales scales;
   const Status status = source.for_each([&](const MotionRow& row) {
     scales.strokes = row.stroke;
     if (row.first) {
       ++scales.recordings;
       start_s = row.sample.time_s;
-    } else {
+    } else if (!run_up && !row.run_up) {
       duration_s += row.sample.time_s - last_s;
       ++steps;
     }
+    run_up = row.run_up;
     last_s = row.sample.time_s;
     scales.longest_recording_s = std::max(scales.longest_recording_s, last_s - start_s);
     return true;
@@ -294,7 +296,9 @@ Status add_rows(TrendRows& rows, MotionSource& source, const FoldDealer& dealer,
   FoldDealer folds = dealer;
   return source.for_each([&](const MotionRow& row) {
     if (row.first) rows.begin_recording();
-    rows.add(row.sample, row.motion, row.force_N, folds.next(row));
+    const int fold = folds.next(row);
+    if (row.run_up) rows.advance(row.sample, row.motion);
+    else rows.add(row.sample, row.motion, row.force_N, fold);
     return true;
   }, control, fraction);
 }

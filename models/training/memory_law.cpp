@@ -64,7 +64,8 @@ class LawSearch {
       const int fold = folds.next(row);
       if (!row.first && row.sample.time_s - last_s < kLawStep_s) return true;
       last_s = row.sample.time_s;
-      rows.add(row.sample, row.motion, row.force_N, fold);
+      if (row.run_up) rows.advance(row.sample, row.motion);
+      else rows.add(row.sample, row.motion, row.force_N, fold);
       return true;
     }, control_, fraction_);
     if (!status) return status.error();

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <future>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -25,6 +27,7 @@ class RowStream {
     return stream;
   }
 
+  bool in_memory() const { return loaded_ != nullptr; }
   const std::string& name() const { return loaded_ ? loaded_->name : reader_->name(); }
   RecordingColumns columns() const { return loaded_ ? loaded_->columns : reader_->columns(); }
 
@@ -57,6 +60,45 @@ class RowStream {
 
 // Files up to this many rows together are read once, when they are put in order.
 constexpr std::size_t kRowsReadOnce = 500000;
+
+// The rows of a stream, of which the next chunk is read while the last one is worked on.
+class ReadAhead {
+ public:
+  ReadAhead(RowStream& stream, std::size_t chunk_rows) : stream_(stream), ready_(chunk_rows), next_(chunk_rows) {
+    begin();
+  }
+  ReadAhead(const ReadAhead&) = delete;
+  ReadAhead& operator=(const ReadAhead&) = delete;
+  ~ReadAhead() {
+    if (coming_.valid()) coming_.wait();
+  }
+
+  // Empty at the end.
+  Result<std::span<const RecordingRow>> next() {
+    const auto count = coming_.get();
+    if (!count) return count.error();
+    std::swap(ready_, next_);
+    if (*count > 0) begin();
+    return std::span<const RecordingRow>(ready_.data(), *count);
+  }
+
+ private:
+  // Memory is there sooner than a thread is.
+  void begin() {
+    const auto policy = stream_.in_memory() ? std::launch::deferred : std::launch::async | std::launch::deferred;
+    coming_ = std::async(policy, [this] { return stream_.next(next_); });
+  }
+
+  RowStream& stream_;
+  std::vector<RecordingRow> ready_;
+  std::vector<RecordingRow> next_;
+  std::future<Result<std::size_t>> coming_;
+};
+
+// Of a sample: at least so many stretches of a recording where they are not too short.
+constexpr std::size_t kStretches = 4;
+constexpr std::size_t kShortestStretch = 256;
+constexpr std::size_t kLongestStretch = 16384;
 
 // FNV-1a over the numbers of the rows.
 class ContentHash {
@@ -193,8 +235,9 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
   forget();  // what a pass that broke off has left
   keeps_ = true;
   rows_ = 0;
-  // One chunk is what sensor identification looks at.
-  std::vector<RecordingRow> chunk(kSensorIdentificationRows);
+  std::size_t loaded = 0;
+  for (const Input& input : inputs_) loaded += input.loaded ? input.loaded->rows.size() : kept_rows_;
+  kept_.reserve(std::min(loaded, kept_rows_));  // what stays untouched takes no memory
   MotionRow row;
   for (std::size_t index = 0; index < inputs_.size(); ++index) {
     auto stream = RowStream::open(inputs_[index]);
@@ -203,21 +246,24 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
     row.recording = static_cast<int>(index);
     row.first = true;
     std::optional<MotionEstimator> estimator;
+    const MotionEstimate* known = inputs_[index].motion ? inputs_[index].motion->data() : nullptr;
+    // One chunk is what sensor identification looks at.
+    ReadAhead chunks(*stream, kSensorIdentificationRows);
     while (true) {
-      const auto count = stream->next(chunk);
-      if (!count) return count.error();
-      if (*count == 0) break;
+      const auto chunk = chunks.next();
+      if (!chunk) return chunk.error();
+      if (chunk->empty()) break;
       if (!estimator) {
-        const SensorSpec sensor = identify_sensor(chunk.data(), *count, stream->columns());
+        const SensorSpec sensor = identify_sensor(chunk->data(), chunk->size(), stream->columns());
         estimator.emplace(sensor);
         std::tie(encoder_step_m_, position_noise_m_) = std::max(
             std::pair{encoder_step_m_, position_noise_m_}, std::pair{sensor.encoder_step_m, sensor.position_noise_m});
-        force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk.data(), *count));
+        force_noise_N_ = std::max(force_noise_N_, identify_force_noise_N(chunk->data(), chunk->size()));
       }
-      for (std::size_t i = 0; i < *count; ++i) {
-        row.sample = tool_sample(chunk[i]);
-        row.force_N = chunk[i].force_N;
-        row.motion = estimator->update(row.sample);
+      for (const RecordingRow& recorded : *chunk) {
+        row.sample = tool_sample(recorded);
+        row.force_N = recorded.force_N;
+        row.motion = known != nullptr ? *known++ : estimator->update(row.sample);
         if (row.first) first_rows_.push_back(rows_);
         keep(row);
         ++rows_;
@@ -242,15 +288,47 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
   }
   std::size_t seen = 0;
   CorrectedRows corrected(corrections_);
-  const auto visit_and_ask = [&](const MotionRow& row) {
+  return visit_recorded([&](const MotionRow& row) {
     return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.may_continue(fraction));
-  };
-  if (!complete_) return read_all(visit_and_ask);
-  if (spilled_) return read_spilled(visit_and_ask);
+  });
+}
+
+Status MotionSource::visit_recorded(const std::function<bool(const MotionRow&)>& visit) {
+  if (!complete_) return read_all(visit);
+  if (spilled_) return read_spilled(visit);
   for (const MotionRow& row : kept_) {
-    if (!visit_and_ask(row)) return interrupted();
+    if (!visit(row)) return interrupted();
   }
   return {};
+}
+
+Result<MotionSource> MotionSource::sample(std::size_t most, const FitControl& control, double fraction) {
+  // Half of them in stretches, half on the way to these.
+  const std::size_t sparse = 2 * rows_ / most + 1;
+  const std::size_t mean_rows = rows_ / std::max<std::size_t>(1, names_.size());
+  const std::size_t stretch = std::clamp(mean_rows / (kStretches * sparse), kShortestStretch, kLongestStretch);
+  MotionSource result({}, most);
+  std::size_t at = 0;  // in its recording
+  std::size_t seen = 0;
+  const Status status = visit_recorded([&](const MotionRow& row) {
+    if (row.first) at = 0;
+    const bool in_stretch = at % (sparse * stretch) < stretch;
+    if (in_stretch || at % sparse == 0) {
+      result.kept_.push_back(row);
+      result.kept_.back().run_up = !in_stretch;
+    }
+    ++at;
+    return ++seen % kRowsPerQuestion != 0 || control.may_continue(fraction);
+  });
+  if (!status) return status.error();
+  result.names_ = names_;
+  result.corrections_ = corrections_;
+  result.rows_ = result.kept_.size();
+  result.force_noise_N_ = force_noise_N_;
+  result.encoder_step_m_ = encoder_step_m_;
+  result.position_noise_m_ = position_noise_m_;
+  result.arranged_ = result.complete_ = true;
+  return result;
 }
 
 }  // namespace palpate

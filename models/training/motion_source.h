@@ -25,8 +25,12 @@
 
 namespace palpate {
 
-// Rows kept in memory, over all recordings together: about 150 MB.
+// Rows kept in memory, over all recordings together: 216 MB.
 inline constexpr std::size_t kMaximumKeptRows = 3000000;
+
+// What is decided from some thousand rows needs no more than these many to take them
+// from: a quarter of an hour at 1 kHz.
+inline constexpr std::size_t kMaximumSampledRows = 1000000;
 
 // Some 20 ms of reading: a long pass can be stopped at once.
 inline constexpr std::size_t kRowsPerQuestion = 65536;
@@ -38,6 +42,7 @@ struct MotionRow {
   int recording = 0;
   int stroke = 0;        // counts contacts, over all recordings
   bool first = false;    // of its recording: filters start anew
+  bool run_up = false;   // of a sample (below): filters take it, nothing else does
 };
 
 // What is subtracted from the rows of one recording on their way into training;
@@ -53,6 +58,8 @@ class MotionSource {
   struct Input {
     std::string path;                        // used when `loaded` is empty
     std::shared_ptr<const Recording> loaded;
+    // Of every row of `loaded`, when it is known already.
+    std::shared_ptr<const std::vector<MotionEstimate>> motion{};
   };
 
   // `kept_rows`: how many rows may stay in memory between the passes.
@@ -64,6 +71,11 @@ class MotionSource {
   // rows with `fraction`. Errors: those of RecordingReader.
   Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
                   double fraction = 0.0);
+
+  // About `most` rows of it, in memory, moved as these are: stretches of every recording,
+  // evenly, and as a run-up to each, so that filters remember what was before it, every
+  // so-many-th row. After the first pass. Errors: those of `for_each`.
+  Result<MotionSource> sample(std::size_t most, const FitControl& control, double fraction);
 
   // From now on every pass sees its rows moved; one for each recording, in the
   // order of `names`. Contact and strokes follow the moved position.
@@ -79,6 +91,7 @@ class MotionSource {
 
  private:
   Status arrange(const FitControl& control, double fraction);
+  Status visit_recorded(const std::function<bool(const MotionRow&)>& visit);
   Status read_all(const std::function<bool(const MotionRow&)>& visit);
   Status read_spilled(const std::function<bool(const MotionRow&)>& visit) const;
   void keep(const MotionRow& row);

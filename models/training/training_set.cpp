@@ -5,58 +5,95 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace palpate {
 namespace {
 
 constexpr double kGrowth = 1.25;
 
-// Running mean, spread and bounds of every feature.
-struct FeatureMoments {
-  explicit FeatureMoments(std::size_t n)
-      : mean(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n))), squares(mean), lower(mean), upper(mean) {}
+using FeatureValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kMaxFeatures), 1>;
 
-  void add(const Eigen::VectorXd& x) {
+// Bounds of every feature.
+struct FeatureBounds {
+  void add(const FeatureValues& x) {
     if (count == 0.0) lower = upper = x;
     count += 1.0;
-    const Eigen::VectorXd change = x - mean;
-    mean += change / count;
-    squares += change.cwiseProduct(x - mean);
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
   }
 
+  double count = 0.0;
+  FeatureValues lower;
+  FeatureValues upper;
+};
+
+// Running mean and spread as well.
+struct FeatureMoments {
+  explicit FeatureMoments(std::size_t n) : mean(FeatureValues::Zero(static_cast<Eigen::Index>(n))), squares(mean) {}
+
+  void add(const FeatureValues& x) {
+    bounds.add(x);
+    const FeatureValues change = x - mean;
+    mean += change / bounds.count;
+    squares += change.cwiseProduct(x - mean);
+  }
+
   Normalisation normalisation() const {
-    Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), lower, upper};
+    Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), bounds.lower, bounds.upper};
     for (Eigen::Index i = 0; i < mean.size(); ++i) {
-      const double range = upper(i) - lower(i);
-      const double deviation = std::sqrt(squares(i) / count);
+      const double range = bounds.upper(i) - bounds.lower(i);
+      const double deviation = std::sqrt(squares(i) / bounds.count);
       const double scale = std::sqrt(range * 4.0 * deviation);
       // A spread at the level of rounding is no spread.
-      if (scale > 1e-12 * std::max(std::abs(lower(i)), std::abs(upper(i)))) result.scale(i) = scale;
+      if (scale > 1e-12 * std::max(std::abs(bounds.lower(i)), std::abs(bounds.upper(i)))) result.scale(i) = scale;
     }
     return result;
   }
 
-  double count = 0.0;
-  Eigen::VectorXd mean;
-  Eigen::VectorXd squares;
-  Eigen::VectorXd lower;
-  Eigen::VectorXd upper;
+  FeatureBounds bounds;
+  FeatureValues mean;
+  FeatureValues squares;
 };
 
 using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
-struct CellHash {
-  std::size_t operator()(const CellKey& key) const noexcept {
-    std::uint64_t hash = 0x9E3779B97F4A7C15ULL;
-    for (const std::int32_t value : key) {
-      hash ^= static_cast<std::uint32_t>(value);
-      hash *= 0xBF58476D1CE4E5B9ULL;
-      hash ^= hash >> 29;
+// The cells that have been visited, numbered as they came; at most kCoverageSites + 1 of
+// them. A std::unordered_map takes a block of memory for each, again after each coarsening.
+class CellTable {
+ public:
+  // The number of the cell, and whether it is a new one.
+  std::pair<std::size_t, bool> place_of(const CellKey& key) {
+    std::size_t slot = hash(key) % kSlots;
+    for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
+      if (keys_[slots_[slot] - 1] == key) return {slots_[slot] - 1, false};
     }
-    return hash;
+    keys_.push_back(key);
+    slots_[slot] = static_cast<std::uint32_t>(keys_.size());
+    return {keys_.size() - 1, true};
   }
+
+  void clear() {
+    keys_.clear();
+    std::fill(slots_.begin(), slots_.end(), 0);
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 32768;  // so many that a neighbour is most often free
+  static_assert(kSlots > 2 * (kCoverageSites + 1));
+
+  static std::size_t hash(const CellKey& key) {
+    std::uint64_t value = 0x9E3779B97F4A7C15ULL;
+    for (const std::int32_t one : key) {
+      value ^= static_cast<std::uint32_t>(one);
+      value *= 0xBF58476D1CE4E5B9ULL;
+      value ^= value >> 29;
+    }
+    return value;
+  }
+
+  std::vector<CellKey> keys_;
+  std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(kSlots, 0);  // number + 1; 0: free
 };
 
 // One mean per visited cube of the feature space.
@@ -65,12 +102,7 @@ class CoverageReduction {
   explicit CoverageReduction(const Normalisation& normalisation) : normalisation_(normalisation) {}
 
   void add(const TrainingSite& site) {
-    const auto [where, fresh] = cells_.try_emplace(key(site), sites_.size());
-    if (fresh) {
-      sites_.push_back(site);
-    } else {
-      merge(sites_[where->second], site);
-    }
+    place(site);
     if (sites_.size() > kCoverageSites) coarsen();
   }
 
@@ -90,6 +122,12 @@ class CoverageReduction {
     return result;
   }
 
+  void place(const TrainingSite& site) {
+    const auto [number, fresh] = cells_.place_of(key(site));
+    if (fresh) sites_.push_back(site);
+    else merge(sites_[number], site);
+  }
+
   static void merge(TrainingSite& into, const TrainingSite& site) {
     into.count += site.count;
     const double share = site.count / into.count;
@@ -103,19 +141,12 @@ class CoverageReduction {
       const std::vector<TrainingSite> old = std::move(sites_);
       sites_.clear();
       cells_.clear();
-      for (const TrainingSite& site : old) {
-        const auto [where, fresh] = cells_.try_emplace(key(site), sites_.size());
-        if (fresh) {
-          sites_.push_back(site);
-        } else {
-          merge(sites_[where->second], site);
-        }
-      }
+      for (const TrainingSite& site : old) place(site);
     }
   }
 
   const Normalisation& normalisation_;
-  std::unordered_map<CellKey, std::size_t, CellHash> cells_;
+  CellTable cells_;
   std::vector<TrainingSite> sites_;
   double step_ = kCoverageStep;
 };
@@ -177,40 +208,48 @@ class NoReduction {
 
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double force_noise_floor_N, const FitControl& control,
-                                      double fraction, const FoldDealer* dealer) {
+                                      const TrainingSetOptions& options) {
   TrainingSet set;
   set.features = features;
   const auto n = static_cast<Eigen::Index>(features.size());
   // `handle` sees every sample in contact with its features.
-  const auto pass = [&](const std::function<void(const MotionRow&, const FeatureVector&)>& handle) {
+  const auto pass = [&](MotionSource& rows, const auto& handle) {
     FeatureFilter filter(features);
-    return source.for_each([&](const MotionRow& row) {
+    return rows.for_each([&](const MotionRow& row) {
       if (row.first) filter.reset();
       const FeatureVector& vector = filter.update(row.sample, row.motion);
-      if (vector.in_contact) handle(row, vector);
+      if (vector.in_contact && !row.run_up) handle(row, vector);
       return true;
-    }, control, fraction);
+    }, control, options.fraction);
+  };
+  const auto values_of = [n](const FeatureVector& vector) {
+    return Eigen::Map<const Eigen::VectorXd>(vector.values.data(), n);
   };
 
   FeatureMoments moments(features.size());
-  Status status = pass([&](const MotionRow&, const FeatureVector& vector) {
-    moments.add(Eigen::Map<const Eigen::VectorXd>(vector.values.data(), n));
+  const bool sampled = options.scales != nullptr;
+  Status status = pass(sampled ? *options.scales : source, [&](const MotionRow& row, const FeatureVector& vector) {
+    moments.add(values_of(vector));
+    if (!sampled && options.also) options.also(row, vector);
   });
   if (!status) return status.error();
-  set.contact_samples = static_cast<std::uint64_t>(moments.count);
+  set.contact_samples = static_cast<std::uint64_t>(moments.bounds.count);
   if (set.contact_samples == 0) {
     return Error{"no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
                  "record a press, or check the sign and zero of position_m"};
   }
   set.normalisation = moments.normalisation();
 
+  FeatureBounds bounds;  // of all samples, where the scales are of some
   CoverageReduction coverage(set.normalisation);
   ForceReduction force;
   NoReduction none;
   int recording = -1;
   std::optional<FoldDealer> folds;
-  if (dealer != nullptr) folds = *dealer;
-  status = pass([&](const MotionRow& row, const FeatureVector& vector) {
+  if (options.dealer != nullptr) folds = *options.dealer;
+  status = pass(source, [&](const MotionRow& row, const FeatureVector& vector) {
+    if (sampled) bounds.add(values_of(vector));
+    if (sampled && options.also) options.also(row, vector);
     const int fold = folds ? folds->next(row) : 0;
     const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
@@ -221,6 +260,11 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
     recording = row.recording;
   });
   if (!status) return status.error();
+  if (sampled) {
+    set.contact_samples = static_cast<std::uint64_t>(bounds.count);
+    set.normalisation.lower = bounds.lower;
+    set.normalisation.upper = bounds.upper;
+  }
   switch (reduction) {
     case Reduction::coverage:
       set.coverage_step = coverage.step();

@@ -30,6 +30,7 @@
 #include <array>
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/tick/features.h"
@@ -74,10 +75,18 @@ struct TrainingSet {
   double reduction_force_N = 0.0;  // in the end
 };
 
+struct TrainingSetOptions {
+  double fraction = 0.0;                // of the progress
+  const FoldDealer* dealer = nullptr;   // none: all sites are of fold 0
+  MotionSource* scales = nullptr;       // a sample of a long source: has offset and scale of its features
+  // Called with every sample in contact and its features, once.
+  std::function<void(const MotionRow&, const FeatureVector&)> also{};
+};
+
 // `force_noise_floor_N`: at or below it a sample counts as "no measured force". Errors:
 // those of the source; no sample in contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double force_noise_floor_N, const FitControl& control = {},
-                                      double fraction = 0.0, const FoldDealer* dealer = nullptr);
+                                      const TrainingSetOptions& options = {});
 
 }  // namespace palpate

@@ -324,12 +324,7 @@ Status run_fit(const FitArguments& arguments) {
 
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
-  std::vector<MotionSource::Input> inputs;
-  for (CheckedFile& file : *checked) {
-    // What the check has read need not be read again.
-    inputs.push_back({file.path, file.whole ? std::make_shared<const Recording>(std::move(file.recording)) : nullptr});
-  }
-  MotionSource source(std::move(inputs));
+  MotionSource source(training_inputs(std::move(*checked)));
   const TrainingRequest training = training_request(arguments, *scene);
   const auto prepared = prepare_training(source, training, prepare);
   if (!prepared) return prepared.error();

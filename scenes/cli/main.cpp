@@ -9,7 +9,12 @@
 #include <string>
 #include <vector>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "engine/base/signals.h"
+#include "models/solve/lapack.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -100,12 +105,23 @@ int run_program(int argc, char** argv) {
   }
 }
 
+// Blocks that a fit takes and gives back some hundred times stay with the process: to
+// give them back to the system and to take them anew costs more than to fill them.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
+}
+
 }  // namespace
 }  // namespace palpate::cli
 
 int main(int argc, char** argv) {
   try {
     palpate::own_signals();
+    palpate::end_idle_blas_threads();
+    palpate::cli::keep_freed_memory();
     return palpate::cli::run_program(argc, argv);
   } catch (const std::bad_alloc&) {
     return palpate::cli::fail("out of memory", palpate::cli::kFailed);

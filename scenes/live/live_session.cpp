@@ -87,10 +87,11 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::update() {
+  // Before models change, so that they know the motion up to now.
+  read_snapshots();
   update_models();
   if (surface_.update(models_)) comparison_.forget_errors();
   loop_->collect_models();
-  read_snapshots();
   newest_ = loop_->newest();
   comparison_.show(newest_);
   check_faults();
@@ -112,7 +113,9 @@ void LiveSession::update_models() {
 // All begin to be compared together: the same samples for each.
 void LiveSession::publish() {
   comparison_.forget_errors();
-  loop_->publish_models(models_.make_set(device_->sensor(), truth_));
+  auto set = models_.make_set(device_->sensor(), truth_);
+  history_.recall(set->tick);
+  loop_->publish_models(std::move(set));
   send_controls();
 }
 
@@ -134,7 +137,10 @@ void LiveSession::read_snapshots() {
   // At most what the ring holds: a loop that is quicker than this is not waited for.
   for (std::size_t round = 0; round <= kSnapshotRing / kSnapshotsAtOnce; ++round) {
     const std::size_t count = loop_->read_snapshots(buffer_.data(), buffer_.size());
-    for (std::size_t i = 0; i < count; ++i) comparison_.add(buffer_[i], faults_.update(buffer_[i]));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (buffer_[i].samples > 0) history_.add(buffer_[i].tick, buffer_[i].restarted);
+      comparison_.add(buffer_[i], faults_.update(buffer_[i]));
+    }
     if (count < buffer_.size()) break;
   }
 }

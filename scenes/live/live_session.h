@@ -16,6 +16,7 @@
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
+#include "engine/tick/motion_history.h"
 #include "scenes/live/comparison.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/model_slots.h"
@@ -136,6 +137,7 @@ class LiveSession {
   std::unique_ptr<HapticsLoop> loop_;
   ModelSlots models_;
   Comparison comparison_;
+  MotionHistory history_;
   ReplaySurface surface_;
   FaultLog faults_;
   std::unique_ptr<SessionRecorder> recorder_;

@@ -6,8 +6,9 @@
  *   for (;;) force_N = palpate_stream_force(stream, time_s, position_m);
  *
  * Units are SI. position_m runs along the inward surface normal: 0 at the undisturbed
- * surface, positive inside. Forces act along the outward normal, positive when the
- * material pushes the tool out.
+ * surface, positive inside; a model of recordings that all touch deeper than 0 touches
+ * where they do. Forces act along the outward normal, positive when the material pushes
+ * the tool out.
  *
  * A stream runs the code of `palpate replay`: the same samples, with the same sensor
  * (palpate_sensor_of_recording), give the same forces to the last bit.

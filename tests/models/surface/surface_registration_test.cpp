@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "engine/tick/evaluation.h"
 #include "engine/tick/replay.h"
@@ -134,6 +135,21 @@ TEST(SurfaceRegistration, AModelTouchesWhereItsRecordingsDo) {
   };
   // A shift that is found to 0.02 mm costs no more.
   EXPECT_NEAR(within_jnd(0.6e-3), within_jnd(0.0), 0.005);
+}
+
+// A press that never lets go does not say where it would begin.
+TEST(SurfaceRegistration, AnOnsetThatWasNotSeenMovesNothing) {
+  RigSettings settings = test::train_settings("maxwell");
+  settings.seconds = 12.0;
+  Recording pressed = *test::rig_recording(settings);
+  for (RecordingRow& row : pressed.rows) {
+    // Another motion of the same elastic block, from 2 mm to 4 mm and back.
+    const double phase = 2.0 * std::numbers::pi * row.time_s;
+    row.position_m = 3e-3 - 1e-3 * std::cos(phase);
+    row.force_N = 400.0 * (row.position_m - 0.5e-3);
+  }
+  const auto surfaces = registered({std::make_shared<Recording>(pressed)});
+  EXPECT_EQ(surfaces[0].offset_m, 0.0);
 }
 
 // A recording that was shifted gives the model of the one that was not, but for

@@ -34,6 +34,57 @@ void expect_same(const std::vector<MotionRow>& a, const std::vector<MotionRow>& 
   }
 }
 
+// Known motion, as a check has estimated it, stands in for the estimator.
+TEST(MotionSource, TakesMotionThatIsKnown) {
+  const Recording recording = test::example_recording(5000, 1000.0, 30e-6);
+  MotionSource estimated({in_memory(recording)});
+  const auto rows = rows_of(estimated);
+  std::vector<MotionEstimate> motion;
+  for (const MotionRow& row : rows) motion.push_back(row.motion);
+  Input input = in_memory(recording);
+  input.motion = std::make_shared<const std::vector<MotionEstimate>>(std::move(motion));
+  MotionSource known({input});
+  expect_same(rows, rows_of(known));
+}
+
+// Rows of a sample are rows of the source, in order, from the beginning to the end of
+// each recording, in stretches without a gap.
+TEST(MotionSource, ASampleGoesThroughEveryRecordingInStretches) {
+  constexpr std::size_t kMost = 8000;
+  MotionSource source({in_memory(test::example_recording(60000, 1000.0, 30e-6)), in_memory(test::example_recording(30000, 1000.0, 0.0))});
+  source.correct({{1e-3, 0.5}, {0.0, 0.0}});
+  const auto all = rows_of(source);
+  auto sample = source.sample(kMost, {}, 0.0);
+  ASSERT_TRUE(sample.ok());
+  EXPECT_EQ(sample->names(), source.names());
+  const auto rows = rows_of(*sample);
+  EXPECT_LT(rows.size(), kMost + kMost / 4);
+  EXPECT_GT(rows.size(), kMost / 2);
+  std::size_t at = 0;
+  std::size_t last = 0;
+  std::size_t longest_gap = 0;
+  std::vector<std::size_t> stretches(2, 0);
+  bool run_up = true;
+  for (const MotionRow& row : rows) {
+    while (at < all.size() && (all[at].recording != row.recording || all[at].sample.time_s != row.sample.time_s)) ++at;
+    ASSERT_LT(at, all.size());
+    EXPECT_EQ(all[at].sample.position_m, row.sample.position_m);
+    EXPECT_EQ(all[at].force_N, row.force_N);
+    EXPECT_EQ(all[at].first, row.first);
+    longest_gap = std::max(longest_gap, at - last);
+    if (!run_up && !row.run_up && !row.first) {
+      EXPECT_EQ(at, last + 1);
+    }
+    if ((run_up || row.first) && !row.run_up) ++stretches[static_cast<std::size_t>(row.recording)];
+    run_up = row.run_up;
+    last = at;
+  }
+  EXPECT_LE(longest_gap, 2 * all.size() / kMost + 1);  // every so-many-th row in between
+  EXPECT_LE(all.size() - last, 2 * all.size() / kMost + 1);
+  EXPECT_GE(stretches[0], 4u);
+  EXPECT_GE(stretches[1], 2u);
+}
+
 // Longer than what sensor identification looks at, and than one chunk of the reader.
 TEST(MotionSource, FilesAndMemoryGiveTheSameRows) {
   const test::TemporaryFolder folder;

@@ -1,0 +1,62 @@
+#include "models/training/training_extent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+// Of the way in: with less way out in contact the tool never turns round.
+constexpr double kLeastWayOut = 0.1;
+
+}  // namespace
+
+bool TrainingExtent::turns_round() const { return way_out_m > kLeastWayOut * way_in_m; }
+
+FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent) {
+  return {source.names().size(), extent.strokes, extent.contact_samples, extent.turns_round()};
+}
+
+Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
+  TrainingExtent extent;
+  double squares = 0.0;
+  double count = 0.0;
+  double last_m = 0.0;
+  const Status status = source.for_each([&](const MotionRow& row) {
+    if (row.sample.position_m > 0.0) {
+      extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
+      extent.force_N = std::max(extent.force_N, row.force_N);
+      squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
+      count += 1.0;
+      extent.strokes = static_cast<std::size_t>(row.stroke);
+      const double way_m = row.motion.position_m - last_m;
+      if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
+    }
+    last_m = row.motion.position_m;
+    return true;
+  }, control, 0.0);
+  extent.contact_samples = static_cast<std::size_t>(count);
+  if (!status) return status.error();
+  // A tool that never moved still needs a scale: 1 um/s.
+  extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
+  return extent;
+}
+
+Result<DecisionRows> DecisionRows::of(MotionSource& source, const TrainingExtent& extent, const FitControl& control,
+                                      std::size_t most) {
+  DecisionRows rows(source, dealer_for(source, extent));
+  if (source.rows() <= most) return rows;
+  auto sample = source.sample(most, control, 0.05);
+  if (!sample) return sample.error();
+  rows.sample_ = std::move(*sample);
+  // Folds of the same size need pieces as long as the sample's contact has them.
+  auto sampled = measure_extent(*rows.sample_, control);
+  if (!sampled) return sampled.error();
+  sampled->way_in_m = extent.way_in_m;
+  sampled->way_out_m = extent.way_out_m;
+  rows.dealer_ = dealer_for(*rows.sample_, *sampled);
+  return rows;
+}
+
+}  // namespace palpate

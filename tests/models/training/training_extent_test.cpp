@@ -1,0 +1,50 @@
+#include "models/training/training_extent.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+// Presses of 2 mm, a second each, by a spring of 500 N/m.
+Recording presses(int rows) {
+  Recording recording;
+  recording.name = "presses";
+  for (int i = 0; i < rows; ++i) {
+    const double position_m = 2e-3 * std::sin(2.0 * M_PI * 1e-3 * i);
+    recording.rows.push_back({1e-3 * i, position_m, 500.0 * std::max(0.0, position_m), 0.0, 0.0});
+  }
+  return recording;
+}
+
+TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
+  MotionSource source({{"", std::make_shared<const Recording>(presses(10000))}});
+  const auto extent = measure_extent(source, {});
+  ASSERT_TRUE(extent.ok());
+  EXPECT_NEAR(extent->depth_m, 2e-3, 1e-4);  // what the motion estimate may be off at a turn
+  EXPECT_NEAR(extent->force_N, 1.0, 1e-3);
+  EXPECT_EQ(extent->strokes, 10u);
+  EXPECT_NEAR(static_cast<double>(extent->contact_samples), 5000.0, 20.0);
+  EXPECT_TRUE(extent->turns_round());
+}
+
+TEST(DecisionRows, AreTheSourceWhereItIsShortAndASampleWhereItIsLong) {
+  MotionSource source({{"", std::make_shared<const Recording>(presses(40000))}});
+  const auto extent = measure_extent(source, {});
+  ASSERT_TRUE(extent.ok());
+  auto all = DecisionRows::of(source, *extent, {}, 40000);
+  ASSERT_TRUE(all.ok());
+  EXPECT_EQ(all->sample(), nullptr);
+  EXPECT_EQ(&all->rows(), &source);
+  auto some = DecisionRows::of(source, *extent, {}, 4000);
+  ASSERT_TRUE(some.ok());
+  ASSERT_NE(some->sample(), nullptr);
+  EXPECT_LT(some->rows().rows(), 6000u);
+  EXPECT_EQ(some->dealer().folds(), all->dealer().folds());
+}
+
+}  // namespace
+}  // namespace palpate
