@@ -52,8 +52,9 @@ HWY_INLINE Vector refine_root(Vector squared, Vector estimate) {
 }
 
 // r from r^2 without the square root unit, which is the bottleneck: loops take
-// turns between the two. AVX-512 has an estimate in double precision, and every
-// other root goes this way. AVX2 has one in single precision only, which takes
+// turns between the two. AVX-512 has an estimate in double precision, and three of
+// four roots go this way in evaluate(), where distances come beforehand (10 % off 100
+// centres against every other root, which is what the rest does). AVX2 has one in single precision only, which takes
 // conversions and a range check: every fourth root, in evaluate() alone.
 // Measured on a Zen 3: 11 % off 6,850 centres, 4 % off 100; every other root
 // costs 8 % more instead. (Integer arithmetic for the estimate was slower.)
@@ -71,8 +72,9 @@ HWY_INLINE Vector root_by_series(Vector squared) {
 
 // Whether every other root may go by the series, whatever the distance.
 constexpr bool kSeriesForAll = HWY_TARGET == HWY_AVX3;
-// Whether every fourth may in evaluate(), where distances are in the range of a float.
-constexpr bool kSeriesForSome = HWY_TARGET == HWY_AVX2;
+// Whether evaluate() goes by fours, with every fourth root by the series where distances
+// are in the range of a float; or with three of four, whatever the distance.
+constexpr bool kByFours = HWY_TARGET == HWY_AVX2 || kSeriesForAll;
 
 template <KernelKind kKind, bool kUnit>
 HWY_INLINE Vector kernel_of_squared(Vector squared) {
@@ -145,8 +147,8 @@ HWY_INLINE size_t add_by_fours(const Points& points, const double* weights, cons
   Vector e = squared_distance<kDimension>(points, 3 * lanes, query);
   for (size_t i = 0; i < end; i += 4 * lanes) {
     const Vector kernel_a = kernel_of_squared<kKind, true>(a);
-    const Vector kernel_b = kernel_of_squared<kKind, true>(b);
-    const Vector kernel_c = kernel_of_squared<kKind, true>(c);
+    const Vector kernel_b = kernel_of_squared<kKind, !kSeriesForAll>(b);
+    const Vector kernel_c = kernel_of_squared<kKind, !kSeriesForAll>(c);
     const Vector kernel_e = kernel_of_squared<kKind, false>(e);
     if (i + 4 * lanes < end) {
       const size_t next = i + 4 * lanes;
@@ -174,8 +176,8 @@ double evaluate(const Points& points, const double* weights, const double* tail,
   Vector sum = hn::Zero(d);
   Vector more = hn::Zero(d);
   size_t i = 0;
-  if constexpr (kSeriesForSome && kKind != KernelKind::thin_plate) {
-    if (in_float_range<kDimension>(points, x))
+  if constexpr (kByFours && kKind != KernelKind::thin_plate) {
+    if (kSeriesForAll || in_float_range<kDimension>(points, x))
       i = add_by_fours<kKind, kDimension>(points, weights, query, sum, more);
   }
   for (; i + 2 * lanes <= points.padded; i += 2 * lanes) {
