@@ -9,7 +9,8 @@
 // with g the trust of the domain guard around the sites that were kept. Smoothing,
 // strength (from 0, none, to 1, all) and the radius of the guard are those of the
 // least squared error over the JND; of several within one standard error of the
-// differences between the folds, the weakest. The smoothing is the variance of the
+// differences between the folds, none at all, else the shortest radius and with it the
+// most smoothing. The smoothing is the variance of the
 // noise over that of the prior and does not depend on the number of centres: one
 // choice serves every method, and with more centres each method comes closer to
 // the smoothing spline through all the sites instead of following the noise.

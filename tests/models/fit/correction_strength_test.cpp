@@ -61,6 +61,14 @@ TEST(CorrectionStrength, WhatOnlyOneStrokeHasIsNot) {
   EXPECT_EQ(choice.error_over_jnd, choice.trend_error_over_jnd);
 }
 
+// Every sample has sites of other strokes right beside it, so a reach of 0.1 does as well as
+// a wider one but for chance.
+TEST(CorrectionStrength, ReachesNoFartherThanStrokesLeftOutReward) {
+  const StrengthChoice choice = choose(make_case(0.3, 0.1));
+  EXPECT_GT(choice.strength, 0.0);
+  EXPECT_EQ(choice.inner_radius, 0.1);
+}
+
 TEST(CorrectionStrength, NeverWorseThanNoneOnWhatIsLeftOut) {
   for (const double own : {0.05, 0.1, 0.2}) {
     const StrengthChoice choice = choose(make_case(0.1, own));

@@ -9,6 +9,7 @@
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "models/model/file/model_json.h"
+#include "models/surface/surface_estimate.h"
 #include "scenes/material/material.h"
 #include "scenes/material/rig.h"
 #include "tests/support/fitting.h"
@@ -143,11 +144,14 @@ TEST(SurfaceRegistration, AnOnsetThatWasNotSeenMovesNothing) {
   settings.seconds = 12.0;
   Recording pressed = *test::rig_recording(settings);
   for (RecordingRow& row : pressed.rows) {
-    // Another motion of the same elastic block, from 2 mm to 4 mm and back.
+    // An elastic block, from 1.2 mm to 3.2 mm and back.
     const double phase = 2.0 * std::numbers::pi * row.time_s;
-    row.position_m = 3e-3 - 1e-3 * std::cos(phase);
-    row.force_N = 400.0 * (row.position_m - 0.5e-3);
+    row.position_m = 2.2e-3 - 1e-3 * std::cos(phase);
+    row.force_N = 400.0 * (row.position_m - 0.9e-3);
   }
+  const SurfaceEstimate own = estimate_surface(pressed);
+  EXPECT_NEAR(own.offset_m, 0.9e-3, 0.1e-3) << "where a straight line would begin";
+  EXPECT_FALSE(own.onset_seen);
   const auto surfaces = registered({std::make_shared<Recording>(pressed)});
   EXPECT_EQ(surfaces[0].offset_m, 0.0);
 }
