@@ -20,7 +20,6 @@ HapticsLoop::HapticsLoop(Device& device, const LoopSettings& settings)
       recorded_(std::make_unique<RecordedRing>()),
       settings_(settings),
       live_(device, slot_, {settings.jnd, recorded_.get(), settings.source}),
-      pacer_(settings.spin_ns),
       ring_(std::make_unique<SpscRing<LoopSnapshot, kSnapshotRing>>()) {}
 
 HapticsLoop::~HapticsLoop() { stop(); }
@@ -58,11 +57,19 @@ void HapticsLoop::run(Pacer& pacer) noexcept {
   last_tick_ns_.store(pacer.now_ns(), std::memory_order_relaxed);
   Deadlines deadlines(pacer.now_ns(), settings_.period_ns);
   while (!stop_.load(std::memory_order_relaxed)) {
-    pacer.wait_until(deadlines.next_ns());
+    wait_for(pacer, deadlines.next_ns());
     const std::int64_t woke_ns = pacer.now_ns();
     tick(pacer, deadlines.wake(woke_ns), woke_ns);
   }
   let_go(pacer, deadlines);
+}
+
+void HapticsLoop::wait_for(Pacer& pacer, std::int64_t deadline_ns) noexcept {
+  if (settings_.rehearse_ns <= 0) return pacer.wait_until(deadline_ns);
+  pacer.wait_until(deadline_ns - settings_.rehearse_ns);
+  // Not when the tick might have to wait for its end.
+  if (deadline_ns - pacer.now_ns() >= settings_.rehearse_ns / 2) live_.rehearse();
+  pacer.spin_until(deadline_ns);
 }
 
 void HapticsLoop::tick(Pacer& pacer, const Wake& wake, std::int64_t woke_ns) noexcept {

@@ -25,7 +25,10 @@ namespace palpate {
 
 struct LoopSettings {
   std::int64_t period_ns = 1'000'000;
-  std::int64_t spin_ns = 0;  // how long before a deadline to spin instead of sleep
+  // How long before a deadline the thread wakes up, to rehearse the tick and then spin:
+  // the first evaluations after a pause pay for what the caches have lost, and a sleep
+  // ends late. 0: it sleeps until the deadline.
+  std::int64_t rehearse_ns = 0;
   bool realtime = true;      // ask for it
   RtRequest rt;
   JndLine jnd;
@@ -103,6 +106,7 @@ class HapticsLoop {
   void request_stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
  private:
+  void wait_for(Pacer& pacer, std::int64_t deadline_ns) noexcept;
   void tick(Pacer& pacer, const Wake& wake, std::int64_t woke_ns) noexcept;
   void let_go(Pacer& pacer, Deadlines& deadlines) noexcept;
 

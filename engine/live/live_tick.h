@@ -156,6 +156,11 @@ class LiveTick {
   // them: caches and branch predictors are warm before the device counts.
   void warm_up() noexcept;
 
+  // What the next `run` will need is in the caches; nothing changes.
+  void rehearse() noexcept {
+    if (models_ != nullptr) models_->tick.rehearse();
+  }
+
   // `now_s`: steady clock. The snapshot lives until the next call.
   const LoopSnapshot& run(double now_s, const LoopControls& controls) noexcept;
 

@@ -18,12 +18,14 @@ std::int64_t steady_now_ns() noexcept {
 }
 
 void SteadyPacer::wait_until(std::int64_t deadline_ns) noexcept {
-  const std::int64_t wake_ns = deadline_ns - spin_ns_;
   timespec until{};
-  until.tv_sec = static_cast<time_t>(wake_ns / kNsPerS);
-  until.tv_nsec = static_cast<long>(wake_ns % kNsPerS);
+  until.tv_sec = static_cast<time_t>(deadline_ns / kNsPerS);
+  until.tv_nsec = static_cast<long>(deadline_ns % kNsPerS);
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
   }
+}
+
+void SteadyPacer::spin_until(std::int64_t deadline_ns) noexcept {
   while (now_ns() < deadline_ns) {
   }
 }

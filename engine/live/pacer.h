@@ -41,6 +41,8 @@ class Pacer {
   virtual std::int64_t now_ns() noexcept = 0;
   // Returns at `deadline_ns` or later; at once when it has passed.
   virtual void wait_until(std::int64_t deadline_ns) noexcept = 0;
+  // The same for what is too near to sleep.
+  virtual void spin_until(std::int64_t deadline_ns) noexcept { wait_until(deadline_ns); }
 };
 
 // Of the clock that all of the program's times are on, CLOCK_MONOTONIC. Any
@@ -48,16 +50,12 @@ class Pacer {
 std::int64_t steady_now_ns() noexcept;
 inline double steady_now_s() noexcept { return 1e-9 * static_cast<double>(steady_now_ns()); }
 
-// The steady clock. Sleeps until `spin_ns` before a deadline,
-// then spins.
+// The steady clock.
 class SteadyPacer final : public Pacer {
  public:
-  explicit SteadyPacer(std::int64_t spin_ns = 0) noexcept : spin_ns_(spin_ns) {}
   std::int64_t now_ns() noexcept override { return steady_now_ns(); }
   void wait_until(std::int64_t deadline_ns) noexcept override;
-
- private:
-  std::int64_t spin_ns_;
+  void spin_until(std::int64_t deadline_ns) noexcept override;
 };
 
 }  // namespace palpate

@@ -12,6 +12,7 @@ namespace {
 // From what was recalled to the change of models: a slow picture, and the way through
 // the model slot. In longer ones the tool may have been anywhere.
 constexpr double kLongestGap_s = 5.0;
+constexpr double kRehearsedStep_s = 1e-3;
 
 bool finite(const ToolSample& sample) noexcept {
   return std::isfinite(sample.time_s) && std::isfinite(sample.position_m) &&
@@ -38,6 +39,7 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<c
     filter_of_.push_back(index);
   }
   vectors_.resize(filters_.size());
+  rehearsed_ = filters_;
   snapshot_.model_count = static_cast<std::uint32_t>(models_.size());
 }
 
@@ -45,6 +47,23 @@ void HapticsTick::reset() noexcept {
   motion_.reset();
   for (FeatureFilter& filter : filters_) filter.reset();
   started_ = false;
+}
+
+void HapticsTick::rehearse() noexcept {
+  if (!started_) return;
+  ToolSample next = sample_;
+  next.time_s += kRehearsedStep_s;
+  MotionEstimator motion = motion_;
+  const MotionEstimate estimate = motion.update(next);
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    rehearsed_[i] = filters_[i];
+    rehearsed_[i].update(next, estimate);
+  }
+  double sum_N = 0.0;
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    sum_N += models_[i]->evaluate(rehearsed_[filter_of_[i]].vector().values.data()).force_N;
+  }
+  rehearsed_N_ = sum_N;
 }
 
 void HapticsTick::recall(const PastMotion& motion) noexcept {
@@ -55,7 +74,7 @@ void HapticsTick::recall(const PastMotion& motion) noexcept {
 
 void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   motion_ = before.motion_;
-  time_s_ = before.time_s_;
+  sample_ = before.sample_;
   started_ = before.started_;
   const std::uint32_t models = snapshot_.model_count;
   snapshot_ = before.snapshot_;
@@ -68,9 +87,9 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
   }
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     // At rest at the last sample, but for what is known of it.
-    const double since_s = time_s_ - filters_[i].time_s();
+    const double since_s = sample_.time_s - filters_[i].time_s();
     if (!(since_s >= 0.0 && since_s < kLongestGap_s)) filters_[i].reset();
-    filters_[i].update({time_s_, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
+    filters_[i].update({sample_.time_s, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
     for (const FeatureFilter& old : before.filters_) filters_[i].adopt(old);
     vectors_[i] = filters_[i].vector();
   }
@@ -83,12 +102,12 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
     snapshot_.fault = TickFault::bad_sample;
     return snapshot_;
   }
-  if (started_ && !(sample.time_s > time_s_)) {
+  if (started_ && !(sample.time_s > sample_.time_s)) {
     snapshot_.fault = TickFault::time_not_later;
     return snapshot_;
   }
   started_ = true;
-  time_s_ = sample.time_s;
+  sample_ = sample;
   const MotionEstimate motion = motion_.update(sample);
   for (std::size_t i = 0; i < filters_.size(); ++i) vectors_[i] = filters_[i].update(sample, motion);
 

@@ -67,6 +67,11 @@ class HapticsTick {
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
+  // Goes through a step with the last sample once more and forgets it: code and data that
+  // the next one needs are in the caches then. In contact or not, for the next sample may
+  // be. Wait-free; the next `step` gives what it would have given.
+  void rehearse() noexcept;
+
   // Slow side, before `continue_from`: the filters meet the tool there; times increase.
   void recall(const PastMotion& motion) noexcept;
 
@@ -108,8 +113,10 @@ class HapticsTick {
   std::vector<FeatureVector> vectors_;
   std::vector<std::size_t> filter_of_;  // per model
   std::array<std::uint64_t, kMaxModels> cycles_{};
+  ToolSample sample_;                     // the last one
+  std::vector<FeatureFilter> rehearsed_;  // copies to rehearse with
+  double rehearsed_N_ = 0.0;              // so that no rehearsal is optimised away
   TickSnapshot snapshot_;
-  double time_s_ = 0.0;
   bool started_ = false;
   bool timed_ = false;
 };

@@ -2,6 +2,7 @@
 // function of time says.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -39,6 +40,26 @@ class SpringModel final : public ForceModel {
 inline std::shared_ptr<const ForceModel> spring(double stiffness_N_per_m) {
   return std::make_shared<const SpringModel>(stiffness_N_per_m);
 }
+
+// Gives nothing and counts how often it was asked.
+class CountingModel final : public ForceModel {
+ public:
+  ForceEstimate evaluate(const double*) const noexcept override {
+    ++evaluations_;
+    return {};
+  }
+  const std::vector<FeatureSpec>& features() const noexcept override { return features_; }
+  const std::string& name() const noexcept override { return name_; }
+  const std::string& method() const noexcept override { return name_; }
+  int centre_count() const noexcept override { return 0; }
+
+  std::uint64_t evaluations() const { return evaluations_; }
+
+ private:
+  std::vector<FeatureSpec> features_{FeatureSpec{}};
+  std::string name_ = "counting";
+  mutable std::atomic<std::uint64_t> evaluations_ = 0;
+};
 
 // One sample per tick, at the position that `path` gives for the time.
 class PathDevice final : public Device {

@@ -78,6 +78,30 @@ TEST(HapticsLoop, CountsTicksLatenessAndMissedDeadlines) {
   EXPECT_EQ(device.force_N(), 0.0) << "it lets go at the end";
 }
 
+TEST(HapticsLoop, RehearsesBeforeADeadlineUnlessItWakesLate) {
+  PathDevice device(test::held_5mm);
+  LoopSettings settings;
+  settings.rehearse_ns = 60'000;
+  HapticsLoop loop(device, settings);
+  auto counting = std::make_shared<test::CountingModel>();
+  loop.publish_models(std::make_unique<LiveModels>(1, device.sensor(), std::vector<std::shared_ptr<const ForceModel>>{counting}));
+  std::vector<std::uint64_t> evaluations;
+  FakePacer pacer([&](int wait) -> std::int64_t {
+    evaluations.push_back(counting->evaluations());
+    if (wait == 39) loop.request_stop();
+    // Each tick waits twice: until it wakes up, and for the deadline.
+    if (wait == 20) return 40'000;
+    return 0;
+  });
+  loop.run(pacer);
+  EXPECT_EQ(loop.statistics().ticks, 20u);
+  EXPECT_EQ(loop.statistics().lateness.max_us, 0.0) << "waking up late is not being late";
+  for (std::size_t tick = 1; tick < 20; ++tick) {
+    const std::uint64_t rehearsed = evaluations[2 * tick + 1] - evaluations[2 * tick];
+    EXPECT_EQ(rehearsed, tick == 10 ? 0u : 1u) << tick;
+  }
+}
+
 TEST(HapticsLoop, DropsAndCountsSnapshotsThatNobodyReads) {
   PathDevice device(test::held_5mm);
   HapticsLoop loop(device);
