@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <array>
 
-#include "models/solve/lapack.h"
 #include "engine/base/parallel.h"
+#include "models/solve/inner_products_simd.h"
 
 namespace palpate {
 namespace {
 
-// Sites at a time: they share one product with the directions that the furthest
-// behind of them lacks, so few; fewer still leave the product slow.
-constexpr Eigen::Index kBatch = 32;
-// Rows at a time: a block of columns stays in the second-level cache between
-// its computation and its use.
+// Sites at a time: they share the products with the directions that the furthest behind of
+// them lacks.
+constexpr Eigen::Index kGroup = simd::kProductColumns;
+// Rows at a time: a group's columns stay in the first-level cache, that block of the
+// directions in the second.
 constexpr Eigen::Index kRows = 512;
 // Columns whose part outside is computed at once, 7 MB at 6,850 sites.
 constexpr std::size_t kRecompute = 128;
@@ -21,7 +21,7 @@ constexpr std::size_t kRecompute = 128;
 constexpr int kParts = 4;
 
 struct Sums {
-  Eigen::MatrixXd shares;  // of the new directions; the last row: of the residual
+  Eigen::MatrixXd shares;  // a row per site; the new directions, then the residual
   Eigen::VectorXd length_squared;
 };
 
@@ -62,54 +62,63 @@ void CandidateGains::update(std::span<const Eigen::Index> sites, const Orthogona
 
 void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis) {
   const auto count = static_cast<Eigen::Index>(sites.size());
-  const Eigen::Index batches = (count + kBatch - 1) / kBatch;
-  const auto batch_size = [&](Eigen::Index batch) { return std::min(kBatch, count - batch * kBatch); };
-  // The directions known to the first of a batch are known to all of it.
-  const auto known_to = [&](Eigen::Index at) {
-    return known_to_[static_cast<std::size_t>(sites[static_cast<std::size_t>(at)])];
+  const Eigen::Index groups = (count + kGroup - 1) / kGroup;
+  const auto group_size = [&](Eigen::Index group) { return std::min(kGroup, count - group * kGroup); };
+  // The directions known to the first of a group are known to all of it.
+  const auto known_to = [&](Eigen::Index group) {
+    return known_to_[static_cast<std::size_t>(sites[static_cast<std::size_t>(group * kGroup)])];
   };
   std::array<std::vector<Sums>, kParts> sums;
-  const Eigen::Index blocks = (sites_.count() + kRows - 1) / kRows;
+  // Whole vectors of the points, which are padded to them.
+  const auto first_row = [&](int part) {
+    constexpr auto kVector = static_cast<Eigen::Index>(simd::kSimdPad);
+    return std::min(sites_.count(), (sites_.count() * part / kParts + kVector - 1) / kVector * kVector);
+  };
+  const simd::ScaleColumnFunction scale_column = simd::scale_column_function();
+  const auto directions = basis.columns_and_residual();
+  const auto direction_stride = static_cast<std::size_t>(directions.outerStride());
+  const simd::InnerProductsFunction inner_products = simd::inner_products_function();
   parallel_for(kParts, [&](int part) {
     std::vector<Sums>& mine = sums[static_cast<std::size_t>(part)];
-    for (Eigen::Index batch = 0; batch < batches; ++batch)
-      mine.push_back({Eigen::MatrixXd::Zero(basis.size() + 1 - known_to(batch * kBatch), batch_size(batch)),
-                      Eigen::VectorXd::Zero(batch_size(batch))});
-    Eigen::MatrixXd centres(sites_.dimension(), kBatch);
-    Eigen::MatrixXd memory(kRows, kBatch);
-    for (Eigen::Index block = blocks * part / kParts; block < blocks * (part + 1) / kParts; ++block) {
-      const Eigen::Index row = block * kRows;
-      const Eigen::Index rows = std::min(kRows, sites_.count() - row);
-      for (Eigen::Index batch = 0; batch < batches; ++batch) {
-        const Eigen::Index size = batch_size(batch);
+    for (Eigen::Index group = 0; group < groups; ++group) {
+      mine.push_back({Eigen::MatrixXd::Zero(kGroup, basis.size() + 1 - known_to(group)), Eigen::VectorXd::Zero(kGroup)});
+    }
+    Eigen::MatrixXd centres(sites_.dimension(), kGroup);
+    Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(kRows, kGroup);
+    const Eigen::Index end = first_row(part + 1);
+    for (Eigen::Index row = first_row(part); row < end; row += kRows) {
+      const Eigen::Index rows = std::min(kRows, end - row);
+      for (Eigen::Index group = 0; group < groups; ++group) {
+        const Eigen::Index size = group_size(group);
         for (Eigen::Index j = 0; j < size; ++j)
-          centres.col(j) = sites_.points.col(sites[static_cast<std::size_t>(batch * kBatch + j)]);
-        auto columns = memory.topLeftCorner(rows, size);
-        kernel_matrix(kernel_, points_, centres.leftCols(size), columns, row);
-        columns.array().colwise() *= sites_.row_scale.segment(row, rows).array();
-        Sums& sum = mine[static_cast<std::size_t>(batch)];
-        // The lengths of what has been looked at before are known.
-        if (known_to(batch * kBatch) == 0) sum.length_squared += columns.colwise().squaredNorm().transpose();
-        multiply(basis.columns_and_residual().block(row, known_to(batch * kBatch), rows, sum.shares.rows()), true,
-                 columns, false, 1.0, 1.0, sum.shares);
+          centres.col(j) = sites_.points.col(sites[static_cast<std::size_t>(group * kGroup + j)]);
+        kernel_matrix(kernel_, points_, centres.leftCols(size), memory.topLeftCorner(rows, size), row);
+        Sums& sum = mine[static_cast<std::size_t>(group)];
+        for (Eigen::Index j = 0; j < size; ++j) {
+          scale_column(memory.col(j).data(), sites_.row_scale.data() + row, static_cast<std::size_t>(rows),
+                       &sum.length_squared[j]);
+        }
+        inner_products(&directions.coeffRef(row, known_to(group)), direction_stride, static_cast<std::size_t>(sum.shares.cols()),
+                       memory.data(), static_cast<std::size_t>(memory.outerStride()), static_cast<std::size_t>(rows),
+                       sum.shares.data());
       }
     }
   });
-  for (Eigen::Index batch = 0; batch < batches; ++batch) {
-    Sums& total = sums[0][static_cast<std::size_t>(batch)];
+  for (Eigen::Index group = 0; group < groups; ++group) {
+    Sums& total = sums[0][static_cast<std::size_t>(group)];
     for (int part = 1; part < kParts; ++part) {
-      total.shares += sums[static_cast<std::size_t>(part)][static_cast<std::size_t>(batch)].shares;
-      total.length_squared += sums[static_cast<std::size_t>(part)][static_cast<std::size_t>(batch)].length_squared;
+      total.shares += sums[static_cast<std::size_t>(part)][static_cast<std::size_t>(group)].shares;
+      total.length_squared += sums[static_cast<std::size_t>(part)][static_cast<std::size_t>(group)].length_squared;
     }
-    const Eigen::Index first_known = known_to(batch * kBatch);
-    for (Eigen::Index j = 0; j < batch_size(batch); ++j) {
-      const Eigen::Index site = sites[static_cast<std::size_t>(batch * kBatch + j)];
-      Eigen::Index& known = known_to_[static_cast<std::size_t>(site)];
+    const Eigen::Index first_known = known_to(group);
+    for (Eigen::Index j = 0; j < group_size(group); ++j) {
+      const Eigen::Index site = sites[static_cast<std::size_t>(group * kGroup + j)];
+      const Eigen::Index known = known_to_[static_cast<std::size_t>(site)];
       if (known == 0)
         length_squared_[site] = outside_squared_[site] = exact_squared_[site] = total.length_squared[j];
       const Eigen::Index fresh = basis.size() - known;
-      outside_squared_[site] -= total.shares.col(j).segment(known - first_known, fresh).squaredNorm();
-      correlation_[site] = total.shares(total.shares.rows() - 1, j);
+      outside_squared_[site] -= total.shares.row(j).segment(known - first_known, fresh).squaredNorm();
+      correlation_[site] = total.shares(j, total.shares.cols() - 1);
     }
   }
   for (const Eigen::Index site : sites) known_to_[static_cast<std::size_t>(site)] = basis.size();
