@@ -19,6 +19,7 @@ namespace {
 
 constexpr Eigen::Index kCentres = 200;
 constexpr Eigen::Index kMostSites = 4000;  // of each Gram matrix: more tell the same
+constexpr Eigen::Index kBlockRows = 512;   // of the design at a time
 constexpr int kLowestDecade = -9;          // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
@@ -31,31 +32,31 @@ class LeftOutFits {
     choose_centres();
     space_ = penalty_space(input.kernel, centres_);
     unit_ = mean_eigenvalue();
-    points_.resize(sites_.dimension(), static_cast<Eigen::Index>(input_.samples.size()));
-    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
-      points_.col(static_cast<Eigen::Index>(i)) = input_.samples[i].point;
-    }
-    samples_of_.resize(static_cast<std::size_t>(input_.folds));
-    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
-      samples_of_[static_cast<std::size_t>(input_.samples[i].fold)].push_back(static_cast<Eigen::Index>(i));
-    }
+    folds_.resize(static_cast<std::size_t>(input_.folds));
+    sort_sites();
+    sort_samples();
+    of_sites_.resize(sites_.count(), columns());
+    of_samples_.resize(points_.cols(), columns());
   }
 
-  // Before the first prediction both of these, which touch nothing in common.
-  void gather_sites();
-  void gather_samples();
+  // Before the first prediction all blocks, then all folds; each touches what is its own.
+  int blocks() const { return blocks_of(of_sites_) + blocks_of(of_samples_); }
+  void gather_block(int block);
+  void gather_fold(int fold);
+  void finish();
 
   double unit() const { return unit_; }
 
   // The correction at every sample, from the sites of the other folds.
   Eigen::VectorXd predictions(double smoothing) const {
     Eigen::VectorXd values = Eigen::VectorXd::Zero(points_.cols());
-    for (std::size_t k = 0; k < grams_.size(); ++k) {
-      const Eigen::VectorXd coefficients = solve(grams_[k], smoothing, total_right_ - rights_[k]);
-      // Column by column: the samples of a fold stand below one another.
-      Eigen::VectorXd of_fold = Eigen::VectorXd::Zero(sample_columns_[k].rows());
-      for (Eigen::Index j = 0; j < coefficients.size(); ++j) of_fold += coefficients(j) * sample_columns_[k].col(j);
-      values(samples_of_[k]) = of_fold;
+    for (std::size_t k = 0; k < folds_.size(); ++k) {
+      const Fold& fold = folds_[k];
+      const Eigen::VectorXd coefficients = solve(fold.gram, smoothing, total_right_ - fold.right);
+      const auto count = static_cast<Eigen::Index>(fold.samples.size());
+      Eigen::VectorXd of_fold(count);
+      multiply(of_samples_.middleRows(fold.first_sample, count), false, coefficients, false, 1.0, 0.0, of_fold);
+      values(fold.samples) = of_fold;
     }
     return values;
   }
@@ -83,15 +84,63 @@ class LeftOutFits {
     return value > 0.0 ? value : 1.0;
   }
 
-  // [K Z, G] at the points.
-  Eigen::MatrixXd design(const Eigen::MatrixXd& points) const {
-    Eigen::MatrixXd kernel(points.cols(), centres_.cols());
-    kernel_matrix(input_.kernel, PointArrays(points), centres_, kernel);
-    const Eigen::MatrixXd tail = tail_matrix(tail_degree(input_.kernel), points);
-    Eigen::MatrixXd all(points.cols(), space_.basis.cols() + tail.cols());
-    multiply(kernel, false, space_.basis, false, 1.0, 0.0, all.leftCols(space_.basis.cols()));
-    all.rightCols(tail.cols()) = tail;
-    return all;
+  struct Fold {
+    Eigen::Index first_site = 0;
+    Eigen::Index sites = 0;
+    Eigen::Index first_sample = 0;      // row of of_samples_
+    std::vector<Eigen::Index> samples;  // of the input
+    Eigen::MatrixXd gram;               // of all sites but its own; the lower triangle
+    Eigen::VectorXd right;              // of its own
+  };
+
+  // By fold, so that what belongs to one stands together.
+  void sort_sites() {
+    Sites sorted = sites_;
+    Eigen::Index at = 0;
+    for (int k = 0; k < input_.folds; ++k) {
+      Fold& fold = folds_[static_cast<std::size_t>(k)];
+      fold.first_site = at;
+      for (Eigen::Index i = 0; i < sites_.count(); ++i) {
+        if (sites_.group[static_cast<std::size_t>(i)] != k) continue;
+        sorted.points.col(at) = sites_.points.col(i);
+        sorted.target_N(at) = sites_.target_N(i);
+        sorted.row_scale(at) = sites_.row_scale(i);
+        ++at;
+      }
+      fold.sites = at - fold.first_site;
+    }
+    sites_ = std::move(sorted);
+  }
+
+  void sort_samples() {
+    for (std::size_t i = 0; i < input_.samples.size(); ++i) {
+      folds_[static_cast<std::size_t>(input_.samples[i].fold)].samples.push_back(static_cast<Eigen::Index>(i));
+    }
+    points_.resize(sites_.dimension(), static_cast<Eigen::Index>(input_.samples.size()));
+    Eigen::Index at = 0;
+    for (Fold& fold : folds_) {
+      fold.first_sample = at;
+      for (const Eigen::Index i : fold.samples) points_.col(at++) = input_.samples[static_cast<std::size_t>(i)].point;
+    }
+  }
+
+  static int blocks_of(const Eigen::MatrixXd& all) { return static_cast<int>((all.rows() + kBlockRows - 1) / kBlockRows); }
+
+  Eigen::Index columns() const {
+    return space_.basis.cols() + tail_size(tail_degree(input_.kernel), sites_.dimension());
+  }
+
+  // A block of [K Z, G] at the points.
+  void design(const Eigen::MatrixXd& points, int block, Eigen::MatrixXd& all) const {
+    const Eigen::Index first = block * kBlockRows;
+    const Eigen::Index rows = std::min(kBlockRows, points.cols() - first);
+    const Eigen::MatrixXd some = points.middleCols(first, rows);
+    Eigen::MatrixXd kernel(rows, centres_.cols());
+    kernel_matrix(input_.kernel, PointArrays(some), centres_, kernel);
+    multiply_by_basis(kernel, space_);
+    const Eigen::Index free = space_.basis.cols();
+    all.block(first, 0, rows, free) = kernel.leftCols(free);
+    all.block(first, free, rows, all.cols() - free) = tail_matrix(tail_degree(input_.kernel), some);
   }
 
   // (`gram` + smoothing * penalty) x = right, scaled to a diagonal of ones.
@@ -123,41 +172,43 @@ class LeftOutFits {
   Eigen::MatrixXd centres_;
   PenaltySpace space_;
   double unit_ = 1.0;
-  Eigen::MatrixXd points_;  // of the samples
-  std::vector<Eigen::MatrixXd> sample_columns_;  // by fold
+  Eigen::MatrixXd points_;  // of the samples, by fold
+  Eigen::MatrixXd of_sites_;    // [K Z, G], scaled
+  Eigen::MatrixXd of_samples_;  // [K Z, G]
   Eigen::VectorXd total_right_;
-  std::vector<Eigen::MatrixXd> grams_;  // without each fold
-  std::vector<Eigen::VectorXd> rights_;
-  std::vector<std::vector<Eigen::Index>> samples_of_;
+  std::vector<Fold> folds_;
 };
 
-void LeftOutFits::gather_sites() {
-  Eigen::MatrixXd columns = design(sites_.points);
-  columns.array().colwise() *= sites_.row_scale.array();
-  const auto n = columns.cols();
-  const Eigen::VectorXd data = sites_.row_scale.cwiseProduct(sites_.target_N);
-  Eigen::MatrixXd total_gram = Eigen::MatrixXd::Zero(n, n);
-  total_right_ = Eigen::VectorXd::Zero(n);
-  for (int k = 0; k < input_.folds; ++k) {
-    std::vector<Eigen::Index> rows;
-    for (std::size_t i = 0; i < sites_.group.size(); ++i) {
-      if (sites_.group[i] == k) rows.push_back(static_cast<Eigen::Index>(i));
-    }
-    const Eigen::MatrixXd part = columns(rows, Eigen::all);
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
-    if (part.rows() > 0) multiply(part, true, part, false, 1.0, 0.0, gram);
-    const Eigen::VectorXd right = part.transpose() * data(rows);
-    total_gram += gram;
-    total_right_ += right;
-    grams_.push_back(std::move(gram));
-    rights_.push_back(right);
-  }
-  for (Eigen::MatrixXd& gram : grams_) gram = total_gram - gram;
+void LeftOutFits::gather_block(int block) {
+  const int of_samples = block - blocks_of(of_sites_);
+  if (of_samples >= 0) return design(points_, of_samples, of_samples_);
+  design(sites_.points, block, of_sites_);
+  const Eigen::Index first = block * kBlockRows;
+  const Eigen::Index rows = std::min(kBlockRows, sites_.count() - first);
+  of_sites_.middleRows(first, rows).array().colwise() *= sites_.row_scale.segment(first, rows).array();
 }
 
-void LeftOutFits::gather_samples() {
-  const Eigen::MatrixXd columns = design(points_);
-  for (const auto& samples : samples_of_) sample_columns_.push_back(columns(samples, Eigen::all));
+// Of its own sites; `finish` makes it that of all others.
+void LeftOutFits::gather_fold(int fold) {
+  Fold& mine = folds_[static_cast<std::size_t>(fold)];
+  mine.gram = Eigen::MatrixXd::Zero(columns(), columns());
+  mine.right = Eigen::VectorXd::Zero(columns());
+  if (mine.sites == 0) return;
+  const auto part = of_sites_.middleRows(mine.first_site, mine.sites);
+  const Eigen::VectorXd data = sites_.row_scale.segment(mine.first_site, mine.sites)
+                                   .cwiseProduct(sites_.target_N.segment(mine.first_site, mine.sites));
+  gram(part, mine.gram);
+  multiply(part, true, data, false, 1.0, 0.0, mine.right);
+}
+
+void LeftOutFits::finish() {
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(columns(), columns());
+  total_right_ = Eigen::VectorXd::Zero(columns());
+  for (const Fold& fold : folds_) {
+    total += fold.gram;
+    total_right_ += fold.right;
+  }
+  for (Fold& fold : folds_) fold.gram = total - fold.gram;
 }
 
 // Distance of every sample of a fold to the nearest site of another fold.
@@ -198,10 +249,11 @@ std::vector<char> inside_depth(const StrengthInput& input) {
   return counts;
 }
 
-// Errors that are felt anyhow all count much the same.
+// Of error over JND, as weighting.h's robust_scale leaves it: errors that are felt anyhow
+// all count much the same.
 double saturated_square(double error_over_jnd) {
-  const double scaled = error_over_jnd * robust_scale(error_over_jnd);
-  return scaled * scaled;
+  const double squared = error_over_jnd * error_over_jnd;
+  return squared / (1.0 + squared / (kRobustError_jnd * kRobustError_jnd));
 }
 
 struct Variant {
@@ -252,21 +304,30 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   const BlasThreads one_thread(1);
   LeftOutFits fits(input);
   std::vector<double> distance(input.samples.size(), std::numeric_limits<double>::infinity());
-  parallel_for(2 + input.folds, [&](int part) {
-    if (part == 0) return fits.gather_sites();
-    if (part == 1) return fits.gather_samples();
-    add_distances(input, part - 2, distance);
+  parallel_for(fits.blocks(), [&](int block) { fits.gather_block(block); });
+  parallel_for(2 * input.folds, [&](int part) {
+    if (part < input.folds) return fits.gather_fold(part);
+    add_distances(input, part - input.folds, distance);
   });
+  fits.finish();
   const std::vector<char> counts = inside_depth(input);
-  const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
-    Variant variant{smoothing, strength, radius, std::vector<double>(static_cast<std::size_t>(input.folds), 0.0)};
+  // Once for all variants.
+  std::array<std::vector<double>, kRadiusFactors.size()> trusted;
+  std::vector<double> inverse_jnd;
+  for (const LeftOutSample& sample : input.samples) inverse_jnd.push_back(1.0 / input.jnd.at(sample.force_N));
+  for (std::size_t r = 0; r < kRadiusFactors.size(); ++r) {
+    const double radius = kRadiusFactors[r] * input.least_radius;
+    for (const double one : distance) trusted[r].push_back(trust(one, radius, input.outer_to_inner * radius));
+  }
+  const auto score = [&](double smoothing, double strength, std::size_t r, const Eigen::VectorXd& h) {
+    Variant variant{smoothing, strength, kRadiusFactors[r] * input.least_radius,
+                    std::vector<double>(static_cast<std::size_t>(input.folds), 0.0)};
     for (std::size_t i = 0; i < input.samples.size(); ++i) {
       if (!counts[i]) continue;
       const LeftOutSample& sample = input.samples[i];
-      const double trusted = trust(distance[i], radius, input.outer_to_inner * radius);
-      const double force_N = force_of(sample, input, strength, trusted, h(static_cast<Eigen::Index>(i)));
-      const double error = input.jnd.error_over_jnd(force_N, sample.force_N);
-      variant.fold_squares[static_cast<std::size_t>(sample.fold)] += saturated_square(error);
+      const double force_N = force_of(sample, input, strength, trusted[r][i], h(static_cast<Eigen::Index>(i)));
+      variant.fold_squares[static_cast<std::size_t>(sample.fold)] +=
+          saturated_square((force_N - sample.force_N) * inverse_jnd[i]);
     }
     return variant;
   };
@@ -278,14 +339,12 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     const auto at = static_cast<std::size_t>(part);
     const double smoothing = fits.unit() * std::pow(10.0, kHighestDecade - part);
     predictions[at] = fits.predictions(smoothing);
-    for (const double factor : kRadiusFactors) {
-      for (const double strength : kStrengths) {
-        of_decade[at].push_back(score(smoothing, strength, factor * input.least_radius, predictions[at]));
-      }
+    for (std::size_t r = 0; r < kRadiusFactors.size(); ++r) {
+      for (const double strength : kStrengths) of_decade[at].push_back(score(smoothing, strength, r, predictions[at]));
     }
   });
   // "None" first, then from the most smoothing to the least.
-  std::vector<Variant> variants{score(fits.unit(), 0.0, input.least_radius, nothing)};
+  std::vector<Variant> variants{score(fits.unit(), 0.0, 0, nothing)};
   for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const auto best = std::min_element(variants.begin(), variants.end(),
                                      [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
@@ -322,8 +381,8 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   for (std::size_t i = 0; i < input.samples.size(); ++i) {
     if (!std::isfinite(distance[i])) continue;
     const LeftOutSample& sample = input.samples[i];
-    const double trusted = trust(distance[i], chosen->inner_radius, input.outer_to_inner * chosen->inner_radius);
-    const double force_N = force_of(sample, input, chosen->strength, trusted, h(static_cast<Eigen::Index>(i)));
+    const double trust_here = trust(distance[i], chosen->inner_radius, input.outer_to_inner * chosen->inner_radius);
+    const double force_N = force_of(sample, input, chosen->strength, trust_here, h(static_cast<Eigen::Index>(i)));
     choice.predictions.push_back({i, std::abs(force_N - sample.force_N), force_N, distance[i]});
     const double trend_N = force_of(sample, input, 0.0, 0.0, 0.0);
     choice.trend_predictions.push_back({i, std::abs(trend_N - sample.force_N), trend_N, distance[i]});

@@ -94,8 +94,9 @@ Status find_sides(PreparedTraining& prepared, const Eigen::VectorXd& base_N) {
   quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
   const auto sequence = choose_random(prepared.sites, quick);
   if (!sequence) return sequence.error();
+  RepeatedSolve quick_fit(prepared.sites, quick.kernel, sequence->centres_of(sequence->most));
   for (int pass = 0; pass < kOneSidedPasses; ++pass) {
-    const auto fitted = solve_largest(prepared.sites, quick.kernel, *sequence, quick.centres);
+    const auto fitted = quick_fit.solve();
     if (!fitted) return fitted.error();
     release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
   }

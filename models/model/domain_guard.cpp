@@ -1,6 +1,7 @@
 #include "models/model/domain_guard.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -16,16 +17,53 @@ constexpr double kOuterToInner = 3.0;
 constexpr double kFirstCoverRadius = 0.03;
 constexpr double kCoverGrowth = 1.25;
 
+// Points of which one may be near another, a block of them at a time.
+class Crowd {
+ public:
+  explicit Crowd(Eigen::Index dimension) : dimension_(static_cast<std::size_t>(dimension)) {}
+
+  void add(const double* x) {
+    if (count_ % kBlock == 0) coordinates_.resize(coordinates_.size() + kBlock * dimension_, HUGE_VAL);
+    double* block = coordinates_.data() + count_ / kBlock * kBlock * dimension_;
+    for (std::size_t k = 0; k < dimension_; ++k) block[k * kBlock + count_ % kBlock] = x[k];
+    ++count_;
+  }
+
+  // The newest are asked first.
+  bool is_near(const double* x, double squared) const {
+    for (std::size_t end = coordinates_.size(); end > 0; end -= kBlock * dimension_) {
+      const double* block = coordinates_.data() + end - kBlock * dimension_;
+      std::array<double, kBlock> sums{};
+      for (std::size_t k = 0; k < dimension_; ++k) {
+        for (std::size_t j = 0; j < kBlock; ++j) {
+          const double difference = x[k] - block[k * kBlock + j];
+          sums[j] += difference * difference;
+        }
+      }
+      int near = 0;
+      for (const double sum : sums) near += sum <= squared ? 1 : 0;
+      if (near > 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 8;
+
+  std::size_t dimension_;
+  std::size_t count_ = 0;
+  std::vector<double> coordinates_;
+};
+
 std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
   std::vector<Eigen::Index> kept;
+  Crowd crowd(sites.rows());
   for (Eigen::Index i = 0; i < sites.cols(); ++i) {
     // Sites come in the order of time: what covers one is most often new.
-    const bool covered = std::any_of(kept.rbegin(), kept.rend(), [&](Eigen::Index k) {
-      return (sites.col(i) - sites.col(k)).squaredNorm() <= radius * radius;
-    });
-    if (covered) continue;
+    if (crowd.is_near(sites.col(i).data(), radius * radius)) continue;
     if (static_cast<Eigen::Index>(kept.size()) == kMaximumCoverPoints) return {};
     kept.push_back(i);
+    crowd.add(sites.col(i).data());
   }
   return kept;
 }

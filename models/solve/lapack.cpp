@@ -12,6 +12,8 @@ void dgemm_(const char*, const char*, const int*, const int*, const int*, const 
 void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*,
             const double*, double*, const int*);
 void dgeqrt_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, int*);
+void dgemqrt_(const char*, const char*, const int*, const int*, const int*, const int*, const double*, const int*,
+              const double*, const int*, double*, const int*, double*, int*);
 void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, double*, const int*, double*,
              const int*, double*, const int*, int*, int*);
 void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
@@ -113,19 +115,46 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
          c.data(), &ldc);
 }
 
+void gram(const ConstMatrixRef& a, MatrixRef c) {
+  const int n = to_int(a.cols());
+  const int k = to_int(a.rows());
+  assert(c.rows() == n && c.cols() == n);
+  if (n == 0) return;
+  const double one = 1.0;
+  const double zero = 0.0;
+  const int lda = leading(a);
+  const int ldc = leading(c);
+  dsyrk_("L", "T", &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
+}
+
 // By the recursive panels of dgeqrt: dgeqrf takes matrices of up to 128 columns column by
 // column, which takes 2.5 times as long at 106.
-void qr_in_place(MatrixRef a) {
+Eigen::MatrixXd qr_in_place(MatrixRef a) {
   assert(a.rows() >= a.cols());
   const int m = to_int(a.rows());
   const int n = to_int(a.cols());
-  if (n == 0) return;
+  if (n == 0) return {};
   const int lda = leading(a);
   const int block = std::min(32, n);
-  Eigen::VectorXd reflectors(block * n);
+  Eigen::MatrixXd factors(block, n);
   Eigen::VectorXd work(block * n);
   int info = 0;
-  dgeqrt_(&m, &n, &block, a.data(), &lda, reflectors.data(), &block, work.data(), &info);
+  dgeqrt_(&m, &n, &block, a.data(), &lda, factors.data(), &block, work.data(), &info);
+  assert(info == 0);
+  return factors;
+}
+
+void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c) {
+  assert(a.rows() == c.size() && factors.cols() == a.cols());
+  const int m = to_int(a.rows());
+  const int n = to_int(a.cols());
+  if (n == 0) return;
+  const int one = 1;
+  const int lda = leading(a);
+  const int block = to_int(factors.rows());
+  Eigen::VectorXd work(block);
+  int info = 0;
+  dgemqrt_("L", "T", &m, &one, &n, &block, a.data(), &lda, factors.data(), &block, c.data(), &m, work.data(), &info);
   assert(info == 0);
 }
 

@@ -39,9 +39,15 @@ void end_idle_blas_threads();
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);
 
+// The lower triangle of c = a^T a; what is above stays.
+void gram(const ConstMatrixRef& a, MatrixRef c);
+
 // Replaces the upper triangle of `a` (rows >= cols) by R of its QR
-// factorisation; below the diagonal it holds reflectors afterwards.
-void qr_in_place(MatrixRef a);
+// factorisation; below the diagonal it holds reflectors afterwards, whose factors are
+// the result.
+Eigen::MatrixXd qr_in_place(MatrixRef a);
+// c = Q^T c, of `a` and `factors` as qr_in_place leaves them.
+void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c);
 
 // a = u diag(s) vt for a square matrix, singular values descending.
 struct Svd {

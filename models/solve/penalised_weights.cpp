@@ -67,13 +67,32 @@ TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
 
 }  // namespace
 
+namespace {
+
+// The product of the first `count` reflectors I - tau w w^T as I - u v^T.
+void gather_reflectors(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index count, PenaltySpace& space) {
+  const Eigen::Index n = qr.rows();
+  space.u.resize(n, count);
+  space.v = Eigen::MatrixXd::Zero(n, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    auto w = space.v.col(k);
+    w(k) = 1.0;
+    w.tail(n - k - 1) = qr.matrixQR().col(k).tail(n - k - 1);
+    const Eigen::VectorXd along = space.v.leftCols(k).transpose() * w;
+    space.u.col(k) = qr.hCoeffs()(k) * (w - space.u.leftCols(k) * along);
+  }
+}
+
+}  // namespace
+
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
   const Eigen::Index n = centres.cols();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
       tail_matrix(tail_degree(kernel), centres));
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
   PenaltySpace space;
-  space.basis = q.rightCols(n - qr.rank());
+  gather_reflectors(qr, qr.rank(), space);
+  space.basis = Eigen::MatrixXd::Identity(n, n).rightCols(n - qr.rank()) -
+                space.u * space.v.bottomRows(n - qr.rank()).transpose();
   const Eigen::MatrixXd kernel_values = kernel_at_centres(kernel, centres);
   Eigen::MatrixXd product(n, space.basis.cols());
   multiply(kernel_values, false, space.basis, false, definiteness_sign(kernel), 0.0, product);
@@ -81,6 +100,15 @@ PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
   multiply(space.basis, true, product, false, 1.0, 0.0, space.penalty);
   space.penalty = (0.5 * (space.penalty + space.penalty.transpose())).eval();
   return space;
+}
+
+void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space) {
+  const Eigen::Index rank = space.v.cols();
+  const Eigen::Index free = matrix.cols() - rank;
+  Eigen::MatrixXd along(matrix.rows(), rank);
+  multiply(matrix, false, space.u, false, 1.0, 0.0, along);
+  for (Eigen::Index j = 0; j < free; ++j) matrix.col(j) = matrix.col(j + rank);
+  multiply(along, false, space.v.bottomRows(free), true, -1.0, 1.0, matrix.leftCols(free));
 }
 
 FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "models/solve/fit_report.h"
+#include "models/solve/lapack.h"
 #include "models/solve/solve_weights.h"
 #include "models/model/rbf/kernels.h"
 
@@ -22,8 +23,14 @@ namespace palpate {
 struct PenaltySpace {
   Eigen::MatrixXd basis;    // n x (n - rank G), orthonormal columns Z
   Eigen::MatrixXd penalty;  // Z^T (sign Phi) Z, positive semidefinite
+  // Z is the last columns of I - u v^T, both n x rank G.
+  Eigen::MatrixXd u;
+  Eigen::MatrixXd v;
 };
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres);
+// Replaces the first n - rank G columns of `matrix`, of n columns, by those of its product
+// with Z.
+void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space);
 
 // With the sites' own smoothing, 0 where they have none.
 FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres);

@@ -1,83 +1,21 @@
 #include "models/solve/solve_weights.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "models/solve/lapack.h"
+#include "models/solve/row_folder.h"
 #include "models/solve/penalised_weights.h"
-#include "engine/base/parallel.h"
-#include "models/model/rbf/polynomial_tail.h"
-#include "models/model/rbf/rbf_evaluate.h"
 
 namespace palpate {
 namespace {
 
-// The rows are folded in two halves, one thread each. Fixed, not the number of
-// cores, so that the result is the same everywhere.
-constexpr int kHalves = 2;
-
-class RowFolder {
- public:
-  RowFolder(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres)
-      : sites_(sites),
-        kernel_(kernel),
-        centres_(centres),
-        points_(sites.points),
-        columns_(centres.cols() + tail_size(tail_degree(kernel), sites.dimension()) + 1),
-        block_rows_(std::max<Eigen::Index>(1024, (2 * columns_ + 7) / 8 * 8)) {}
-
-  // R of the QR factorisation of [row_scale * (Phi G f)], false if cancelled.
-  bool fold(const FitControl& control, Eigen::MatrixXd& triangle) const {
-    const Eigen::Index blocks = (sites_.count() + block_rows_ - 1) / block_rows_;
-    std::array<Eigen::MatrixXd, kHalves> halves;
-    std::atomic<bool> cancelled{false};
-    parallel_for(kHalves, [&](int half) {
-      const Eigen::Index first = blocks * half / kHalves;
-      const Eigen::Index last = blocks * (half + 1) / kHalves;
-      Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(columns_ + block_rows_, columns_);
-      for (Eigen::Index block = first; block < last && !cancelled; ++block) append(block, stack);
-      halves[static_cast<std::size_t>(half)] = upper_triangle(stack);
-    });
-    if (!control.may_continue(0.7)) return false;
-    Eigen::MatrixXd stack(2 * columns_, columns_);
-    stack << halves[0], halves[1];
-    qr_in_place(stack);
-    triangle = upper_triangle(stack);
-    return true;
-  }
-
- private:
-  Eigen::MatrixXd upper_triangle(const Eigen::MatrixXd& stack) const {
-    return stack.topRows(columns_).triangularView<Eigen::Upper>();
-  }
-
-  // Replaces the triangle on top of `stack` by that of [triangle; block].
-  void append(Eigen::Index block, Eigen::MatrixXd& stack) const {
-    const Eigen::Index first = block * block_rows_;
-    const Eigen::Index rows = std::min(block_rows_, sites_.count() - first);
-    stack.topRows(columns_).triangularView<Eigen::StrictlyLower>().setZero();
-    Eigen::MatrixXd rows_of_block(rows, columns_);
-    kernel_matrix(kernel_, points_, centres_, rows_of_block.leftCols(centres_.cols()), first);
-    const Eigen::Index tail = columns_ - 1 - centres_.cols();
-    rows_of_block.middleCols(centres_.cols(), tail) =
-        tail_matrix(tail_degree(kernel_), sites_.points.middleCols(first, rows));
-    rows_of_block.rightCols(1) = sites_.target_N.segment(first, rows);
-    rows_of_block.array().colwise() *= sites_.row_scale.segment(first, rows).array();
-    stack.middleRows(columns_, rows) = rows_of_block;
-    qr_in_place(stack.topRows(columns_ + rows));
-  }
-
-  const Sites& sites_;
-  KernelKind kernel_;
-  const Eigen::MatrixXd& centres_;
-  PointArrays points_;
-  Eigen::Index columns_;
-  Eigen::Index block_rows_;
-};
+// With 100 centres 84 MB.
+constexpr Eigen::Index kMostKeptSites = 100000;
 
 // The ridge of the largest evidence, see solve_weights.h. `s`: the singular
 // values that count, descending; `z`: the data's shares along them; `rest`: the
@@ -114,6 +52,19 @@ bool sites_decide(double lambda, double largest, double rows, double unknowns) {
   return rows >= kRowsEach * unknowns && lambda < kNoiseRules * largest * largest;
 }
 
+// False when the iteration did not converge. `triangle`: [R z; 0 rho].
+bool scale_triangle(const Eigen::MatrixXd& triangle, ScaledTriangle& scaled) {
+  const Eigen::Index n = triangle.cols() - 1;
+  Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
+  Eigen::VectorXd& scale = scaled.scale;
+  scale = r.colwise().stableNorm().transpose();
+  // A column of next to nothing (the kernel of a centre on top of every site)
+  // is not scaled up: it would need a weight of 1e20 to matter.
+  scale = (scale.array() > 1e-20 * scale.maxCoeff()).select(scale, std::max(scale.maxCoeff(), 1e-300));
+  r.array().rowwise() /= scale.transpose().array();
+  return svd(std::move(r), scaled.parts);
+}
+
 struct SmallSolution {
   Eigen::VectorXd unknowns;
   double ridge = 0.0;  // of the square of the largest singular value
@@ -122,17 +73,12 @@ struct SmallSolution {
   double condition = 0.0;
 };
 
-// The triangle is [R z; 0 rho]: minimises |R x - z|^2 + rho^2, and the ridge.
-bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, Ridge ridge, double rows, SmallSolution& out) {
+// The triangle is [R z; 0 rho]: minimises |R x - z|^2 + rho^2, and the ridge. `scaled`: of R.
+SmallSolution solve_triangle(const Eigen::MatrixXd& triangle, const ScaledTriangle& scaled, double truncation,
+                             Ridge ridge, double rows) {
   const Eigen::Index n = triangle.cols() - 1;
-  Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
-  Eigen::VectorXd scale = r.colwise().stableNorm().transpose();
-  // A column of next to nothing (the kernel of a centre on top of every site)
-  // is not scaled up: it would need a weight of 1e20 to matter.
-  scale = (scale.array() > 1e-20 * scale.maxCoeff()).select(scale, std::max(scale.maxCoeff(), 1e-300));
-  r.array().rowwise() /= scale.transpose().array();
-  Svd parts;
-  if (!svd(std::move(r), parts)) return false;
+  const Svd& parts = scaled.parts;
+  SmallSolution out;
   const double smallest = truncation * parts.s[0];
   out.rank = (parts.s.array() > smallest && parts.s.array() > 0.0).count();
   Eigen::VectorXd z = parts.u.transpose() * triangle.col(n).head(n);
@@ -146,38 +92,14 @@ bool solve_triangle(const Eigen::MatrixXd& triangle, double truncation, Ridge ri
   out.residual_squared = rest + (left * z.head(out.rank).array()).square().sum();
   z.head(out.rank).array() *= kept / (kept.square() + lambda);
   out.unknowns = parts.vt.topRows(out.rank).transpose() * z.head(out.rank);
-  out.unknowns.array() /= scale.array();
+  out.unknowns.array() /= scaled.scale.array();
   out.condition = parts.s[n - 1] > 0.0 ? parts.s[0] / parts.s[n - 1] : 1e300;
-  return true;
+  return out;
 }
 
-}  // namespace
-
-bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
-               FoldedRows& folded) {
-  folded.sites = sites.count();
-  folded.rows = (sites.row_scale.array() > 0.0).count();
-  folded.smoothing = sites.smoothing;
-  folded.strength = sites.strength;
-  return RowFolder(sites, kernel, centres).fold(control, folded.triangle);
-}
-
-Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
-  if (const Status status = validate_sites(sites); !status) return status;
-  if (centres.rows() == sites.points.rows() && centres.allFinite()) return {};
-  return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
-               std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
-}
-
-Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres,
-                               Ridge ridge, double truncation) {
-  if (ridge == Ridge::by_evidence && folded.smoothing && kernel == KernelKind::cubic) {
-    return penalised_weights(folded, kernel, centres);
-  }
-  const BlasThreads one_thread(1);
-  SmallSolution solution;
-  if (!solve_triangle(folded.triangle, truncation, ridge, static_cast<double>(folded.rows), solution))
-    return Error{"the singular value decomposition did not converge; check the recording for extreme values"};
+// What a solution of the triangle says of the sites it came from.
+FittedRbf fitted_from(const SmallSolution& solution, const FoldedRows& folded, KernelKind kernel,
+                      const Eigen::MatrixXd& centres, Ridge ridge) {
   FittedRbf fitted;
   fitted.function = {kernel, centres, solution.unknowns.head(centres.cols()),
                      solution.unknowns.tail(solution.unknowns.size() - centres.cols())};
@@ -196,6 +118,48 @@ Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, cons
     report.notes.push_back("the data determine " + std::to_string(report.rank) + " of " +
                            std::to_string(report.columns) + " unknowns; the rest took the shortest solution");
   return fitted;
+}
+
+Error not_converged() {
+  return Error{"the singular value decomposition did not converge; check the recording for extreme values"};
+}
+
+// Without the triangle.
+FoldedRows counted(const Sites& sites) {
+  FoldedRows folded;
+  folded.sites = sites.count();
+  folded.rows = (sites.row_scale.array() > 0.0).count();
+  folded.smoothing = sites.smoothing;
+  folded.strength = sites.strength;
+  return folded;
+}
+
+}  // namespace
+
+bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
+               FoldedRows& folded) {
+  folded = counted(sites);
+  return RowFolder(sites, kernel, centres).fold(control, false, folded.triangle);
+}
+
+Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
+  if (const Status status = validate_sites(sites); !status) return status;
+  if (centres.rows() == sites.points.rows() && centres.allFinite()) return {};
+  return Error{"centres have " + std::to_string(centres.rows()) + " coordinates or are not finite, expected " +
+               std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
+}
+
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres,
+                               Ridge ridge, double truncation) {
+  if (ridge == Ridge::by_evidence && folded.smoothing && kernel == KernelKind::cubic) {
+    return penalised_weights(folded, kernel, centres);
+  }
+  const BlasThreads one_thread(1);
+  ScaledTriangle scaled;
+  if (!scale_triangle(folded.triangle, scaled)) return not_converged();
+  const SmallSolution solution =
+      solve_triangle(folded.triangle, scaled, truncation, ridge, static_cast<double>(folded.rows));
+  return fitted_from(solution, folded, kernel, centres, ridge);
 }
 
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
@@ -219,6 +183,34 @@ Result<FittedRbf> solve_largest(const Sites& sites, KernelKind kernel, const Cen
     fitted->report.notes.push_back("only " + std::to_string(sequence.most) + " centres: " + sequence.shortage);
   }
   return fitted;
+}
+
+struct RepeatedSolve::Factors {
+  RowFolder folder;
+  ScaledTriangle scaled;
+};
+
+RepeatedSolve::RepeatedSolve(const Sites& sites, KernelKind kernel, Eigen::MatrixXd centres)
+    : sites_(sites), kernel_(kernel), centres_(std::move(centres)) {}
+
+RepeatedSolve::~RepeatedSolve() = default;
+
+Result<FittedRbf> RepeatedSolve::solve() {
+  const BlasThreads one_thread(1);
+  FoldedRows folded = counted(sites_);
+  const bool keeps = sites_.count() <= kMostKeptSites;
+  if (factors_ != nullptr && keeps) {
+    factors_->folder.fold_again(folded.triangle);
+  } else {
+    if (const Status status = validate_centres(sites_, centres_); !status) return status.error();
+    auto factors = std::make_unique<Factors>(Factors{RowFolder(sites_, kernel_, centres_), {}});
+    factors->folder.fold({}, keeps, folded.triangle);
+    if (!scale_triangle(folded.triangle, factors->scaled)) return not_converged();
+    factors_ = std::move(factors);
+  }
+  const SmallSolution solution = solve_triangle(folded.triangle, factors_->scaled, kDefaultTruncation,
+                                                Ridge::by_evidence, static_cast<double>(folded.rows));
+  return fitted_from(solution, folded, kernel_, centres_, Ridge::by_evidence);
 }
 
 }  // namespace palpate

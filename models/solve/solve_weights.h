@@ -24,6 +24,7 @@
 // "Bayesian interpolation", for the evidence.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "engine/base/result.h"
@@ -68,6 +69,28 @@ Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, cons
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
                                 const FitControl& control = {}, Ridge ridge = Ridge::none,
                                 double truncation = kDefaultTruncation);
+// solve_weights by evidence, again and again while the targets of the sites change and all
+// else stays: the rows are factored once and kept, unless they are very many.
+class RepeatedSolve {
+ public:
+  // `sites` outlives this.
+  RepeatedSolve(const Sites& sites, KernelKind kernel, Eigen::MatrixXd centres);
+  ~RepeatedSolve();
+  RepeatedSolve(const RepeatedSolve&) = delete;
+  RepeatedSolve& operator=(const RepeatedSolve&) = delete;
+
+  // For the targets as they are now. Errors as of solve_weights.
+  Result<FittedRbf> solve();
+
+ private:
+  struct Factors;
+
+  const Sites& sites_;
+  KernelKind kernel_;
+  Eigen::MatrixXd centres_;
+  std::unique_ptr<Factors> factors_;
+};
+
 // By evidence, for all centres of the sequence; `asked`: how many were wanted. The
 // report notes what is missing.
 Result<FittedRbf> solve_largest(const Sites& sites, KernelKind kernel, const CentreSequence& sequence,

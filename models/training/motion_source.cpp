@@ -229,15 +229,39 @@ Status MotionSource::read_spilled(const std::function<bool(const MotionRow&)>& v
   return {};
 }
 
+// Whether all rows and their motion are in memory as they came.
+bool MotionSource::knows_all() const {
+  return std::all_of(inputs_.begin(), inputs_.end(),
+                     [](const Input& input) { return input.loaded != nullptr && input.motion != nullptr; });
+}
+
+Status MotionSource::visit_loaded(const std::function<bool(const MotionRow&)>& visit) const {
+  MotionRow row;
+  for (std::size_t index = 0; index < inputs_.size(); ++index) {
+    const auto& rows = inputs_[index].loaded->rows;
+    const auto& motion = *inputs_[index].motion;
+    row.recording = static_cast<int>(index);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      row.first = i == 0;
+      row.sample = tool_sample(rows[i]);
+      row.motion = motion[i];
+      row.force_N = rows[i].force_N;
+      if (!visit(row)) return interrupted();
+    }
+  }
+  return {};
+}
+
 Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit) {
   names_.clear();
   first_rows_.clear();
   forget();  // what a pass that broke off has left
-  keeps_ = true;
+  const bool known_before = knows_all();
+  keeps_ = !known_before;
   rows_ = 0;
   std::size_t loaded = 0;
   for (const Input& input : inputs_) loaded += input.loaded ? input.loaded->rows.size() : kept_rows_;
-  kept_.reserve(std::min(loaded, kept_rows_));  // what stays untouched takes no memory
+  if (keeps_) kept_.reserve(std::min(loaded, kept_rows_));  // what stays untouched takes no memory
   MotionRow row;
   for (std::size_t index = 0; index < inputs_.size(); ++index) {
     auto stream = RowStream::open(inputs_[index]);
@@ -276,7 +300,7 @@ Status MotionSource::read_all(const std::function<bool(const MotionRow&)>& visit
     }
   }
   if (spilled_ && !spilled_->finish()) forget();
-  complete_ = keeps_;
+  complete_ = keeps_ || known_before;
   return {};
 }
 
@@ -296,6 +320,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
 Status MotionSource::visit_recorded(const std::function<bool(const MotionRow&)>& visit) {
   if (!complete_) return read_all(visit);
   if (spilled_) return read_spilled(visit);
+  if (kept_.empty() && !inputs_.empty() && knows_all()) return visit_loaded(visit);
   for (const MotionRow& row : kept_) {
     if (!visit(row)) return interrupted();
   }

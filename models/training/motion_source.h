@@ -93,6 +93,8 @@ class MotionSource {
   Status arrange(const FitControl& control, double fraction);
   Status visit_recorded(const std::function<bool(const MotionRow&)>& visit);
   Status read_all(const std::function<bool(const MotionRow&)>& visit);
+  bool knows_all() const;
+  Status visit_loaded(const std::function<bool(const MotionRow&)>& visit) const;
   Status read_spilled(const std::function<bool(const MotionRow&)>& visit) const;
   void keep(const MotionRow& row);
   void forget();
@@ -110,7 +112,7 @@ class MotionSource {
   double force_noise_N_ = 0.0;
   double encoder_step_m_ = 0.0;
   double position_noise_m_ = 0.0;
-  bool complete_ = false;  // kept_ or spilled_ holds everything
+  bool complete_ = false;  // kept_, spilled_ or the inputs hold everything
 };
 
 }  // namespace palpate

@@ -1,8 +1,9 @@
 #include "models/training/sites.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numeric>
+#include <cstdint>
 #include <string>
 
 namespace palpate {
@@ -54,21 +55,25 @@ Sites even_subset(const Sites& sites, Eigen::Index most) {
 }
 
 std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(sites.count()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const auto compare = [&](Eigen::Index a, Eigen::Index b) {
-    for (Eigen::Index k = 0; k < sites.points.rows(); ++k)
-      if (sites.points(k, a) != sites.points(k, b)) return sites.points(k, a) < sites.points(k, b) ? -1 : 1;
-    return 0;
-  };
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    const int order_of_points = compare(a, b);
-    return order_of_points != 0 ? order_of_points < 0 : a < b;
-  });
-  const auto same = [&](Eigen::Index a, Eigen::Index b) { return compare(a, b) == 0; };
-  order.erase(std::unique(order.begin(), order.end(), same), order.end());
-  std::sort(order.begin(), order.end());
-  return order;
+  const auto count = static_cast<std::size_t>(sites.count());
+  std::vector<Eigen::Index> distinct;
+  distinct.reserve(count);
+  // Slots of one more than an index, by a hash of the point; twice as many as points at least.
+  std::vector<Eigen::Index> slots(std::bit_ceil(2 * count + 1), 0);
+  for (Eigen::Index i = 0; i < sites.count(); ++i) {
+    const auto point = sites.points.col(i);
+    std::uint64_t hash = 0xCBF29CE484222325ULL;
+    for (const double value : point) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(value + 0.0)) * 0x9E3779B97F4A7C15ULL;  // -0 is 0
+      hash ^= hash >> 29;
+    }
+    std::size_t slot = hash & (slots.size() - 1);
+    while (slots[slot] != 0 && sites.points.col(slots[slot] - 1) != point) slot = (slot + 1) & (slots.size() - 1);
+    if (slots[slot] != 0) continue;
+    slots[slot] = i + 1;
+    distinct.push_back(i);
+  }
+  return distinct;
 }
 
 }  // namespace palpate
