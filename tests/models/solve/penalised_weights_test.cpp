@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "models/fit/fit_direct.h"
+#include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "tests/support/random_points.h"
 
@@ -44,6 +45,20 @@ FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd
   FoldedRows folded;
   EXPECT_TRUE(fold_rows(sites, kernel, centres, {}, folded));
   return penalised_weights(folded, kernel, centres);
+}
+
+TEST(PenaltySpace, ItsBasisIsOrthogonalToTheTailAndMultipliesInPlace) {
+  const Sites sites = wavy_sites(60);
+  const PenaltySpace space = penalty_space(KernelKind::cubic, sites.points);
+  const Eigen::MatrixXd tail = tail_matrix(tail_degree(KernelKind::cubic), sites.points);
+  const Eigen::Index free = space.basis.cols();
+  EXPECT_EQ(free, sites.count() - tail.cols());
+  EXPECT_LT((space.basis.transpose() * tail).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((space.basis.transpose() * space.basis - Eigen::MatrixXd::Identity(free, free)).cwiseAbs().maxCoeff(), 1e-13);
+  const Eigen::MatrixXd matrix = test::random_points(37, 60, 5);
+  Eigen::MatrixXd product = matrix;
+  multiply_by_basis(product, space);
+  EXPECT_LT((product.leftCols(free) - matrix * space.basis).cwiseAbs().maxCoeff(), 1e-13);
 }
 
 TEST(PenalisedWeights, WithEverySiteACentreItIsTheSmoothingSpline) {

@@ -45,6 +45,13 @@ TEST(MotionSource, TakesMotionThatIsKnown) {
   input.motion = std::make_shared<const std::vector<MotionEstimate>>(std::move(motion));
   MotionSource known({input});
   expect_same(rows, rows_of(known));
+  expect_same(rows, rows_of(known));  // again, from where the rows are
+
+  // Two of them, and moved, as if the motion were not known.
+  MotionSource twice({input, input});
+  MotionSource estimated_twice({in_memory(recording), in_memory(recording)});
+  for (MotionSource* source : {&twice, &estimated_twice}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
+  for (int pass = 0; pass < 2; ++pass) expect_same(rows_of(estimated_twice), rows_of(twice));
 }
 
 // Rows of a sample are rows of the source, in order, from the beginning to the end of
