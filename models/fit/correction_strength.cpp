@@ -127,7 +127,7 @@ class LeftOutFits {
   static int blocks_of(const Eigen::MatrixXd& all) { return static_cast<int>((all.rows() + kBlockRows - 1) / kBlockRows); }
 
   Eigen::Index columns() const {
-    return space_.basis.cols() + tail_size(tail_degree(input_.kernel), sites_.dimension());
+    return space_.free + tail_size(tail_degree(input_.kernel), sites_.dimension());
   }
 
   // A block of [K Z, G] at the points.
@@ -138,7 +138,7 @@ class LeftOutFits {
     Eigen::MatrixXd kernel(rows, centres_.cols());
     kernel_matrix(input_.kernel, PointArrays(some), centres_, kernel);
     multiply_by_basis(kernel, space_);
-    const Eigen::Index free = space_.basis.cols();
+    const Eigen::Index free = space_.free;
     all.block(first, 0, rows, free) = kernel.leftCols(free);
     all.block(first, free, rows, all.cols() - free) = tail_matrix(tail_degree(input_.kernel), some);
   }

@@ -8,9 +8,6 @@
 
 #include <hwy/highway.h>
 
-#include <array>
-#include <utility>
-
 HWY_BEFORE_NAMESPACE();
 namespace palpate::simd {
 namespace HWY_NAMESPACE {

@@ -65,10 +65,6 @@ TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
   return solution;
 }
 
-}  // namespace
-
-namespace {
-
 // The product of the first `count` reflectors I - tau w w^T as I - u v^T.
 void gather_reflectors(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index count, PenaltySpace& space) {
   const Eigen::Index n = qr.rows();
@@ -83,6 +79,13 @@ void gather_reflectors(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, Ei
   }
 }
 
+// Z times the unknowns.
+Eigen::VectorXd weights_of(const Eigen::VectorXd& unknowns, const PenaltySpace& space) {
+  Eigen::VectorXd weights = -space.u * (space.v.bottomRows(space.free).transpose() * unknowns);
+  weights.tail(space.free) += unknowns;
+  return weights;
+}
+
 }  // namespace
 
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
@@ -91,20 +94,19 @@ PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
       tail_matrix(tail_degree(kernel), centres));
   PenaltySpace space;
   gather_reflectors(qr, qr.rank(), space);
-  space.basis = Eigen::MatrixXd::Identity(n, n).rightCols(n - qr.rank()) -
-                space.u * space.v.bottomRows(n - qr.rank()).transpose();
-  const Eigen::MatrixXd kernel_values = kernel_at_centres(kernel, centres);
-  Eigen::MatrixXd product(n, space.basis.cols());
-  multiply(kernel_values, false, space.basis, false, definiteness_sign(kernel), 0.0, product);
-  space.penalty.resize(space.basis.cols(), space.basis.cols());
-  multiply(space.basis, true, product, false, 1.0, 0.0, space.penalty);
-  space.penalty = (0.5 * (space.penalty + space.penalty.transpose())).eval();
+  space.free = n - qr.rank();
+  Eigen::MatrixXd product = definiteness_sign(kernel) * kernel_at_centres(kernel, centres);
+  multiply_by_basis(product, space);
+  Eigen::MatrixXd turned = product.leftCols(space.free).transpose();
+  multiply_by_basis(turned, space);
+  const auto penalty = turned.leftCols(space.free);
+  space.penalty = 0.5 * (penalty + penalty.transpose());
   return space;
 }
 
 void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space) {
   const Eigen::Index rank = space.v.cols();
-  const Eigen::Index free = matrix.cols() - rank;
+  const Eigen::Index free = space.free;
   Eigen::MatrixXd along(matrix.rows(), rank);
   multiply(matrix, false, space.u, false, 1.0, 0.0, along);
   for (Eigen::Index j = 0; j < free; ++j) matrix.col(j) = matrix.col(j + rank);
@@ -118,12 +120,14 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
   const PenaltySpace space = n > 0 ? penalty_space(kernel, centres) : PenaltySpace{};
-  const Eigen::Index free = space.basis.cols();
+  const Eigen::Index free = space.free;
   const Eigen::Index columns = free + tail + 1;
   // [K Z, G, f] of the sites above, the root of the penalty below.
   Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + free, columns);
   if (free > 0) {
-    multiply(triangle.leftCols(n), false, space.basis, false, 1.0, 0.0, stack.topLeftCorner(triangle.rows(), free));
+    Eigen::MatrixXd product = triangle.leftCols(n);
+    multiply_by_basis(product, space);
+    stack.topLeftCorner(triangle.rows(), free) = product.leftCols(free);
     stack.bottomLeftCorner(free, free) = std::sqrt(smoothing) * square_root(space.penalty);
   }
   stack.block(0, free, triangle.rows(), tail + 1) = triangle.rightCols(tail + 1);
@@ -134,7 +138,7 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   const TriangleSolution solution = solve_scaled(reduced);
   FittedRbf fitted;
   fitted.function = {kernel, centres,
-                     free > 0 ? Eigen::VectorXd(space.basis * solution.unknowns.head(free)) : Eigen::VectorXd::Zero(n),
+                     free > 0 ? weights_of(solution.unknowns.head(free), space) : Eigen::VectorXd::Zero(n),
                      solution.unknowns.tail(tail)};
   FitReport& report = fitted.report;
   report.centres_asked = report.centres_used = n;

@@ -21,15 +21,15 @@ namespace palpate {
 // The part of w-space that is orthogonal to the tail at the centres, and the
 // penalty in it.
 struct PenaltySpace {
-  Eigen::MatrixXd basis;    // n x (n - rank G), orthonormal columns Z
+  Eigen::Index free = 0;    // n - rank G
   Eigen::MatrixXd penalty;  // Z^T (sign Phi) Z, positive semidefinite
-  // Z is the last columns of I - u v^T, both n x rank G.
+  // Its orthonormal columns Z are the last `free` of I - u v^T, both n x rank G: products
+  // with them take a fortieth of those with a matrix.
   Eigen::MatrixXd u;
   Eigen::MatrixXd v;
 };
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres);
-// Replaces the first n - rank G columns of `matrix`, of n columns, by those of its product
-// with Z.
+// Replaces the first `free` columns of `matrix`, of n columns, by those of its product with Z.
 void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space);
 
 // With the sites' own smoothing, 0 where they have none.
