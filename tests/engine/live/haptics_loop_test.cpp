@@ -121,6 +121,7 @@ TEST(HapticsLoop, RunsBesideABusySlowSide) {
   PathDevice device(test::strokes);
   LoopSettings settings;
   settings.realtime = false;  // a test does not outrank the machine it runs on
+  settings.rehearse_ns = 60'000;
   HapticsLoop loop(device, settings);
   loop.publish_models(springs(1, device));
   ASSERT_TRUE(loop.start().ok());

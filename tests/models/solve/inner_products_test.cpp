@@ -11,6 +11,7 @@ namespace palpate {
 namespace {
 
 // Rows that fill no vector, counts of directions that fill no tile, on every instruction set.
+// To 1e-13: 45 roundings of sums below 45.
 TEST(InnerProducts, AreThoseOfTheDefinition) {
   const Eigen::MatrixXd directions = test::random_points(45, 20, 1);
   const Eigen::MatrixXd columns = test::random_points(45, 4, 2);
