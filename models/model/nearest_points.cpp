@@ -15,6 +15,8 @@ namespace {
 
 // The share of a part that each of its halves has of the other.
 constexpr double kOverlap = 0.1;
+// Of a distance, as a share of the query's norm and the points'.
+constexpr double kDistanceRounding = 3e-7;
 
 std::size_t whole_vectors(std::size_t count) {
   return (count + simd::kSimdPadFloat - 1) / simd::kSimdPadFloat * simd::kSimdPadFloat;
@@ -69,19 +71,42 @@ double NearestDistance::nearest_squared(const double* x) const noexcept {
 }
 
 NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
-    : radius_squared_(static_cast<float>(radius * radius)),
+    : centre_(aligned_array<double>(kMaxFeatures)),
+      split_coordinate_(aligned_array<std::int32_t>(simd::kNearLeaves)),
+      split_at_(aligned_array<float>(simd::kNearLeaves)),
       near_(simd::near_function(static_cast<int>(points.rows()))) {
-  // Not above what the distance is compared with.
-  if (static_cast<double>(radius_squared_) > radius * radius) radius_squared_ = std::nextafter(radius_squared_, 0.0F);
-  const auto rows = static_cast<std::size_t>(points.rows());
-  splits_ = aligned_array<float>(simd::kNearLeaves * rows);
-  std::fill_n(splits_.get(), simd::kNearLeaves * rows, std::numeric_limits<float>::infinity());
+  const Eigen::VectorXd centre = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
+  const Eigen::MatrixXd about = points.colwise() - centre;
+  std::copy(centre.begin(), centre.end(), centre_.get());
+  std::fill_n(split_at_.get(), simd::kNearLeaves, std::numeric_limits<float>::infinity());
   std::vector<std::vector<Eigen::Index>> leaves(simd::kNearLeaves);
-  split(points, all_of(points), 0, leaves);
-  for (const auto& leaf : leaves) leaf_size_ = std::max(leaf_size_, whole_vectors(leaf.size()));
-  leaves_ = aligned_array<float>(simd::kNearLeaves * leaf_size_ * rows);
+  split(about, all_of(about), 0, leaves);
+  for (const auto& leaf : leaves) tree_.leaf_size = std::max(tree_.leaf_size, whole_vectors(leaf.size()));
+
+  Eigen::MatrixXd rows(points.rows() + 1, points.cols());
+  rows << about, -0.5 * about.colwise().squaredNorm();
+  const std::size_t floats = tree_.leaf_size * static_cast<std::size_t>(rows.rows());
+  leaves_ = aligned_array<float>(leaves.size() * floats);
   for (std::size_t i = 0; i < leaves.size(); ++i)
-    fill_rows(points, leaves[i], leaf_size_, leaves_.get() + i * leaf_size_ * rows);
+    fill_rows(rows, leaves[i], tree_.leaf_size, leaves_.get() + i * floats);
+  tree_.split_coordinate = split_coordinate_.get();
+  tree_.split_at = split_at_.get();
+  tree_.leaves = leaves_.get();
+  tree_.centre = centre_.get();
+  set_limit(radius, points.colwise().norm().maxCoeff(), about.colwise().squaredNorm().maxCoeff());
+}
+
+// With u = 2^-24, P the largest |p| and Q = |q|, the rounding of q, p, of a product and
+// a sum for each of up to 8 coordinates and of what they are compared with is less than
+// 18 u (P^2 + Q^2) = 1.1e-6 (P^2 + Q^2), and 1e-10 of what counts as 0.
+void NearPoints::set_limit(double radius, double largest, double about_squared) {
+  constexpr double kRounding = 2e-6;
+  const double certain = radius - kDistanceRounding * (2.0 * largest + radius) - 1e-9;
+  const double half_squared = 0.5 * certain * certain - kRounding * about_squared - 1e-10;
+  tree_.half = static_cast<float>(0.5 + kRounding);
+  tree_.half_squared = certain > 0.0 && half_squared < std::numeric_limits<float>::max()
+                           ? static_cast<float>(half_squared)
+                           : -std::numeric_limits<float>::infinity();
 }
 
 void NearPoints::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node,
@@ -96,8 +121,8 @@ void NearPoints::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> 
   });
   const std::size_t middle = part.size() / 2;
   const auto overlap = static_cast<std::size_t>(kOverlap * static_cast<double>(part.size()));
-  splits_[static_cast<std::ptrdiff_t>(static_cast<std::size_t>(k) * simd::kNearLeaves + node)] =
-      simd::nearest_float(points(k, part[middle]));
+  split_coordinate_[static_cast<std::ptrdiff_t>(node)] = static_cast<std::int32_t>(k);
+  split_at_[static_cast<std::ptrdiff_t>(node)] = simd::nearest_float(points(k, part[middle]));
   const auto place = [&](std::size_t i) { return part.begin() + static_cast<std::ptrdiff_t>(i); };
   split(points, {part.begin(), place(std::max<std::size_t>(1, middle + overlap))}, 2 * node + 1, leaves);
   split(points, {place(middle - overlap), part.end()}, 2 * node + 2, leaves);

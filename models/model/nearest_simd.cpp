@@ -8,6 +8,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -40,42 +41,77 @@ float nearest(const float* coordinates, size_t stride, size_t count, const float
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
-// Bit i: on which side of split i.
-template <int kDimension>
-HWY_INLINE uint32_t sides(const float* splits, const float* x) {
-  const Floats d;
-  uint32_t bits = 0;
-  for (size_t i = 0; i < kNearLeaves; i += hn::Lanes(d)) {
-    auto upper = hn::Ge(hn::Set(d, x[0]), hn::Load(d, splits + i));
-    for (int k = 1; k < kDimension; ++k)
-      upper = hn::Or(upper, hn::Ge(hn::Set(d, x[k]), hn::Load(d, splits + static_cast<size_t>(k) * kNearLeaves + i)));
-    uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, upper, bytes);
-    bits |= (uint32_t{bytes[0]} | uint32_t{bytes[1]} << 8) << i;
-  }
-  return bits;
+// The leaf of x, and q = x - c as nearest_float has it.
+#if HWY_MAX_BYTES >= 32
+using Four = hn::FixedTag<float, 4>;
+
+template <int kCount>
+HWY_INLINE hn::Vec<Four> four_about(const double* x, const double* centre) {
+  const hn::FixedTag<double, 4> d;
+  const Four four;
+  const auto theirs = kCount == 4 ? hn::LoadU(d, x) : hn::MaskedLoad(hn::FirstN(d, kCount), d, x);
+  const auto q = hn::DemoteTo(four, hn::Sub(theirs, hn::Load(d, centre)));
+  return hn::IfThenZeroElse(hn::Lt(hn::Abs(q), hn::Set(four, kSmallestFloat)), q);
 }
 
 // All splits at once, then from bit to bit: a comparison after the other would take three
 // times as long.
 template <int kDimension>
-bool near_point(const float* splits, const float* leaves, size_t leaf_size, const double* query, float squared) noexcept {
-  const Floats d;
-  float x[kDimension];
-  bool in_range = true;
-  for (int k = 0; k < kDimension; ++k) {
-    in_range &= in_nearest_range(query[k]);
-    x[k] = nearest_float(query[k]);
+HWY_INLINE size_t leaf_of(const NearTree& tree, const double* x, float* q) {
+  const Four four;
+  const hn::FixedTag<float, 8> eight;
+  const auto low = four_about<std::min(kDimension, 4)>(x, tree.centre);
+  auto all = hn::ZeroExtendVector(eight, low);
+  hn::Store(low, four, q);
+  if constexpr (kDimension > 4) {
+    const auto high = four_about<kDimension - 4>(x + 4, tree.centre + 4);
+    hn::Store(high, four, q + 4);
+    all = hn::Combine(eight, high, low);
   }
-  const uint32_t bits = sides<kDimension>(splits, x);
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kNearLeaves; i += 8) {
+    const auto its = hn::TableLookupLanes(all, hn::SetTableIndices(eight, tree.split_coordinate + i));
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(eight, hn::Ge(its, hn::Load(eight, tree.split_at + i)), bytes);
+    bits |= uint32_t{bytes[0]} << i;
+  }
   uint32_t node = 0;
   for (size_t level = 0; level < kNearLevels; ++level) node = 2 * node + 1 + (bits >> node & 1U);
-  const float* leaf = leaves + (node + 1 - kNearLeaves) * leaf_size * kDimension;
-  const FloatVector limit = hn::Set(d, squared);
-  auto near = hn::Le(float_squares<kDimension>(leaf, leaf_size, x), limit);
-  for (size_t i = hn::Lanes(d); i < leaf_size; i += hn::Lanes(d))
-    near = hn::Or(near, hn::Le(float_squares<kDimension>(leaf + i, leaf_size, x), limit));
-  return in_range && !hn::AllFalse(d, near);
+  return node + 1 - kNearLeaves;
+}
+#else
+template <int kDimension>
+HWY_INLINE size_t leaf_of(const NearTree& tree, const double* x, float* q) {
+  for (int k = 0; k < kDimension; ++k) q[k] = nearest_float(x[k] - tree.centre[k]);
+  size_t node = 0;
+  for (size_t level = 0; level < kNearLevels; ++level)
+    node = 2 * node + 1 + (q[tree.split_coordinate[node]] >= tree.split_at[node] ? 1 : 0);
+  return node + 1 - kNearLeaves;
+}
+#endif
+
+template <int kDimension>
+bool near_point(const NearTree& tree, const double* x) noexcept {
+  const Floats d;
+  HWY_ALIGN float q[8];
+  const float* leaf = tree.leaves + leaf_of<kDimension>(tree, x, q) * tree.leaf_size * (kDimension + 1);
+  FloatVector coordinate[kDimension];
+  FloatVector squared = hn::Zero(d);
+  for (int k = 0; k < kDimension; ++k) {
+    coordinate[k] = hn::Set(d, q[k]);
+    squared = hn::MulAdd(coordinate[k], coordinate[k], squared);
+  }
+  const FloatVector limit = hn::MulSub(hn::Set(d, tree.half), squared, hn::Set(d, tree.half_squared));
+  const auto products = [&](size_t i) HWY_ATTR {
+    FloatVector sum = hn::Load(d, leaf + kDimension * tree.leaf_size + i);
+    for (int k = 0; k < kDimension; ++k)
+      sum = hn::MulAdd(coordinate[k], hn::Load(d, leaf + static_cast<size_t>(k) * tree.leaf_size + i), sum);
+    return sum;
+  };
+  FloatVector largest = limit;
+  for (size_t i = 0; i < tree.leaf_size; i += kSimdPadFloat)
+    for (size_t k = 0; k < kSimdPadFloat; k += hn::Lanes(d)) largest = hn::Max(products(i + k), largest);
+  return !hn::AllFalse(d, hn::Gt(largest, limit));
 }
 
 template <int... kIndex>

@@ -3,18 +3,21 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace palpate::simd {
 
 // Floats in the widest vector used.
 inline constexpr std::size_t kSimdPadFloat = 16;
 inline constexpr std::size_t kNearLevels = 5;
-// Rows of 32 splits, the last unused: whole vectors.
 inline constexpr std::size_t kNearLeaves = std::size_t{1} << kNearLevels;
 
 // As 0 counts what is smaller than 1e-11: two floats that differ and are both 0 or at
 // least this differ by 1e-18 or more, so that their squared distance is not denormal.
-inline float nearest_float(double value) noexcept { return value < 1e-11 && value > -1e-11 ? 0.0F : static_cast<float>(value); }
+inline constexpr float kSmallestFloat = 1e-11F;
+inline float nearest_float(double value) noexcept {
+  return value < kSmallestFloat && value > -kSmallestFloat ? 0.0F : static_cast<float>(value);
+}
 // Its square is the last that fits a float; false also for what is no number.
 inline bool in_nearest_range(double value) noexcept { return value < 1e19 && value > -1e19; }
 
@@ -22,13 +25,24 @@ inline bool in_nearest_range(double value) noexcept { return value < 1e19 && val
 // multiple of kSimdPadFloat.
 using NearestFunction = float (*)(const float* coordinates, std::size_t stride, std::size_t count,
                                   const float* x) noexcept;
-// Whether a point of x's leaf has |x - point|^2 <= squared, of x as nearest_float has it.
-// The children of split i are
-// 2 i + 1 and 2 i + 2, the upper where x[k] >= splits[k * kNearLeaves + i] for some k.
-// Leaf j is the `leaf_size` points from leaves + j * leaf_size * dimension, one row a
-// coordinate; `leaf_size` a multiple of kSimdPadFloat.
-using NearFunction = bool (*)(const float* splits, const float* leaves, std::size_t leaf_size, const double* x,
-                              float squared) noexcept;
+// Points about a centre c, in the leaves of a tree. Of a query q = x - c,
+//   |q - p|^2 <= r^2   if   q p - |p|^2 / 2 > (|q|^2 - r^2) / 2,
+// one multiplication and addition a coordinate.
+struct NearTree {
+  // Split i: q below split_at[i] in coordinate split_coordinate[i] goes to 2 i + 1, else to
+  // 2 i + 2. kNearLeaves of each, the last unused.
+  const std::int32_t* split_coordinate = nullptr;
+  const float* split_at = nullptr;
+  // Leaf j from leaves + j * leaf_size * (d + 1): a row a coordinate, and one of -|p|^2 / 2.
+  const float* leaves = nullptr;
+  std::size_t leaf_size = 0;       // a multiple of kSimdPadFloat
+  const double* centre = nullptr;  // 8 values
+  // r^2 / 2 and 1/2, less and more by what rounding may do to the two sides.
+  float half_squared = 0.0F;
+  float half = 0.5F;
+};
+// Whether a point of x's leaf is within r. Not so what is no number.
+using NearFunction = bool (*)(const NearTree& tree, const double* x) noexcept;
 
 // For dimensions 1 to 8.
 NearestFunction nearest_function(int dimension);

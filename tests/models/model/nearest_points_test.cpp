@@ -35,21 +35,23 @@ TEST_P(NearestPointsOnTarget, TheDistanceIsThatOfABruteForceSearch) {
     }
 }
 
-// Not nearly: a force must not depend on which way its trust was found.
-TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurtherToTheBit) {
+// Not nearly: a force must not depend on which way its trust was found. Also far from the
+// origin, where single precision has little left.
+TEST_P(NearestPointsOnTarget, OneFoundNearIsNoFurther) {
   for (int d = 1; d <= static_cast<int>(kMaxFeatures); ++d)
-    for (const int count : {1, 2, 16, 63, 65, 500, 768, 5000}) {
-      const Eigen::MatrixXd points = random_points(d, count, 1);
-      const NearestDistance nearest(points);
-      const Eigen::MatrixXd queries = random_points(d, 10, 9);
-      for (int i = 0; i < 10; ++i) {
-        const double* query = queries.col(i).data();
-        const double exact = std::sqrt(nearest.nearest_squared(query));
-        for (const double radius : {0.0, 0.5 * exact, 0.999999 * exact})
-          EXPECT_FALSE(NearPoints(points, radius).found(query)) << d << "-D, " << count << " points";
-        EXPECT_TRUE(NearPoints(points, 100.0).found(query)) << d << "-D, " << count << " points";
+    for (const int count : {1, 2, 16, 63, 65, 500, 768, 5000})
+      for (const double shift : {0.0, 300.0}) {
+        const Eigen::MatrixXd points = random_points(d, count, 1).array() + shift;
+        const NearestDistance nearest(points);
+        const Eigen::MatrixXd queries = random_points(d, 4, 9).array() + shift;
+        for (int i = 0; i < 4; ++i) {
+          const double* query = queries.col(i).data();
+          const double exact = std::sqrt(nearest.nearest_squared(query));
+          for (const double radius : {0.0, 0.5 * exact, 0.999999 * exact})
+            EXPECT_FALSE(NearPoints(points, radius).found(query)) << d << "-D, " << count << " points";
+          EXPECT_TRUE(NearPoints(points, 100.0).found(query)) << d << "-D, " << count << " points";
+        }
       }
-    }
 }
 
 // What the overlap of the leaves is for: hardly a query has its near points elsewhere.
