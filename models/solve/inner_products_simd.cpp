@@ -17,7 +17,7 @@ using ProductDoubles = hn::CappedTag<double, 8>;
 using ProductVector = hn::Vec<ProductDoubles>;
 
 // Directions at a time: their sums with four columns fill the registers.
-constexpr size_t kProductDirections = HWY_TARGET == HWY_AVX3 ? 6 : 2;
+constexpr size_t kProductDirections = HWY_TARGET == HWY_AVX3 ? 6 : 3;
 
 template <size_t kDirections>
 void inner_products_tile(const double* directions, size_t direction_stride, const double* columns, size_t column_stride,
@@ -30,11 +30,11 @@ void inner_products_tile(const double* directions, size_t direction_stride, cons
   }
   size_t i = 0;
   for (; i + lanes <= rows; i += lanes) {
-    ProductVector column[kProductColumns];
-    for (size_t c = 0; c < kProductColumns; ++c) column[c] = hn::LoadU(d, columns + c * column_stride + i);
-    for (size_t j = 0; j < kDirections; ++j) {
-      const ProductVector direction = hn::LoadU(d, directions + j * direction_stride + i);
-      for (size_t c = 0; c < kProductColumns; ++c) sums[j][c] = hn::MulAdd(direction, column[c], sums[j][c]);
+    ProductVector direction[kDirections];
+    for (size_t j = 0; j < kDirections; ++j) direction[j] = hn::LoadU(d, directions + j * direction_stride + i);
+    for (size_t c = 0; c < kProductColumns; ++c) {
+      const ProductVector column = hn::LoadU(d, columns + c * column_stride + i);
+      for (size_t j = 0; j < kDirections; ++j) sums[j][c] = hn::MulAdd(direction[j], column, sums[j][c]);
     }
   }
   for (size_t j = 0; j < kDirections; ++j) {
