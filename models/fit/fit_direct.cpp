@@ -11,6 +11,7 @@
 #include "models/solve/lapack.h"
 #include "engine/base/parallel.h"
 #include "models/solve/projected_kernel.h"
+#include "models/solve/refined_solve.h"
 
 namespace palpate {
 namespace {
@@ -18,6 +19,8 @@ namespace {
 // Of the fit, for its progress.
 constexpr double kFactorisingFrom = 0.25;
 constexpr double kFactorised = 0.95;
+// From here on a factor in single precision and what it takes to refine it is quicker.
+constexpr Eigen::Index kRefinedSites = 1500;
 
 struct Solution {
   Eigen::VectorXd u;
@@ -36,6 +39,21 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
     return !cancelled;
   };
+  const auto take = [&](double condition) {
+    out.smoothing = smoothing;
+    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
+    out.condition = condition;
+    out.rank = kernel.data().size();
+    return Outcome::solved;
+  };
+  if (kernel.data().size() >= kRefinedSites) {
+    RefinedSolution refined;
+    switch (solve_refined(kernel, smoothing, may_continue, refined)) {
+      case RefinedOutcome::interrupted: return Outcome::cancelled;
+      case RefinedOutcome::not_for_single: break;
+      case RefinedOutcome::solved: out.u = std::move(refined.u); return take(refined.condition);
+    }
+  }
   // A matrix that rounding made indefinite gets ten times the smoothing.
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
     Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
@@ -47,11 +65,7 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     Eigen::VectorXd u = kernel.data();
     cholesky_solve(matrix, u);
     out.u = kernel.project(u);
-    out.smoothing = smoothing;
-    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
-    out.condition = cholesky_condition(matrix, norm);
-    out.rank = matrix.rows();
-    return Outcome::solved;
+    return take(cholesky_condition(matrix, norm));
   }
   return Outcome::failed;
 }

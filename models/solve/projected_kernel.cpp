@@ -54,10 +54,10 @@ Eigen::VectorXd ProjectedKernel::multiply_kernel(const Eigen::VectorXd& v) const
   return definiteness_sign(kernel_) * product.cwiseProduct(sites_.row_scale);
 }
 
-Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
+template <typename Take>
+void ProjectedKernel::for_blocks(double fill, const Take& take) const {
   constexpr Eigen::Index kBlock = 64;  // columns at a time; a multiple of 8
   const Eigen::Index count = sites_.count();
-  Eigen::MatrixXd matrix(count, count);
   const auto blocks = static_cast<int>((count + kBlock - 1) / kBlock);
   const Eigen::MatrixXd update = half_update_ - 0.5 * fill * q_;
   const BlasThreads one_thread(1);
@@ -65,15 +65,34 @@ Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
     const Eigen::Index first = block * kBlock;
     const Eigen::Index columns = std::min(kBlock, count - first);
     const Eigen::Index rows = count - first;
-    auto part = matrix.block(first, first, rows, columns);
-    kernel_matrix(kernel_, points_, sites_.points.middleCols(first, columns), part, first);
-    part.array().colwise() *= sites_.row_scale.tail(rows).array();
-    part.array().rowwise() *=
-        definiteness_sign(kernel_) * sites_.row_scale.segment(first, columns).transpose().array();
-    multiply(q_.bottomRows(rows), false, update.middleRows(first, columns), true, -1.0, 1.0, part);
-    multiply(update.bottomRows(rows), false, q_.middleRows(first, columns), true, -1.0, 1.0, part);
+    take(first, rows, columns, [&](MatrixRef part) {
+      kernel_matrix(kernel_, points_, sites_.points.middleCols(first, columns), part, first);
+      part.array().colwise() *= sites_.row_scale.tail(rows).array();
+      part.array().rowwise() *=
+          definiteness_sign(kernel_) * sites_.row_scale.segment(first, columns).transpose().array();
+      palpate::multiply(q_.bottomRows(rows), false, update.middleRows(first, columns), true, -1.0, 1.0, part);
+      palpate::multiply(update.bottomRows(rows), false, q_.middleRows(first, columns), true, -1.0, 1.0, part);
+    });
+  });
+}
+
+Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
+  Eigen::MatrixXd matrix(sites_.count(), sites_.count());
+  for_blocks(fill, [&](Eigen::Index first, Eigen::Index rows, Eigen::Index columns, const auto& set) {
+    set(matrix.block(first, first, rows, columns));
   });
   matrix.diagonal().array() += smoothing;
+  return matrix;
+}
+
+Eigen::MatrixXf ProjectedKernel::float_matrix(double fill, double smoothing) const {
+  Eigen::MatrixXf matrix(sites_.count(), sites_.count());
+  for_blocks(fill, [&](Eigen::Index first, Eigen::Index rows, Eigen::Index columns, const auto& set) {
+    Eigen::MatrixXd part(rows, columns);
+    set(part);
+    part.diagonal().array() += smoothing;
+    matrix.block(first, first, rows, columns) = part.cast<float>();
+  });
   return matrix;
 }
 

@@ -24,8 +24,14 @@ class ProjectedKernel {
   ProjectedKernel(const Sites& sites, KernelKind kernel);
 
   // The lower triangle of P K P + fill q q^T + smoothing I, N x N; the upper
-  // one is not set. Uses all cores.
+  // one is not set. Uses all cores. In single precision each element is that of the
+  // other, rounded.
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
+  Eigen::MatrixXf float_matrix(double fill, double smoothing) const;
+
+  // P K v: of a v on the complement of q, what `matrix` without smoothing makes of it, by
+  // the kernel itself.
+  Eigen::VectorXd multiply(const Eigen::VectorXd& v) const { return project(multiply_kernel(v)); }
 
   // P S f, the right-hand side, and P v.
   const Eigen::VectorXd& data() const { return data_; }
@@ -42,6 +48,9 @@ class ProjectedKernel {
 
  private:
   void find_tail_space();
+  // For each block of 64 columns from the diagonal down: take(its corner, the block).
+  template <typename Take>
+  void for_blocks(double fill, const Take& take) const;
   Eigen::VectorXd multiply_kernel(const Eigen::VectorXd& v) const;  // K v
 
   const Sites& sites_;
