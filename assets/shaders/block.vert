@@ -15,9 +15,16 @@ uniform float dent;         // metres
 uniform float tool_radius;  // metres
 uniform float rim;          // metres from the middle to the nearest side
 
-out vec3 world;
-out vec3 surface_normal;
-out float axis_distance;
+uniform vec3 eye;
+uniform vec3 light;       // towards it
+uniform float tool_gap;   // metres between the tip and the surface; 0 in contact
+uniform float height;     // metres, of the block
+
+out vec3 room_light;
+out float lamp_light;
+out float shadowed;
+out float shine;
+out vec2 fallen;
 out float sunk;  // share of the dent's depth
 
 float dent_at(float r) {
@@ -34,7 +41,7 @@ float dent_at(float r) {
 void main() {
   vec3 place = position;
   vec3 n = normal;
-  axis_distance = length(position.xz);
+  float axis_distance = length(position.xz);
   sunk = 0.0;
   if (position.y > -1e-5 && dent > 0.0) {
     const float h = 2e-4;
@@ -46,7 +53,25 @@ void main() {
     place.y -= u;
     sunk = u / dent;
   }
-  world = place + offset;
-  surface_normal = n;
+  vec3 world = place + offset;
+  vec3 to_eye = normalize(eye - world);
+  float up = clamp(place.y / height + 1.0, 0.0, 1.0);
+  float facing = max(dot(n, to_eye), 0.0);
+  float wrapped = max((dot(n, light) + 0.35) / 1.35, 0.0);
+  // The block stands on something: the last millimetres get little light.
+  float standing = 0.62 + 0.38 * smoothstep(0.0, 0.16, up);
+  // The hollow's own walls keep light from its middle.
+  float hollow = 1.0 - 0.30 * sunk * sunk * min(dent / tool_radius, 1.0);
+  vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.45, 0.46, 0.47), 0.5 + 0.5 * n.y);
+  float through = 0.10 * (1.0 - facing) * (0.4 + 0.6 * up);
+  room_light = (ambient + through) * standing * hollow;
+  lamp_light = 0.60 * wrapped * mix(1.0, hollow, 0.5);
+  // The tool's shadow falls away from the lamp, sharper and darker the nearer it is.
+  fallen = (place.xz + tool_gap * light.xz / light.y) / (tool_radius * 0.95 + 0.8 * tool_gap);
+  shadowed = n.y > 0.2 ? 0.42 / (1.0 + 70.0 * tool_gap) : 0.0;
+  shine = max(dot(2.0 * dot(n, to_eye) * n - to_eye, light), 0.0);
+  shine *= shine;
+  shine *= shine;
+  shine *= 0.07 * shine;
   gl_Position = view_projection * vec4(world, 1.0);
 }

@@ -40,6 +40,19 @@ void draw_solids(Draw draw) {
   glBindVertexArray(0);
 }
 
+Viewport around(const std::vector<Viewport>& parts) {
+  Viewport whole = parts.front();
+  for (const Viewport& part : parts) {
+    const int right = std::max(whole.x + whole.width, part.x + part.width);
+    const int top = std::max(whole.y + whole.height, part.y + part.height);
+    whole.x = std::min(whole.x, part.x);
+    whole.y = std::min(whole.y, part.y);
+    whole.width = right - whole.x;
+    whole.height = top - whole.y;
+  }
+  return whole;
+}
+
 // In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
 // sensor's disc, and a dull handle.
 constexpr float kToolLength = 15.2F;
@@ -170,11 +183,12 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
       camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
   shown_ = &meshes(viewport, blocks.size());
   draw_backdrop(table_state(blocks, viewport, theme), viewport);
-  const Viewport part = standing(blocks, viewport, resting_);
-  if (part.width < 1 || part.height < 1) return;
-  const bool smooth = smooth_.begin(0, part.x, part.y, part);
+  const std::vector<Viewport> parts = standing(blocks, viewport, resting_);
+  if (parts.empty()) return;
+  const Viewport whole = around(parts);
+  const bool smooth = (resting_ && smooth_.begin_with_kept(whole, parts)) || smooth_.begin(0, whole, parts);
   if (smooth) {
-    glViewport(viewport.x - part.x, viewport.y - part.y, viewport.width, viewport.height);
+    glViewport(viewport.x - whole.x, viewport.y - whole.y, viewport.width, viewport.height);
   } else {
     glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
     glScissor(viewport.x, viewport.y, viewport.width, viewport.height);
@@ -183,7 +197,7 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
     glDisable(GL_SCISSOR_TEST);
   }
   draw_blocks(blocks);
-  if (smooth) smooth_.end(0, part);
+  if (smooth) smooth_.end(0, whole, parts);
 }
 
 void BlockView::draw_blocks(const std::vector<BlockPose>& blocks) const {
@@ -193,43 +207,45 @@ void BlockView::draw_blocks(const std::vector<BlockPose>& blocks) const {
   });
 }
 
-Viewport BlockView::standing(const std::vector<BlockPose>& blocks, const Viewport& viewport, bool moving) const {
+std::vector<Viewport> BlockView::standing(const std::vector<BlockPose>& blocks, const Viewport& viewport,
+                                          bool moving) const {
   const glm::vec2 size(viewport.width, viewport.height);
-  glm::vec2 low = size;
-  glm::vec2 high(0.0F);
-  const auto reach = [&](const glm::vec3& point) {
-    const glm::vec2 at = project(view_projection_, point, size);
-    low = glm::min(low, at);
-    high = glm::max(high, at);
-  };
   const glm::vec2 half = 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m);
   // A dent is seen through the flat top's outline, the tool's shadow goes over its edge.
   constexpr float kEdge_m = 0.005F;
+  constexpr float kToolHalf_m = 0.022F;  // with the arrow beside it
   const float lowest_m = moving ? kEdge_m : static_cast<float>(geometry_.height_m);
+  std::vector<Viewport> parts;
+  const auto add_box = [&](const glm::vec3& low_m, const glm::vec3& high_m) {
+    glm::vec2 low = size;
+    glm::vec2 high(0.0F);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::vec3 upper(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::vec2 at = project(view_projection_, glm::mix(low_m, high_m, upper), size);
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+    low = glm::clamp(low - 2.0F, glm::vec2(0.0F), size);
+    high = glm::clamp(high + 2.0F, glm::vec2(0.0F), size);
+    const glm::ivec2 from(glm::floor(glm::vec2(low.x, size.y - high.y)));
+    const glm::ivec2 to(glm::ceil(glm::vec2(high.x, size.y - low.y)));
+    const Viewport part{viewport.x + from.x, viewport.y + from.y, std::min(to.x, viewport.width) - from.x,
+                        std::min(to.y, viewport.height) - from.y};
+    if (part.width > 0 && part.height > 0) parts.push_back(part);
+  };
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const glm::vec3 at = place(i, blocks.size());
+    add_box(at + glm::vec3(-half.x, -lowest_m, -half.y), at + glm::vec3(half.x, 0.0F, half.y));
     const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
                                arrow_length_m(blocks[i]) + arrow_width_ * kArrowTip_m);
-    for (const float x : {-1.0F, 1.0F}) {
-      for (const float z : {-1.0F, 1.0F}) {
-        reach(at + glm::vec3(x * half.x, 0.0F, z * half.y));
-        reach(at + glm::vec3(x * half.x, -lowest_m, z * half.y));
-        // The tool, and the arrow beside it.
-        reach(at + glm::vec3(x * 0.022F, top, z * 0.022F));
-      }
-    }
+    if (top > 0.0F) add_box(at + glm::vec3(-kToolHalf_m, 0.0F, -kToolHalf_m), at + glm::vec3(kToolHalf_m, top, kToolHalf_m));
   }
-  low = glm::clamp(low - 2.0F, glm::vec2(0.0F), size);
-  high = glm::clamp(high + 2.0F, glm::vec2(0.0F), size);
-  const glm::ivec2 from(glm::floor(glm::vec2(low.x, size.y - high.y)));
-  const glm::ivec2 to(glm::ceil(glm::vec2(high.x, size.y - low.y)));
-  return {viewport.x + from.x, viewport.y + from.y, std::min(to.x, viewport.width) - from.x,
-          std::min(to.y, viewport.height) - from.y};
+  return parts;
 }
 
 BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport,
                                              Theme theme) const {
-  TableState state{view_projection_, viewport.width, viewport.height, theme,
+  TableState state{view_projection_, viewport.x, viewport.y, viewport.width, viewport.height, theme,
                    std::min<std::size_t>(blocks.size(), 4)};
   for (std::size_t i = 0; i < state.count; ++i) {
     if (!blocks[i].chosen || state.count == 1) continue;
@@ -260,24 +276,26 @@ void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport)
     }
   } else if (!resting_) {
     // The view stands still since the last frame: now it pays.
-    add_resting_blocks(state);
+    add_resting_blocks(state, viewport);
   }
   backdrop_.copy(viewport.x, viewport.y);
 }
 
-void BlockView::add_resting_blocks(const TableState& state) {
+void BlockView::add_resting_blocks(const TableState& state, const Viewport& viewport) {
   BlockPose resting;
   resting.tool_m = -1.0F;  // far above: no shadow
   resting.shows_error = false;
   const std::vector<BlockPose> blocks(state.count, resting);
-  const Viewport part = standing(blocks, {0, 0, state.width, state.height}, false);
-  if (part.width < 1 || part.height < 1 || !smooth_.begin(backdrop_.framebuffer(), part.x, part.y, part)) return;
-  glViewport(-part.x, -part.y, state.width, state.height);
+  const std::vector<Viewport> parts = standing(blocks, {0, 0, state.width, state.height}, false);
+  if (parts.empty()) return;
+  const Viewport whole = around(parts);
+  if (!smooth_.begin(backdrop_.framebuffer(), whole, parts)) return;
+  glViewport(-whole.x, -whole.y, state.width, state.height);
   draw_solids([&] {
     for (std::size_t i = 0; i < state.count; ++i) draw_block(resting, place(i, state.count));
   });
-  smooth_.end(backdrop_.framebuffer(), part);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  smooth_.end(backdrop_.framebuffer(), whole, parts);
+  smooth_.keep(backdrop_.framebuffer(), {viewport.x, viewport.y, state.width, state.height});
   resting_ = true;
 }
 

@@ -60,7 +60,7 @@ class BlockView {
   // All that the table's picture depends on.
   struct TableState {
     glm::mat4 view_projection{0.0F};
-    int width = 0, height = 0;
+    int x = 0, y = 0, width = 0, height = 0;
     Theme theme = Theme::light;
     std::size_t count = 0;
     glm::vec4 chosen{0.0F};  // colour of the ring; alpha 0: none
@@ -76,10 +76,10 @@ class BlockView {
   const Meshes& meshes(const Viewport& viewport, std::size_t count) const;
   void draw_backdrop(const TableState& state, const Viewport& viewport);
   void draw_table(const TableState& state) const;
-  void add_resting_blocks(const TableState& state);
-  // The part of the viewport that blocks, tools and arrows lie in; without the blocks'
-  // sides, which never move, where `moving` is all that is asked for.
-  Viewport standing(const std::vector<BlockPose>& blocks, const Viewport& viewport, bool moving) const;
+  void add_resting_blocks(const TableState& state, const Viewport& viewport);
+  // The parts of the viewport that blocks, tools and arrows lie in, two a block; without the
+  // blocks' sides, which never move, where `moving` is all that is asked for.
+  std::vector<Viewport> standing(const std::vector<BlockPose>& blocks, const Viewport& viewport, bool moving) const;
   void draw_blocks(const std::vector<BlockPose>& blocks) const;
   void draw_block(const BlockPose& pose, const glm::vec3& place) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place) const;

@@ -117,6 +117,8 @@ Mesh block_mesh(float width_m, float length_m, float height_m, float detail) {
     const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(steps.fillet);
     add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)), 0.5F * std::numbers::pi_v<float> - angle);
   }
+  // From where the sides get less light, which is computed at the vertices.
+  add_shifted(mesh, rim, kEdge_m, 0.84F * height_m, 0.0F);
   add_shifted(mesh, rim, kEdge_m, height_m - 0.25F * kEdge_m, 0.0F);
   add_shifted(mesh, rim, 0.75F * kEdge_m, height_m, -0.25F * std::numbers::pi_v<float>);
   return mesh;
