@@ -14,6 +14,9 @@ namespace {
 // Rows of all recordings together for the common trend, and of each for its onset.
 constexpr std::size_t kCommonRows = 4000;
 constexpr std::size_t kOnsetRows = 400000;
+// Further apart the rows of an approach are too few to tell where force begins: of a
+// recording of hours at 1 kHz the first seven minutes tell it.
+constexpr double kCoarsestOnset_s = 1.5e-3;
 // A shift common to all recordings changes no force of the model, only where its zero
 // lies; below what the onset of real specimens tells it stays as recorded.
 constexpr double kLeastCommonShift_m = 0.25e-3;
@@ -156,12 +159,12 @@ std::vector<RegisteredSurface> registered(const std::vector<RegisteredMember>& m
 Result<std::vector<RegisteredSurface>> register_surfaces(MotionSource& source, const std::vector<FeatureSpec>& features,
                                                          const FitControl& control, double fraction) {
   std::vector<RegisteredMember> members;
-  GrowingStride rows(kOnsetRows);
+  GrowingStride rows(kOnsetRows, kCoarsestOnset_s);
   std::vector<std::vector<SurfaceRow>> recordings;
   const Status status = source.for_each([&](const MotionRow& row) {
     if (row.first && row.recording > 0) {
       recordings.push_back(rows.rows());
-      rows = GrowingStride(kOnsetRows);
+      rows = GrowingStride(kOnsetRows, kCoarsestOnset_s);
     }
     rows.add({row.sample, row.motion, row.force_N});
     return true;

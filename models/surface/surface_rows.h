@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "engine/recording/recording.h"
@@ -17,16 +18,20 @@ struct SurfaceRow {
   double force_N = 0.0;
 };
 
-// Every row up to a bound; beyond, every second one, then every fourth ...
+// Every row up to a bound; beyond, every second one, then every fourth ... but none further
+// apart than `coarsest_s`: then the rows are those of the beginning.
 class GrowingStride {
  public:
-  explicit GrowingStride(std::size_t most) : most_(most) {}
+  explicit GrowingStride(std::size_t most, double coarsest_s = std::numeric_limits<double>::infinity())
+      : most_(most), coarsest_s_(coarsest_s) {}
 
   void add(const SurfaceRow& row);
   const std::vector<SurfaceRow>& rows() const { return rows_; }
 
  private:
   std::size_t most_;
+  double coarsest_s_;
+  bool complete_ = false;
   std::size_t stride_ = 1;
   std::size_t seen_ = 0;
   std::vector<SurfaceRow> rows_;

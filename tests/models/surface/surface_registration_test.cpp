@@ -52,6 +52,24 @@ TEST(SurfaceRegistration, FindsEveryShiftAndZeroOfASet) {
   }
 }
 
+// An approach needs its rows: of a long recording those of the beginning, not one in eight.
+TEST(SurfaceRegistration, FindsTheShiftOfALongRecording) {
+  const RecordingPtr once = rig("maxwell", 1, 1e-3);
+  auto longer = std::make_shared<Recording>(*once);
+  const double length_s = once->rows.back().time_s - once->rows.front().time_s + 1e-3;
+  for (int i = 1; longer->rows.size() < 1'700'000; ++i) {
+    for (RecordingRow row : once->rows) {
+      row.time_s += i * length_s;
+      longer->rows.push_back(row);
+    }
+  }
+  const auto surfaces = registered({longer});
+  ASSERT_EQ(surfaces.size(), 1u);
+  // As precisely as of the recording itself.
+  EXPECT_NEAR(surfaces[0].offset_m, registered({once})[0].offset_m, 0.02e-3);
+  EXPECT_NEAR(surfaces[0].offset_m, 1e-3, 0.1e-3);
+}
+
 // What the trend cannot follow of these materials looks like a shift of up to 0.07 mm.
 TEST(SurfaceRegistration, FindsLargerShiftsOfMaterialsThatTheTrendDoesNotFollow) {
   for (const char* material : {"silicone", "gel", "tissue"}) {
