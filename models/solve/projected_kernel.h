@@ -48,7 +48,8 @@ class ProjectedKernel {
 
  private:
   void find_tail_space();
-  // For each block of 64 columns from the diagonal down: take(its corner, the block).
+  // For each block of columns, from the diagonal down: take(first column, rows, columns, set),
+  // where set(m) makes m that block without smoothing. On all cores.
   template <typename Take>
   void for_blocks(double fill, const Take& take) const;
   Eigen::VectorXd multiply_kernel(const Eigen::VectorXd& v) const;  // K v

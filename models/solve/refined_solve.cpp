@@ -14,7 +14,7 @@ constexpr int kMostIterations = 20;
 
 class SingleFactor {
  public:
-  explicit SingleFactor(const ProjectedKernel& kernel, const Eigen::MatrixXf& factor) : kernel_(kernel), factor_(factor) {}
+  SingleFactor(const ProjectedKernel& kernel, const Eigen::MatrixXf& factor) : kernel_(kernel), factor_(factor) {}
 
   // Of a vector of any size: single precision has its limits.
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
@@ -67,8 +67,10 @@ RefinedOutcome solve_refined(const ProjectedKernel& kernel, double smoothing,
     interrupted = !may_continue(share);
     return !interrupted;
   };
-  if (!cholesky_in_place(matrix, asked)) return interrupted ? RefinedOutcome::interrupted : RefinedOutcome::not_for_single;
-  if (!conjugate_gradients(kernel, smoothing, SingleFactor(kernel, matrix), out.u)) return RefinedOutcome::not_for_single;
+  if (!cholesky_in_place(matrix, asked))
+    return interrupted ? RefinedOutcome::interrupted : RefinedOutcome::not_for_single;
+  const SingleFactor factor(kernel, matrix);
+  if (!conjugate_gradients(kernel, smoothing, factor, out.u)) return RefinedOutcome::not_for_single;
   out.condition = cholesky_condition(matrix, norm);
   return RefinedOutcome::solved;
 }

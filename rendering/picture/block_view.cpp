@@ -238,7 +238,8 @@ std::vector<Viewport> BlockView::standing(const std::vector<BlockPose>& blocks, 
     add_box(at + glm::vec3(-half.x, -lowest_m, -half.y), at + glm::vec3(half.x, 0.0F, half.y));
     const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
                                arrow_length_m(blocks[i]) + arrow_width_ * kArrowTip_m);
-    if (top > 0.0F) add_box(at + glm::vec3(-kToolHalf_m, 0.0F, -kToolHalf_m), at + glm::vec3(kToolHalf_m, top, kToolHalf_m));
+    const glm::vec3 tool(kToolHalf_m, 0.0F, kToolHalf_m);
+    if (top > 0.0F) add_box(at - tool, at + tool + glm::vec3(0.0F, top, 0.0F));
   }
   return parts;
 }
