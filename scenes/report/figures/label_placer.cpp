@@ -12,6 +12,7 @@ constexpr double kLetterHeight = 17.0;
 constexpr double kPointRadius = 5.0;
 constexpr double kLineStep = 6.0;
 constexpr double kBeside = 9.0;   // from a point to its label
+constexpr double kBetween = 12.0;  // from one text to the next: letters are of many widths
 constexpr double kRing = 8.0;
 constexpr int kRings = 24;
 constexpr int kDirections = 16;
@@ -33,7 +34,7 @@ bool LabelPlacer::is_free(const Box& box) const {
 }
 
 LabelPlacer::Place LabelPlacer::take(double x, double y, double width, bool far) {
-  taken_.push_back({x, y - 0.5 * kLetterHeight, x + width, y + 0.5 * kLetterHeight});
+  taken_.push_back({x - kBetween, y - 0.5 * kLetterHeight, x + width + kBetween, y + 0.5 * kLetterHeight});
   return {x, y, far};
 }
 
