@@ -12,24 +12,16 @@ constexpr double kMostCondition = 1e7;
 constexpr double kResidual = 1e-12;
 constexpr int kMostIterations = 20;
 
-class SingleFactor {
- public:
-  SingleFactor(const ProjectedKernel& kernel, const Eigen::MatrixXf& factor) : kernel_(kernel), factor_(factor) {}
+// Of a right side of any size: single precision has its limits.
+Eigen::VectorXd solve_in_single(const ProjectedKernel& kernel, const Eigen::MatrixXf& factor,
+                                const Eigen::VectorXd& right) {
+  const double size = right.norm();
+  Eigen::VectorXf scaled = (right / size).cast<float>();
+  cholesky_solve(factor, scaled);
+  return kernel.project(size * scaled.cast<double>());
+}
 
-  // Of a vector of any size: single precision has its limits.
-  Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
-    const double size = right.norm();
-    Eigen::VectorXf scaled = (right / size).cast<float>();
-    cholesky_solve(factor_, scaled);
-    return kernel_.project(size * scaled.cast<double>());
-  }
-
- private:
-  const ProjectedKernel& kernel_;
-  const Eigen::MatrixXf& factor_;
-};
-
-bool conjugate_gradients(const ProjectedKernel& kernel, double smoothing, const SingleFactor& factor,
+bool conjugate_gradients(const ProjectedKernel& kernel, double smoothing, const Eigen::MatrixXf& factor,
                          Eigen::VectorXd& u) {
   const double enough = kResidual * kernel.data().norm();
   Eigen::VectorXd residual = kernel.data();
@@ -39,7 +31,7 @@ bool conjugate_gradients(const ProjectedKernel& kernel, double smoothing, const 
   double last = 1.0;
   for (int i = 0; i < kMostIterations; ++i) {
     if (residual.norm() <= enough) return true;
-    const Eigen::VectorXd step = factor.solve(residual);
+    const Eigen::VectorXd step = solve_in_single(kernel, factor, residual);
     const double now = residual.dot(step);
     // The form for a preconditioner that rounds.
     along = step + (i > 0 ? step.dot(residual - last_residual) / last : 0.0) * along;
@@ -56,23 +48,17 @@ bool conjugate_gradients(const ProjectedKernel& kernel, double smoothing, const 
 
 }  // namespace
 
-RefinedOutcome solve_refined(const ProjectedKernel& kernel, double smoothing,
-                             const std::function<bool(double)>& may_continue, RefinedSolution& out) {
+std::optional<RefinedSolution> solve_refined(const ProjectedKernel& kernel, double smoothing,
+                                             const std::function<bool(double)>& may_continue) {
   Eigen::MatrixXf matrix = kernel.float_matrix(kernel.mean_eigenvalue(), smoothing);
   const BlasThreads threads(thread_count());
   const double norm = symmetric_norm(matrix);
-  if (!(norm <= kMostCondition * smoothing)) return RefinedOutcome::not_for_single;
-  bool interrupted = false;
-  const auto asked = [&](double share) {
-    interrupted = !may_continue(share);
-    return !interrupted;
-  };
-  if (!cholesky_in_place(matrix, asked))
-    return interrupted ? RefinedOutcome::interrupted : RefinedOutcome::not_for_single;
-  const SingleFactor factor(kernel, matrix);
-  if (!conjugate_gradients(kernel, smoothing, factor, out.u)) return RefinedOutcome::not_for_single;
-  out.condition = cholesky_condition(matrix, norm);
-  return RefinedOutcome::solved;
+  if (!(norm <= kMostCondition * smoothing)) return {};
+  if (!cholesky_in_place(matrix, may_continue)) return {};
+  RefinedSolution solution;
+  if (!conjugate_gradients(kernel, smoothing, matrix, solution.u)) return {};
+  solution.condition = cholesky_condition(matrix, norm);
+  return solution;
 }
 
 }  // namespace palpate

@@ -10,24 +10,21 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 
 #include "models/solve/projected_kernel.h"
 
 namespace palpate {
-
-enum class RefinedOutcome {
-  solved,
-  not_for_single,  // too ill conditioned: take double precision
-  interrupted,     // by `may_continue`
-};
 
 struct RefinedSolution {
   Eigen::VectorXd u;
   double condition = 0.0;  // estimate, 1-norm
 };
 
-// (P K P + smoothing) u = P S f with a residual of at most 1e-12 of P S f.
-RefinedOutcome solve_refined(const ProjectedKernel& kernel, double smoothing,
-                             const std::function<bool(double)>& may_continue, RefinedSolution& out);
+// (P K P + smoothing) u = P S f, to a residual of 1e-12 of P S f as the iteration has it;
+// the true one is that of a double factor. None when it is too ill conditioned for single
+// precision, or when `may_continue`, asked now and then with the share done, says no.
+std::optional<RefinedSolution> solve_refined(const ProjectedKernel& kernel, double smoothing,
+                                             const std::function<bool(double)>& may_continue);
 
 }  // namespace palpate

@@ -5,14 +5,11 @@
 namespace palpate {
 
 void GrowingStride::add(const SurfaceRow& row) {
-  if (complete_ || seen_++ % stride_ != 0) return;
+  if (rows_.size() == most_ || seen_++ % stride_ != 0) return;
   rows_.push_back(row);
   if (rows_.size() < most_) return;
   const double apart_s = (row.sample.time_s - rows_.front().sample.time_s) / static_cast<double>(rows_.size() - 1);
-  if (2.0 * apart_s > coarsest_s_) {
-    complete_ = true;
-    return;
-  }
+  if (2.0 * apart_s > coarsest_s_) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < rows_.size(); i += 2) rows_[kept++] = rows_[i];
   rows_.resize(kept);

@@ -31,7 +31,6 @@ class GrowingStride {
  private:
   std::size_t most_;
   double coarsest_s_;
-  bool complete_ = false;
   std::size_t stride_ = 1;
   std::size_t seen_ = 0;
   std::vector<SurfaceRow> rows_;

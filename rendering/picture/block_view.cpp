@@ -182,8 +182,13 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   view_projection_ =
       camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
   shown_ = &meshes(viewport, blocks.size());
-  draw_backdrop(table_state(blocks, viewport, theme), viewport);
-  const std::vector<Viewport> parts = standing(blocks, viewport, resting_);
+  draw_backdrop(table_state(blocks, viewport, theme));
+  // Without the sides, which never move, where the backdrop has them. A dent is seen through
+  // the flat top's outline, the tool's shadow goes over its edge.
+  constexpr float kEdge_m = 0.005F;
+  std::vector<Viewport> parts;
+  add_block_parts(blocks.size(), resting_ ? kEdge_m : static_cast<float>(geometry_.height_m), viewport, parts);
+  add_tool_parts(blocks, viewport, parts);
   if (parts.empty()) return;
   const Viewport whole = around(parts);
   const bool smooth = (resting_ && smooth_.begin_with_kept(whole, parts)) || smooth_.begin(0, whole, parts);
@@ -207,47 +212,50 @@ void BlockView::draw_blocks(const std::vector<BlockPose>& blocks) const {
   });
 }
 
-std::vector<Viewport> BlockView::standing(const std::vector<BlockPose>& blocks, const Viewport& viewport,
-                                          bool moving) const {
+void BlockView::add_part(const glm::vec3& low_m, const glm::vec3& high_m, const Viewport& viewport,
+                         std::vector<Viewport>& parts) const {
   const glm::vec2 size(viewport.width, viewport.height);
+  glm::vec2 low = size;
+  glm::vec2 high(0.0F);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 upper(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::vec2 at = project(view_projection_, glm::mix(low_m, high_m, upper), size);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
+  low = glm::clamp(low - 2.0F, glm::vec2(0.0F), size);
+  high = glm::clamp(high + 2.0F, glm::vec2(0.0F), size);
+  const glm::ivec2 from(glm::floor(glm::vec2(low.x, size.y - high.y)));
+  const glm::ivec2 to(glm::ceil(glm::vec2(high.x, size.y - low.y)));
+  const Viewport part{viewport.x + from.x, viewport.y + from.y, std::min(to.x, viewport.width) - from.x,
+                      std::min(to.y, viewport.height) - from.y};
+  if (part.width > 0 && part.height > 0) parts.push_back(part);
+}
+
+void BlockView::add_block_parts(std::size_t count, float lowest_m, const Viewport& viewport,
+                                std::vector<Viewport>& parts) const {
   const glm::vec2 half = 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m);
-  // A dent is seen through the flat top's outline, the tool's shadow goes over its edge.
-  constexpr float kEdge_m = 0.005F;
-  constexpr float kToolHalf_m = 0.022F;  // with the arrow beside it
-  const float lowest_m = moving ? kEdge_m : static_cast<float>(geometry_.height_m);
-  std::vector<Viewport> parts;
-  const auto add_box = [&](const glm::vec3& low_m, const glm::vec3& high_m) {
-    glm::vec2 low = size;
-    glm::vec2 high(0.0F);
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 upper(corner & 1, corner >> 1 & 1, corner >> 2);
-      const glm::vec2 at = project(view_projection_, glm::mix(low_m, high_m, upper), size);
-      low = glm::min(low, at);
-      high = glm::max(high, at);
-    }
-    low = glm::clamp(low - 2.0F, glm::vec2(0.0F), size);
-    high = glm::clamp(high + 2.0F, glm::vec2(0.0F), size);
-    const glm::ivec2 from(glm::floor(glm::vec2(low.x, size.y - high.y)));
-    const glm::ivec2 to(glm::ceil(glm::vec2(high.x, size.y - low.y)));
-    const Viewport part{viewport.x + from.x, viewport.y + from.y, std::min(to.x, viewport.width) - from.x,
-                        std::min(to.y, viewport.height) - from.y};
-    if (part.width > 0 && part.height > 0) parts.push_back(part);
-  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 at = place(i, count);
+    add_part(at + glm::vec3(-half.x, -lowest_m, -half.y), at + glm::vec3(half.x, 0.0F, half.y), viewport, parts);
+  }
+}
+
+// What of a tool is below the top lies in the block's part.
+void BlockView::add_tool_parts(const std::vector<BlockPose>& blocks, const Viewport& viewport,
+                               std::vector<Viewport>& parts) const {
+  const glm::vec3 half(0.022F, 0.0F, 0.022F);  // with the arrow beside it
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const glm::vec3 at = place(i, blocks.size());
-    add_box(at + glm::vec3(-half.x, -lowest_m, -half.y), at + glm::vec3(half.x, 0.0F, half.y));
     const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
                                arrow_length_m(blocks[i]) + arrow_width_ * kArrowTip_m);
-    const glm::vec3 tool(kToolHalf_m, 0.0F, kToolHalf_m);
-    if (top > 0.0F) add_box(at - tool, at + tool + glm::vec3(0.0F, top, 0.0F));
+    if (top > 0.0F) add_part(at - half, at + half + glm::vec3(0.0F, top, 0.0F), viewport, parts);
   }
-  return parts;
 }
 
 BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport,
                                              Theme theme) const {
-  TableState state{view_projection_, viewport.x, viewport.y, viewport.width, viewport.height, theme,
-                   std::min<std::size_t>(blocks.size(), 4)};
+  TableState state{view_projection_, viewport, theme, std::min<std::size_t>(blocks.size(), 4)};
   for (std::size_t i = 0; i < state.count; ++i) {
     if (!blocks[i].chosen || state.count == 1) continue;
     const glm::vec3 at = place(i, state.count);
@@ -257,13 +265,14 @@ BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& block
   return state;
 }
 
-void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport) {
+void BlockView::draw_backdrop(const TableState& state) {
+  const Viewport& viewport = state.viewport;
   if (!(state == backdrop_state_)) {
     backdrop_state_ = state;
     resting_ = false;
     // The table lies behind and below all else: it needs no depth.
-    const bool kept = backdrop_.begin(state.width, state.height);
-    glViewport(kept ? 0 : viewport.x, kept ? 0 : viewport.y, state.width, state.height);
+    const bool kept = backdrop_.begin(viewport.width, viewport.height);
+    glViewport(kept ? 0 : viewport.x, kept ? 0 : viewport.y, viewport.width, viewport.height);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     const Rgb& background = palette(state.theme).background;
@@ -277,26 +286,27 @@ void BlockView::draw_backdrop(const TableState& state, const Viewport& viewport)
     }
   } else if (!resting_) {
     // The view stands still since the last frame: now it pays.
-    add_resting_blocks(state, viewport);
+    add_resting_blocks(state);
   }
   backdrop_.copy(viewport.x, viewport.y);
 }
 
-void BlockView::add_resting_blocks(const TableState& state, const Viewport& viewport) {
+void BlockView::add_resting_blocks(const TableState& state) {
+  const Viewport& viewport = state.viewport;
   BlockPose resting;
   resting.tool_m = -1.0F;  // far above: no shadow
   resting.shows_error = false;
-  const std::vector<BlockPose> blocks(state.count, resting);
-  const std::vector<Viewport> parts = standing(blocks, {0, 0, state.width, state.height}, false);
+  std::vector<Viewport> parts;
+  add_block_parts(state.count, static_cast<float>(geometry_.height_m), {0, 0, viewport.width, viewport.height}, parts);
   if (parts.empty()) return;
   const Viewport whole = around(parts);
   if (!smooth_.begin(backdrop_.framebuffer(), whole, parts)) return;
-  glViewport(-whole.x, -whole.y, state.width, state.height);
+  glViewport(-whole.x, -whole.y, viewport.width, viewport.height);
   draw_solids([&] {
     for (std::size_t i = 0; i < state.count; ++i) draw_block(resting, place(i, state.count));
   });
   smooth_.end(backdrop_.framebuffer(), whole, parts);
-  smooth_.keep(backdrop_.framebuffer(), {viewport.x, viewport.y, state.width, state.height});
+  smooth_.keep(backdrop_.framebuffer(), viewport);
   resting_ = true;
 }
 

@@ -60,7 +60,7 @@ class BlockView {
   // All that the table's picture depends on.
   struct TableState {
     glm::mat4 view_projection{0.0F};
-    int x = 0, y = 0, width = 0, height = 0;
+    Viewport viewport;
     Theme theme = Theme::light;
     std::size_t count = 0;
     glm::vec4 chosen{0.0F};  // colour of the ring; alpha 0: none
@@ -74,12 +74,17 @@ class BlockView {
     GpuMesh block, ball, sensor, handle, shaft, tip;
   };
   const Meshes& meshes(const Viewport& viewport, std::size_t count) const;
-  void draw_backdrop(const TableState& state, const Viewport& viewport);
+  void draw_backdrop(const TableState& state);
   void draw_table(const TableState& state) const;
-  void add_resting_blocks(const TableState& state, const Viewport& viewport);
-  // The parts of the viewport that blocks, tools and arrows lie in, two a block; without the
-  // blocks' sides, which never move, where `moving` is all that is asked for.
-  std::vector<Viewport> standing(const std::vector<BlockPose>& blocks, const Viewport& viewport, bool moving) const;
+  void add_resting_blocks(const TableState& state);
+  // Adds the part of the viewport that a box lies in, if any of it does.
+  void add_part(const glm::vec3& low_m, const glm::vec3& high_m, const Viewport& viewport,
+                std::vector<Viewport>& parts) const;
+  // Where blocks are, down to `lowest_m` below their tops; where tools and arrows are.
+  void add_block_parts(std::size_t count, float lowest_m, const Viewport& viewport,
+                       std::vector<Viewport>& parts) const;
+  void add_tool_parts(const std::vector<BlockPose>& blocks, const Viewport& viewport,
+                      std::vector<Viewport>& parts) const;
   void draw_blocks(const std::vector<BlockPose>& blocks) const;
   void draw_block(const BlockPose& pose, const glm::vec3& place) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place) const;

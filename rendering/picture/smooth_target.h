@@ -11,6 +11,7 @@ namespace palpate {
 // In pixels of the framebuffer, from its lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Viewport&) const = default;
 };
 
 class SmoothTarget {
