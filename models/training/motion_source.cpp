@@ -31,18 +31,14 @@ class RowStream {
   const std::string& name() const { return loaded_ ? loaded_->name : reader_->name(); }
   RecordingColumns columns() const { return loaded_ ? loaded_->columns : reader_->columns(); }
 
-  // The next chunk, full but for the last one, so that files and memory show
-  // sensor identification the same rows; empty at the end.
+  // The next rows, as many as fit but at the end, so that files and memory show sensor
+  // identification the same; none at the end.
   Result<std::size_t> next(std::vector<RecordingRow>& chunk) {
-    if (!loaded_) return next_from_file(chunk);
-    const std::size_t count = std::min(chunk.size(), loaded_->rows.size() - position_);
-    std::copy_n(loaded_->rows.begin() + static_cast<std::ptrdiff_t>(position_), count, chunk.begin());
-    position_ += count;
-    return count;
-  }
-
- private:
-  Result<std::size_t> next_from_file(std::vector<RecordingRow>& chunk) {
+    if (loaded_) {
+      const auto rows = next_in_memory(chunk.size());
+      std::copy(rows.begin(), rows.end(), chunk.begin());
+      return rows.size();
+    }
     std::size_t filled = 0;
     while (filled < chunk.size()) {
       const auto count = reader_->read(chunk.data() + filled, chunk.size() - filled);
@@ -53,6 +49,14 @@ class RowStream {
     return filled;
   }
 
+  // The same where they are.
+  std::span<const RecordingRow> next_in_memory(std::size_t most) {
+    const auto rows = std::span(loaded_->rows).subspan(position_, std::min(most, loaded_->rows.size() - position_));
+    position_ += rows.size();
+    return rows;
+  }
+
+ private:
   std::shared_ptr<const Recording> loaded_;
   std::optional<RecordingReader> reader_;
   std::size_t position_ = 0;
@@ -61,10 +65,13 @@ class RowStream {
 // Files up to this many rows together are read once, when they are put in order.
 constexpr std::size_t kRowsReadOnce = 500000;
 
-// The rows of a stream, of which the next chunk is read while the last one is worked on.
+// The rows of a stream; of a file the next chunk is read while the last one is worked on.
 class ReadAhead {
  public:
-  ReadAhead(RowStream& stream, std::size_t chunk_rows) : stream_(stream), ready_(chunk_rows), next_(chunk_rows) {
+  ReadAhead(RowStream& stream, std::size_t chunk_rows) : stream_(stream), chunk_rows_(chunk_rows) {
+    if (stream_.in_memory()) return;
+    ready_.resize(chunk_rows);
+    next_.resize(chunk_rows);
     begin();
   }
   ReadAhead(const ReadAhead&) = delete;
@@ -75,6 +82,7 @@ class ReadAhead {
 
   // Empty at the end.
   Result<std::span<const RecordingRow>> next() {
+    if (stream_.in_memory()) return stream_.next_in_memory(chunk_rows_);
     const auto count = coming_.get();
     if (!count) return count.error();
     std::swap(ready_, next_);
@@ -83,13 +91,12 @@ class ReadAhead {
   }
 
  private:
-  // Memory is there sooner than a thread is.
   void begin() {
-    const auto policy = stream_.in_memory() ? std::launch::deferred : std::launch::async | std::launch::deferred;
-    coming_ = std::async(policy, [this] { return stream_.next(next_); });
+    coming_ = std::async(std::launch::async | std::launch::deferred, [this] { return stream_.next(next_); });
   }
 
   RowStream& stream_;
+  std::size_t chunk_rows_;
   std::vector<RecordingRow> ready_;
   std::vector<RecordingRow> next_;
   std::future<Result<std::size_t>> coming_;

@@ -1,6 +1,7 @@
 #include "models/training/trend_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "models/model/bernstein.h"
@@ -18,6 +19,18 @@ void keep_every_other(std::vector<T>& values, std::size_t width) {
   }
   values.resize(kept * width);
 }
+
+// Of every k, once: the sums of a row are many.
+constexpr auto kElasticBasis = [] {
+  std::array<std::array<double, kElasticCoefficients>, kElasticCoefficients> basis{};
+  for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein_integral<kElasticCoefficients - 1>(k);
+  return basis;
+}();
+constexpr auto kViscousBasis = [] {
+  std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> basis{};
+  for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein<kViscosityCoefficients - 1>(k);
+  return basis;
+}();
 
 // Of the weight of the data themselves: it decides only where they say nothing.
 constexpr double kSmoothness = 1e-4;
@@ -178,23 +191,20 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   const double depth_m = std::max(0.0, motion.position_m);
   const double velocity_m_per_s = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
   const double u = std::min(depth_m / terms_.reference_depth_m, 1.0);
-  for (const DriveCurve& curve : elastic_basis_) values_.push_back(curve.at(depth_m));
-  for (std::size_t k = 0; k < kElasticCoefficients && elastic_basis_.empty(); ++k) {
-    values_.push_back(u * polynomial(bernstein_integral<kElasticCoefficients - 1>(k), u));
+  values_.resize(values_.size() + columns_);
+  double* to = values_.data() + (values_.size() - columns_);
+  for (const DriveCurve& curve : elastic_basis_) *to++ = curve.at(depth_m);
+  if (elastic_basis_.empty()) {
+    for (const auto& power : kElasticBasis) *to++ = u * polynomial(power, u);
   }
   if (viscous_columns() > 0) {
     for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, terms_.thinning_velocity_m_per_s)}) {
-      for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
-        values_.push_back(v * polynomial(bernstein<kViscosityCoefficients - 1>(k), u));
-      }
+      for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
     }
   }
-  values_.insert(values_.end(), ladder_.values().begin(), ladder_.values().end());
-  for (const FeatureFilter& stop : stops_) {
-    const auto& stop_values = stop.vector().values;
-    values_.insert(values_.end(), stop_values.begin(), stop_values.begin() + kStopTerms);
-  }
-  add_softening(depth_m);
+  to = std::copy(ladder_.values().begin(), ladder_.values().end(), to);
+  for (const FeatureFilter& stop : stops_) to = std::copy_n(stop.vector().values.begin(), kStopTerms, to);
+  put_softening(depth_m, to);
   force_N_.push_back(force_N);
   velocity_m_per_s_.push_back(velocity_m_per_s);
   depth_m_.push_back(depth_m);
@@ -202,10 +212,10 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   if (count() > most_rows_) halve();
 }
 
-void TrendRows::add_softening(double depth_m) {
+void TrendRows::put_softening(double depth_m, double* to) const {
   for (const FeatureFilter& peak : peaks_) {
     for (const double share : softening_shares(depth_m, peak.vector().values[0])) {
-      for (const DriveCurve& basis : softening_basis_) values_.push_back(share * basis.at(depth_m));
+      for (const DriveCurve& basis : softening_basis_) *to++ = share * basis.at(depth_m);
     }
   }
 }

@@ -103,7 +103,7 @@ class TrendRows {
 
  private:
   void halve();
-  void add_softening(double depth_m);
+  void put_softening(double depth_m, double* to) const;
 
   TrendTerms terms_;
   std::size_t most_rows_;
