@@ -3,6 +3,7 @@
 // set, so numbers read and print with '.' everywhere.
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -11,6 +12,8 @@
 
 #ifdef __GLIBC__
 #include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
 #endif
 
 #include "engine/base/signals.h"
@@ -106,12 +109,21 @@ int run_program(int argc, char** argv) {
 }
 
 // Blocks that a fit takes and gives back some hundred times stay with the process: to
-// give them back to the system and to take them anew costs more than to fill them.
+// give them back to the system and to take them anew costs more than to fill them. The
+// first of them lie in huge pages, where the system has any: a fit of a minute's
+// recording touches 25 MB, and 6,000 page faults are a tenth of its time.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  constexpr int kKept = 64 << 20;
+  mallopt(M_MMAP_THRESHOLD, kKept / 2);
+  mallopt(M_TRIM_THRESHOLD, kKept);
   mallopt(M_ARENA_MAX, 1);  // what one thread has freed serves the next; they rarely meet here
+  mallopt(M_TOP_PAD, kKept);
+  auto* const begin = static_cast<char*>(sbrk(0));
+  void* volatile grown = std::malloc(kKept / 4);  // volatile: so that the compiler leaves it
+  std::free(grown);
+  const auto* const end = static_cast<char*>(sbrk(0));
+  if (end > begin) madvise(begin, static_cast<std::size_t>(end - begin), MADV_HUGEPAGE);
 #endif
 }
 
