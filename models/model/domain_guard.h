@@ -43,8 +43,11 @@ class DomainGuard {
   // The squared distance to the cover, infinite when x is not finite, and the trust
   // that goes with it. Within the inner radius, where trust is whole and the error bound
   // does not grow, it is not told: there 0 may stand for it.
-  double squared_distance(const double* x) const noexcept {
-    return near_.found(x) ? 0.0 : nearest_.nearest_squared(x);
+  double squared_distance(const double* x) const noexcept { return squared_distance(x, leaf(x)); }
+  // The same in two halves, for who has something to do between them.
+  const float* leaf(const double* x) const noexcept { return near_.leaf(x); }
+  double squared_distance(const double* x, const float* leaf_of_x) const noexcept {
+    return near_.found(x, leaf_of_x) ? 0.0 : nearest_.nearest_squared(x);
   }
   double trust_at(double squared_distance) const noexcept;
 

@@ -74,6 +74,7 @@ NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
     : centre_(aligned_array<double>(kMaxFeatures)),
       split_coordinate_(aligned_array<std::int32_t>(simd::kNearLeaves)),
       split_at_(aligned_array<float>(simd::kNearLeaves)),
+      leaf_(simd::leaf_function(static_cast<int>(points.rows()))),
       near_(simd::near_function(static_cast<int>(points.rows()))) {
   const Eigen::VectorXd centre = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   const Eigen::MatrixXd about = points.colwise() - centre;

@@ -41,15 +41,17 @@ float nearest(const float* coordinates, size_t stride, size_t count, const float
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
-// The leaf of x, and q = x - c as nearest_float has it.
 #if HWY_MAX_BYTES >= 32
 using Four = hn::FixedTag<float, 4>;
 
+// x - c of kCount coordinates, as nearest_float has it.
 template <int kCount>
 HWY_INLINE hn::Vec<Four> four_about(const double* x, const double* centre) {
   const hn::FixedTag<double, 4> d;
   const Four four;
-  const auto theirs = kCount == 4 ? hn::LoadU(d, x) : hn::MaskedLoad(hn::FirstN(d, kCount), d, x);
+  // One at a time: a load of what has been stored in smaller pieces waits for the stores.
+  const auto at = [&](int k) HWY_ATTR { return k < kCount ? hn::Set(d, x[k]) : hn::Zero(d); };
+  const auto theirs = hn::ConcatUpperLower(d, hn::OddEven(at(3), at(2)), hn::OddEven(at(1), at(0)));
   const auto q = hn::DemoteTo(four, hn::Sub(theirs, hn::Load(d, centre)));
   return hn::IfThenZeroElse(hn::Lt(hn::Abs(q), hn::Set(four, kSmallestFloat)), q);
 }
@@ -57,17 +59,11 @@ HWY_INLINE hn::Vec<Four> four_about(const double* x, const double* centre) {
 // All splits at once, then from bit to bit: a comparison after the other would take three
 // times as long.
 template <int kDimension>
-HWY_INLINE size_t leaf_of(const NearTree& tree, const double* x, float* q) {
-  const Four four;
+HWY_INLINE size_t leaf_number(const NearTree& tree, const double* x) {
   const hn::FixedTag<float, 8> eight;
   const auto low = four_about<std::min(kDimension, 4)>(x, tree.centre);
   auto all = hn::ZeroExtendVector(eight, low);
-  hn::Store(low, four, q);
-  if constexpr (kDimension > 4) {
-    const auto high = four_about<kDimension - 4>(x + 4, tree.centre + 4);
-    hn::Store(high, four, q + 4);
-    all = hn::Combine(eight, high, low);
-  }
+  if constexpr (kDimension > 4) all = hn::Combine(eight, four_about<kDimension - 4>(x + 4, tree.centre + 4), low);
   uint32_t bits = 0;
   for (size_t i = 0; i < kNearLeaves; i += 8) {
     const auto its = hn::TableLookupLanes(all, hn::SetTableIndices(eight, tree.split_coordinate + i));
@@ -81,7 +77,8 @@ HWY_INLINE size_t leaf_of(const NearTree& tree, const double* x, float* q) {
 }
 #else
 template <int kDimension>
-HWY_INLINE size_t leaf_of(const NearTree& tree, const double* x, float* q) {
+HWY_INLINE size_t leaf_number(const NearTree& tree, const double* x) {
+  float q[kDimension];
   for (int k = 0; k < kDimension; ++k) q[k] = nearest_float(x[k] - tree.centre[k]);
   size_t node = 0;
   for (size_t level = 0; level < kNearLevels; ++level)
@@ -91,21 +88,24 @@ HWY_INLINE size_t leaf_of(const NearTree& tree, const double* x, float* q) {
 #endif
 
 template <int kDimension>
-bool near_point(const NearTree& tree, const double* x) noexcept {
+const float* leaf_of(const NearTree& tree, const double* x) noexcept {
+  return tree.leaves + leaf_number<kDimension>(tree, x) * tree.leaf_size * (kDimension + 1);
+}
+
+template <int kDimension>
+bool near_point(const NearTree& tree, const float* leaf_of_x, const double* x) noexcept {
   const Floats d;
-  HWY_ALIGN float q[8];
-  const float* leaf = tree.leaves + leaf_of<kDimension>(tree, x, q) * tree.leaf_size * (kDimension + 1);
   FloatVector coordinate[kDimension];
   FloatVector squared = hn::Zero(d);
   for (int k = 0; k < kDimension; ++k) {
-    coordinate[k] = hn::Set(d, q[k]);
+    coordinate[k] = hn::Set(d, nearest_float(x[k] - tree.centre[k]));
     squared = hn::MulAdd(coordinate[k], coordinate[k], squared);
   }
   const FloatVector limit = hn::MulSub(hn::Set(d, tree.half), squared, hn::Set(d, tree.half_squared));
   const auto products = [&](size_t i) HWY_ATTR {
-    FloatVector sum = hn::Load(d, leaf + kDimension * tree.leaf_size + i);
+    FloatVector sum = hn::Load(d, leaf_of_x + kDimension * tree.leaf_size + i);
     for (int k = 0; k < kDimension; ++k)
-      sum = hn::MulAdd(coordinate[k], hn::Load(d, leaf + static_cast<size_t>(k) * tree.leaf_size + i), sum);
+      sum = hn::MulAdd(coordinate[k], hn::Load(d, leaf_of_x + static_cast<size_t>(k) * tree.leaf_size + i), sum);
     return sum;
   };
   FloatVector largest = limit;
@@ -126,9 +126,16 @@ NearFunction pick_near(int dimension, std::integer_sequence<int, kIndex...>) {
   return kTable[dimension - 1];
 }
 
+template <int... kIndex>
+LeafFunction pick_leaf(int dimension, std::integer_sequence<int, kIndex...>) {
+  static constexpr LeafFunction kTable[] = {&leaf_of<kIndex + 1>...};
+  return kTable[dimension - 1];
+}
+
 using NearestDimensions = std::make_integer_sequence<int, 8>;
 
 NearestFunction get_nearest(int dimension) { return pick_nearest(dimension, NearestDimensions{}); }
+LeafFunction get_leaf(int dimension) { return pick_leaf(dimension, NearestDimensions{}); }
 NearFunction get_near(int dimension) { return pick_near(dimension, NearestDimensions{}); }
 
 }  // namespace HWY_NAMESPACE
@@ -139,9 +146,11 @@ HWY_AFTER_NAMESPACE();
 namespace palpate::simd {
 
 HWY_EXPORT(get_nearest);
+HWY_EXPORT(get_leaf);
 HWY_EXPORT(get_near);
 
 NearestFunction nearest_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
+LeafFunction leaf_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_leaf)(dimension); }
 NearFunction near_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_near)(dimension); }
 
 }  // namespace palpate::simd

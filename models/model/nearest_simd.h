@@ -41,11 +41,14 @@ struct NearTree {
   float half_squared = 0.0F;
   float half = 0.5F;
 };
-// Whether a point of x's leaf is within r. Not so what is no number.
-using NearFunction = bool (*)(const NearTree& tree, const double* x) noexcept;
+// The leaf of x.
+using LeafFunction = const float* (*)(const NearTree& tree, const double* x) noexcept;
+// Whether a point of that leaf is within r. Not so what is no number.
+using NearFunction = bool (*)(const NearTree& tree, const float* leaf_of_x, const double* x) noexcept;
 
 // For dimensions 1 to 8.
 NearestFunction nearest_function(int dimension);
+LeafFunction leaf_function(int dimension);
 NearFunction near_function(int dimension);
 
 }  // namespace palpate::simd
