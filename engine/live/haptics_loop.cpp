@@ -64,11 +64,18 @@ void HapticsLoop::run(Pacer& pacer) noexcept {
   let_go(pacer, deadlines);
 }
 
+// When it wakes up, for then everything is cold, and once more shortly before the deadline:
+// in between others have worked with this core's caches. Not when the tick might have to wait
+// for the end of it.
 void HapticsLoop::wait_for(Pacer& pacer, std::int64_t deadline_ns) noexcept {
-  if (settings_.rehearse_ns <= 0) return pacer.wait_until(deadline_ns);
-  pacer.wait_until(deadline_ns - settings_.rehearse_ns);
-  // Not when the tick might have to wait for its end.
-  if (deadline_ns - pacer.now_ns() >= settings_.rehearse_ns / 2) live_.rehearse();
+  const std::int64_t lead_ns = settings_.rehearse_ns;
+  if (lead_ns <= 0) return pacer.wait_until(deadline_ns);
+  pacer.wait_until(deadline_ns - lead_ns);
+  if (deadline_ns - pacer.now_ns() >= lead_ns / 2) {
+    live_.rehearse();
+    pacer.spin_until(deadline_ns - lead_ns / 4);
+    if (deadline_ns - pacer.now_ns() >= lead_ns / 8) live_.rehearse();
+  }
   pacer.spin_until(deadline_ns);
 }
 

@@ -25,9 +25,9 @@ namespace palpate {
 
 struct LoopSettings {
   std::int64_t period_ns = 1'000'000;
-  // How long before a deadline the thread wakes up, to rehearse the tick and then spin:
-  // the first evaluations after a pause pay for what the caches have lost, and a sleep
-  // ends late. 0: it sleeps until the deadline.
+  // How long before a deadline the thread wakes up, to rehearse the tick, again in the last
+  // quarter of it, and to spin: the first evaluations after a pause pay for what the caches
+  // have lost, and a sleep ends late. 0: it sleeps until the deadline.
   std::int64_t rehearse_ns = 0;
   bool realtime = true;  // ask for it
   RtRequest rt;

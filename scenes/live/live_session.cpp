@@ -13,8 +13,8 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSnapshotsAtOnce = 256;
-// A real-time thread wakes up some 30 us late, and a rehearsal of seven models takes 15; it
-// begins while half of this is left.
+// A real-time thread wakes up some 30 us late, and a rehearsal of seven models takes 15, less
+// when it is the second one.
 constexpr std::int64_t kRehearse_ns = 100'000;
 // A device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;

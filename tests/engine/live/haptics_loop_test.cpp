@@ -78,7 +78,7 @@ TEST(HapticsLoop, CountsTicksLatenessAndMissedDeadlines) {
   EXPECT_EQ(device.force_N(), 0.0) << "it lets go at the end";
 }
 
-TEST(HapticsLoop, RehearsesBeforeADeadlineUnlessItWakesLate) {
+TEST(HapticsLoop, RehearsesTwiceBeforeADeadlineUnlessItWakesLate) {
   PathDevice device(test::held_5mm);
   LoopSettings settings;
   settings.rehearse_ns = 60'000;
@@ -86,20 +86,27 @@ TEST(HapticsLoop, RehearsesBeforeADeadlineUnlessItWakesLate) {
   auto counting = std::make_shared<test::CountingModel>();
   loop.publish_models(std::make_unique<LiveModels>(1, device.sensor(), std::vector<std::shared_ptr<const ForceModel>>{counting}));
   std::vector<std::uint64_t> evaluations;
+  // Each tick waits three times: until it wakes up, until the last quarter, and for the
+  // deadline; one that wakes up too late twice.
+  constexpr int kWakesLate = 30;
+  constexpr int kStays = 45;
   FakePacer pacer([&](int wait) -> std::int64_t {
     evaluations.push_back(counting->evaluations());
-    if (wait == 39) loop.request_stop();
-    // Each tick waits twice: until it wakes up, and for the deadline.
-    if (wait == 20) return 40'000;
+    if (wait == 58) loop.request_stop();
+    if (wait == kWakesLate) return 40'000;
+    if (wait == kStays) return 10'000;  // most of the last quarter is over
     return 0;
   });
   loop.run(pacer);
   EXPECT_EQ(loop.statistics().ticks, 20u);
   EXPECT_EQ(loop.statistics().lateness.max_us, 0.0) << "waking up late is not being late";
-  for (std::size_t tick = 1; tick < 20; ++tick) {
-    const std::uint64_t rehearsed = evaluations[2 * tick + 1] - evaluations[2 * tick];
-    EXPECT_EQ(rehearsed, tick == 10 ? 0u : 1u) << tick;
-  }
+  // Between the waits: a rehearsal, a second one, a tick.
+  const auto between = [&](std::size_t wait) { return evaluations[wait + 1] - evaluations[wait]; };
+  for (std::size_t wait = 3; wait < kWakesLate; ++wait) EXPECT_EQ(between(wait), 1u) << wait;
+  EXPECT_EQ(between(kWakesLate), 0u) << "no time for any";
+  EXPECT_EQ(between(kStays - 1), 1u);
+  EXPECT_EQ(between(kStays), 0u) << "no time for a second one";
+  EXPECT_EQ(between(kStays + 1), 1u) << "the tick";
 }
 
 TEST(HapticsLoop, DropsAndCountsSnapshotsThatNobodyReads) {
