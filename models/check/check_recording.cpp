@@ -214,6 +214,7 @@ void Checker::check_lag() {
   } else {
     surface_ = estimate_surface(rows, noise_N_);
   }
+  check_.motion.reserve(rows.size());
   for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   if (!late) return;
   add("lag", Severity::warning, lag.lag_s,

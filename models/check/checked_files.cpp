@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kReadRows = 65536;
+constexpr std::size_t kReadRows = 4096;  // stay in the cache on their way
 constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 
 // Room for all rows that may come: what stays untouched takes no memory, and a vector that
@@ -49,18 +49,15 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
   CheckedFile file{path, {reader->name(), reader->columns(), {}}, true, {}};
   auto& rows = file.recording.rows;
   rows.reserve(most_rows(path));
+  std::vector<RecordingRow> some(kReadRows);
   for (;;) {
-    const std::size_t before = rows.size();
-    if (before >= kMostCheckedRows) {
-      file.whole = false;
-      break;
-    }
-    if (rows.capacity() < before + kReadRows) rows.reserve(std::max(2 * before, before + kReadRows));
-    rows.resize(before + kReadRows);
-    const auto count = reader->read(rows.data() + before, kReadRows);
+    const auto count = reader->read(some.data(), some.size());
     if (!count) return count.error();
-    rows.resize(before + *count);
     if (*count == 0) break;
+    rows.insert(rows.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(*count));
+    if (rows.size() < kMostCheckedRows) continue;
+    file.whole = false;
+    break;
   }
   file.check = check_recording(file.recording, request);
   return file;
