@@ -1,10 +1,11 @@
 #include "models/model/domain_guard.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "engine/tick/lanes.h"
 
 namespace palpate {
 namespace {
@@ -17,42 +18,65 @@ constexpr double kOuterToInner = 3.0;
 constexpr double kFirstCoverRadius = 0.03;
 constexpr double kCoverGrowth = 1.25;
 
-// Points of which one may be near another, a block of them at a time.
+// One coordinate of as many points as are looked at together.
+struct alignas(sizeof(V4)) Row {
+  V4 first = V4{} + HUGE_VAL;
+  V4 second = V4{} + HUGE_VAL;
+
+  void set(std::size_t lane, double value) { (lane < kLanes ? first : second)[lane % kLanes] = value; }
+};
+constexpr std::size_t kTogether = 2 * kLanes;
+
+// Whether one of the points is near x, the newest first.
+PALPATE_INLINE bool near_one_of(const std::vector<Row>& rows, std::size_t dimension, const double* x,
+                                double squared) noexcept {
+  for (std::size_t end = rows.size(); end > 0; end -= dimension) {
+    const Row* row = rows.data() + end - dimension;
+    V4 first{};
+    V4 second{};
+    for (std::size_t k = 0; k < dimension; ++k) {
+      const V4 a = x[k] - row[k].first;
+      const V4 b = x[k] - row[k].second;
+      first += a * a;
+      second += b * b;
+    }
+    const V4 least = first < second ? first : second;
+    if (std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) <= squared) return true;
+  }
+  return false;
+}
+
+bool near_one_narrow(const std::vector<Row>& rows, std::size_t dimension, const double* x, double squared) noexcept {
+  return near_one_of(rows, dimension, x, squared);
+}
+
+#ifdef __x86_64__
+[[gnu::target("avx2")]] bool near_one_wide(const std::vector<Row>& rows, std::size_t dimension, const double* x,
+                                           double squared) noexcept {
+  return near_one_of(rows, dimension, x, squared);
+}
+const auto kNearOne = has_wide_lanes() ? &near_one_wide : &near_one_narrow;
+#else
+const auto kNearOne = &near_one_narrow;
+#endif
+
+// Points of which one may be near another.
 class Crowd {
  public:
   explicit Crowd(Eigen::Index dimension) : dimension_(static_cast<std::size_t>(dimension)) {}
 
   void add(const double* x) {
-    if (count_ % kBlock == 0) coordinates_.resize(coordinates_.size() + kBlock * dimension_, HUGE_VAL);
-    double* block = coordinates_.data() + count_ / kBlock * kBlock * dimension_;
-    for (std::size_t k = 0; k < dimension_; ++k) block[k * kBlock + count_ % kBlock] = x[k];
+    if (count_ % kTogether == 0) rows_.resize(rows_.size() + dimension_);
+    for (std::size_t k = 0; k < dimension_; ++k) rows_[rows_.size() - dimension_ + k].set(count_ % kTogether, x[k]);
     ++count_;
   }
 
-  // The newest are asked first.
-  bool is_near(const double* x, double squared) const {
-    for (std::size_t end = coordinates_.size(); end > 0; end -= kBlock * dimension_) {
-      const double* block = coordinates_.data() + end - kBlock * dimension_;
-      std::array<double, kBlock> sums{};
-      for (std::size_t k = 0; k < dimension_; ++k) {
-        for (std::size_t j = 0; j < kBlock; ++j) {
-          const double difference = x[k] - block[k * kBlock + j];
-          sums[j] += difference * difference;
-        }
-      }
-      int near = 0;
-      for (const double sum : sums) near += sum <= squared ? 1 : 0;
-      if (near > 0) return true;
-    }
-    return false;
-  }
+  bool is_near(const double* x, double squared) const { return kNearOne(rows_, dimension_, x, squared); }
 
  private:
-  static constexpr std::size_t kBlock = 8;
-
   std::size_t dimension_;
   std::size_t count_ = 0;
-  std::vector<double> coordinates_;
+  std::vector<Row> rows_;
 };
 
 std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
