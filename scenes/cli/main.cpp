@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#ifdef __GLIBC__
+#if defined(__GLIBC__) && defined(__linux__)
 #include <malloc.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -113,7 +113,7 @@ int run_program(int argc, char** argv) {
 // first of them lie in huge pages, where the system has any: a fit of a minute's
 // recording touches 25 MB, and 6,000 page faults are a tenth of its time.
 void keep_freed_memory() {
-#ifdef __GLIBC__
+#if defined(__GLIBC__) && defined(__linux__)
   constexpr int kKept = 64 << 20;
   mallopt(M_MMAP_THRESHOLD, kKept / 2);
   mallopt(M_TRIM_THRESHOLD, kKept);
