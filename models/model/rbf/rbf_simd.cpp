@@ -90,7 +90,7 @@ HWY_INLINE Vector kernel_of_squared(Vector squared) {
   }
 }
 
-// sum + weight phi(r), where nothing but one multiplication waits for r.
+// sum + weight phi(r), where nothing but one operation waits for r.
 template <KernelKind kKind, bool kUnit>
 HWY_INLINE Vector add_kernel(Vector sum, Vector weight, Vector squared) {
   const Vector r = kUnit ? root_by_unit(squared) : root_by_series(squared);

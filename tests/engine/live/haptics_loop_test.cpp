@@ -92,7 +92,7 @@ TEST(HapticsLoop, RehearsesTwiceBeforeADeadlineUnlessItWakesLate) {
   constexpr int kStays = 45;
   FakePacer pacer([&](int wait) -> std::int64_t {
     evaluations.push_back(counting->evaluations());
-    if (wait == 58) loop.request_stop();
+    if (wait == 58) loop.request_stop();  // the last wait of 20 ticks
     if (wait == kWakesLate) return 40'000;
     if (wait == kStays) return 10'000;  // most of the last quarter is over
     return 0;
