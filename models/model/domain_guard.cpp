@@ -23,7 +23,14 @@ struct alignas(sizeof(V4)) Row {
   V4 first = V4{} + HUGE_VAL;
   V4 second = V4{} + HUGE_VAL;
 
-  void set(std::size_t lane, double value) { (lane < kLanes ? first : second)[lane % kLanes] = value; }
+  void set(std::size_t lane, double value) {
+    // Not `(lane < kLanes ? first : second)[...]`: GCC 12 with sanitizers forgets that index.
+    if (lane < kLanes) {
+      first[lane] = value;
+    } else {
+      second[lane - kLanes] = value;
+    }
+  }
 };
 constexpr std::size_t kTogether = 2 * kLanes;
 
