@@ -113,7 +113,7 @@ int run_program(int argc, char** argv) {
 // give them back to the system and to take them anew costs more than to fill them. The
 // first of them lie in huge pages, where the system has any, from the first byte of one on:
 // a fit of a minute's recording touches 22 MB so, and 5,600 page faults are a tenth of its
-// time, a third where a fault passes through a virtual machine's host.
+// time, a quarter where a fault passes through a virtual machine's host.
 void keep_freed_memory() {
 #if defined(__GLIBC__) && defined(__linux__)
   constexpr int kKept = 64 << 20;
