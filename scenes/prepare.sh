@@ -1,20 +1,21 @@
-# Sourced by scenes/run.sh, tests/run.sh and .ci/run: what must be there before
+# Sourced by scenes/run.sh, tests/run.sh and .ci/: what must be there before
 # a program can run. Does only what is missing and is silent when nothing is.
 # Sets `root`, the source tree; the caller has `set -euo pipefail`.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# The one list of Debian packages: to build and run, and more for .ci/run.
+# The one list of Debian packages: to build and run, to test, and for .ci/run.
 packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev libhwy-dev
   libcli11-dev nlohmann-json3-dev gnuplot-nox
   pkg-config libglfw3-dev libglm-dev libepoxy-dev libimgui-dev libpng-dev libgl1-mesa-dri
   fonts-dejavu-core libhidapi-dev)
 # For the tests and benchmarks: of the window a display in memory (xauth: for
-# xvfb-run), of devices an emulated one, of numbers a German locale.
-test_packages=(libgtest-dev libbenchmark-dev python3 locales xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev)
-# libalglib-dev, libdlib-dev: libraries that palpate-bench compares with where they are
-# there; lintian, mmdebstrap: for tests/package/check.sh.
-ci_packages=(clang-14 libclang-rt-14-dev libalglib-dev libdlib-dev lintian mmdebstrap)
+# xvfb-run), of devices an emulated one and an emulated board with its compiler, of numbers
+# a German locale.
+test_packages=(libgtest-dev libbenchmark-dev python3 locales xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev
+  gcc-avr avr-libc simavr libsimavr-dev)
+# What makes the empty roots of .ci/run; its steps ask for what they need in there.
+ci_packages=(mmdebstrap debian-archive-keyring lintian git)
 
 say() { printf '== %s\n' "$*"; }
 
@@ -66,15 +67,17 @@ job_count() {
 }
 
 # build_in FOLDER TARGETS [CMAKE OPTION...]: configures when the folder is new or
-# options are given, then builds. TARGETS: one or several, in one word.
+# options are given, with those of PALPATE_CMAKE_OPTIONS too, then builds. TARGETS: one or
+# several, in one word.
 build_in() {
-  local folder=$1 targets
+  local folder=$1 targets more
   read -r -a targets <<<"$2"
   shift 2
   if [ ! -f "$folder/build.ninja" ]; then say "building in ${folder#"$root"/}, a few minutes the first time"; fi
   if [ ! -f "$folder/build.ninja" ] || [ $# -gt 0 ]; then
     if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
-    quietly cmake -S "$root" -B "$folder" -G Ninja "$@" || return
+    read -r -a more <<<"${PALPATE_CMAKE_OPTIONS:-}"
+    quietly cmake -S "$root" -B "$folder" -G Ninja "$@" "${more[@]}" || return
   fi
   cmake --build "$folder" --target "${targets[@]}" -j "$(job_count)" -- --quiet | sed '/^ninja: no work to do/d'
 }

@@ -7,10 +7,9 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../scenes/prepare.sh"
 
 install_packages "${packages[@]}" "${test_packages[@]}"
-read -r -a options <<<"${PALPATE_CMAKE_OPTIONS:-}"
 folder=${PALPATE_BUILD_FOLDER:-$root/build}
 # Configured every time: what was installed since the last time must be found.
-build_in "$folder" all -DBUILD_TESTING=ON "${options[@]}"
+build_in "$folder" all -DBUILD_TESTING=ON
 
 # A German locale for the tests that show that it changes no number.
 if [ ! -d "$folder/locale/de_DE.UTF-8" ] && command -v localedef >/dev/null; then
