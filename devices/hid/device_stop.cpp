@@ -64,8 +64,7 @@ void stop_all_devices() noexcept {
     if (descriptor < 0) continue;
     for (std::size_t i = 0; i < slot.reports.count; ++i) {
       // Whether it arrives or not, there is nothing else to do here.
-      [[maybe_unused]] const ssize_t written =
-          ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
+      [[maybe_unused]] const ssize_t written = ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
     }
   }
 }

@@ -39,19 +39,19 @@ class HidBus {
 // None of them null.
 using HidDrivers = std::vector<const HidDriver*>;
 
-// The drivers that `info` may need, by its ids; empty: nothing that the program knows.
-HidDrivers matching_drivers(const HidDeviceInfo& info);
+// The driver that `info` needs, by its ids; null: nothing that the program knows.
+const HidDriver* matching_driver(const HidDeviceInfo& info);
 
-// Slow side: reads reports until they tell which of `drivers`, at least one, fits.
-// Errors: no report comes, another protocol version, reports of the wrong size.
-Result<const HidDriver*> identify(HidConnection& connection, const HidDrivers& drivers);
+// Slow side: reads reports until they tell whether the device speaks as `driver` does.
+// Errors: no report comes, another protocol version, other reports.
+Status identify(HidConnection& connection, const HidDriver& driver);
 
 // For `palpate devices`: every node, what it would be used as, and why not.
 struct HidDiagnosis {
   HidDeviceInfo info;
   const HidDriver* driver = nullptr;  // null: not identified
-  std::string use;      // in words
-  std::string problem;  // with what to do; empty: it can be used, or is none of ours
+  std::string use;                    // in words
+  std::string problem;                // with what to do; empty: it can be used, or is none of ours
 };
 std::vector<HidDiagnosis> diagnose(HidBus& bus);
 

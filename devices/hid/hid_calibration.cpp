@@ -22,7 +22,12 @@ class CalibrationReader : private JsonFields {
 
   Result<HidCalibration> read() {
     const bool knows_kind = read_kind();
-    calibration_.counts_per_metre = number(top_, "counts_per_metre", {1.0, 1e9});
+    if (knows_kind && calibration_.driver->knows_position) {
+      calibration_.counts_per_metre = 1e9;
+      calibration_.encoder_step_m = number(top_, "encoder_step_m", {1e-9, 1e-3});
+    } else {
+      calibration_.counts_per_metre = number(top_, "counts_per_metre", {1.0, 1e9});
+    }
     calibration_.direction = number(top_, "direction", {-1.0, 1.0});
     if (calibration_.direction != 1.0 && calibration_.direction != -1.0) refuse("direction", "1 or -1");
     calibration_.rest_position_m = number(top_, "rest_position_m", {-1.0, 1.0});
@@ -53,7 +58,8 @@ class CalibrationReader : private JsonFields {
     ForceLimits& limits = calibration_.limits;
     const std::size_t before = error_count();
     calibration_.fastest_m_per_s = number(top_, "fastest_m_per_s", {0.01, 100.0});
-    calibration_.force_N_per_unit = number(top_, "force_N_per_unit", {1e-9, 1e3});
+    calibration_.force_N_per_unit =
+        calibration_.driver->knows_position ? 1e-6 : number(top_, "force_N_per_unit", {1e-9, 1e3});
     calibration_.stuck_after_s = number(top_, "stuck_after_s", {0.05, 60.0});
     limits.largest_N = number(top_, "peak_N", {1e-3, 100.0});
     limits.continuous_N = number(top_, "continuous_N", {1e-3, 100.0});
@@ -83,8 +89,8 @@ Result<HidCalibration> read_hid_calibration(const std::string& folder, const Hid
   if (!text) return Error{path + ": cannot read the calibration; put the file there, see assets/devices/"};
   Result<HidCalibration> calibration = parse_hid_calibration(*text, path);
   if (calibration && calibration->driver != &driver) {
-    return Error{path + ": found the calibration of \"" + calibration->driver->name +
-                 "\", expected \"" + std::string(driver.name) + "\", as the file's name says"};
+    return Error{path + ": found the calibration of \"" + calibration->driver->name + "\", expected \"" +
+                 std::string(driver.name) + "\", as the file's name says"};
   }
   return calibration;
 }

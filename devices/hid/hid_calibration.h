@@ -1,4 +1,4 @@
-// What one kind of HID device measures and bears: one JSON file per driver, named
+// What one kind of device measures and bears: one JSON file per driver, named
 // after it, in assets/devices/.
 //
 // Thread guarantee: slow side only.
@@ -8,19 +8,22 @@
 #include <string_view>
 
 #include "devices/hid/hid_driver.h"
-#include "engine/live/force_limiter.h"
 #include "engine/base/result.h"
+#include "engine/live/force_limiter.h"
 
 namespace palpate {
 
 struct HidCalibration {
   const HidDriver* driver = nullptr;  // of a calibration that was read: never null
-  double counts_per_metre = 0.0;  // > 0
+  double counts_per_metre = 0.0;      // > 0
+  double encoder_step_m = 0.0;        // 0: one count
   // 1: counts grow into the block, -1: out of it. The force that pushes out of the
   // block then is a command of the sign -direction: positive commands drive the
   // counts up.
   double direction = 1.0;
-  double rest_position_m = 0.0;  // of the tool while it is zeroed; negative: outside
+  // Of the tool while it is zeroed, or where a device that knows its position has its
+  // 0; negative: outside.
+  double rest_position_m = 0.0;
   double fastest_m_per_s = 0.0;  // of the tool; anything above is a jump of the encoder
   // The rest is of devices that push.
   double force_N_per_unit = 0.0;  // unit: see HidCommand

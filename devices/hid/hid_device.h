@@ -21,12 +21,15 @@ class HidDevice final : public Device {
  public:
   // `bus` outlives this; `opened` is of the calibration's driver, which renders force.
   HidDevice(HidBus& bus, const HidCalibration& calibration, HidOpened opened);
+  // With a bus of its own; `name`: as --device has it.
+  HidDevice(std::unique_ptr<HidBus> bus, const HidCalibration& calibration, HidOpened opened, std::string name);
   ~HidDevice() override { close(); }
 
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override;
   bool renders_force() const noexcept override { return true; }
-  ForceLimits limits() const noexcept override { return endpoint_.calibration().limits; }
+  bool measures_force() const noexcept override { return measures_force_; }
+  ForceLimits limits() const noexcept override { return endpoint_.limits(); }
   // Errors: no thread.
   Status open() override;
   void close() noexcept override { link_.stop(); }
@@ -38,7 +41,9 @@ class HidDevice final : public Device {
   std::string note() const override { return link_.description(); }
 
  private:
+  std::unique_ptr<HidBus> own_bus_;
   std::string name_ = "hid";
+  bool measures_force_ = false;
   HidEndpoint endpoint_;
   HidLink link_;
 };

@@ -46,14 +46,16 @@ struct OutReports {
 struct HidDriver {
   const char* name;         // of its calibration file and in messages
   const char* description;  // in words
-  // What this repository has to install on the device when its reports are not
-  // understood; empty: nothing.
+  // What this repository has for the device, which replaces what is on it; empty: nothing.
   const char* firmware;
   std::uint8_t version;  // of the protocol; 0: it has none
   bool renders_force;
-  bool reports_unasked;    // also at rest; else its ids alone must identify it
-  bool numbers_reports;    // sequence, time, boot and confirmation; else arrival is all there is
-  int count_bits;          // width of the counter behind DeviceReading::counts; it wraps
+  bool reports_unasked;  // also at rest; else its ids alone must identify it
+  bool numbers_reports;  // sequence, time, boot and confirmation; else arrival is all there is
+  const char* tried;     // in words: on real hardware and on an emulated device
+  // Counts are nm from the surface on, units uN: nothing is zeroed, and samples come at
+  // any rate that they like.
+  bool knows_position = false;
 
   bool (*matches)(const HidDeviceInfo& info) noexcept;
   // `bytes` as read from hidraw, a report id included where there is one; `reading`

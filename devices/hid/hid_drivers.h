@@ -4,19 +4,19 @@
 
 #include <array>
 
+#include "devices/hid/protocol/bridge.h"
 #include "devices/hid/protocol/openffboard.h"
 #include "devices/hid/protocol/paddle.h"
-#include "devices/hid/protocol/polhem.h"
 #include "devices/hid/protocol/spacemouse.h"
 
 namespace palpate {
 
-// Where reports fit two, the first one counts.
+// A node has the ids of one of them at most.
 inline constexpr std::array kHidDrivers = {
     &kPaddleDriver,
-    &kPolhemDriver,
     &kOpenFfBoardDriver,
     &kSpaceMouseDriver,
+    &kBridgeDriver,
 };
 
 }  // namespace palpate

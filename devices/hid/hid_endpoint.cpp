@@ -9,10 +9,10 @@ namespace {
 MonitorSettings monitor_settings(const HidCalibration& calibration) noexcept {
   MonitorSettings settings;
   settings.numbered = calibration.driver->numbers_reports;
-  settings.count_bits = calibration.driver->count_bits;
+  settings.knows_position = calibration.driver->knows_position;
   settings.counts_per_metre = calibration.counts_per_metre;
   settings.fastest_m_per_s = calibration.fastest_m_per_s;
-  settings.stale_after_s = calibration.limits.stale_after_s;
+  settings.stale_after_s = settings.knows_position ? HidEndpoint::kHeldBack_s : calibration.limits.stale_after_s;
   settings.stuck_after_s = calibration.stuck_after_s;
   return settings;
 }
@@ -42,13 +42,27 @@ void HidEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size, do
   DeviceReading reading;
   const ReportVerdict verdict = calibration_.driver->decode(bytes, size, reading);
   monitor_.update(verdict, reading, now_s, commanded_N_.load(std::memory_order_relaxed));
+  const bool accepted = monitor_.state().samples != link_.monitor.samples;
   link_.monitor = monitor_.state();
+  if (accepted) publish_sample();
   if (link_.monitor.confirmed != confirmed) {
-    const double sent_s =
-        sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
+    const double sent_s = sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
     if (sent_s > 0.0) link_.round_trip_s = now_s - sent_s;
   }
   state_.write(link_);
+}
+
+void HidEndpoint::publish_sample() noexcept {
+  const MonitorState& state = link_.monitor;
+  accepted_.store(state.samples, std::memory_order_relaxed);
+  const bool known = state.zeroing == Zeroing::done || state.zeroing == Zeroing::not_needed;
+  if (!known || state.lost != 0) return;
+  DeviceSample sample;
+  sample.tool.time_s = state.sample_time_s;
+  sample.tool.position_m = position_m(state);
+  sample.measured_force_N = state.measured_N;
+  sample.restart = state.streams != streams_published_;
+  if (samples_.push(sample)) streams_published_ = state.streams;
 }
 
 HidCommand HidEndpoint::command_for(double force_N) noexcept {
@@ -70,8 +84,14 @@ OutReports HidEndpoint::next(double now_s) noexcept {
     last_heartbeat_ = command.heartbeat;
     last_beat_s_ = now_s;
   }
-  if (!fresh && last_sent_s_ >= 0.0 && now_s - last_sent_s_ < kRepeat_s) return {};
+  const std::uint64_t samples = accepted_.load(std::memory_order_relaxed);
+  const bool due = calibration_.driver->knows_position ? samples != answered_ : fresh;
+  const double repeat_s = calibration_.driver->knows_position ? kSlowestSample_s : kRepeat_s;
+  // Letting go waits for nothing.
+  const bool lets_go = fresh && command.force_N == 0.0 && commanded_N_.load(std::memory_order_relaxed) != 0.0;
+  if (!(due && fresh) && !lets_go && last_sent_s_ >= 0.0 && now_s - last_sent_s_ < repeat_s) return {};
   last_sent_s_ = now_s;
+  answered_ = samples;
   const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
   const HidCommand next = command_for(haptics_live ? command.force_N : 0.0);
   sent_at_s_[next.sequence % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
@@ -85,31 +105,45 @@ double HidEndpoint::position_m(const MonitorState& state) const noexcept {
   return calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
 }
 
+// After a pause of the haptics thread the newest count, and what they continue.
 bool HidEndpoint::read(DeviceSample& sample) noexcept {
-  const MonitorState& state = state_.newest().monitor;
-  if (state.samples == samples_read_) return false;
-  samples_read_ = state.samples;
-  if (state.zeroing != Zeroing::done || state.lost != 0) return false;
-  sample = {};
-  sample.tool.time_s = state.sample_time_s;
-  sample.tool.position_m = position_m(state);
-  sample.restart = state.zeroings != zeroings_seen_;
-  zeroings_seen_ = state.zeroings;
+  bool restart = false;
+  DeviceSample next;
+  do {
+    if (!samples_.pop(next)) return false;
+    restart = restart || next.restart;
+  } while (samples_.size() >= static_cast<std::size_t>(kMaxSamplesPerTick));
+  sample = next;
+  sample.restart = restart;
+  began_ = true;
   return true;
 }
 
 void HidEndpoint::write(double force_N) noexcept {
   // Never zeroed: whatever the limiter thinks. Later, its ramp brings the force down.
-  next_command_.force_N = zeroings_seen_ > 0 ? force_N : 0.0;
+  next_command_.force_N = began_ ? force_N : 0.0;
   ++next_command_.heartbeat;
   command_.write(next_command_);
+}
+
+double HidEndpoint::late_after_s(const MonitorState& state) const noexcept {
+  const double late_s = calibration_.limits.stale_after_s;
+  if (!calibration_.driver->knows_position) return late_s;
+  return std::clamp(kLateIntervals * state.interval_s, late_s, kLongestSilence_s);
+}
+
+// Whether a sample is late is for `health` to say; the limiter's own limit is the longest.
+ForceLimits HidEndpoint::limits() const noexcept {
+  ForceLimits limits = calibration_.limits;
+  if (calibration_.driver->knows_position) limits.stale_after_s = kLongestSilence_s;
+  return limits;
 }
 
 bool HidEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
   if (!calibration_.driver->numbers_reports) return false;  // confirms nothing
-  const double confirmed_s =
-      std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
+  if (calibration_.driver->knows_position && link.round_trip_s > kWriteStalled_s) return true;
+  const double confirmed_s = std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;
 }
 
@@ -119,14 +153,15 @@ DeviceHealth HidEndpoint::health(double now_s) noexcept {
   DeviceHealth health;
   health.faults = state.lost;
   if (now_s < state.transient_until_s) health.faults |= state.transient;
-  health.sample_age_s = state.samples > 0 ? std::max(0.0, now_s - state.sample_time_s)
-                                          : std::numeric_limits<double>::infinity();
+  health.sample_age_s =
+      state.samples > 0 ? std::max(0.0, now_s - state.sample_time_s) : std::numeric_limits<double>::infinity();
   if (!link.connected) {
     health.faults |= device_fault::kUnplugged;
   } else {
-    if (health.sample_age_s > calibration_.limits.stale_after_s) health.faults |= device_fault::kLate;
+    if (health.sample_age_s > late_after_s(state)) health.faults |= device_fault::kLate;
     if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
   }
+  health.interval_s = state.interval_s;
   health.zeroing = state.zeroing;
   health.zeroing_progress = state.zeroing_progress;
   health.grip_held = state.grip;

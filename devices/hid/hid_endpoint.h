@@ -15,6 +15,7 @@
 #include "devices/hid/hid_link.h"
 #include "devices/stream/stream_monitor.h"
 #include "engine/live/device.h"
+#include "engine/live/spsc_ring.h"
 #include "engine/live/triple_buffer.h"
 
 namespace palpate {
@@ -33,6 +34,14 @@ class HidEndpoint final : public HidListener {
   static constexpr double kWriteStalled_s = 0.05;
   // Nothing new to say: at least this often all the same.
   static constexpr double kRepeat_s = 0.005;
+  // A device that gives samples at its own rate is late when five are missing, after 10 ms
+  // at the earliest (its calibration's stale_after_s) and after 100 ms at the latest, and
+  // hears of commands no more often than it gives samples, down to 100 Hz.
+  static constexpr double kLateIntervals = 5.0;
+  static constexpr double kLongestSilence_s = 0.1;
+  static constexpr double kSlowestSample_s = 0.01;
+  // USB serial chips hold bytes back for 16 ms.
+  static constexpr double kHeldBack_s = 0.02;
 
   explicit HidEndpoint(const HidCalibration& calibration) noexcept;
 
@@ -55,6 +64,7 @@ class HidEndpoint final : public HidListener {
   void start_zeroing() noexcept { zeroing_asked_.store(true, std::memory_order_relaxed); }
 
   const HidCalibration& calibration() const noexcept { return calibration_; }
+  ForceLimits limits() const noexcept;
 
  private:
   struct Command {
@@ -65,28 +75,33 @@ class HidEndpoint final : public HidListener {
   HidCommand command_for(double force_N) noexcept;
   double position_m(const MonitorState& state) const noexcept;
   bool stalled(const LinkState& state, double now_s) const noexcept;
+  double late_after_s(const MonitorState& state) const noexcept;
+  void publish_sample() noexcept;
 
   HidCalibration calibration_;
   std::atomic<bool> zeroing_asked_{false};
   std::atomic<double> commanded_N_{0.0};  // last sent
   std::atomic<double> last_written_s_{0.0};
+  std::atomic<std::uint64_t> accepted_{0};            // samples
   std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence
   static_assert(std::atomic<double>::is_always_lock_free);
   TripleBuffer<LinkState> state_;
+  SpscRing<DeviceSample, 256> samples_;
   TripleBuffer<Command> command_;
   // Reader thread's own.
   StreamMonitor monitor_;
   LinkState link_;
+  std::uint32_t streams_published_ = 0;
   // Writer thread's own.
   std::uint32_t sequence_ = 0;
   std::uint16_t last_heartbeat_ = 0;
   double last_beat_s_ = 0.0;
   double last_sent_s_ = -1.0;
+  std::uint64_t answered_ = 0;  // samples when a command was sent last
   std::atomic<double> connected_at_s_{0.0};
   // Haptics thread's own.
   Command next_command_;
-  std::uint64_t samples_read_ = 0;
-  std::uint32_t zeroings_seen_ = 0;
+  bool began_ = false;  // a sample was read: the position is known
 };
 
 }  // namespace palpate

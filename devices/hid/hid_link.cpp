@@ -27,20 +27,18 @@ bool contains(const HidDrivers& drivers, const HidDriver* driver) {
 std::optional<HidOpened> try_open(HidBus& bus, const HidDrivers& drivers, std::string& problems) {
   problems.clear();
   for (const HidDeviceInfo& info : bus.list()) {
-    const HidDrivers possible = matching_drivers(info);
-    const bool asked_for = std::any_of(possible.begin(), possible.end(),
-                                       [&](const HidDriver* driver) { return contains(drivers, driver); });
-    if (!asked_for) continue;
+    const HidDriver* const driver = matching_driver(info);
+    if (driver == nullptr || !contains(drivers, driver)) continue;
     Result<std::unique_ptr<HidConnection>> connection = bus.open(info);
     std::string problem;
     if (!connection) {
       problem = connection.error().message;
     } else {
-      const Result<const HidDriver*> driver = identify(**connection, possible);
-      if (driver && contains(drivers, *driver)) return HidOpened{info, *driver, std::move(*connection)};
-      problem = driver ? std::string() : info.path + ": " + driver.error().message;
+      const Status identified = identify(**connection, *driver);
+      if (identified) return HidOpened{info, driver, std::move(*connection)};
+      problem = info.path + ": " + identified.error().message;
     }
-    if (!problem.empty()) problems += (problems.empty() ? "" : "; ") + problem;
+    problems += (problems.empty() ? "" : "; ") + problem;
   }
   return std::nullopt;
 }
@@ -70,7 +68,7 @@ HidLink::HidLink(HidBus& bus, HidListener& listener, HidOpened opened)
 HidLink::~HidLink() { stop(); }
 
 std::string HidLink::description() const {
-  return std::string(driver_.description) + ": " + info_.product + ", " + info_.path;
+  return std::string(driver_.description) + ": " + info_.product + ", " + info_.path + "; tried " + driver_.tried;
 }
 
 std::shared_ptr<HidConnection> HidLink::connection() noexcept {
@@ -93,8 +91,7 @@ Status HidLink::start() {
     if (driver_.renders_force) writer_ = std::thread([this] { write_all(); });
   } catch (const std::system_error& error) {
     stop();
-    return Error{std::string("cannot start a thread for the device: ") + error.what() +
-                 "; close other programs"};
+    return Error{std::string("cannot start a thread for the device: ") + error.what() + "; close other programs"};
   }
   return {};
 }

@@ -34,6 +34,7 @@ struct HidOpened {
   HidDeviceInfo info;
   const HidDriver* driver = nullptr;  // of one that was opened: never null
   std::unique_ptr<HidConnection> connection;
+  bool measures_force = false;
 };
 
 // The first device of one of `drivers` that can be opened; tries for half a second

@@ -43,8 +43,7 @@ class HidapiConnection final : public HidConnection {
   }
 
   int read(std::uint8_t* bytes, std::size_t capacity) noexcept override {
-    return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity)
-                        : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
+    return wait_ms_ < 0 ? hid_read(reader_, bytes, capacity) : hid_read_timeout(reader_, bytes, capacity, wait_ms_);
   }
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override {
     if (!begin_force_write()) return false;
@@ -67,7 +66,7 @@ class HidapiConnection final : public HidConnection {
 
 // hidapi lists a node once for each usage of its descriptor.
 bool better(const HidDeviceInfo& a, const HidDeviceInfo& b) {
-  return matching_drivers(a).size() > matching_drivers(b).size();
+  return matching_driver(a) != nullptr && matching_driver(b) == nullptr;
 }
 
 }  // namespace
@@ -105,8 +104,7 @@ std::vector<HidDeviceInfo> HidapiBus::list() {
     info.product_id = entry->product_id;
     info.usage_page = entry->usage_page;
     info.usage = entry->usage;
-    const auto same =
-        std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.path == info.path; });
+    const auto same = std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.path == info.path; });
     if (same == all.end()) {
       all.push_back(info);
     } else if (better(info, *same)) {

@@ -11,9 +11,9 @@
 #include <string>
 #include <utility>
 
+#include "devices/hid/spacemouse.h"
 #include "devices/virtual/hand_device.h"
 #include "devices/virtual/mouse_device.h"
-#include "devices/hid/spacemouse.h"
 
 namespace palpate {
 
@@ -42,6 +42,7 @@ class AutoDevice final : public Device, public ToolInput {
   // Setting a target is taking over.
   void set_target(double position_m, double now_s) noexcept override { mouse_.set_target(position_m, now_s); }
   void nudge(double by_m, double now_s) noexcept override { mouse_.nudge(by_m, now_s); }
+  void leave() noexcept override { mouse_.leave(); }
   // Any thread, wait-free.
   bool hand_is_exploring() const noexcept override { return exploring_.load(std::memory_order_relaxed); }
 

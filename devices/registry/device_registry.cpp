@@ -3,21 +3,20 @@
 #include <string_view>
 #include <utility>
 
-#include "devices/registry/auto_device.h"
-#include "devices/virtual/hand_device.h"
+#include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hid_device.h"
 #include "devices/hid/hid_drivers.h"
 #include "devices/hid/hidapi_bus.h"
+#include "devices/hid/spacemouse.h"
+#include "devices/registry/auto_device.h"
+#include "devices/virtual/hand_device.h"
 #include "devices/virtual/mouse_device.h"
 #include "devices/virtual/replay_device.h"
-#include "devices/hid/spacemouse.h"
 
 namespace palpate {
 namespace {
 
 using Made = Result<std::unique_ptr<Device>>;
-
-constexpr std::string_view kReplay = "replay:";
 
 HidDrivers drivers_that(bool render_force) {
   HidDrivers drivers;
@@ -74,7 +73,8 @@ Made make_auto(const std::string&, const DeviceRequest& request) {
   bool no_mouse = false;
   Result<std::unique_ptr<SpaceMouse>> mouse = make_space_mouse(request, no_mouse);
   if (!mouse && !no_mouse) note += "; " + mouse.error().message;
-  note += std::string(": a simulated hand until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") + " takes over";
+  note += std::string(": a simulated hand until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
+          " takes over";
   if (mouse) device->use(std::move(*mouse));
   device->explain(std::move(note));
   return Made(std::move(device));
@@ -93,6 +93,17 @@ Made make_replay(const std::string& path, const DeviceRequest&) {
   return Made(std::make_unique<ReplayDevice>(std::move(*recording)));
 }
 
+Made make_bridge(const std::string& target, const DeviceRequest& request) {
+  const Result<BridgeTarget> parsed = parse_bridge_target(target);
+  if (!parsed) return parsed.error();
+  const Result<HidCalibration> calibration = calibration_of(request, kBridgeDriver);
+  if (!calibration) return calibration.error();
+  auto bus = std::make_unique<BridgeBus>(*parsed, target);
+  Result<HidOpened> opened = bus->open_and_identify();
+  if (!opened) return opened.error();
+  return Made(std::make_unique<HidDevice>(std::move(bus), *calibration, std::move(*opened), "bridge"));
+}
+
 struct Entry {
   DeviceDescription description;
   Made (*make)(const std::string& path, const DeviceRequest& request);
@@ -107,6 +118,7 @@ const std::vector<Entry>& entries() {
       {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", true, ""}, make_hid},
       {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", false, ""},
        make_replay},
+      {{"bridge:TARGET", "any device: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND", true, ""}, make_bridge},
   };
   return all;
 }
@@ -130,11 +142,16 @@ std::vector<DeviceDescription> list_devices(const DeviceRequest& request) {
 }
 
 Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceRequest& request) {
-  const bool replay = name.rfind(kReplay, 0) == 0;
+  // Some take what stands behind a colon.
+  const std::size_t colon = name.find(':');
+  const std::string what = colon == std::string::npos ? "" : name.substr(colon + 1);
   for (const Entry& entry : entries()) {
-    const bool chosen = replay ? entry.description.name.rfind(kReplay, 0) == 0 : entry.description.name == name;
-    if (!chosen) continue;
-    Made device = entry.make(replay ? name.substr(kReplay.size()) : "", request);
+    const std::string& known = entry.description.name;
+    const std::size_t end = known.find(':');
+    if (name.substr(0, colon) != known.substr(0, end) || (colon == std::string::npos) != (end == std::string::npos)) {
+      continue;
+    }
+    Made device = entry.make(what, request);
     if (!device) return device;
     if (const Status status = (*device)->open(); !status) return status.error();
     return device;

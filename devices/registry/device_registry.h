@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "devices/virtual/hand_motion.h"
 #include "devices/hid/hid_bus.h"
+#include "devices/virtual/hand_motion.h"
 #include "engine/live/device.h"
 
 namespace palpate {
@@ -33,7 +33,8 @@ struct DeviceRequest {
 // they can be used; takes half a second when one cannot.
 std::vector<DeviceDescription> list_devices(const DeviceRequest& request = {});
 
-// Makes and opens the device of that name: auto, hand, mouse, hid, replay:FILE.
+// Makes and opens the device of that name: auto, hand, mouse, hid,
+// replay:FILE, bridge:TARGET.
 // "auto" is the haptic device that can be opened; without one the simulated hand
 // until the mouse or a SpaceMouse takes over, and its `note` says why. Errors: an
 // unknown name (lists the known ones), a recording that cannot be read, a device

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace palpate {
 
@@ -22,7 +23,10 @@ struct DeviceReading {
   std::uint32_t confirmed = 0;  // of the host's command that it obeyed last
   std::uint16_t boot = 0;
   std::uint8_t version = 0;
+  double measured_N = std::numeric_limits<double>::quiet_NaN();  // of a force sensor; NaN: none
   bool grip = false;
+  bool driving = false;    // the device says that its motor is on
+  bool stopped = false;    // by the device's own watchdog: it did not hear the host
   bool own_fault = false;  // the device says that it has one
 };
 

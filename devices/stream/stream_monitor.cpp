@@ -11,6 +11,8 @@ constexpr double kNoiseCounts = 4.0;
 // Time steps between samples are at least this, else a report on the heels of
 // another would look fast.
 constexpr double kShortestStep_s = 1e-3;
+// Of a new interval in the mean of the last ten or so.
+constexpr double kIntervalShare = 0.1;
 // Two samples must not have the same time.
 constexpr double kLeastStep_s = 1e-6;
 
@@ -19,7 +21,9 @@ bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::
 
 }  // namespace
 
-StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {}
+StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {
+  if (settings.knows_position) state_.zeroing = Zeroing::not_needed;
+}
 
 void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
   if (now_s >= state_.transient_until_s) state_.transient = 0;
@@ -27,7 +31,12 @@ void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
   state_.transient_until_s = now_s + kHold_s;
 }
 
-void StreamMonitor::lose(std::uint32_t bit) noexcept {
+void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
+  if (settings_.knows_position) {
+    fault(bit, now_s);
+    if (bit == device_fault::kJump) ++state_.streams;
+    return;
+  }
   state_.lost |= bit;
   state_.zeroing = Zeroing::needed;
   state_.zeroing_progress = 0.0F;
@@ -35,7 +44,8 @@ void StreamMonitor::lose(std::uint32_t bit) noexcept {
 
 void StreamMonitor::unplugged() noexcept {
   connected_ = false;
-  lose(device_fault::kUnplugged);
+  // Of a device that knows its position the link alone says so.
+  if (!settings_.knows_position) lose(device_fault::kUnplugged, 0.0);
 }
 
 void StreamMonitor::start_zeroing() noexcept {
@@ -45,16 +55,35 @@ void StreamMonitor::start_zeroing() noexcept {
   zeroing_since_s_ = -1.0;
 }
 
+bool StreamMonitor::started_again(const DeviceReading& reading) noexcept {
+  refused_in_order_ = reading.sequence == refused_ + 1 ? refused_in_order_ + 1 : 0;
+  refused_ = reading.sequence;
+  return settings_.knows_position && refused_in_order_ >= kStartedAgain;
+}
+
 bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
   if (!settings_.numbered || !connected_) return true;
-  if (reading.boot != last_.boot) {
-    lose(device_fault::kReset);
+  const bool newer = later(reading.sequence, last_.sequence);
+  // The same report again says nothing new; its age will tell.
+  const bool again = reading.sequence == last_.sequence;
+  if (reading.boot != last_.boot || (!newer && !again && started_again(reading))) {
+    lose(device_fault::kReset, now_s);
     connected_ = false;
     return true;
   }
-  if (later(reading.sequence, last_.sequence)) return true;
-  // The same report again says nothing new; its age will tell.
-  if (reading.sequence != last_.sequence) fault(device_fault::kOutOfOrder, now_s);
+  if (newer) return true;
+  if (!again) fault(device_fault::kOutOfOrder, now_s);
+  return false;
+}
+
+bool StreamMonitor::settled(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.knows_position || connected_) return true;
+  if (first_s_ < 0.0) {
+    clock_.restart();
+    first_s_ = now_s;
+  }
+  if (now_s - first_s_ >= kSettling_s) return true;
+  clock_.host_time_s(reading.time_us, now_s);
   return false;
 }
 
@@ -67,31 +96,38 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
     if (together) fault(device_fault::kBurst, now_s);
     return !together;
   }
-  if (!connected_) clock_.restart();
+  if (!connected_ && !settings_.knows_position) clock_.restart();
   read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
-  if (now_s - read_time_s_ <= settings_.stale_after_s) return true;
+  if (now_s - read_time_s_ <= settings_.stale_after_s) {
+    late_since_s_ = now_s;
+    return true;
+  }
+  // Late for so long, the device's clock has paused: begin anew. Whether the way itself is
+  // that long shows in the time that a command takes to be confirmed.
+  if (settings_.knows_position && now_s - late_since_s_ > kClockPaused_s) connected_ = false;
   fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
   return false;
 }
 
 // Unwraps the counter and judges the step.
-void StreamMonitor::move(const DeviceReading& reading) noexcept {
+void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
   if (!connected_) {
     state_.counts = reading.counts;
     return;
   }
-  std::int64_t step = static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) -
-                                                static_cast<std::uint32_t>(last_.counts));
-  if (settings_.count_bits == 16) step = static_cast<std::int16_t>(step & 0xFFFF);
+  const std::int64_t step =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) - static_cast<std::uint32_t>(last_.counts));
   const double step_s = std::max(kShortestStep_s, read_time_s_ - state_.sample_time_s);
   const double most = settings_.counts_per_metre * settings_.fastest_m_per_s * step_s + kNoiseCounts;
-  if (std::abs(static_cast<double>(step)) > most) lose(device_fault::kJump);
+  if (std::abs(static_cast<double>(step)) > most) lose(device_fault::kJump, now_s);
   state_.counts += step;
 }
 
 void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
-  if (!(std::abs(force_N) >= kPushing_N)) still_since_s_ = now_s;
-  if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck);
+  const bool stuck = now_s - still_since_s_ > settings_.stuck_after_s;
+  // Found stuck, only motion ends it where no zeroing does.
+  if (!(std::abs(force_N) >= kPushing_N) && !(stuck && settings_.knows_position)) still_since_s_ = now_s;
+  if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck, now_s);
 }
 
 void StreamMonitor::watch_zeroing(double now_s) noexcept {
@@ -109,28 +145,34 @@ void StreamMonitor::watch_zeroing(double now_s) noexcept {
   state_.zero_counts = 0.5 * static_cast<double>(zeroing_from_ + zeroing_to_);
   state_.zeroing = Zeroing::done;
   state_.lost = 0;
-  ++state_.zeroings;
+  ++state_.streams;
 }
 
-void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, double now_s,
-                           double force_N) noexcept {
+void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept {
   if (verdict == ReportVerdict::corrupt) fault(device_fault::kCorrupt, now_s);
   if (verdict == ReportVerdict::wrong_version) fault(device_fault::kWrongFirmware, now_s);
   if (reading.own_fault) fault(device_fault::kOwn, now_s);
+  if (reading.stopped) fault(device_fault::kWriteStalled, now_s);
   if (verdict != ReportVerdict::position) return;
-  if (!in_order(reading, now_s) || !recent(reading, now_s)) return;
+  if (!in_order(reading, now_s) || !settled(reading, now_s) || !recent(reading, now_s)) return;
   const std::int64_t before = state_.counts;
-  move(reading);
+  move(reading, now_s);
+  if (!connected_ && settings_.knows_position) ++state_.streams;
   if (!connected_ || state_.counts != before) still_since_s_ = now_s;
   if (!connected_ || reading.confirmed != last_.confirmed) {
     state_.confirmed = reading.confirmed;
     state_.confirmed_at_s = now_s;
   }
-  state_.sample_time_s = std::max(read_time_s_, state_.sample_time_s + kLeastStep_s);
+  const double before_s = state_.sample_time_s;
+  state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
+  const double step_s = connected_ ? std::min(state_.sample_time_s - before_s, kHold_s) : 0.0;
+  state_.interval_s += (step_s - state_.interval_s) * (state_.samples > 0 ? kIntervalShare : 1.0);
+  state_.measured_N = reading.measured_N;
   state_.grip = reading.grip;
   ++state_.samples;
   last_ = reading;
   connected_ = true;
+  first_s_ = -1.0;
   watch_stuck(now_s, force_N);
   watch_zeroing(now_s);
 }

@@ -9,10 +9,12 @@
 //   a step faster than the device can move                kJump
 //   another boot number                                   kReset
 //   no count in `stuck_after_s` in spite of kPushing_N    kStuck
+//   a device that stopped by its watchdog                 kWriteStalled
 // Reports that do not come at all are found by their age, by
 // whoever reads the device. A
 // fault that leaves the position known lasts kHold_s after its last occurrence;
-// one that loses it, until the device was zeroed. A faulty report is never used.
+// one that loses it, until the device was zeroed; a device that knows its position by
+// itself does not lose it. A faulty report is never used.
 //
 // Thread guarantee: one thread; wait-free, never throws.
 #pragma once
@@ -26,8 +28,8 @@
 namespace palpate {
 
 struct MonitorSettings {
-  bool numbered = false;  // readings carry a sequence, a time and a boot number
-  int count_bits = 32;    // width of the counter; it wraps
+  bool numbered = false;        // readings carry a sequence, a time and a boot number
+  bool knows_position = false;  // nothing is zeroed; no boot number
   double counts_per_metre = 1.0;
   double fastest_m_per_s = 5.0;
   double stale_after_s = 0.01;
@@ -45,7 +47,9 @@ struct MonitorState {
   std::uint32_t confirmed = 0;
   std::uint32_t transient = 0;  // device_fault, until transient_until_s
   std::uint32_t lost = 0;       // device_fault, until zeroed
-  std::uint32_t zeroings = 0;   // done so far
+  std::uint32_t streams = 0;    // begun so far: at a zeroing, or where the position is found again
+  double interval_s = 0.0;      // between samples, of the last ten or so
+  double measured_N = std::numeric_limits<double>::quiet_NaN();
   Zeroing zeroing = Zeroing::needed;
   float zeroing_progress = 0.0F;
   bool grip = false;
@@ -59,6 +63,13 @@ class StreamMonitor {
   // The tool has to rest for as long, within kRest_m, to be zeroed.
   static constexpr double kZeroing_s = 0.2;
   static constexpr double kRest_m = 0.5e-3;
+  // As many readings in order among themselves that were expected earlier: the device
+  // counts anew.
+  static constexpr int kStartedAgain = 8;
+  // Readings of a device that knows its position first tell what its clock shows, for the
+  // first of them may have waited in a queue; HID nodes have none when they are opened.
+  static constexpr double kSettling_s = 0.05;
+  static constexpr double kClockPaused_s = 0.5;
 
   explicit StreamMonitor(const MonitorSettings& settings) noexcept;
 
@@ -73,10 +84,12 @@ class StreamMonitor {
 
  private:
   void fault(std::uint32_t bit, double now_s) noexcept;
-  void lose(std::uint32_t bit) noexcept;
+  void lose(std::uint32_t bit, double now_s) noexcept;
+  bool started_again(const DeviceReading& reading) noexcept;
   bool in_order(const DeviceReading& reading, double now_s) noexcept;
+  bool settled(const DeviceReading& reading, double now_s) noexcept;
   bool recent(const DeviceReading& reading, double now_s) noexcept;
-  void move(const DeviceReading& reading) noexcept;
+  void move(const DeviceReading& reading, double now_s) noexcept;
   void watch_stuck(double now_s, double force_N) noexcept;
   void watch_zeroing(double now_s) noexcept;
 
@@ -84,10 +97,14 @@ class StreamMonitor {
   MonitorState state_;
   DeviceClock clock_;
   DeviceReading last_;
+  std::uint32_t refused_ = 0;  // sequence of the last reading that was out of order
+  int refused_in_order_ = 0;
   bool connected_ = false;                     // a report was accepted since the start or since unplugging
+  double first_s_ = -1.0;                      // of a device that knows its position: the first reading since
   double read_time_s_ = 0.0;                   // of the present reading
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three reports, newest first
   double still_since_s_ = 0.0;
+  double late_since_s_ = 0.0;
   double zeroing_since_s_ = -1.0;  // below 0: not begun
   std::int64_t zeroing_from_ = 0, zeroing_to_ = 0;
 };

@@ -15,14 +15,13 @@ constexpr double kPi = 3.14159265358979323846;
 
 HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : settings_(settings), random_(seed, 0) {
   using enum Gesture;
-  deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke, poke,
+  deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke,       poke,
            poke,       poke,       poke,       steps, modulation, modulation, modulation, rest};
   dealt_ = deck_.size();
   for (Tremor& tremor : tremor_) {
     tremor.rate_rad_per_s = 2.0 * kPi * any(8.0, 12.0);
     const double phase_rad = any(-kPi, kPi);
-    const double amplitude_m =
-        settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
+    const double amplitude_m = settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
     tremor.along = amplitude_m * std::cos(phase_rad);
     tremor.across = amplitude_m * std::sin(phase_rad);
   }
@@ -72,8 +71,7 @@ void HandMotion::advance_aim(double dt_s) {
   const double u = segment_time_s_ / segment.duration_s;
   const double distance_m = segment.target_m - segment_from_m_;
   aim_m_ = segment_from_m_ + distance_m * u * u * u * (10.0 + u * (6.0 * u - 15.0));
-  aim_velocity_m_per_s_ =
-      distance_m / segment.duration_s * 30.0 * u * u * (1.0 - u) * (1.0 - u);
+  aim_velocity_m_per_s_ = distance_m / segment.duration_s * 30.0 * u * u * (1.0 - u) * (1.0 - u);
   if (dt_s != tremor_dt_s_) start_tremor(dt_s);
   for (Tremor& tremor : tremor_) {
     const double along = tremor.along * tremor.turn_cos - tremor.across * tremor.turn_sin;
@@ -100,12 +98,24 @@ void HandMotion::plan() {
     dealt_ = 0;
   }
   switch (deck_[dealt_++]) {
-    case Gesture::slow_press: plan_slow_press(); break;
-    case Gesture::taps: plan_taps(); break;
-    case Gesture::poke: plan_poke(); break;
-    case Gesture::steps: plan_steps(); break;
-    case Gesture::modulation: plan_modulation(); break;
-    case Gesture::rest: go({any(-0.010, -0.003), any(0.5, 1.0)}); break;
+    case Gesture::slow_press:
+      plan_slow_press();
+      break;
+    case Gesture::taps:
+      plan_taps();
+      break;
+    case Gesture::poke:
+      plan_poke();
+      break;
+    case Gesture::steps:
+      plan_steps();
+      break;
+    case Gesture::modulation:
+      plan_modulation();
+      break;
+    case Gesture::rest:
+      go({any(-0.010, -0.003), any(0.5, 1.0)});
+      break;
   }
 }
 

@@ -34,6 +34,10 @@ void MouseDevice::set_target(double position_m, double now_s) noexcept {
 
 void MouseDevice::nudge(double by_m, double now_s) noexcept { set_target(target_m() + by_m, now_s); }
 
+void MouseDevice::leave() noexcept {
+  last_input_s_.store(-std::numeric_limits<double>::infinity(), std::memory_order_relaxed);
+}
+
 bool MouseDevice::idle(double now_s) const noexcept {
   return !(now_s - last_input_s_.load(std::memory_order_relaxed) < settings_.idle_time_s);
 }

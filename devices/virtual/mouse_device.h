@@ -14,11 +14,11 @@
 namespace palpate {
 
 struct MouseSettings {
-  double mass_kg = 0.12;             // as HandSettings
+  double mass_kg = 0.12;  // as HandSettings
   double stiffness_N_per_m = 800.0;
   double damping_Ns_per_m = 14.0;
-  double smoothing_time_s = 0.015;   // tau: two reports of a mouse at 125 Hz
-  double highest_m = -0.03;          // targets are kept between these
+  double smoothing_time_s = 0.015;  // tau: two reports of a mouse at 125 Hz
+  double highest_m = -0.03;         // targets are kept between these
   double deepest_m = 0.03;
   double idle_time_s = 20.0;
 };
@@ -40,6 +40,7 @@ class MouseDevice final : public Device, public ToolInput {
   void set_target(double position_m, double now_s) noexcept override;
   // Likewise: moves the target, as a wheel or a key does.
   void nudge(double by_m, double now_s) noexcept override;
+  void leave() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }

@@ -5,6 +5,7 @@
 #include <EEPROM.h>
 #include <Encoder.h>
 
+#include "wire.h"
 #include "paddle_protocol.h"
 #include "paddle_firmware.h"
 

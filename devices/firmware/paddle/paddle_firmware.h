@@ -4,9 +4,9 @@
 // A report from the host is obeyed when its checksum is right and it is newer
 // than the last; one without drive stops the motor whatever its number, and the
 // count goes on from that number, as for a host that starts again. The motor stops by itself when there was
-// no such report for kWatchdog_us, when the heartbeat stood still for kHeartbeat_us, and on a fault of motor
-// or encoder. It starts again only after a report without drive, or with no current, so that it does not
-// resume in the middle of a push. Thread guarantee: one thread.
+// no such report, or no new heartbeat, for HostWatch::kSilent_us, and on a fault of motor or encoder. It starts again
+// only after a report without drive, or with no current, so that it does not resume in the middle of a push. Thread
+// guarantee: one thread.
 #pragma once
 
 #ifndef ARDUINO  // a sketch includes the files of its folder itself
@@ -37,9 +37,10 @@ class Board {
 class Firmware {
  public:
   // `most_mA`: what motor and amplifier bear; `boot`: another number at each start.
-  Firmware(Board& board, int16_t most_mA, uint16_t boot) : board_(board), most_mA_(most_mA), boot_(boot) {
+  Firmware(Board& board, int16_t most_mA, uint16_t boot)
+      : board_(board), most_mA_(most_mA), boot_(boot), host_(board.now_us()) {
     board_.set_current_mA(0);
-    started_us_ = last_sent_us_ = last_valid_us_ = last_beat_us_ = board_.now_us();
+    started_us_ = last_sent_us_ = board_.now_us();
   }
 
   // As often as possible.
@@ -47,7 +48,7 @@ class Firmware {
     uint8_t report[kReportBytes];
     while (board_.receive(report)) receive_command(report);
     const uint32_t now_us = board_.now_us();
-    if (now_us - last_valid_us_ >= kWatchdog_us || now_us - last_beat_us_ >= kHeartbeat_us) stop(true);
+    if (host_.silent(now_us)) stop(true);
     if (board_.motor_fault() || board_.encoder_fault()) stop(false);
     if (now_us - last_sent_us_ >= kReportPeriod_us) {
       last_sent_us_ += kReportPeriod_us;
@@ -62,30 +63,20 @@ class Firmware {
  private:
   void receive_command(const uint8_t* report) {
     FromHost out;
-    if (decode(report, out) != kGood) {
+    const bool good = decode(report, out) == kGood;
+    const bool drive = good && (out.flags & kDrive) != 0;
+    if (!good || !host_.accept(board_.now_us(), out.sequence, out.heartbeat, drive)) {
       ++rejected_;
       return;
     }
-    const bool drive = (out.flags & kDrive) != 0;
-    if (drive && heard_ && !later(out.sequence, confirmed_)) {
-      ++rejected_;
-      return;
-    }
-    const uint32_t now_us = board_.now_us();
-    if (!heard_ || out.heartbeat != heartbeat_) last_beat_us_ = now_us;
-    heartbeat_ = out.heartbeat;
-    confirmed_ = out.sequence;
-    heard_ = true;
-    last_valid_us_ = now_us;
     if (!drive || out.current_mA == 0) stopped_ = watchdog_ = false;
     drive_to(drive && !stopped_ ? out.current_mA : static_cast<int16_t>(0), drive && !stopped_);
   }
 
   void drive_to(int16_t current_mA, bool driving) {
     driving_ = driving;
-    current_mA_ = current_mA > most_mA_
-                      ? most_mA_
-                      : (current_mA < -most_mA_ ? static_cast<int16_t>(-most_mA_) : current_mA);
+    current_mA_ =
+        current_mA > most_mA_ ? most_mA_ : (current_mA < -most_mA_ ? static_cast<int16_t>(-most_mA_) : current_mA);
     board_.set_current_mA(current_mA_);
   }
 
@@ -97,15 +88,15 @@ class Firmware {
 
   void send_state(uint32_t now_us) {
     FromDevice in;
-    in.status = static_cast<uint8_t>(
-        (driving_ ? kDriving : 0) | (watchdog_ ? kStopped : 0) | (board_.motor_fault() ? kMotorFault : 0) |
-        (board_.encoder_fault() ? kEncoderFault : 0) | (board_.grip() ? kGrip : 0));
+    in.status = static_cast<uint8_t>((driving_ ? kDriving : 0) | (watchdog_ ? kStopped : 0) |
+                                     (board_.motor_fault() ? kMotorFault : 0) |
+                                     (board_.encoder_fault() ? kEncoderFault : 0) | (board_.grip() ? kGrip : 0));
     in.sequence = ++sequence_;
     in.time_us = now_us - started_us_;
     in.counts = board_.counts();
     in.current_mA = current_mA_;
     in.boot = boot_;
-    in.confirmed = confirmed_;
+    in.confirmed = host_.sequence();
     in.rejected = rejected_;
     uint8_t report[kReportBytes];
     encode(in, report);
@@ -115,11 +106,11 @@ class Firmware {
   Board& board_;
   int16_t most_mA_;
   uint16_t boot_;
-  uint32_t started_us_ = 0, last_sent_us_ = 0, last_valid_us_ = 0, last_beat_us_ = 0;
-  uint32_t sequence_ = 0, confirmed_ = 0;
-  uint16_t heartbeat_ = 0, rejected_ = 0;
+  wire::HostWatch host_;
+  uint32_t started_us_ = 0, last_sent_us_ = 0;
+  uint32_t sequence_ = 0;
+  uint16_t rejected_ = 0;
   int16_t current_mA_ = 0;
-  bool heard_ = false;
   bool driving_ = false;
   bool stopped_ = true;
   bool watchdog_ = false;

@@ -6,7 +6,9 @@
 // Thread guarantee: pure functions, wait-free, never throw.
 #pragma once
 
-#include <stdint.h>
+#ifndef ARDUINO  // a sketch includes the files of its folder itself
+#include "devices/firmware/paddle/wire.h"
+#endif
 
 namespace palpate {
 namespace paddle {
@@ -18,10 +20,6 @@ constexpr uint8_t kFromHost = 0x4F;    // 'O'
 constexpr unsigned kReportBytes = 64;
 constexpr unsigned kChecksumAt = 60;
 
-// No valid report for as long: the device stops its motor by itself.
-constexpr uint32_t kWatchdog_us = 50000;
-// The heartbeat has stood still for as long: likewise, though reports come.
-constexpr uint32_t kHeartbeat_us = 50000;
 constexpr uint32_t kReportPeriod_us = 1000;
 
 // Status of the device, bits.
@@ -55,31 +53,11 @@ struct FromHost {
 
 enum Verdict : uint8_t { kGood, kBadMagic, kBadVersion, kBadKind, kBadChecksum, kBadContent };
 
-// CRC-32 of IEEE 802.3: reflected, polynomial 0xEDB88320, begins and ends inverted.
-inline uint32_t crc32(const uint8_t* bytes, unsigned count) {
-  uint32_t crc = 0xFFFFFFFFu;
-  for (unsigned i = 0; i < count; ++i) {
-    crc ^= bytes[i];
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xEDB88320u & (0u - (crc & 1u)));
-  }
-  return ~crc;
-}
-
-inline uint16_t read16(const uint8_t* at) { return static_cast<uint16_t>(at[0] | (at[1] << 8)); }
-inline uint32_t read32(const uint8_t* at) {
-  return static_cast<uint32_t>(read16(at)) | (static_cast<uint32_t>(read16(at + 2)) << 16);
-}
-inline void write16(uint8_t* at, uint16_t value) {
-  at[0] = static_cast<uint8_t>(value & 0xFF);
-  at[1] = static_cast<uint8_t>(value >> 8);
-}
-inline void write32(uint8_t* at, uint32_t value) {
-  write16(at, static_cast<uint16_t>(value & 0xFFFF));
-  write16(at + 2, static_cast<uint16_t>(value >> 16));
-}
-
-// Whether `a` comes after `b` on a counter that wraps.
-inline bool later(uint32_t a, uint32_t b) { return static_cast<int32_t>(a - b) > 0; }
+using wire::crc32;
+using wire::read16;
+using wire::read32;
+using wire::write16;
+using wire::write32;
 
 namespace detail {
 

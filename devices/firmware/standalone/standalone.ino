@@ -5,6 +5,7 @@
 // them to yours, measure kSettings, and never try it first with a hand on the handle.
 #include <Encoder.h>
 
+#include "wire.h"
 #include "paddle_protocol.h"
 #include "paddle_firmware.h"
 #include "model_firmware.h"

@@ -11,9 +11,15 @@ constexpr std::uint8_t kFfbReport = 0xA1;
 constexpr std::uint16_t kFfbAxis = 0xA01;
 constexpr std::uint32_t kFfbPosition = 0x9;
 constexpr std::uint16_t kFfbEffects = 0xA03;
-constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4,
-                        kFfbState = 0x5;
+constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4, kFfbState = 0x5,
+                        kFfbDuration = 0x7;
 constexpr std::uint64_t kFfbConstantForce = 1;
+// The force ends so long after it was last started, as that of a paddle does.
+constexpr std::uint64_t kFfbDuration_ms = 50;
+// It is started again by every fourth command. Commands go out every 5 ms at least
+// (HidEndpoint::kRepeat_s), so that one start may be lost. Not by every command: a third
+// report each millisecond would take the bus from the other two.
+constexpr std::uint32_t kFfbRenewEvery = 4;
 enum FfbType : std::uint8_t {
   kWrite = 0,
   kRequest = 1,
@@ -71,11 +77,13 @@ void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
   append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, data);
 }
 
+// The board makes an effect that never ends: it has its duration before it is started,
+// which the commands do.
 OutReports start_openffboard() noexcept {
   OutReports reports;
   append_ffb(reports, kRequest, kFfbEffects, kFfbReset, 0);
   append_ffb(reports, kWrite, kFfbEffects, kFfbNew, kFfbConstantForce);
-  append_ffb(reports, kWriteTo, kFfbEffects, kFfbState, 1);
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbDuration, kFfbDuration_ms);
   append_ffb(reports, kWrite, kFfbEffects, kFfbActive, 1);
   return reports;
 }
@@ -84,6 +92,7 @@ OutReports encode_openffboard(const HidCommand& command) noexcept {
   OutReports reports;
   append_ffb(reports, kRequest, kFfbAxis, kFfbPosition, 0);
   append_ffb_force(reports, int16_units(command));
+  if (command.sequence % kFfbRenewEvery == 0) append_ffb(reports, kWriteTo, kFfbEffects, kFfbState, 1);
   return reports;
 }
 
@@ -103,7 +112,7 @@ const HidDriver kOpenFfBoardDriver = {
     .renders_force = true,
     .reports_unasked = false,
     .numbers_reports = false,
-    .count_bits = 32,
+    .tried = "on real hardware: no; on an emulated device: yes",
     .matches = is_openffboard,
     .decode = decode_openffboard,
     .encode_start = start_openffboard,

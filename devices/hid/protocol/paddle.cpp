@@ -40,12 +40,13 @@ OutReports encode_paddle(const HidCommand& command) noexcept {
 
 OutReports stop_paddle() noexcept { return encode_paddle({}); }
 
-}  // namespace
-
+// A Teensy with its raw HID interface (its other one is for messages to a console).
 bool is_raw_hid_teensy(const HidDeviceInfo& info) noexcept {
   return info.vendor_id == kTeensy && (info.product_id == 0x0486 || info.product_id == 0x0480) &&
          info.usage_page == kRawHidPage;
 }
+
+}  // namespace
 
 const HidDriver kPaddleDriver = {
     .name = "paddle",
@@ -55,7 +56,7 @@ const HidDriver kPaddleDriver = {
     .renders_force = true,
     .reports_unasked = true,
     .numbers_reports = true,
-    .count_bits = 32,
+    .tried = "on real hardware: no; on an emulated device: yes",
     .matches = is_raw_hid_teensy,
     .decode = decode_paddle,
     .encode_start = stop_paddle,

@@ -6,9 +6,8 @@
 namespace {
 
 // Vendor-defined page 0xFFAB, usage 0x0200, 64 bytes each way.
-constexpr guint8 kDescriptor[] = {0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 0x08,
-                                  0x15, 0x00, 0x26, 0xFF, 0x00, 0x95, 0x40, 0x09, 0x01, 0x81,
-                                  0x02, 0x95, 0x40, 0x09, 0x02, 0x91, 0x02, 0xC0};
+constexpr guint8 kDescriptor[] = {0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 0x08, 0x15, 0x00, 0x26, 0xFF,
+                                  0x00, 0x95, 0x40, 0x09, 0x01, 0x81, 0x02, 0x95, 0x40, 0x09, 0x02, 0x91, 0x02, 0xC0};
 
 constexpr char kDescription[] =
     "P: /devices/usb1/1-1\n"
@@ -75,8 +74,7 @@ void node_handler_class_init(NodeHandlerClass* type) {
 namespace palpate::test {
 
 EmulatedPaddle::EmulatedPaddle()
-    : testbed_(umockdev_testbed_new()),
-      handler_(UMOCKDEV_IOCTL_BASE(g_object_new(node_handler_get_type(), nullptr))) {
+    : testbed_(umockdev_testbed_new()), handler_(UMOCKDEV_IOCTL_BASE(g_object_new(node_handler_get_type(), nullptr))) {
   reinterpret_cast<NodeHandler*>(handler_)->paddle = this;
   GError* error = nullptr;
   if (!umockdev_testbed_add_from_string(testbed_, kDescription, &error) ||
@@ -100,8 +98,7 @@ bool EmulatedPaddle::ioctl(UMockdevIoctlClient* client) {
     umockdev_ioctl_data_update(data, 0, reinterpret_cast<guint8*>(&size), sizeof size);
     umockdev_ioctl_data_unref(data);
   } else if (request == HIDIOCGRDESC) {
-    UMockdevIoctlData* const data =
-        umockdev_ioctl_data_resolve(argument, 0, sizeof(hidraw_report_descriptor), nullptr);
+    UMockdevIoctlData* const data = umockdev_ioctl_data_resolve(argument, 0, sizeof(hidraw_report_descriptor), nullptr);
     std::vector<guint8> bytes(kDescriptor, kDescriptor + sizeof kDescriptor);
     umockdev_ioctl_data_update(data, offsetof(hidraw_report_descriptor, value), bytes.data(),
                                static_cast<gint>(bytes.size()));

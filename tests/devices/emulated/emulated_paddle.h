@@ -35,7 +35,7 @@ class EmulatedPaddle {
   std::atomic<bool> gone{false};       // reads and writes fail
   std::atomic<int> report_version{1};  // of the protocol
   std::atomic<double> motor_mA{0.0};
-  std::atomic<int> told_mA{0};         // by the last report that was written
+  std::atomic<int> told_mA{0};  // by the last report that was written
   std::atomic<int> reads{0};
   std::atomic<int> writes{0};
   std::atomic<std::size_t> last_write_size{0};

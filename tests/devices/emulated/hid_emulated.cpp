@@ -1,6 +1,7 @@
 // The real libhidapi on an emulated paddle: found, opened, read, written, lost.
 // A program of its own: it runs with the preload library of umockdev.
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,8 +10,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_device.h"
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hidapi_bus.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
@@ -30,6 +31,12 @@ class HidEmulated : public ::testing::Test {
     if (preload == nullptr || std::strstr(preload, "umockdev") == nullptr) {
       GTEST_SKIP() << "not run under umockdev (LD_PRELOAD=libumockdev-preload.so.0)";
     }
+    // umockdev makes its nodes of them, and aborts without.
+    int ends[2];
+    if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) {
+      GTEST_SKIP() << "no pseudo-terminals here; mount /dev/pts";
+    }
+    for (const int end : ends) close(end);
   }
   HidapiBus bus{-1};
 };
@@ -55,7 +62,7 @@ TEST_F(HidEmulated, SaysThatTheFirmwareIsOfAnotherVersion) {
   paddle.report_version = 3;
   EXPECT_EQ(diagnose(bus).at(0).problem,
             "/dev/hidraw0: wrong firmware: speaks version 3 of the paddle protocol, "
-            "expected 1; install devices/firmware/paddle");
+            "expected 1; if it is a haptic paddle, install devices/firmware/paddle (it replaces what is on the board)");
 }
 
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
@@ -97,8 +104,8 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
               1e3 * health.sample_age_s);
   EXPECT_GT(health.round_trip_s, 0.0);
   paddle.gone = true;
-  EXPECT_TRUE(tick_until(
-      device, 2.0, [](const DeviceHealth& lost) { return (lost.faults & device_fault::kUnplugged) != 0; }));
+  EXPECT_TRUE(
+      tick_until(device, 2.0, [](const DeviceHealth& lost) { return (lost.faults & device_fault::kUnplugged) != 0; }));
   paddle.gone = false;
   EXPECT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& back) {
     return back.faults == device_fault::kUnplugged && back.zeroing == Zeroing::needed;

@@ -52,19 +52,20 @@ TEST(ModelFirmware, RendersTheForcesOfReplayAtOneKilohertz) {
   double worst_over_jnd = 0.0;
   const JndLine jnd;
   std::size_t row = 0;
-  const auto summary = replay(recording, {std::make_shared<FittedModel>(all.data)},
-                              [&](const RecordingRow& sample, const TickSnapshot& snapshot, const HapticsTick&) {
-    for (int i = 0; i < 10; ++i) {
-      all.board.time_us += 100;
-      if (i == 9) all.board.position = static_cast<int32_t>(std::lround(sample.position_m / 30e-6));
-      firmware.loop();
-    }
-    worst_over_jnd = std::max(worst_over_jnd, jnd.error_over_jnd(firmware.force_N(), snapshot.force_N[0]));
-    // After the ramp the current is the force's, to one mA.
-    if (++row > 400) {
-      EXPECT_NEAR(all.board.current_mA, std::max(-1000.0, -200.0 * snapshot.force_N[0]), 1.5);
-    }
-  });
+  const auto summary =
+      replay(recording, {std::make_shared<FittedModel>(all.data)},
+             [&](const RecordingRow& sample, const TickSnapshot& snapshot, const HapticsTick&) {
+               for (int i = 0; i < 10; ++i) {
+                 all.board.time_us += 100;
+                 if (i == 9) all.board.position = static_cast<int32_t>(std::lround(sample.position_m / 30e-6));
+                 firmware.loop();
+               }
+               worst_over_jnd = std::max(worst_over_jnd, jnd.error_over_jnd(firmware.force_N(), snapshot.force_N[0]));
+               // After the ramp the current is the force's, to one mA.
+               if (++row > 400) {
+                 EXPECT_NEAR(all.board.current_mA, std::max(-1000.0, -200.0 * snapshot.force_N[0]), 1.5);
+               }
+             });
   EXPECT_TRUE(summary.ok());
   EXPECT_LT(worst_over_jnd, 0.05);
   EXPECT_EQ(firmware.missed(), 0U);

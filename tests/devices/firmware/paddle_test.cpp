@@ -83,11 +83,9 @@ TEST(PaddleProtocol, ReadsBackWhatItWrote) {
 
 TEST(PaddleProtocol, HasItsBytesWhereThePageSays) {
   Report report{};
-  encode(FromDevice{2, 0x04030201, 0x0D0C0B0A, 0x11223344, 0x5566, 0x7788, 0x0A0B0C0D, 0x0E0F},
-         report.data());
-  const Report::value_type expected[] = {0x50, 1,    0x49, 2,    1,    2,    3,    4,    0x0A,
-                                         0x0B, 0x0C, 0x0D, 0x44, 0x33, 0x22, 0x11, 0x66, 0x55,
-                                         0x88, 0x77, 0x0D, 0x0C, 0x0B, 0x0A, 0x0F, 0x0E};
+  encode(FromDevice{2, 0x04030201, 0x0D0C0B0A, 0x11223344, 0x5566, 0x7788, 0x0A0B0C0D, 0x0E0F}, report.data());
+  const Report::value_type expected[] = {0x50, 1,    0x49, 2,    1,    2,    3,    4,    0x0A, 0x0B, 0x0C, 0x0D, 0x44,
+                                         0x33, 0x22, 0x11, 0x66, 0x55, 0x88, 0x77, 0x0D, 0x0C, 0x0B, 0x0A, 0x0F, 0x0E};
   for (std::size_t i = 0; i < std::size(expected); ++i) EXPECT_EQ(report[i], expected[i]) << i;
   for (std::size_t i = std::size(expected); i < kChecksumAt; ++i) EXPECT_EQ(report[i], 0) << i;
   const Report out = from_host(kDrive, 0x04030201, -2, 0x0605);

@@ -1,6 +1,6 @@
 // What goes out when a signal ends the program.
-#include "devices/hid/hid_drivers.h"
 #include "devices/hid/device_stop.h"
+#include "devices/hid/hid_drivers.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -40,8 +40,8 @@ Ended run(void (*before)(), void (*end)()) {
   waitpid(child, &ended.status, 0);
   std::uint8_t bytes[65];
   paddle::FromHost out{};
-  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == 65 &&
-               paddle::decode(bytes + 1, out) == paddle::kGood && out.flags == 0 && out.current_mA == 0;
+  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == 65 && paddle::decode(bytes + 1, out) == paddle::kGood &&
+               out.flags == 0 && out.current_mA == 0;
   close(pipe_ends[0]);
   return ended;
 }

@@ -1,6 +1,6 @@
 // Calibration files, good and broken.
-#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_calibration.h"
+#include "devices/hid/hid_drivers.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,7 @@ const std::string kAssets = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
 
 std::string good() { return test::read_text(kAssets + "/paddle.json"); }
 
-std::string changed(const std::string& from, const std::string& to) {
-  return test::replaced(good(), from, to);
-}
+std::string changed(const std::string& from, const std::string& to) { return test::replaced(good(), from, to); }
 
 std::string complaint(const std::string& text) {
   const Result<HidCalibration> result = parse_hid_calibration(text, "paddle.json");
@@ -50,8 +48,7 @@ TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
             "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
-            "paddle.json:2:11: kind: found \"joystick\", expected one of paddle, polhem, openffboard, "
-            "spacemouse");
+            "paddle.json:2:11: kind: found \"joystick\", expected one of paddle, openffboard, spacemouse, bridge");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
                 .rfind("paddle.json:13:28: colour: found an unknown field, expected one of kind, counts_per_metre", 0),
             0u);
@@ -59,13 +56,12 @@ TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
 
 TEST(HidCalibration, SaysWhenTheFileIsNotThereOrOfAnotherKind) {
   const test::TemporaryFolder folder;
-  EXPECT_EQ(
-      read_hid_calibration(folder.path(), kPolhemDriver).error().message,
-      folder.file("polhem.json") + ": cannot read the calibration; put the file there, see assets/devices/");
-  folder.with_file("polhem.json", good());
-  EXPECT_EQ(read_hid_calibration(folder.path(), kPolhemDriver).error().message,
-            folder.file("polhem.json") +
-                ": found the calibration of \"paddle\", expected \"polhem\", as the file's name says");
+  EXPECT_EQ(read_hid_calibration(folder.path(), kOpenFfBoardDriver).error().message,
+            folder.file("openffboard.json") + ": cannot read the calibration; put the file there, see assets/devices/");
+  folder.with_file("openffboard.json", good());
+  EXPECT_EQ(read_hid_calibration(folder.path(), kOpenFfBoardDriver).error().message,
+            folder.file("openffboard.json") +
+                ": found the calibration of \"paddle\", expected \"openffboard\", as the file's name says");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A device with its threads, in real time, on a bus made up.
-#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_device.h"
+#include "devices/hid/hid_drivers.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,8 @@ bool zeroed(const DeviceHealth& health) { return health.zeroing == Zeroing::done
 TEST(HidDevice, PushesAfterZeroingAndLetsGoWhenClosed) {
   FakeHidBus bus;
   auto device = open_paddle(bus);
-  EXPECT_EQ(device->note(), "haptic paddle: Teensyduino RawHID, /dev/hidraw7");
+  EXPECT_EQ(device->note(),
+            "haptic paddle: Teensyduino RawHID, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
   EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth& health) {
     return health.faults == 0 && health.zeroing == Zeroing::needed;
   }));

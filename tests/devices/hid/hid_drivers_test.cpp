@@ -56,20 +56,6 @@ TEST(HidReports, ReadsThePaddle) {
   EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::corrupt);
 }
 
-TEST(HidReports, ReadsPolhem) {
-  DeviceReading reading;
-  Bytes bytes(14, 0);
-  bytes[0] = 0x18;
-  bytes[1] = 0xFC;
-  bytes[2] = 0x7F;  // axis b is not used
-  ASSERT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::position);
-  EXPECT_EQ(reading.counts, -1000);
-  bytes.resize(64, 0);
-  ASSERT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::position);
-  bytes[14] = 1;
-  EXPECT_EQ(decode(&kPolhemDriver, bytes, reading), ReportVerdict::corrupt);
-}
-
 TEST(HidReports, ReadsOpenFfBoard) {
   DeviceReading reading;
   for (const std::uint8_t type : {std::uint8_t{1}, std::uint8_t{10}}) {
@@ -92,8 +78,7 @@ TEST(HidReports, ReadsTheSpaceMouse) {
   DeviceReading reading;
   ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 0xA2, 0xFE}, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, -350);
-  ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading),
-            ReportVerdict::position)
+  ASSERT_EQ(decode(&kSpaceMouseDriver, {1, 0, 0, 0, 0, 5, 0, 9, 9, 9, 9, 9, 9}, reading), ReportVerdict::position)
       << "the wireless ones send six axes";
   EXPECT_EQ(reading.counts, 5);
   EXPECT_EQ(decode(&kSpaceMouseDriver, {2, 0, 0, 0, 0, 5, 0}, reading), ReportVerdict::nothing);
@@ -129,25 +114,45 @@ TEST(HidReports, WritesThePaddle) {
   EXPECT_EQ(out.current_mA, 0);
 }
 
-TEST(HidReports, WritesPolhemAndOpenFfBoard) {
-  const OutReports polhem = kPolhemDriver.encode_command({1, 1, true, 1e9});
-  ASSERT_EQ(polhem.count, 1u);
-  EXPECT_EQ(polhem.sizes[0], 65u);
-  EXPECT_EQ(paddle::read16(polhem.bytes[0].data() + 1), 32767) << "clamped";
+std::uint16_t ffb_object(const OutReports& reports, std::size_t i) {
+  return paddle::read16(reports.bytes[i].data() + 2);
+}
+std::uint32_t ffb_command(const OutReports& reports, std::size_t i) {
+  return paddle::read32(reports.bytes[i].data() + 5);
+}
+std::uint32_t ffb_value(const OutReports& reports, std::size_t i) {
+  return paddle::read32(reports.bytes[i].data() + 9);
+}
+
+TEST(HidReports, WritesOpenFfBoard) {
+  const OutReports most = kOpenFfBoardDriver.encode_command({1, 1, true, 1e9});
+  EXPECT_EQ(ffb_value(most, 1), 32767u) << "clamped";
   const OutReports ffb = kOpenFfBoardDriver.encode_command({1, 1, true, -2.0});
   ASSERT_EQ(ffb.count, 2u) << "asks for the position, sets the force";
   EXPECT_EQ(ffb.sizes[1], 25u);
   EXPECT_EQ(ffb.bytes[1][0], 0xA1);
   EXPECT_EQ(ffb.bytes[1][1], 3) << "write to an address";
-  EXPECT_EQ(paddle::read16(ffb.bytes[1].data() + 2), 0xA03);
-  EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 5), 4u);
-  EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 9), 0xFFFFFFFEu);
+  EXPECT_EQ(ffb_object(ffb, 1), 0xA03);
+  EXPECT_EQ(ffb_command(ffb, 1), 4u);
+  EXPECT_EQ(ffb_value(ffb, 1), 0xFFFFFFFEu);
   EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 13), 0xFFFFFFFFu);
-  EXPECT_EQ(kOpenFfBoardDriver.encode_start().count, 4u);
+}
+
+TEST(HidReports, TheForceOfAnOpenFfBoardHasAnEndThatIsPutOff) {
+  const OutReports start = kOpenFfBoardDriver.encode_start();
+  ASSERT_EQ(start.count, 4u);
+  EXPECT_EQ(ffb_command(start, 2), 7u) << "duration, ms";
+  EXPECT_EQ(ffb_value(start, 2), 50u);
+  for (std::size_t i = 0; i < start.count; ++i) EXPECT_NE(ffb_command(start, i), 5u) << "nothing runs yet";
+  const OutReports fourth = kOpenFfBoardDriver.encode_command({8, 1, true, 1.0});
+  ASSERT_EQ(fourth.count, 3u);
+  EXPECT_EQ(ffb_object(fourth, 2), 0xA03);
+  EXPECT_EQ(ffb_command(fourth, 2), 5u) << "starts it anew";
+  EXPECT_EQ(ffb_value(fourth, 2), 1u);
 }
 
 TEST(HidReports, NoNumberIsNoForce) {
-  for (const HidDriver* driver : {&kPaddleDriver, &kPolhemDriver, &kOpenFfBoardDriver}) {
+  for (const HidDriver* driver : {&kPaddleDriver, &kOpenFfBoardDriver}) {
     const OutReports nan = driver->encode_command({1, 1, true, std::nan("")});
     const OutReports zero = driver->encode_command({1, 1, true, 0.0});
     EXPECT_EQ(nan.bytes, zero.bytes);

@@ -1,7 +1,7 @@
 // Host and device against each other, in simulated time: every fault takes the
 // force away, and what it takes to come back.
-#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
+#include "devices/hid/hid_drivers.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using test::SimulatedDevice;
 
 // Of an encoder step and a tick of tremor.
 constexpr double kResolution_N = 0.1;
-constexpr const HidDriver* kPushing[] = {&kPaddleDriver, &kPolhemDriver, &kOpenFfBoardDriver};
+constexpr const HidDriver* kPushing[] = {&kPaddleDriver, &kOpenFfBoardDriver};
 
 TEST(HidEndpoint, PushesOnceItIsZeroed) {
   for (const HidDriver* driver : kPushing) {
@@ -34,8 +34,7 @@ TEST(HidEndpoint, PushesOnceItIsZeroed) {
     EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
     EXPECT_EQ(simulated.snapshot.device.faults, 0u) << driver->name;
     EXPECT_NEAR(simulated.snapshot.tick.position_m, simulated.position_m(), 30e-6);
-    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
-                kResolution_N);
+    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), kResolution_N);
     EXPECT_LT(simulated.model->force_units(), 0.0) << "against the growing counts";
     EXPECT_LT(simulated.snapshot.device.sample_age_s, 2e-3);
   }
@@ -46,9 +45,9 @@ TEST(HidEndpoint, MeasuresTheRoundTripWhereTheDeviceConfirms) {
   paddle.press();
   EXPECT_GT(paddle.snapshot.device.round_trip_s, 0.0);
   EXPECT_LE(paddle.snapshot.device.round_trip_s, 2.1e-3);
-  SimulatedDevice polhem(&kPolhemDriver);
-  polhem.press();
-  EXPECT_TRUE(std::isnan(polhem.snapshot.device.round_trip_s));
+  SimulatedDevice board(&kOpenFfBoardDriver);
+  board.press();
+  EXPECT_TRUE(std::isnan(board.snapshot.device.round_trip_s));
 }
 
 TEST(HidEndpoint, ZeroingWaitsForRest) {
@@ -65,31 +64,40 @@ TEST(HidEndpoint, ZeroingWaitsForRest) {
 }
 
 TEST(HidEndpoint, DirectionTurnsPositionAndForce) {
-  HidCalibration calibration = test::example_calibration(&kPolhemDriver);
+  HidCalibration calibration = test::example_calibration(&kPaddleDriver);
   calibration.direction = -1.0;
   HidEndpoint endpoint(calibration);
   endpoint.connected(0.0);
-  Report report(14, 0);
+  paddle::FromDevice in{};
+  const auto arrive = [&](std::int32_t counts, double now_s) {
+    in.counts = counts;
+    ++in.sequence;
+    in.time_us = static_cast<std::uint32_t>(std::lround(1e6 * now_s));
+    Report report(paddle::kReportBytes);
+    paddle::encode(in, report.data());
+    endpoint.report_arrived(report.data(), report.size(), now_s);
+  };
   endpoint.start_zeroing();
   double now_s = 0.0;
-  for (; now_s < 0.3; now_s += 1e-3) endpoint.report_arrived(report.data(), report.size(), now_s);
-  report[0] = 100;
-  endpoint.report_arrived(report.data(), report.size(), now_s);
+  for (; now_s < 0.3; now_s += 1e-3) arrive(0, now_s);
+  arrive(100, now_s);
   DeviceSample sample;
   ASSERT_TRUE(endpoint.read(sample));
   EXPECT_TRUE(sample.restart);
+  while (endpoint.read(sample)) EXPECT_FALSE(sample.restart);
   EXPECT_NEAR(sample.tool.position_m, -0.01 - 100.0 / 50000.0, 1e-12);
-  EXPECT_FALSE(endpoint.read(sample)) << "once each";
   endpoint.write(2.0);
   const OutReports out = endpoint.next(now_s);
-  EXPECT_EQ(static_cast<std::int16_t>(paddle::read16(out.bytes[0].data() + 1)), 500);
+  paddle::FromHost sent{};
+  ASSERT_EQ(paddle::decode(out.bytes[0].data() + 1, sent), paddle::kGood);
+  EXPECT_EQ(sent.current_mA, 500);
 }
 
 // A way to hurt the stream, and how it is found.
 struct Injection {
   const char* name;
   void (*inject)(SimulatedDevice&);
-  std::uint32_t fault[3];  // by kPushing; 0: this kind of device cannot have it, or nobody could tell
+  std::uint32_t fault[2];  // by kPushing; 0: this kind of device cannot have it, or nobody could tell
   double found_after_s;    // no fault before that, by its nature
 };
 
@@ -112,16 +120,13 @@ const std::vector<Injection>& injections() {
          s.unplugged = true;
          s.device.endpoint.unplugged();
        },
-       {kUnplugged, kUnplugged, kUnplugged},
+       {kUnplugged, kUnplugged},
        0.0},
       {"silent",
        [](SimulatedDevice& s) { s.on_the_way_in = [](const Report&) { return std::vector<Report>{}; }; },
-       {kLate, kLate, kLate},
+       {kLate, kLate},
        0.0},
-      {"stuck at one value",
-       [](SimulatedDevice& s) { s.encoder_frozen = true; },
-       {kStuck, kStuck, kStuck},
-       0.5},
+      {"stuck at one value", [](SimulatedDevice& s) { s.encoder_frozen = true; }, {kStuck, kStuck}, 0.5},
       {"the same report again and again",
        [](SimulatedDevice& s) {
          auto first = std::make_shared<Report>();
@@ -130,7 +135,7 @@ const std::vector<Injection>& injections() {
            return std::vector<Report>{*first};
          };
        },
-       {kLate, kStuck, kStuck},
+       {kLate, kStuck},
        0.0},
       {"late by 20 ms",
        [](SimulatedDevice& s) {
@@ -143,7 +148,7 @@ const std::vector<Injection>& injections() {
            return std::vector<Report>{oldest};
          };
        },
-       {kLate, kLate, kLate},
+       {kLate, kLate},
        0.0},
       {"out of order",
        [](SimulatedDevice& s) {
@@ -158,7 +163,7 @@ const std::vector<Injection>& injections() {
            return std::vector<Report>{report, older};
          };
        },
-       {kOutOfOrder, 0, 0},
+       {kOutOfOrder, 0},
        0.0},
       {"corrupted",
        [](SimulatedDevice& s) {
@@ -167,7 +172,7 @@ const std::vector<Injection>& injections() {
            return std::vector<Report>{report};
          };
        },
-       {kCorrupt, kCorrupt, kCorrupt},
+       {kCorrupt, kCorrupt},
        0.0},
       {"cut short",
        [](SimulatedDevice& s) {
@@ -175,29 +180,26 @@ const std::vector<Injection>& injections() {
            return std::vector<Report>{Report(report.begin(), report.begin() + 12)};
          };
        },
-       {kCorrupt, kCorrupt, kCorrupt},
+       {kCorrupt, kCorrupt},
        0.0},
-      {"a burst of old ones",
-       [](SimulatedDevice& s) { hold_back(s, false); },
-       {kLate | kBurst, kLate | kBurst, kLate | kBurst},
-       0.0},
-      {"encoder jump", [](SimulatedDevice& s) { s.counts_offset = 5000; }, {kJump, kJump, kJump}, 0.0},
+      {"a burst of old ones", [](SimulatedDevice& s) { hold_back(s, false); }, {kLate | kBurst, kLate | kBurst}, 0.0},
+      {"encoder jump", [](SimulatedDevice& s) { s.counts_offset = 5000; }, {kJump, kJump}, 0.0},
       {"firmware reset",
        [](SimulatedDevice& s) {
          s.model->restart();
          s.counts_offset = -s.counts();
        },
-       {kReset, kJump, kJump},
+       {kReset, kJump},
        0.0},
       {"motor fault",
        [](SimulatedDevice& s) {
          if (auto* paddle = dynamic_cast<test::PaddleModel*>(s.model.get())) paddle->motor_fault_now = true;
        },
-       {kOwn, 0, 0},
+       {kOwn, 0},
        0.0},
       {"commands do not get through",
        [](SimulatedDevice& s) { s.writer_hangs = true; },
-       {kWriteStalled, kWriteStalled, kWriteStalled | kLate},
+       {kWriteStalled, kWriteStalled | kLate},
        0.05},
   };
   return all;
@@ -221,8 +223,7 @@ Outcome run(const Injection& injection, SimulatedDevice& simulated) {
     simulated.tick();
     outcome.faults |= simulated.snapshot.device.faults;
     if (outcome.first_faults == 0) outcome.first_faults = outcome.faults;
-    outcome.largest_step_N =
-        std::max(outcome.largest_step_N, std::abs(last_N - simulated.snapshot.rendered_N));
+    outcome.largest_step_N = std::max(outcome.largest_step_N, std::abs(last_N - simulated.snapshot.rendered_N));
     last_N = simulated.snapshot.rendered_N;
     if (last_N == 0.0 && outcome.to_zero_s < 0.0) outcome.to_zero_s = simulated.now_s - from_s;
   }
@@ -269,8 +270,7 @@ TEST(HidEndpoint, WhatLosesThePositionAsksForZeroing) {
     EXPECT_EQ(simulated.snapshot.samples, 0u);
     simulated.press();
     EXPECT_EQ(simulated.snapshot.device.faults, 0u) << injection.name;
-    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
-                kResolution_N)
+    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), kResolution_N)
         << injection.name;
   }
 }
@@ -285,8 +285,7 @@ TEST(HidEndpoint, WhatKeepsThePositionComesBackByItself) {
     simulated.tick();
     EXPECT_LT(simulated.snapshot.rendered_N, 0.2) << "not at once";
     simulated.run_s(1.0);
-    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(),
-                kResolution_N)
+    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), kResolution_N)
         << injection.name;
     EXPECT_NE(simulated.snapshot.device_faults_latched, 0u);
     simulated.controls.acknowledged = 1;
@@ -307,12 +306,53 @@ TEST(HidEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
       const OutReports reports = endpoint.next(now_s);
       for (std::size_t i = 0; i < reports.count; ++i) {
         const std::size_t skip = reports.bytes[i][0] == 0 ? 1 : 0;
-        simulated.model->hear(
-            Report(reports.bytes[i].data() + skip, reports.bytes[i].data() + reports.sizes[i]));
+        simulated.model->hear(Report(reports.bytes[i].data() + skip, reports.bytes[i].data() + reports.sizes[i]));
       }
       simulated.model->step(static_cast<std::uint32_t>(1e6 * (now_s - SimulatedDevice::kStart_s)), 0);
     }
     EXPECT_EQ(simulated.motor_N(), 0.0) << driver->name;
+  }
+}
+
+// As after SIGKILL: nothing is sent any more, and nobody is there to see it.
+TEST(HidEndpoint, AHostThatDiesPushesNoLonger) {
+  for (const HidDriver* driver : kPushing) {
+    SimulatedDevice simulated(driver);
+    simulated.press();
+    for (int i = 0; i < 3000; ++i) {
+      simulated.tick();
+      ASSERT_GT(simulated.motor_N(), 3.5) << driver->name << ": what is renewed goes on";
+    }
+    std::int64_t now_us = simulated.now_us;
+    const std::int64_t died_us = now_us;
+    while (simulated.motor_N() > 0.0 && now_us - died_us < 1'000'000) {
+      simulated.model->step(static_cast<std::uint32_t>(now_us += 250), simulated.counts());
+    }
+    std::printf("%-12s pushes for %.1f ms after its host died\n", driver->name,
+                1e-3 * static_cast<double>(now_us - died_us));
+    EXPECT_LE(now_us - died_us, 52'000) << driver->name;
+  }
+}
+
+TEST(HidEndpoint, AForceThatIsSaidAgainOnlyNowAndThenGoesOn) {
+  const HidDriver& driver = kOpenFfBoardDriver;
+  test::OpenFfBoardModel board;
+  const auto hear = [&](const OutReports& reports) {
+    for (std::size_t i = 0; i < reports.count; ++i) {
+      board.hear(Report(reports.bytes[i].data(), reports.bytes[i].data() + reports.sizes[i]));
+    }
+  };
+  hear(driver.encode_start());
+  board.step(0, 0);
+  EXPECT_EQ(board.force_units(), 0.0);
+  const auto repeat_us = static_cast<std::uint32_t>(std::lround(1e6 * HidEndpoint::kRepeat_s));
+  for (std::uint32_t sequence = 1; sequence < 400; ++sequence) {
+    board.step(sequence * repeat_us, 0);
+    if (sequence > 4) {
+      ASSERT_EQ(board.force_units(), 1000.0) << sequence;
+    }
+    // Every second of the starts, which every fourth command carries, is lost.
+    if (sequence % 8 != 0) hear(driver.encode_command({sequence, 0, true, 1000.0}));
   }
 }
 

@@ -9,10 +9,9 @@ namespace palpate {
 namespace {
 
 TEST(HidapiBus, SaysWhatToDoAboutAnErrorOfTheSystem) {
-  EXPECT_EQ(
-      open_error_words("/dev/hidraw0", EACCES),
-      "/dev/hidraw0: no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
-      "device in again");
+  EXPECT_EQ(open_error_words("/dev/hidraw0", EACCES),
+            "/dev/hidraw0: no permission; install assets/udev/70-palpate.rules in /etc/udev/rules.d, then plug the "
+            "device in again");
   EXPECT_EQ(open_error_words("/dev/hidraw0", EBUSY), "/dev/hidraw0: in use by another program; close it");
   EXPECT_EQ(open_error_words("/dev/hidraw0", ENOENT).rfind("/dev/hidraw0: no node although", 0), 0u);
   EXPECT_EQ(open_error_words("/dev/hidraw0", EIO), "/dev/hidraw0: Input/output error");

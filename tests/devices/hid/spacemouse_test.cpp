@@ -1,6 +1,6 @@
 // The cap of a SpaceMouse as a tool.
-#include "devices/hid/hid_drivers.h"
 #include "devices/hid/spacemouse.h"
+#include "devices/hid/hid_drivers.h"
 
 #include <gtest/gtest.h>
 
@@ -85,8 +85,7 @@ TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
   test::FakeHidBus bus(test::found_space_mouse());
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
   AutoDevice device;
-  device.use(
-      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
+  device.use(std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
   DeviceSample sample;
   for (int ms = 0; ms < 5; ++ms) device.read(1e-3 * ms, sample);
   EXPECT_TRUE(device.hand_is_exploring());
@@ -105,7 +104,9 @@ TEST(SpaceMouse, IsADeviceWithoutForce) {
   SpaceMouseDevice device(
       std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
   EXPECT_FALSE(device.renders_force());
-  EXPECT_EQ(device.note(), "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8");
+  EXPECT_EQ(device.note(),
+            "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8; tried on real hardware: no; on an "
+            "emulated device: yes");
   ASSERT_TRUE(device.open().ok());
   DeviceSample sample;
   for (int i = 0; i < 5000 && sample.tool.position_m < 5e-3; ++i) {

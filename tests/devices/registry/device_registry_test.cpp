@@ -32,6 +32,7 @@ TEST(DeviceRegistry, OpensEveryDeviceThatItListsAsUsable) {
   const DeviceRequest request = request_with(nothing_plugged_in());
   for (const DeviceDescription& description : list_devices(request)) {
     const bool replay = description.name == "replay:FILE";
+    if (description.name == "bridge:TARGET") continue;  // tests/devices/bridge
     auto device = open_device(replay ? "replay:" + path : description.name, request);
     ASSERT_EQ(device.ok(), description.problem.empty()) << description.name;
     if (!device) continue;
@@ -49,7 +50,8 @@ TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   auto device = open_device("auto", request_with(bus));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "hid");
-  EXPECT_EQ((*device)->note(), "haptic paddle: Teensyduino RawHID, /dev/hidraw7");
+  EXPECT_EQ((*device)->note(),
+            "haptic paddle: Teensyduino RawHID, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
   EXPECT_EQ((*device)->limits().largest_N, 5.0);
   EXPECT_FALSE((*device)->health(0.0).may_push()) << "not zeroed";
   for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
@@ -76,8 +78,9 @@ TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
   request.bus = &paddle;
   device = open_device("auto", request);
   ASSERT_TRUE(device.ok());
-  EXPECT_EQ((*device)->note(), "the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder: "
-                               "a simulated hand until the mouse takes over");
+  EXPECT_EQ((*device)->note(),
+            "the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder: "
+            "a simulated hand until the mouse takes over");
 }
 
 TEST(DeviceRegistry, HidIsNeverAnythingElse) {
@@ -95,9 +98,9 @@ TEST(DeviceRegistry, HidIsNeverAnythingElse) {
 
 TEST(DeviceRegistry, ExplainsWhatItCannotOpen) {
   EXPECT_EQ(open_device("joystick").error().message,
-            "unknown device \"joystick\", expected one of: auto, hand, mouse, hid, replay:FILE (palpate devices explains)");
-  EXPECT_EQ(open_device("replay:").error().message,
-            "--device replay: names no recording; write replay:FILE.csv");
+            "unknown device \"joystick\", expected one of: auto, hand, mouse, hid, replay:FILE, bridge:TARGET (palpate "
+            "devices explains)");
+  EXPECT_EQ(open_device("replay:").error().message, "--device replay: names no recording; write replay:FILE.csv");
   EXPECT_EQ(open_device("replay:/nowhere.csv").error().message.rfind("/nowhere.csv", 0), 0u);
 }
 
@@ -107,6 +110,11 @@ TEST(DeviceRegistry, TheProgramListsThem) {
   EXPECT_EQ(run.err, "");
   for (const DeviceDescription& description : list_devices()) {
     EXPECT_NE(run.out.find(description.name), std::string::npos) << run.out;
+  }
+  for (const HidDriver* driver : kHidDrivers) {
+    if (driver->knows_position) continue;  // of a bridge, not of hid
+    EXPECT_NE(run.out.find(std::string(driver->description) + "; tried on real hardware: no"), std::string::npos)
+        << run.out;
   }
   EXPECT_NE(run.out.find("PLUGGED IN"), std::string::npos) << run.out;
 }

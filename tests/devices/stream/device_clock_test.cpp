@@ -19,8 +19,7 @@ TEST(DeviceClock, TakesTheJitterAway) {
   double worst_step_s = 0.0, worst_lag_s = 0.0;
   for (int i = 0; i < 60'000; ++i) {
     const double true_s = 10.0 + 1e-3 * i;
-    const auto device_us =
-        static_cast<std::uint32_t>(4'290'000'000u + static_cast<std::uint32_t>(1000.1 * i));
+    const auto device_us = static_cast<std::uint32_t>(4'290'000'000u + static_cast<std::uint32_t>(1000.1 * i));
     const double host_s = clock.host_time_s(device_us, true_s + 0.2e-3 + random.uniform(0.0, 0.4e-3));
     if (i > 1000) {
       worst_step_s = std::max(worst_step_s, std::abs(host_s - last_s - 1e-3));

@@ -9,10 +9,9 @@
 namespace palpate {
 namespace {
 
-MonitorSettings settings_for(bool numbered, int count_bits) {
+MonitorSettings settings_for(bool numbered) {
   MonitorSettings settings;
   settings.numbered = numbered;
-  settings.count_bits = count_bits;
   settings.counts_per_metre = 50000.0;
   settings.fastest_m_per_s = 5.0;
   return settings;
@@ -20,7 +19,7 @@ MonitorSettings settings_for(bool numbered, int count_bits) {
 
 // Numbered readings, 1 ms apart.
 struct Stream {
-  StreamMonitor monitor{settings_for(true, 32)};
+  StreamMonitor monitor{settings_for(true)};
   DeviceReading next = first_of_boot(1);
   double now_s = 10.0;
 
@@ -101,18 +100,19 @@ TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
   EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::needed);
   stream.zero();
   EXPECT_EQ(stream.monitor.state().lost, 0u);
-  EXPECT_EQ(stream.monitor.state().zeroings, 2u);
+  EXPECT_EQ(stream.monitor.state().streams, 2u);
 }
 
-TEST(StreamMonitor, ASixteenBitCounterMayWrap) {
-  StreamMonitor monitor(settings_for(false, 16));
+TEST(StreamMonitor, TheCounterMayWrap) {
+  StreamMonitor monitor(settings_for(false));
+  constexpr std::uint32_t kFirst = 0x7FFF'FF00u;
   double now_s = 1.0;
-  for (int i = 0; i < 1000; ++i) {
+  for (std::uint32_t i = 0; i < 1000; ++i) {
     DeviceReading reading;
-    reading.counts = static_cast<std::int16_t>(100 * i);
+    reading.counts = static_cast<std::int32_t>(kFirst + 100 * i);
     monitor.update(ReportVerdict::position, reading, now_s += 1e-3, 0.0);
   }
-  EXPECT_EQ(monitor.state().counts, 99'900);
+  EXPECT_EQ(monitor.state().counts, std::int64_t{kFirst} + 99'900);
   EXPECT_EQ(monitor.state().lost, 0u);
 }
 

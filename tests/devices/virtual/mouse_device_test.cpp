@@ -104,6 +104,12 @@ TEST(AutoDevice, GivesWayToTheMouseAndComesBack) {
   EXPECT_FALSE(device.hand_is_exploring());
   run(22999, 40000);
   EXPECT_TRUE(device.hand_is_exploring()) << "after 20 s";
+  device.mouse()->set_target(-2e-3, 40.0);
+  run(40000, 41000);
+  EXPECT_FALSE(device.hand_is_exploring());
+  device.mouse()->leave();
+  run(41000, 42000);
+  EXPECT_TRUE(device.hand_is_exploring()) << "at once, when it is said";
 }
 
 }  // namespace

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "devices/bridge/bridge_bus.h"
+#include "devices/hid/protocol/bridge.h"
+#include "engine/base/text.h"
+#include "engine/live/pacer.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kDriven_s = 1.0;
+constexpr double kStep_s = 0.002;
+// 50 ms after the last frame, told with the next sample (10 ms at 100 Hz), and what a
+// line and a busy computer may hold it up.
+constexpr double kStopsWithin_s = 0.1;
+constexpr double kPatience_s = 0.5;
+
+class BridgeTest {
+ public:
+  explicit BridgeTest(HidOpened opened) : opened_(std::move(opened)) {}
+
+  Result<std::string> run() {
+    step_until(kDriven_s, {true, true}, [] { return false; });
+    const bool drove = driving_;
+    const auto silence_s = time_to_stop({});
+    const bool woke = wakes();
+    const auto stands_still_s = silence_s && woke ? time_to_stop({true, false}) : std::nullopt;
+    wakes();
+    if (gone_) return Error{opened_.info.path + ": the line ended during the test; " + "run the test again"};
+    const std::string start = opened_.info.path + ": ";
+    if (sent_at_s_.empty() || round_trips_s_.empty()) {
+      return Error{start + "confirms no frame of the host; bytes 22 and 23 must be the low half of its sequence"};
+    }
+    if (!silence_s) return Error{start + no_stop("after the last frame")};
+    if (!woke) return Error{start + "stays stopped although valid frames come again; clear status bit 2 then"};
+    if (!stands_still_s) return Error{start + no_stop("after the heartbeat stood still")};
+    return text(drove, *silence_s, *stands_still_s);
+  }
+
+ private:
+  struct Sent {
+    bool frames = false;
+    bool heartbeat = false;
+  };
+
+  static std::string no_stop(const std::string& when) {
+    return "did not show within 100 ms that its watchdog stopped it " + when +
+           " (status bit 2); do not touch it before it does";
+  }
+
+  void send(bool drive, bool beat) {
+    HidCommand command;
+    command.sequence = ++sequence_;
+    command.heartbeat = beat ? ++heartbeat_ : heartbeat_;
+    command.drive = drive;
+    const OutReports reports = kBridgeDriver.encode_command(command);
+    opened_.connection->write(reports.bytes[0].data(), reports.sizes[0]);
+    last_sent_s_ = steady_now_s();
+    sent_at_s_.resize(65536, 0.0);
+    sent_at_s_[sequence_ & 0xFFFF] = last_sent_s_;
+  }
+
+  void take(const DeviceReading& reading) {
+    driving_ = driving_ || reading.driving;
+    stopped_ = reading.stopped;
+    if (frames_++ > 0) intervals_s_.push_back(1e-6 * (reading.time_us - last_.time_us));
+    lowest_nm_ = std::min(lowest_nm_, reading.counts);
+    highest_nm_ = std::max(highest_nm_, reading.counts);
+    if (!sent_at_s_.empty() && reading.confirmed != last_.confirmed && sent_at_s_[reading.confirmed] > 0.0) {
+      round_trips_s_.push_back(steady_now_s() - sent_at_s_[reading.confirmed]);
+    }
+    last_ = reading;
+  }
+
+  // Sends and reads for so long; true: ended by `done`.
+  template <typename Done>
+  bool step_until(double span_s, Sent sent, Done done) {
+    double next_s = steady_now_s();
+    for (const double until_s = next_s + span_s; steady_now_s() < until_s && !gone_;) {
+      if (sent.frames && steady_now_s() >= next_s) {
+        send(drive_, sent.heartbeat);
+        next_s += kStep_s;
+      }
+      std::uint8_t bytes[kLargestHidReport];
+      const int size = opened_.connection->read(bytes, sizeof bytes);
+      gone_ = size < 0;
+      DeviceReading reading;
+      if (size > 0 && kBridgeDriver.decode(bytes, static_cast<std::size_t>(size), reading) == ReportVerdict::position) {
+        take(reading);
+      }
+      if (done()) return true;
+    }
+    return false;
+  }
+
+  std::optional<double> time_to_stop(Sent sent) {
+    const double since_s = last_sent_s_;
+    const bool shown = step_until(kPatience_s, sent, [&] { return stopped_; });
+    const double after_s = steady_now_s() - since_s;
+    return shown && after_s <= kStopsWithin_s ? std::optional<double>(after_s) : std::nullopt;
+  }
+
+  // Valid frames come again: first without drive, then as before.
+  bool wakes() {
+    drive_ = false;
+    const bool woke = step_until(kPatience_s, {true, true}, [&] { return !stopped_; });
+    step_until(0.05, {true, true}, [] { return false; });
+    drive_ = true;
+    return woke;
+  }
+
+  static double part(std::vector<double>& values, double share) {
+    if (values.empty()) return 0.0;
+    std::sort(values.begin(), values.end());
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  }
+
+  std::string text(bool drove, double silence_s, double stands_still_s) {
+    const auto ms = [](double s) { return fixed(1e3 * s, 2) + " ms"; };
+    const double mean_s = part(intervals_s_, 0.5);
+    return opened_.info.path + "\n  samples     " + fixed(mean_s > 0.0 ? 1.0 / mean_s : 0.0, 0) +
+           " a second by the device's clock, " + ms(part(intervals_s_, 0.01)) + " to " + ms(part(intervals_s_, 0.99)) +
+           " apart\n  round trip  " + ms(part(round_trips_s_, 0.5)) + ", " + ms(part(round_trips_s_, 0.99)) +
+           " in one of a hundred\n  position    " + fixed(1e-6 * last_.counts, 3) + " mm; it moved by " +
+           fixed(1e-6 * (highest_nm_ - lowest_nm_), 3) + " mm in the test\n  force       " +
+           (std::isfinite(last_.measured_N) ? fixed(last_.measured_N, 3) + " N measured" : "not measured") +
+           "\n  drive       " + (drove ? "yes, it got a force of 0" : "it never said that it drives (status bit 1)") +
+           "\n  watchdog    stopped " + ms(silence_s) + " after the last frame (limit 50 ms, told with a sample)" +
+           "\n  heartbeat   stopped " + ms(stands_still_s) + " after it stood still (limit 50 ms)\n";
+  }
+
+  HidOpened opened_;
+  std::uint32_t sequence_ = 0;
+  std::uint16_t heartbeat_ = 0;
+  std::vector<double> sent_at_s_;  // by the low half of the sequence
+  std::vector<double> intervals_s_, round_trips_s_;
+  DeviceReading last_;
+  int frames_ = 0;
+  std::int32_t lowest_nm_ = INT32_MAX, highest_nm_ = INT32_MIN;
+  double last_sent_s_ = 0.0;
+  bool drive_ = true, driving_ = false, stopped_ = false, gone_ = false;
+};
+
+}  // namespace
+
+Result<std::string> test_bridge(const std::string& target) {
+  const Result<BridgeTarget> parsed = parse_bridge_target(target);
+  if (!parsed) return parsed.error();
+  BridgeBus bus(*parsed, target);
+  Result<HidOpened> opened = bus.open_and_identify();
+  if (!opened) return opened.error();
+  return BridgeTest(std::move(*opened)).run();
+}
+
+}  // namespace palpate

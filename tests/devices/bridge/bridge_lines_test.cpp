@@ -1,0 +1,275 @@
+// Devices of the bridge over their lines, in real time: a child program, sockets, a
+// pseudo-terminal, and all that can go wrong with them. With PALPATE_FAULT_TABLE=1 every
+// fault runs over every line, and latencies beside a HID device's are printed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include "devices/bridge/bridge_target.h"
+#include "devices/hid/hid_device.h"
+#include "tests/support/bridge_session.h"
+#include "tests/support/fake_hid_bus.h"
+#include "tests/support/hid_ticks.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::ChildProcess;
+using test::open_bridge;
+using test::SpringSession;
+
+const std::string kPeer = std::string(PALPATE_SOURCE_DIR) + "/tests/devices/bridge/peer.py";
+
+bool everything() { return std::getenv("PALPATE_FAULT_TABLE") != nullptr; }
+
+struct Fault {
+  const char* mode;      // of peer.py
+  std::uint32_t faults;  // any of them
+};
+
+std::vector<Fault> faults() {
+  using namespace device_fault;
+  return {{"silent", kLate},      {"die", kUnplugged},         {"corrupt", kCorrupt},
+          {"cut", kCorrupt},      {"text", kCorrupt | kLate},  {"reordered", kOutOfOrder},
+          {"repeated", kLate},    {"late", kLate | kBurst},    {"jump", kJump},
+          {"nan", kCorrupt},      {"version", kWrongFirmware}, {"own", kOwn},
+          {"deaf", kWriteStalled}};
+}
+
+// The end of a line that is no child program, and where it is.
+class Line {
+ public:
+  Line(const std::string& kind, const test::TemporaryFolder& folder, const std::string& mode) {
+    const std::string log = folder.file("log");
+    std::filesystem::remove(log);
+    const std::string place = kind == "tcp" ? std::to_string(20000 + getpid() % 20000) : folder.file(kind);
+    const std::string command = "python3 " + kPeer + " " + mode + " 0.3 " + log;
+    if (kind == "exec") {
+      target_ = "exec:" + command;
+      return;
+    }
+    std::filesystem::remove(place);
+    peer_ = std::make_unique<ChildProcess>(std::vector<std::string>{"python3", kPeer, mode, "0.3", log, kind, place});
+    target_ = kind == "pty" ? place : kind == "unix" ? "unix:" + place : "tcp:127.0.0.1:" + place;
+    if (kind != "tcp") test::wait_for([&] { return std::filesystem::exists(place); });
+  }
+  Result<std::unique_ptr<Device>> open() const {
+    Result<std::unique_ptr<Device>> device = open_bridge(target_);
+    // A socket is there a moment before it listens.
+    test::wait_for([&] { return device.ok() || (device = open_bridge(target_)).ok(); }, 5);
+    return device;
+  }
+
+ private:
+  std::unique_ptr<ChildProcess> peer_;
+  std::string target_;
+};
+
+double logged_s(const std::string& path, const std::string& word) {
+  std::ifstream file(path);
+  std::string name;
+  for (double at_s = 0.0; file >> name >> at_s;) {
+    if (name == word) return at_s;
+  }
+  return 0.0;
+}
+
+struct Outcome {
+  bool pushed = false;
+  double to_zero_ms = -1.0;        // of what the loop renders
+  double to_zero_there_ms = -1.0;  // of what the device hears
+  std::uint32_t faults = 0;
+};
+
+Outcome run(const std::string& kind, const char* mode) {
+  const test::TemporaryFolder folder;
+  const Line line(kind, folder, mode);
+  auto device = line.open();
+  EXPECT_TRUE(device.ok()) << (device ? "" : device.error().message);
+  Outcome outcome;
+  if (!device) return outcome;
+  SpringSession session(std::move(*device));
+  std::vector<LoopSnapshot> all;
+  test::wait_for(
+      [&] {
+        for (const LoopSnapshot& one : session.snapshots()) all.push_back(one);
+        const double event_s = logged_s(folder.file("log"), "event");
+        return event_s > 0.0 && steady_now_s() > event_s + 0.4;
+      },
+      10);
+  const double event_s = logged_s(folder.file("log"), "event");
+  for (const LoopSnapshot& one : all) {
+    if (one.loop_time_s <= event_s) outcome.pushed = one.rendered_N > 1.5;
+    if (one.loop_time_s > event_s && event_s > 0.0) {
+      outcome.faults |= one.device.faults;
+      if (one.rendered_N == 0.0 && outcome.to_zero_ms < 0.0) outcome.to_zero_ms = 1e3 * (one.loop_time_s - event_s);
+    }
+  }
+  const double zero_s = logged_s(folder.file("log"), "zero");
+  if (zero_s > 0.0) outcome.to_zero_there_ms = 1e3 * (zero_s - event_s);
+  return outcome;
+}
+
+void expect_faults_stop_the_force(const std::string& kind, const std::vector<Fault>& list) {
+  for (const Fault& fault : list) {
+    Outcome outcome = run(kind, fault.mode);
+    // A busy machine may have let go a moment before.
+    for (int more = 0; more < 3 && !outcome.pushed; ++more) outcome = run(kind, fault.mode);
+    std::printf("%-5s %-10s  rendered 0 after %6.1f ms", kind.c_str(), fault.mode, outcome.to_zero_ms);
+    if (outcome.to_zero_there_ms >= 0.0) std::printf(", heard after %6.1f ms", outcome.to_zero_there_ms);
+    const auto words = device_fault_words(outcome.faults & fault.faults);
+    std::printf("  %s\n", words.empty() ? "" : words.front().c_str());
+    EXPECT_TRUE(outcome.pushed) << kind << " " << fault.mode;
+    EXPECT_GE(outcome.to_zero_ms, 0.0) << kind << " " << fault.mode;
+    EXPECT_NE(outcome.faults & fault.faults, 0u) << kind << " " << fault.mode << " " << outcome.faults;
+  }
+}
+
+int thread_count() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    int count = 0;
+    if (word == "Threads:" && status >> count) return count;
+  }
+  return -1;
+}
+
+TEST(BridgeLines, EveryFaultOfAChildProgramTakesTheForceAway) {
+  const int threads = thread_count();
+  expect_faults_stop_the_force("exec", faults());
+  EXPECT_TRUE(test::wait_for([&] { return thread_count() <= threads; }))
+      << thread_count() << " threads, " << threads << " before";
+}
+
+TEST(BridgeLines, FaultsOfSocketsAndSerialLinesTakeTheForceAway) {
+  std::vector<Fault> list = faults();
+  if (!everything()) list.resize(2);
+  for (const char* kind : {"unix", "tcp", "pty"}) {
+    expect_faults_stop_the_force(kind, list);
+  }
+}
+
+TEST(BridgeLines, FramesThatComeTwiceDoNoHarm) {
+  const test::TemporaryFolder folder;
+  const Line line("exec", folder, "doubled");
+  auto device = line.open();
+  ASSERT_TRUE(device.ok());
+  SpringSession session(std::move(*device));
+  ASSERT_TRUE(test::wait_for([&] { return logged_s(folder.file("log"), "event") > 0.0; }));
+  session.snapshots();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::uint32_t faults = 0;
+  for (const LoopSnapshot& one : session.snapshots()) faults |= one.device.faults;
+  EXPECT_EQ(faults & (device_fault::kOutOfOrder | device_fault::kCorrupt), 0u);
+}
+
+TEST(BridgeLines, APortThatVanishesAndReturnsIsUsedAgain) {
+  const test::TemporaryFolder folder;
+  auto line = std::make_unique<Line>("unix", folder, "die");
+  auto device = line->open();
+  ASSERT_TRUE(device.ok());
+  SpringSession session(std::move(*device));
+  ASSERT_TRUE(test::wait_for([&] { return (session.loop().newest().device.faults & device_fault::kUnplugged) != 0; }));
+  line.reset();
+  line = std::make_unique<Line>("unix", folder, "none");
+  EXPECT_TRUE(test::wait_for([&] { return session.loop().newest().rendered_N > 2.0; })) << "with its ramp";
+  EXPECT_EQ(session.loop().newest().device.faults, 0u);
+}
+
+TEST(BridgeLines, AChildProgramEndsWithItsDevice) {
+  const test::TemporaryFolder folder;
+  const Line line("exec", folder, "none");
+  const auto running = [log = folder.file("log")] {
+    for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+      std::ifstream file(process.path() / "cmdline");
+      const std::string words((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+      if (words.find(log) != std::string::npos) return true;
+    }
+    return false;
+  };
+  {
+    auto device = line.open();
+    ASSERT_TRUE(device.ok());
+    EXPECT_TRUE(running());
+  }
+  EXPECT_FALSE(running());
+}
+
+TEST(BridgeLines, WhatCannotBeOpenedSaysWhyAndWhatToDo) {
+  const auto complaint = [](const std::string& target) {
+    const auto device = open_bridge(target);
+    return device ? "opened" : device.error().message;
+  };
+  EXPECT_EQ(complaint("exec:echo Traceback"),
+            "bridge:exec:echo Traceback: the program ended with exit code 0, after \"Traceback \"; run it by itself to "
+            "see why");
+  EXPECT_EQ(complaint("exec:exit 3"),
+            "bridge:exec:exit 3: the program ended with exit code 127; run it by itself to see why");
+  EXPECT_EQ(complaint("unix:/nowhere/at/all"),
+            "/nowhere/at/all: No such file or directory; start the device's program first");
+  EXPECT_EQ(complaint("/dev/null"), "/dev/null: is no serial line; name a tty");
+  EXPECT_EQ(complaint("/dev/nowhere"),
+            "/dev/nowhere: No such file or directory; is the device plugged in? ls /dev/tty* shows the ports");
+  EXPECT_EQ(complaint("/dev/tty,300").rfind("/dev/tty: found 300 baud, expected one of 9600, ", 0), 0u);
+  EXPECT_EQ(complaint("tcp:192.0.2.1:5000").rfind("192.0.2.1:5000: is another computer, ", 0), 0u);
+  EXPECT_EQ(complaint("tcp:127.0.0.1:0"),
+            "--device bridge:tcp:127.0.0.1:0: expected tcp:HOST:PORT, a port from 1 to 65535 "
+            "(devices/README.md#bridge)");
+  EXPECT_EQ(complaint("somewhere"),
+            "--device bridge:somewhere: expected /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT or exec:COMMAND "
+            "(devices/README.md#bridge)");
+  EXPECT_EQ(with_remote_bridge("bridge:tcp:lab:5000"), "bridge:remote-tcp:lab:5000");
+  EXPECT_EQ(with_remote_bridge("hand"), "hand");
+}
+
+double part(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? NAN : values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void print_latencies(const char* name, SpringSession& session) {
+  std::vector<double> trips_ms;
+  for (int i = 0; i < 500; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    for (const LoopSnapshot& one : session.snapshots()) {
+      if (!std::isnan(one.device.round_trip_s)) trips_ms.push_back(1e3 * one.device.round_trip_s);
+    }
+  }
+  const TimePercentiles lateness = session.loop().statistics().lateness;
+  std::printf(
+      "%-6s round trip [ms] p50 %.2f p99 %.2f p99.9 %.2f; lateness of the tick [us] p50 %.0f p99 %.0f "
+      "p99.9 %.0f\n",
+      name, part(trips_ms, 0.5), part(trips_ms, 0.99), part(trips_ms, 0.999), lateness.p50_us, lateness.p99_us,
+      lateness.p99_9_us);
+}
+
+TEST(BridgeLines, LatenciesBesideAHidDevice) {
+  if (!everything()) return;  // a measurement, which asserts nothing: PALPATE_FAULT_TABLE=1 runs it
+  test::FakeHidBus bus;
+  auto opened = open_first(bus, {&kPaddleDriver});
+  ASSERT_TRUE(opened.ok());
+  auto hid =
+      std::make_unique<HidDevice>(bus, test::patient(test::example_calibration(&kPaddleDriver)), std::move(*opened));
+  ASSERT_TRUE(hid->open().ok());
+  SpringSession paddle(std::move(hid));
+  print_latencies("hid", paddle);
+  for (const char* kind : {"exec", "unix", "tcp", "pty"}) {
+    const test::TemporaryFolder folder;
+    const Line line(kind, folder, "none");
+    auto device = line.open();
+    ASSERT_TRUE(device.ok());
+    SpringSession session(std::move(*device));
+    print_latencies(kind, session);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,147 @@
+// The frames of the bridge, byte for byte, and what finds them in a stream.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "devices/firmware/hapkit/bridge_protocol.h"
+#include "devices/hid/protocol/bridge.h"
+
+namespace palpate {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Finder = bridge::FrameFinder<bridge::kDeviceBytes, bridge::kFromDevice>;
+
+Bytes from_hex(const std::string& hex) {
+  Bytes bytes;
+  for (std::size_t i = 0; i < hex.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+  }
+  return bytes;
+}
+
+// Made by Python's struct and zlib from the page's table.
+const Bytes kFromDevice = from_hex("5042014904030201feffffff60dad9ff87d612001100efbe22e2ae74");
+const Bytes kFromHost = from_hex("5042014f0100feca4039d2ff34120100cbe4a001");
+
+Bytes frame_of(std::uint32_t sequence) {
+  Bytes frame(bridge::kDeviceBytes);
+  bridge::encode(bridge::FromDevice{sequence, 1000 * sequence, 3'000'000, bridge::kNoForce, 0, 0}, frame.data());
+  return frame;
+}
+
+// The sequences of all frames that are found.
+std::vector<std::uint32_t> found_in(const Bytes& bytes, Finder* used = nullptr) {
+  Finder finder;
+  std::vector<std::uint32_t> found;
+  for (const std::uint8_t byte : bytes) {
+    if (finder.add(byte)) found.push_back(wire::read32(finder.frame() + 4));
+  }
+  if (used != nullptr) *used = finder;
+  return found;
+}
+
+Bytes joined(std::initializer_list<Bytes> parts) {
+  Bytes all;
+  for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+ReportVerdict verdict_of(const Bytes& bytes, DeviceReading* reading = nullptr) {
+  DeviceReading none;
+  return kBridgeDriver.decode(bytes.data(), bytes.size(), reading != nullptr ? *reading : none);
+}
+
+TEST(BridgeProtocol, IsThatOfThePageByteForByte) {
+  Bytes frame(bridge::kDeviceBytes);
+  bridge::encode(bridge::FromDevice{0x01020304, 0xFFFFFFFE, -2'500'000, 1'234'567, 17, 0xBEEF}, frame.data());
+  EXPECT_EQ(frame, kFromDevice);
+  Bytes command(bridge::kHostBytes);
+  bridge::encode(bridge::FromHost{0xCAFE0001, -3'000'000, 0x1234, bridge::kDrive}, command.data());
+  EXPECT_EQ(command, kFromHost);
+}
+
+TEST(BridgeProtocol, TheHostReadsWhatTheDeviceMeans) {
+  DeviceReading reading;
+  ASSERT_EQ(verdict_of(kFromDevice, &reading), ReportVerdict::position);
+  EXPECT_EQ(reading.sequence, 0x01020304u);
+  EXPECT_EQ(reading.time_us, 0xFFFFFFFEu);
+  EXPECT_EQ(reading.counts, -2'500'000);
+  EXPECT_EQ(reading.measured_N, 1.234567);
+  EXPECT_EQ(reading.confirmed, 0xBEEFu);
+  EXPECT_TRUE(reading.grip);
+  EXPECT_TRUE(reading.driving);
+  EXPECT_FALSE(reading.stopped);
+  EXPECT_FALSE(reading.own_fault);
+}
+
+TEST(BridgeProtocol, PushesOutwardForAPositiveForce) {
+  HidCommand command;
+  command.sequence = 7;
+  command.drive = true;
+  command.units = -2e6;  // uN towards growing positions
+  const OutReports reports = kBridgeDriver.encode_command(command);
+  ASSERT_EQ(reports.sizes[0], bridge::kHostBytes);
+  bridge::FromHost out{};
+  ASSERT_TRUE(bridge::decode(reports.bytes[0].data(), out));
+  EXPECT_EQ(out.force_uN, 2'000'000);
+  EXPECT_EQ(out.flags, bridge::kDrive);
+  const OutReports stop = kBridgeDriver.encode_stop();
+  ASSERT_TRUE(bridge::decode(stop.bytes[0].data(), out));
+  EXPECT_EQ(out.force_uN, 0);
+  EXPECT_EQ(out.flags, 0);
+}
+
+TEST(BridgeProtocol, RefusesEveryFrameWithOneBitWrong) {
+  for (std::size_t bit = 0; bit < 8 * kFromDevice.size(); ++bit) {
+    Bytes frame = kFromDevice;
+    frame[bit / 8] = static_cast<std::uint8_t>(frame[bit / 8] ^ (1U << (bit % 8)));
+    EXPECT_TRUE(found_in(frame).empty()) << "bit " << bit;
+    EXPECT_NE(verdict_of(frame), ReportVerdict::position) << "bit " << bit;
+  }
+}
+
+TEST(BridgeProtocol, RefusesWhatNoDeviceCanMean) {
+  Bytes frame(bridge::kDeviceBytes);
+  for (const bridge::FromDevice& in : {bridge::FromDevice{1, 1, INT32_MIN, 0, 0, 0},      // as a NaN becomes
+                                       bridge::FromDevice{1, 1, 1'000'000'001, 0, 0, 0},  // beyond a metre
+                                       bridge::FromDevice{1, 1, 0, 0, 32, 0}}) {          // an unknown bit
+    bridge::encode(in, frame.data());
+    EXPECT_EQ(verdict_of(frame), ReportVerdict::corrupt);
+  }
+  EXPECT_EQ(verdict_of(Bytes(27, 0)), ReportVerdict::corrupt);
+  EXPECT_EQ(verdict_of({}), ReportVerdict::corrupt);
+}
+
+TEST(FrameFinder, FindsFramesBehindLostBytesAndText) {
+  const Bytes text{'h', 'e', 'l', 'l', 'o', 'P', 'B', '\n'};
+  Bytes cut = frame_of(2);
+  cut.erase(cut.begin() + 9);
+  Finder finder;
+  EXPECT_EQ(found_in(joined({text, frame_of(1), cut, frame_of(3), frame_of(4)}), &finder),
+            (std::vector<std::uint32_t>{1, 3, 4}));
+  EXPECT_EQ(finder.skipped(), text.size() + cut.size());
+}
+
+TEST(FrameFinder, LosesNoFrameToAFalseBeginning) {
+  const Bytes begin{0x50, 0x42, 1, 0x49};
+  EXPECT_EQ(found_in(joined({begin, {0x50}, {0x50, 0x42}, begin, frame_of(8), frame_of(9)})),
+            (std::vector<std::uint32_t>{8, 9}));
+}
+
+TEST(FrameFinder, TellsAnotherVersion) {
+  Bytes other = frame_of(1);
+  other[2] = 2;
+  wire::write32(other.data() + 24, wire::crc32(other.data(), 24));
+  Finder finder;
+  EXPECT_TRUE(found_in(other, &finder).empty());
+  EXPECT_EQ(finder.other_version(), 2);
+  DeviceReading reading;
+  EXPECT_EQ(verdict_of(other, &reading), ReportVerdict::wrong_version);
+  EXPECT_EQ(reading.version, 2);
+}
+
+}  // namespace
+}  // namespace palpate

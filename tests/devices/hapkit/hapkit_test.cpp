@@ -1,0 +1,117 @@
+// The Hapkit's firmware as it is flashed, on an ATmega328P in simavr behind a
+// pseudo-terminal (hapkit_board.cpp): recorded through, rendered through, left alone.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "engine/recording/recording.h"
+#include "tests/support/bridge_session.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+#ifndef PALPATE_HAPKIT_BOARD
+TEST(Hapkit, IsEmulated) {
+  GTEST_SKIP() << "skipped: avr-g++ or simavr is not there (gcc-avr, avr-libc, libsimavr-dev)";
+}
+#else
+
+using test::ChildProcess;
+using test::run_palpate;
+
+// The board as a process; what it says.
+class Board {
+ public:
+  explicit Board(const std::string& arguments)
+      : said_(folder_.file("said")),
+        process_({"sh", "-c",
+                  "exec " PALPATE_HAPKIT_BOARD " " PALPATE_HAPKIT_ELF " " + arguments + " > " + said_ +
+                      " 2>&1 < /dev/zero"}) {
+    test::wait_for([this] { return !line_with("/dev/").empty(); });
+  }
+  std::string line_with(const std::string& start) const {
+    std::ifstream file(said_);
+    for (std::string line; std::getline(file, line);) {
+      if (line.rfind(start, 0) == 0) return line;
+    }
+    return {};
+  }
+  std::string last_line() const {
+    std::ifstream file(said_);
+    std::string last;
+    for (std::string line; std::getline(file, line);) last = line;
+    return last;
+  }
+  std::string port() const { return line_with("/dev/"); }
+
+ private:
+  test::TemporaryFolder folder_;
+  std::string said_;
+  ChildProcess process_;
+};
+
+TEST(Hapkit, ShowsThatItsWatchdogWorks) {
+  const Board board("--material silicone");
+  const auto run = run_palpate({"devices", "--test", "bridge:" + board.port()});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  std::printf("%s", run.out.c_str());
+  for (const char* words : {"N measured", "yes, it got a force of 0", "after the last frame", "after it stood still"}) {
+    EXPECT_NE(run.out.find(words), std::string::npos) << words << run.out;
+  }
+}
+
+TEST(Hapkit, RecordsASimulatedMaterial) {
+  const test::TemporaryFolder folder;
+  const Board board("--material silicone");
+  const auto run = run_palpate(
+      {"record", "--device", "bridge:" + board.port(), "--seconds", "5", "--out", folder.file("press.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("press.csv: usable"), std::string::npos) << run.out;
+  const auto recording = read_recording(folder.file("press.csv"));
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  double deepest_m = 0.0, largest_N = 0.0;
+  for (const RecordingRow& row : recording->rows) {
+    deepest_m = std::max(deepest_m, row.position_m);
+    largest_N = std::max(largest_N, row.force_N);
+  }
+  EXPECT_GT(deepest_m, 1e-3);
+  EXPECT_LT(deepest_m, 0.03) << "an unwound magnet";
+  EXPECT_GT(largest_N, 0.5);
+}
+
+TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) {
+  const Board board("");
+  ChildProcess host([&] {
+    auto device = test::open_bridge(board.port());
+    if (!device) return;
+    test::SpringSession session(std::move(*device));
+    test::wait_for([] { return false; }, 300);
+  });
+  // In the middle of a press: what drives for so long already.
+  ASSERT_TRUE(test::wait_for(
+      [&] {
+        const bool driving = board.last_line().rfind("drives", 0) == 0;
+        if (driving) std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        return driving && board.last_line().rfind("drives", 0) == 0;
+      },
+      60));
+  host.stop();
+  ASSERT_TRUE(test::wait_for([&] { return board.last_line().rfind("zero", 0) == 0; }));
+  double at_ms = 0.0, after_ms = 1e9;
+  const std::string zero = board.last_line();
+  std::printf("%s\n", zero.c_str());
+  ASSERT_EQ(std::sscanf(zero.c_str(), "zero %lf ms, %lf ms after", &at_ms, &after_ms), 2);
+  EXPECT_LE(after_ms, 60.0) << "by the board's own clock";
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(board.last_line(), zero) << "nothing drives again";
+}
+
+#endif
+
+}  // namespace
+}  // namespace palpate
