@@ -87,7 +87,8 @@ void flush_folder(const std::string& folder) {
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
-  if (path == "-") return Error{"found - as the file to write, expected a name: standard output has the results; ./- is a file"};
+  if (path == "-")
+    return Error{"found - as the file to write, expected a name: standard output has the results; ./- is a file"};
   if (const Status target = check_target(path, overwrite); !target) return target.error();
   AtomicFile file;
   file.path_ = path;
@@ -117,6 +118,8 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   error_number_ = other.error_number_;
   registry_slot_ = std::exchange(other.registry_slot_, -1);
   overwrite_ = other.overwrite_;
+  published_ = other.published_;
+  whole_bytes_ = other.whole_bytes_;
   return *this;
 }
 
@@ -127,7 +130,7 @@ void AtomicFile::close_descriptor() noexcept {
 }
 
 void AtomicFile::discard() noexcept {
-  if (descriptor_ >= 0) unlink(temporary_path_.c_str());
+  if (descriptor_ >= 0 && !published_) unlink(temporary_path_.c_str());
   close_descriptor();
   unregister_temporary(std::exchange(registry_slot_, -1));
 }
@@ -145,12 +148,19 @@ void AtomicFile::flush() {
     left -= static_cast<std::size_t>(written);
   }
   buffer_.clear();
+  if (!published_) return;
+  if (error_number_ == 0) {
+    whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
+  } else if (ftruncate(descriptor_, whole_bytes_) != 0) {
+    error_number_ = errno;
+  }
 }
 
 void AtomicFile::write(std::string_view text) {
   if (descriptor_ < 0 || error_number_ != 0) return;
   buffer_.append(text);
-  if (buffer_.size() >= kFlushBytes) flush();
+  // Once it is published, only whole pieces go out.
+  if (buffer_.size() >= kFlushBytes && !published_) flush();
 }
 
 Status AtomicFile::failure(int error_number) const {
@@ -158,11 +168,8 @@ Status AtomicFile::failure(int error_number) const {
   return Error{"cannot write " + path_ + ": " + words_for(error_number)};
 }
 
-Status AtomicFile::commit() {
-  if (descriptor_ < 0) return Error{"cannot write " + path_ + ": it is closed already"};
-  flush();
-  if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
-  if (error_number_ == 0) {
+Status AtomicFile::take_name() {
+  if (error_number_ == 0 && !published_) {
     error_number_ = overwrite_ ? (rename(temporary_path_.c_str(), path_.c_str()) == 0 ? 0 : errno)
                                : rename_without_replacing(temporary_path_.c_str(), path_.c_str());
   }
@@ -170,6 +177,24 @@ Status AtomicFile::commit() {
     discard();
     return failure(error_number_);
   }
+  return {};
+}
+
+Status AtomicFile::publish() {
+  if (descriptor_ < 0) return Error{"cannot write " + path_ + ": it is closed already"};
+  flush();
+  if (const Status taken = take_name(); !taken || published_) return taken;
+  published_ = true;
+  whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
+  unregister_temporary(std::exchange(registry_slot_, -1));
+  return {};
+}
+
+Status AtomicFile::commit() {
+  if (descriptor_ < 0) return Error{"cannot write " + path_ + ": it is closed already"};
+  flush();
+  if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
+  if (const Status taken = take_name(); !taken) return taken;
   close_descriptor();
   discard();
   flush_folder(folder_of(path_));

@@ -1,4 +1,5 @@
-// Files that are either whole under their final name or not there at all.
+// Files that are either whole under their final name or not there at all, or grow there
+// by whole pieces.
 //
 // Thread guarantee: slow side only.
 #pragma once
@@ -30,6 +31,12 @@ class AtomicFile {
   // Whether the disk has refused something already; commit says what.
   bool failed() const noexcept { return error_number_ != 0; }
 
+  // From now on the file stands under its final name with all that was written, and
+  // every further call adds to it: whole pieces of text between two calls, whenever the
+  // program is killed. Where the disk refuses a piece, the file keeps those before.
+  // Errors: as `commit`.
+  Status publish();
+
   // Errors: anything the disk refused since `create`, e.g. no space left; a
   // file of that name made by someone else meanwhile, unless `overwrite`. Then
   // nothing is left under the final name but what was there before.
@@ -40,6 +47,7 @@ class AtomicFile {
   void discard() noexcept;
   std::string path_;
   std::string temporary_path_;
+  Status take_name();
   Status failure(int error_number) const;
   void flush();
   void close_descriptor() noexcept;
@@ -48,6 +56,8 @@ class AtomicFile {
   int error_number_ = 0;
   int registry_slot_ = -1;
   bool overwrite_ = false;
+  bool published_ = false;
+  long long whole_bytes_ = 0;  // published
 };
 
 // Writes `text` to `path` in one go; errors as AtomicFile.

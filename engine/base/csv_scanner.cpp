@@ -56,8 +56,7 @@ bool is_control(std::string_view sequence) {
 
 }  // namespace
 
-MemorySource::MemorySource(std::string_view text, std::size_t piece_bytes)
-    : rest_(text), piece_bytes_(piece_bytes) {}
+MemorySource::MemorySource(std::string_view text, std::size_t piece_bytes) : rest_(text), piece_bytes_(piece_bytes) {}
 
 Result<std::size_t> MemorySource::read(char* bytes, std::size_t capacity) {
   const std::size_t count = std::min({capacity, piece_bytes_, rest_.size()});
@@ -79,8 +78,7 @@ Result<std::size_t> DescriptorSource::read(char* bytes, std::size_t capacity) {
   }
 }
 
-LineScanner::LineScanner(std::unique_ptr<ByteSource> source, std::string label,
-                         std::size_t buffer_bytes)
+LineScanner::LineScanner(std::unique_ptr<ByteSource> source, std::string label, std::size_t buffer_bytes)
     : source_(std::move(source)),
       label_(std::move(label)),
       capacity_(buffer_bytes),
@@ -142,8 +140,7 @@ bool LineScanner::check(std::string_view text) {
                 "convert the line ends");
   }
   if (text.size() > kMaximumLineBytes) {
-    return fail(kMaximumLineBytes + 1, "found a line longer than " +
-                                           std::to_string(kMaximumLineBytes) +
+    return fail(kMaximumLineBytes + 1, "found a line longer than " + std::to_string(kMaximumLineBytes) +
                                            " bytes, expected a row of a recording; check that "
                                            "this is a CSV file with line ends");
   }

@@ -64,8 +64,7 @@ class LineScanner {
  public:
   // `label` is the file's name in messages; `buffer_bytes` must hold the
   // longest line and two bytes more.
-  LineScanner(std::unique_ptr<ByteSource> source, std::string label,
-              std::size_t buffer_bytes = kScannerBufferBytes);
+  LineScanner(std::unique_ptr<ByteSource> source, std::string label, std::size_t buffer_bytes = kScannerBufferBytes);
 
   // Reads the next line; false at the end and on an error. Errors, all of
   // them final: UTF-16, a NUL byte, a carriage return inside a line, a line

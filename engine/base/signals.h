@@ -6,8 +6,8 @@
 // exists, the first SIGINT, SIGTERM or SIGHUP only sets a flag, so that the program
 // ends in its own order; the second, of whatever kind, ends it at once, with the
 // clean-ups. A signal that is ignored stays ignored, and a handler that was installed
-// before is called after the clean-ups. SIGKILL and a power cut are for the device's
-// own watchdog.
+// before is called after the clean-ups. Nothing runs on SIGKILL or a power cut; what
+// becomes of the force then, devices/hid/device_stop.h says for each device.
 #pragma once
 
 namespace palpate {

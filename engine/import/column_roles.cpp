@@ -13,22 +13,48 @@ namespace {
 // role most strongly, then one that has it among its words, then one that has it
 // inside a word (German compounds: "Standardkraft").
 constexpr std::array<std::string_view, 18> kTimeWords = {
-    "time", "t", "zeit", "temps", "timestamp", "stamp", "seconds", "secs", "elapsed", "x_value", "millis", "micros",
-    "clock", "uhrzeit", "pruefzeit", "testzeit", "zeitstempel", "datetime"};
-constexpr std::array<std::string_view, 25> kPositionWords = {
-    "position", "pos", "weg", "displacement", "disp", "depth", "extension", "stroke", "crosshead", "travel", "compression",
-    "indentation", "penetration", "allongement", "traversenweg", "standardweg", "verschiebung", "eindringtiefe", "tiefe",
-    "deplacement", "height", "encoder", "x", "y", "z"};
-constexpr std::array<std::string_view, 12> kForceWords = {"force", "f", "kraft", "load", "last", "fn", "fx", "fy", "fz",
-                                                          "charge", "loadcell", "newton"};
+    "time",    "t",      "zeit",   "temps", "timestamp", "stamp",     "seconds",  "secs",        "elapsed",
+    "x_value", "millis", "micros", "clock", "uhrzeit",   "pruefzeit", "testzeit", "zeitstempel", "datetime"};
+constexpr std::array<std::string_view, 25> kPositionWords = {"position",
+                                                             "pos",
+                                                             "weg",
+                                                             "displacement",
+                                                             "disp",
+                                                             "depth",
+                                                             "extension",
+                                                             "stroke",
+                                                             "crosshead",
+                                                             "travel",
+                                                             "compression",
+                                                             "indentation",
+                                                             "penetration",
+                                                             "allongement",
+                                                             "traversenweg",
+                                                             "standardweg",
+                                                             "verschiebung",
+                                                             "eindringtiefe",
+                                                             "tiefe",
+                                                             "deplacement",
+                                                             "height",
+                                                             "encoder",
+                                                             "x",
+                                                             "y",
+                                                             "z"};
+constexpr std::array<std::string_view, 12> kForceWords = {"force", "f",  "kraft", "load",   "last",     "fn",
+                                                          "fx",    "fy", "fz",    "charge", "loadcell", "newton"};
 // Columns that are something else, whatever other word stands in their name.
 constexpr std::array<std::string_view, 32> kOtherWords = {
-    "torque", "moment", "temperature", "temp", "voltage", "current", "status", "velocity", "speed", "geschwindigkeit",
-    "acceleration", "accel", "stress", "strain", "spannung", "dehnung", "seq", "index", "id", "frame", "cycle", "zyklus",
-    "tx", "ty", "tz", "mx", "my", "mz", "comment", "rate", "volt", "orientation"};
+    "torque",       "moment",     "temperature", "temp",    "voltage",
+    "current",      "status",     "velocity",    "speed",   "geschwindigkeit",
+    "acceleration", "accel",      "stress",      "strain",  "spannung",
+    "dehnung",      "seq",        "index",       "id",      "frame",
+    "cycle",        "zyklus",     "tx",          "ty",      "tz",
+    "mx",           "my",         "mz",          "comment", "rate",
+    "volt",         "orientation"};
 // Second choice: what was asked for and not measured, what is not the raw value.
-constexpr std::array<std::string_view, 9> kSecondWords = {"target", "desired", "setpoint", "soll", "sollwert", "command",
-                                                          "cmd", "reference", "raw"};
+// Times that begin anew: "Cycle Elapsed Time" beside "Total Time".
+constexpr std::array<std::string_view, 10> kSecondWords = {"target",  "desired", "setpoint",  "soll", "sollwert",
+                                                           "command", "cmd",     "reference", "raw",  "cycle"};
 
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
@@ -39,9 +65,14 @@ constexpr int kSecondChoice = 3;  // taken off
 // Lower case, umlauts and accents as plain letters.
 std::string plain_name(std::string_view text) {
   std::string plain = lower_ascii(text);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kLetters = {
-      {{"\xC3\xBC", "ue"}, {"\xC3\x9C", "ue"}, {"\xC3\xA4", "ae"}, {"\xC3\xA9", "e"}, {"\xC3\x89", "e"},
-       {"\xC3\xB6", "oe"}, {"\xC3\xA8", "e"}, {"\xC3\x9F", "ss"}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kLetters = {{{"\xC3\xBC", "ue"},
+                                                                                      {"\xC3\x9C", "ue"},
+                                                                                      {"\xC3\xA4", "ae"},
+                                                                                      {"\xC3\xA9", "e"},
+                                                                                      {"\xC3\x89", "e"},
+                                                                                      {"\xC3\xB6", "oe"},
+                                                                                      {"\xC3\xA8", "e"},
+                                                                                      {"\xC3\x9F", "ss"}}};
   for (const auto& [from, to] : kLetters) {
     for (std::size_t at = 0; (at = plain.find(from, at)) != std::string::npos; at += to.size()) {
       plain.replace(at, from.size(), to);
@@ -106,7 +137,8 @@ std::array<int, kRoles> claims_of(const ForeignColumn& column) {
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
     // A bracketed unit that none of the three has: "Weg [%]".
-    if (!column.parts.foreign_unit.empty()) claims[role] = 0;
+    const bool volts = role == 2 && volts_of(column.parts.foreign_unit) > 0.0;
+    if (!column.parts.foreign_unit.empty() && !volts) claims[role] = 0;
     if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
   }
   // What a column is called most clearly, that it is.
@@ -127,11 +159,13 @@ std::string shell_name(const std::vector<ForeignColumn>& columns, std::size_t in
   const std::string& header = columns[index].header;
   const bool plain = header.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==
                      std::string::npos;
-  const auto same = std::count_if(columns.begin(), columns.end(), [&](const ForeignColumn& c) { return c.header == header; });
+  const auto same =
+      std::count_if(columns.begin(), columns.end(), [&](const ForeignColumn& c) { return c.header == header; });
   return plain && !header.empty() && same == 1 ? header : std::to_string(index + 1);
 }
 
-Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role, const std::string& wanted) {
+Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::size_t role,
+                                const std::string& wanted) {
   const auto with = [&](auto&& name_of) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -153,8 +187,8 @@ Result<std::size_t> find_column(const std::vector<ForeignColumn>& columns, std::
   const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
   const bool is_number = parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size();
   if (is_number && number >= 1 && number <= columns.size()) return number - 1;
-  return Error{"found no column \"" + printable(wanted) + "\" for the " + kRoleNames[role] +
-               ", expected one of " + list_columns(columns)};
+  return Error{"found no column \"" + printable(wanted) + "\" for the " + kRoleNames[role] + ", expected one of " +
+               list_columns(columns)};
 }
 
 Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, bool has_header) {
@@ -169,13 +203,14 @@ Error no_column(const std::vector<ForeignColumn>& columns, std::size_t role, boo
                list_columns(columns)};
 }
 
-Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t role, const std::vector<std::size_t>& best) {
+Error several_columns(const std::vector<ForeignColumn>& columns, std::size_t role,
+                      const std::vector<std::size_t>& best) {
   std::string flags;
   for (const std::size_t index : best) {
     flags += (flags.empty() ? "" : index == best.back() ? " or " : ", ") + flag_for(role, shell_name(columns, index));
   }
-  return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " + flags +
-               "; the columns are " + list_columns(columns)};
+  return Error{"found " + std::to_string(best.size()) + " columns that can be the " + kRoleNames[role] + "; add " +
+               flags + "; the columns are " + list_columns(columns)};
 }
 
 }  // namespace
@@ -192,7 +227,8 @@ Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, con
                                   bool has_header, bool needs_time) {
   RoleChoice choice;
   std::vector<std::array<int, kRoles>> claims;
-  for (const ForeignColumn& column : columns) claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
+  for (const ForeignColumn& column : columns)
+    claims.push_back(has_header ? claims_of(column) : std::array<int, kRoles>{});
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (request[role].empty() || (role == 0 && !needs_time)) continue;
     const auto found = find_column(columns, role, request[role]);
@@ -217,7 +253,8 @@ Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, con
     for (std::size_t b = 0; b < a; ++b) {
       if (!choice.column[a] || choice.column[a] != choice.column[b]) continue;
       return Error{"found column \"" + printable(columns[*choice.column[a]].header) + "\" for the " + kRoleNames[b] +
-                   " and the " + kRoleNames[a] + ", expected a column for each; the columns are " + list_columns(columns)};
+                   " and the " + kRoleNames[a] + ", expected a column for each; the columns are " +
+                   list_columns(columns)};
     }
   }
   return choice;

@@ -54,11 +54,13 @@ class Importer {
   }
   void note(const std::string& sentence) { table_.notes.push_back(sentence); }
 
+  void read_labview_head();
   Status find_columns();
   Status find_unit_of(std::size_t role);
   Status find_time_unit();
   bool parse_time(std::string_view field, TableTime& time) const;
   bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
+  bool is_bad_row(std::string_view line);
   Error explain_row(std::string_view line, std::uint64_t number) const;
   Status check_size(const RecordingRow& row, std::uint64_t line) const;
   Status add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
@@ -69,7 +71,7 @@ class Importer {
 
   const ForeignText& text_;
   std::string label_;
-  const ImportRequest& request_;
+  ImportRequest request_;
   ImportedTable table_;
   std::vector<ForeignColumn> header_;
   std::array<std::size_t, kRoles> index_{};
@@ -89,6 +91,27 @@ const Unit* requested_unit(const ImportRequest& request, Quantity quantity) {
     if (unit.quantity == quantity) return &unit;
   }
   return nullptr;
+}
+
+// LabVIEW's text files say above the table what their columns are in, and how far apart
+// the rows are where the table has no times.
+void Importer::read_labview_head() {
+  std::string_view head = text_.text().substr(0, table_.layout.data_offset);
+  std::vector<std::string_view> fields;
+  std::string_view step;
+  bool times = true;
+  while (!head.empty()) {
+    split_table_fields(next_line(head), table_.layout.delimiter, fields);
+    if (fields.size() < 2) continue;
+    if (fields[0] == "Y_Unit_Label") table_.layout.units = fields;
+    if (fields[0] == "X_Columns") times = fields[1] != "No";
+    if (fields[0] == "Delta_X") step = fields[1];
+  }
+  double step_s = 0.0;
+  const bool even = !times && parse_table_number(step, table_.layout.decimal, step_s) && step_s > 0.0;
+  if (!even || request_.rate_Hz) return;
+  request_.rate_Hz = 1.0 / step_s;
+  note("rows evenly spaced by the Delta_X above the table");
 }
 
 Status Importer::find_columns() {
@@ -112,7 +135,8 @@ Status Importer::find_columns() {
   for (std::size_t role = 0; role < kRoles; ++role) {
     index_[role] = choice->column[role].value_or(RowSplitter::kNoColumn);
     if (!choice->column[role]) continue;
-    table_.columns[role] = {index_[role] + 1, has_header ? header_[index_[role]].header : "", "", choice->guessed[role]};
+    table_.columns[role] = {index_[role] + 1, has_header ? header_[index_[role]].header : "", "",
+                            choice->guessed[role]};
   }
   return {};
 }
@@ -126,7 +150,18 @@ Status Importer::find_unit_of(std::size_t role) {
   if (said == nullptr && unit && unit->quantity != quantity) {
     return fail("found the unit " + std::string(unit->name) + " in the column \"" + printable(column.header) +
                 "\", expected one of a " + (role == 1 ? "length" : "force") + " for the " + kRoleNames[role] +
-                "; choose another with --columns " + kRoleNames[role] + "=NAME; the columns are " + list_columns(header_));
+                "; choose another with --columns " + kRoleNames[role] + "=NAME; the columns are " +
+                list_columns(header_));
+  }
+  const double volts = role == 2 ? volts_of(column.parts.foreign_unit) : 0.0;
+  if (role == 2 && request_.gain_N_per_V) {
+    to_si_[role] = (volts > 0.0 ? volts : 1.0) * *request_.gain_N_per_V;
+    table_.columns[role].unit = "V";
+    return {};
+  }
+  if (volts > 0.0) {
+    return fail("found volts in the column \"" + printable(column.header) +
+                "\", expected a force; say how many newtons a volt is: --gain N_PER_V");
   }
   if (said == nullptr && !unit) {
     const std::string what = quoted_name(role);
@@ -184,15 +219,16 @@ Status Importer::find_time_unit() {
   std::vector<const Unit*> possible;
   for (const Unit& candidate : kTimeUnits) {
     const double rate_Hz = 1.0 / (step * candidate.to_si);
-    const bool in_range = rate_Hz >= kMinimumRate_Hz * (1.0 - kRateTolerance) &&
-                          rate_Hz <= kMaximumRate_Hz * (1.0 + kRateTolerance);
+    const bool in_range =
+        rate_Hz >= kMinimumRate_Hz * (1.0 - kRateTolerance) && rate_Hz <= kMaximumRate_Hz * (1.0 + kRateTolerance);
     if (step > 0.0 && in_range) possible.push_back(&candidate);
   }
   if (possible.size() != 1) {
-    const std::string choices = possible.empty() ? "s, ms, us or ns"
-                                                 : std::string(possible[0]->name) + " or --units " + std::string(possible[1]->name);
-    return fail("found no unit of the time" + quoted_name(0) + " and steps of " + short_number(step) + "; add --units " +
-                choices + ", or --rate HZ if the rows are evenly spaced");
+    const std::string choices = possible.empty()
+                                    ? "s, ms, us or ns"
+                                    : std::string(possible[0]->name) + " or --units " + std::string(possible[1]->name);
+    return fail("found no unit of the time" + quoted_name(0) + " and steps of " + short_number(step) +
+                "; add --units " + choices + ", or --rate HZ if the rows are evenly spaced");
   }
   to_si_[0] = possible.front()->to_si;
   column.unit = std::string(possible.front()->name);
@@ -205,7 +241,8 @@ bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& r
   splitter_.split(line, index_, fields_);
   if (!request_.rate_Hz && !parse_time(fields_[0], time)) return false;
   const char decimal = table_.layout.decimal;
-  if (!parse_table_number(fields_[1], decimal, row.position_m) || !parse_table_number(fields_[2], decimal, row.force_N)) {
+  if (!parse_table_number(fields_[1], decimal, row.position_m) ||
+      !parse_table_number(fields_[2], decimal, row.force_N)) {
     return false;
   }
   row.position_m *= to_si_[1];
@@ -213,7 +250,16 @@ bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& r
   return true;
 }
 
-// The row that could not be read although later rows can.
+// A line that should have been a row: there are digits where its numbers should be.
+bool Importer::is_bad_row(std::string_view line) {
+  splitter_.split(line, index_, fields_);
+  const auto has_digit = [](std::string_view field) {
+    return field.find_first_of("0123456789") != std::string_view::npos;
+  };
+  return has_digit(fields_[1]) && has_digit(fields_[2]);
+}
+
+// The row that could not be read.
 Error Importer::explain_row(std::string_view line, std::uint64_t number) const {
   RowSplitter splitter(table_.layout.delimiter);
   std::array<std::string_view, kRoles> fields;
@@ -222,12 +268,16 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) const {
     if (index_[role] == RowSplitter::kNoColumn) continue;
     TableTime time;
     double value = 0.0;
-    const bool good = role == 0 ? parse_time(fields[0], time) : parse_table_number(fields[role], table_.layout.decimal, value);
+    const bool good =
+        role == 0 ? parse_time(fields[0], time) : parse_table_number(fields[role], table_.layout.decimal, value);
     if (good) continue;
     const std::string_view field = trimmed(fields[role]);
-    const std::string found = field.empty() ? "an empty field" : std::string("\"").append(printable(text_.to_utf8(field))).append("\"");
-    return fail_at(number, "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
-                               ", expected the " + kRoleNames[role] + "; remove the row or repair the value");
+    const std::string found =
+        field.empty() ? "an empty field" : std::string("\"").append(printable(text_.to_utf8(field))).append("\"");
+    return fail_at(number,
+                   "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
+                       ", expected the " + kRoleNames[role] +
+                       "; remove the row, repair the value, or say how many such rows may go: --skip-bad-rows N");
   }
   return fail_at(number, "found a row that cannot be read; remove it");
 }
@@ -245,16 +295,18 @@ Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
 }
 
 Error Importer::time_fault(std::uint64_t line, double time_s, double last_time_s) const {
-  const std::string what = time_s == last_time_s ? "found the time of the row before once more"
-                                                 : "found a time " + short_number(last_time_s - time_s) + " s before that of the row above";
+  const std::string what =
+      time_s == last_time_s ? "found the time of the row before once more"
+                            : "found a time " + short_number(last_time_s - time_s) + " s before that of the row above";
   // The rate of the rows up to here, which is the best that is known of them.
   const std::size_t rows = table_.recording.rows.size();
   const std::string rate = rows > 2 && last_time_s > 0.0
                                ? short_number(std::round(static_cast<double>(rows - 1) / last_time_s))
                                : std::string("HZ");
-  const std::string advice = time_s == last_time_s ? "if the rows are evenly spaced, add --rate " + rate +
-                                                         " (the mean rate so far), or remove the repeated row"
-                                                   : "split the file there, or sort its rows; if the rows are evenly spaced, add --rate " + rate;
+  const std::string advice =
+      time_s == last_time_s
+          ? "if the rows are evenly spaced, add --rate " + rate + " (the mean rate so far), or remove the repeated row"
+          : "split the file there, or sort its rows; if the rows are evenly spaced, add --rate " + rate;
   return fail_at(line, what + quoted_name(0) + ", expected later times in every row; " + advice);
 }
 
@@ -265,7 +317,8 @@ Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRo
   }
   if (!started_) first_ = time;
   const auto since_first = [&] {
-    return (static_cast<double>(time.whole - first_.whole + midnights_ * 2 * kHalfDay_s) + (time.fraction - first_.fraction)) *
+    return (static_cast<double>(time.whole - first_.whole + midnights_ * 2 * kHalfDay_s) +
+            (time.fraction - first_.fraction)) *
            to_si_[0];
   };
   row.time_s = since_first();
@@ -280,7 +333,8 @@ Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRo
   return {};
 }
 
-// Every row in one pass. Lines that are no rows may stand at the end only.
+// Every row in one pass. Lines that are no rows may stand at the end only, but for as
+// many bad rows as the request allows.
 Status Importer::read_rows() {
   std::string_view rest = text_.text().substr(table_.layout.data_offset);
   auto& rows = table_.recording.rows;
@@ -289,6 +343,7 @@ Status Importer::read_rows() {
   std::uint64_t footer_line = 0;
   std::string_view footer;
   std::uint64_t footer_lines = 0;
+  std::uint64_t bad_rows = 0;
   if (!request_.rate_Hz) table_.columns[0].number = index_[0] + 1;
   while (!rest.empty()) {
     const std::string_view line = next_line(rest);
@@ -302,6 +357,10 @@ Status Importer::read_rows() {
         ++comments;
         continue;
       }
+      if (is_bad_row(line)) {
+        if (++bad_rows > request_.skip_bad_rows) return explain_row(line, number);
+        continue;
+      }
       if (footer_line == 0) {
         footer_line = number;
         footer = line;
@@ -309,7 +368,10 @@ Status Importer::read_rows() {
       ++footer_lines;
       continue;
     }
-    if (footer_line > 0) return explain_row(footer, footer_line);
+    // What rows follow was no footer.
+    bad_rows += std::exchange(footer_lines, 0);
+    if (footer_line > 0 && bad_rows > request_.skip_bad_rows) return explain_row(footer, footer_line);
+    footer_line = 0;
     if (request_.flip_position) row.position_m = -row.position_m;
     if (request_.flip_force) row.force_N = -row.force_N;
     if (const Status status = check_size(row, number); !status) return status;
@@ -317,25 +379,29 @@ Status Importer::read_rows() {
     rows.push_back(row);
   }
   if (comments > 0) note(count_of(comments, "comment line") + " between the rows left out");
+  if (bad_rows > 0) note(count_of(bad_rows, "row") + " that could not be read left out");
   if (footer_lines > 0) {
-    note(count_of(footer_lines, "line") + " behind the table left out, from line " + std::to_string(footer_line) + " \"" +
-         printable(text_.to_utf8(footer)) + "\"");
+    note(count_of(footer_lines, "line") + " behind the table left out, from line " + std::to_string(footer_line) +
+         " \"" + printable(text_.to_utf8(footer)) + "\"");
   }
   return {};
 }
 
 void Importer::describe_time() {
   if (request_.rate_Hz) return note("time from --rate " + short_number(*request_.rate_Hz) + ": rows evenly spaced");
-  if (clock_) return note(has_date_ ? "times are dates: counted from the first row" : "times are times of day: counted from the first row");
+  if (clock_)
+    return note(has_date_ ? "times are dates: counted from the first row"
+                          : "times are times of day: counted from the first row");
   const double start_s = (static_cast<double>(first_.whole) + first_.fraction) * to_si_[0];
   if (start_s != 0.0) note("time began at " + short_number(start_s) + " s and begins at 0 now");
 }
 
 void Importer::advise_flips() {
   const PressDirection direction = find_press_direction(table_.recording.rows);
-  if (!direction.known) return;
-  const std::string forces = std::string(" (") + short_number(direction.shallow_force_N) + " N in the air or at the surface, " +
-                             short_number(direction.deep_force_N) + " N at the deepest)";
+  if (!direction.known || !direction.certain) return;
+  const std::string forces = std::string(" (") + short_number(direction.shallow_force_N) +
+                             " N in the air or at the surface, " + short_number(direction.deep_force_N) +
+                             " N at the deepest)";
   if (direction.position_flipped) {
     note("the force grows while the position falls" + forces +
          ": position must be positive inside the block; import again with --flip position");
@@ -352,6 +418,7 @@ Result<ImportedTable> Importer::run() {
   table_.layout = std::move(*layout);
   table_.encoding = text_.encoding();
   splitter_ = RowSplitter(table_.layout.delimiter);
+  read_labview_head();
   if (const Status status = find_columns(); !status) return status.error();
   if (!request_.rate_Hz) {
     if (const Status status = find_time_unit(); !status) return status.error();

@@ -32,6 +32,8 @@ struct ImportRequest {
   std::optional<double> rate_Hz;  // evenly spaced rows; the file's time is not used
   bool flip_position = false;
   bool flip_force = false;
+  std::optional<double> gain_N_per_V;  // of a force that was recorded in volts
+  std::uint64_t skip_bad_rows = 0;     // so many rows may not parse
 };
 
 struct ImportedColumn {

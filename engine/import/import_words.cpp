@@ -29,8 +29,10 @@ std::vector<std::string> flipped_roles(const ImportRequest& request) {
   return flips;
 }
 
-std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request, const ImportedTable& table) {
-  std::vector<std::string> comments = {"imported by palpate import from " + std::filesystem::path(file).filename().string()};
+std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request,
+                                       const ImportedTable& table) {
+  std::vector<std::string> comments = {"imported by palpate import from " +
+                                       std::filesystem::path(file).filename().string()};
   for (std::size_t role = 0; role < kRoles; ++role) {
     comments.push_back(std::string(kRoleNames[role]) + ": " + column_words(table.columns[role]));
   }

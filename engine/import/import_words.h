@@ -19,6 +19,7 @@ std::string table_words(const ImportedTable& table);
 // The roles whose sign was turned round.
 std::vector<std::string> flipped_roles(const ImportRequest& request);
 // What the recording says of its origin, with no path and no date.
-std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request, const ImportedTable& table);
+std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request,
+                                       const ImportedTable& table);
 
 }  // namespace palpate

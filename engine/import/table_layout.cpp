@@ -40,7 +40,8 @@ std::vector<SampleLine> sample_lines(std::string_view text) {
 
 std::string_view unquoted(std::string_view field) {
   field = trimmed(field);
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') return trimmed(field.substr(1, field.size() - 2));
+  if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
+    return trimmed(field.substr(1, field.size() - 2));
   return field;
 }
 
@@ -53,7 +54,8 @@ bool is_cell_of_numbers(std::string_view field, char decimal) {
 
 // A field that begins as a number and is none: the sign of a wrong reading.
 bool is_mangled(std::string_view field) {
-  return field.find_first_of("0123456789") < 2 && field.find_first_not_of("0123456789.,;+-eE \t") == std::string_view::npos;
+  return field.find_first_of("0123456789") < 2 &&
+         field.find_first_not_of("0123456789.,;+-eE \t") == std::string_view::npos;
 }
 
 struct RowLooks {
@@ -146,7 +148,8 @@ std::string_view without_comment_mark(std::string_view line) {
   line = trimmed(line);
   const std::size_t begin = line.find_first_not_of("#%/");
   // "%time" is a name of ROS, and a lone mark is a name of a column of row numbers.
-  if (begin == std::string_view::npos || (begin == 1 && line.front() == '%' && line.find_first_of(" \t") > 5)) return line;
+  if (begin == std::string_view::npos || (begin == 1 && line.front() == '%' && line.find_first_of(" \t") > 5))
+    return line;
   return trimmed(line.substr(begin));
 }
 
@@ -243,7 +246,8 @@ void find_header(Reading& reading, const std::vector<SampleLine>& lines) {
   for (std::size_t i = reading.first; i-- > 0 && seen < kHeaderReach;) {
     if (trimmed(lines[i].text).empty()) continue;
     ++seen;
-    if (!split_header(lines[i].text, layout, fields) && !split_header_of_row_names(lines[i].text, reading, lines, fields)) {
+    if (!split_header(lines[i].text, layout, fields) &&
+        !split_header_of_row_names(lines[i].text, reading, lines, fields)) {
       continue;
     }
     fields.resize(layout.columns);
@@ -283,7 +287,7 @@ Status check_decimal_comma(const Reading& reading, const std::vector<SampleLine>
   if (example.empty()) return {};
   return Error{"found numbers such as " + std::string(example) +
                ", whose comma may be a decimal mark or a thousands mark; add --decimal comma, or export the "
-                   "numbers without thousands marks"};
+               "numbers without thousands marks"};
 }
 
 }  // namespace

@@ -27,12 +27,12 @@ std::optional<Delimiter> delimiter_from_name(std::string_view name);
 struct TableLayout {
   Delimiter delimiter = Delimiter::comma;
   char decimal = '.';
-  std::size_t columns = 0;             // of a row of numbers
+  std::size_t columns = 0;              // of a row of numbers
   std::vector<std::string_view> names;  // one a column; empty without a header
   std::vector<std::string_view> units;  // one a column; empty without a row of units
-  std::uint64_t header_line = 0;       // from 1; 0 without a header
+  std::uint64_t header_line = 0;        // from 1; 0 without a header
   std::uint64_t data_line = 0;
-  std::size_t data_offset = 0;         // in the text
+  std::size_t data_offset = 0;  // in the text
 };
 
 // What the user has said; the rest is found out.

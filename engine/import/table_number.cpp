@@ -91,7 +91,8 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
   if (rest.empty() || (rest.front() != '-' && rest.front() != '/' && rest.front() != '.')) return false;
   const char separator = rest.front();
   const std::string_view mark(&separator, 1);
-  if (!skip_one_of(rest, mark) || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) || !parse_digits(rest, 4, parts[2])) {
+  if (!skip_one_of(rest, mark) || !parse_digits(rest, 2, parts[1]) || !skip_one_of(rest, mark) ||
+      !parse_digits(rest, 4, parts[2])) {
     return false;
   }
   if (parts[0] < 32) std::swap(parts[0], parts[2]);
@@ -174,7 +175,8 @@ bool parse_clock_time(std::string_view text, TableTime& time) {
   int first = 0;
   int second = 0;
   int third = 0;
-  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59) return false;
+  if (!parse_digits(text, 4, first) || !skip_one_of(text, ":") || !parse_digits(text, 2, second) || second > 59)
+    return false;
   const bool has_hours = skip_one_of(text, ":");
   if (has_hours && (!parse_digits(text, 2, third) || third > 60)) return false;
   time.fraction = 0.0;

@@ -37,25 +37,63 @@ constexpr Unit kPound{"lbf", Quantity::force, kPoundForce_N};
 
 // The micro sign is U+00B5 or, in some fonts' files, the Greek U+03BC.
 constexpr std::array kSpellings = {
-    Spelling{"s", kSecond}, Spelling{"sec", kSecond}, Spelling{"secs", kSecond}, Spelling{"second", kSecond},
-    Spelling{"seconds", kSecond}, Spelling{"Sek", kSecond}, Spelling{"Sekunden", kSecond},
-    Spelling{"ms", kMillisecond}, Spelling{"msec", kMillisecond}, Spelling{"millis", kMillisecond},
-    Spelling{"millisecond", kMillisecond}, Spelling{"milliseconds", kMillisecond},
-    Spelling{"us", kMicrosecond}, Spelling{"\xC2\xB5s", kMicrosecond}, Spelling{"\xCE\xBCs", kMicrosecond},
-    Spelling{"usec", kMicrosecond}, Spelling{"micros", kMicrosecond}, Spelling{"microseconds", kMicrosecond},
-    Spelling{"ns", kNanosecond}, Spelling{"nsec", kNanosecond}, Spelling{"nanoseconds", kNanosecond},
-    Spelling{"min", kMinute}, Spelling{"minutes", kMinute},
-    Spelling{"m", kMetre}, Spelling{"meter", kMetre}, Spelling{"meters", kMetre}, Spelling{"metre", kMetre},
-    Spelling{"metres", kMetre}, Spelling{"cm", kCentimetre},
-    Spelling{"mm", kMillimetre}, Spelling{"millimeter", kMillimetre}, Spelling{"millimeters", kMillimetre},
-    Spelling{"um", kMicrometre}, Spelling{"\xC2\xB5m", kMicrometre}, Spelling{"\xCE\xBCm", kMicrometre},
-    Spelling{"micron", kMicrometre}, Spelling{"microns", kMicrometre}, Spelling{"nm", kNanometre},
-    Spelling{"inch", kInch}, Spelling{"inches", kInch},
-    Spelling{"N", kNewton}, Spelling{"newton", kNewton}, Spelling{"newtons", kNewton},
-    Spelling{"mN", kMillinewton}, Spelling{"uN", kMicronewton}, Spelling{"\xC2\xB5N", kMicronewton},
-    Spelling{"\xCE\xBCN", kMicronewton}, Spelling{"cN", kCentinewton}, Spelling{"kN", kKilonewton},
-    Spelling{"g", kGram}, Spelling{"gf", kGram}, Spelling{"gram", kGram}, Spelling{"grams", kGram},
-    Spelling{"kg", kKilogram}, Spelling{"kgf", kKilogram}, Spelling{"lbf", kPound}, Spelling{"lb", kPound},
+    Spelling{"s", kSecond},
+    Spelling{"sec", kSecond},
+    Spelling{"secs", kSecond},
+    Spelling{"second", kSecond},
+    Spelling{"seconds", kSecond},
+    Spelling{"Sek", kSecond},
+    Spelling{"Sekunden", kSecond},
+    Spelling{"ms", kMillisecond},
+    Spelling{"msec", kMillisecond},
+    Spelling{"millis", kMillisecond},
+    Spelling{"millisecond", kMillisecond},
+    Spelling{"milliseconds", kMillisecond},
+    Spelling{"us", kMicrosecond},
+    Spelling{"\xC2\xB5s", kMicrosecond},
+    Spelling{"\xCE\xBCs", kMicrosecond},
+    Spelling{"usec", kMicrosecond},
+    Spelling{"micros", kMicrosecond},
+    Spelling{"microseconds", kMicrosecond},
+    Spelling{"ns", kNanosecond},
+    Spelling{"nsec", kNanosecond},
+    Spelling{"nanoseconds", kNanosecond},
+    Spelling{"min", kMinute},
+    Spelling{"minutes", kMinute},
+    Spelling{"m", kMetre},
+    Spelling{"meter", kMetre},
+    Spelling{"meters", kMetre},
+    Spelling{"metre", kMetre},
+    Spelling{"metres", kMetre},
+    Spelling{"cm", kCentimetre},
+    Spelling{"mm", kMillimetre},
+    Spelling{"millimeter", kMillimetre},
+    Spelling{"millimeters", kMillimetre},
+    Spelling{"um", kMicrometre},
+    Spelling{"\xC2\xB5m", kMicrometre},
+    Spelling{"\xCE\xBCm", kMicrometre},
+    Spelling{"micron", kMicrometre},
+    Spelling{"microns", kMicrometre},
+    Spelling{"nm", kNanometre},
+    Spelling{"inch", kInch},
+    Spelling{"inches", kInch},
+    Spelling{"N", kNewton},
+    Spelling{"newton", kNewton},
+    Spelling{"newtons", kNewton},
+    Spelling{"mN", kMillinewton},
+    Spelling{"uN", kMicronewton},
+    Spelling{"\xC2\xB5N", kMicronewton},
+    Spelling{"\xCE\xBCN", kMicronewton},
+    Spelling{"cN", kCentinewton},
+    Spelling{"kN", kKilonewton},
+    Spelling{"g", kGram},
+    Spelling{"gf", kGram},
+    Spelling{"gram", kGram},
+    Spelling{"grams", kGram},
+    Spelling{"kg", kKilogram},
+    Spelling{"kgf", kKilogram},
+    Spelling{"lbf", kPound},
+    Spelling{"lb", kPound},
 };
 
 constexpr std::string_view kOpening = "[(<{";
@@ -110,9 +148,21 @@ std::optional<Unit> find_unit(std::string_view text) {
   return std::nullopt;
 }
 
+double volts_of(std::string_view text) {
+  const std::string name = lower_ascii(without_brackets(text));
+  if (name == "mv" || name == "millivolt" || name == "millivolts") return 1e-3;
+  return name == "v" || name == "volt" || name == "volts" ? 1.0 : 0.0;
+}
+
 NameAndUnit split_name_and_unit(std::string_view header) {
   header = trimmed(header);
-  if (auto found = bracketed(header)) return *found;
+  // "Position (z), mm": the unit may stand behind what the brackets say.
+  auto found = bracketed(header);
+  const std::size_t comma = header.rfind(',');
+  if ((!found || !found->unit) && comma != std::string_view::npos && comma > 0) {
+    if (NameAndUnit result = parts(header.substr(0, comma), header.substr(comma + 1)); result.unit) return result;
+  }
+  if (found) return *found;
   // The strongest sign first: a slash, the word "in", then a last word after any mark.
   for (const std::string_view mark : {std::string_view("/"), std::string_view(" in ")}) {
     const std::size_t at = header.rfind(mark);

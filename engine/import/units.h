@@ -22,10 +22,13 @@ struct Unit {
 std::optional<Unit> find_unit(std::string_view text);
 
 struct NameAndUnit {
-  std::string name;           // without the unit
-  std::optional<Unit> unit;   // when it is known
-  std::string foreign_unit;   // in brackets but unknown: "%", "degC"
+  std::string name;          // without the unit
+  std::optional<Unit> unit;  // when it is known
+  std::string foreign_unit;  // in brackets but unknown: "%", "degC"
 };
+
+// Volts in one of what `text` names, "V" or "mV" in any common spelling; 0: no voltage.
+double volts_of(std::string_view text);
 
 // Takes a column's name and its unit apart.
 NameAndUnit split_name_and_unit(std::string_view header);

@@ -56,8 +56,7 @@ class SyntaxCheck final : public nlohmann::json_sax<Json> {
   bool start_array(std::size_t) override { return true; }
   bool end_array() override { return true; }
 
-  bool parse_error(std::size_t position, const std::string& token,
-                   const nlohmann::detail::exception& fault) override {
+  bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& fault) override {
     constexpr int kNumberOverflow = 406;  // nlohmann's number for it
     if (fault.id == kNumberOverflow) {
       const std::size_t start = position - std::min(position, token.size());
@@ -114,9 +113,12 @@ Result<Json> parse_json(std::string_view text, const std::string& path, int nest
 
 std::string found(const Json& value) {
   switch (value.type()) {
-    case Json::value_t::array: return "found a list of " + std::to_string(value.size());
-    case Json::value_t::object: return "found an object";
-    default: return "found " + printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+    case Json::value_t::array:
+      return "found a list of " + std::to_string(value.size());
+    case Json::value_t::object:
+      return "found an object";
+    default:
+      return "found " + printable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
   }
 }
 
@@ -130,7 +132,8 @@ std::optional<Error> JsonFields::error() const {
   if (error_count_ == 0) return std::nullopt;
   std::string all;
   for (const std::string& line : lines_) all.append(all.empty() ? "" : "\n").append(line);
-  if (error_count_ > lines_.size()) all += "\n" + path_ + ": and " + std::to_string(error_count_ - lines_.size()) + " more";
+  if (error_count_ > lines_.size())
+    all += "\n" + path_ + ": and " + std::to_string(error_count_ - lines_.size()) + " more";
   return Error{all};
 }
 
@@ -209,8 +212,8 @@ std::string JsonFields::filled_text(const JsonNode& object, const char* key) {
   return text;
 }
 
-double JsonFields::number_where(const JsonNode& object, const char* key, const std::string& expected,
-                                double instead, bool (*good)(double, const NumberRange&), const NumberRange& range) {
+double JsonFields::number_where(const JsonNode& object, const char* key, const std::string& expected, double instead,
+                                bool (*good)(double, const NumberRange&), const NumberRange& range) {
   const JsonNode node = member(object, key, expected);
   if (node.value == nullptr) return instead;
   const double value = node.value->is_number() ? node.value->get<double>() : std::nan("");

@@ -33,8 +33,7 @@ class Walker {
   char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
 
   void skip_blanks() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
-      ++at_;
+    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
   }
 
   void take() {
@@ -70,8 +69,7 @@ class Walker {
       if (next == '{' || next == '[') ++open;
       if ((next == '}' || next == ']') && open > 0) --open;
       take();
-    } while (at_ < text_.size() &&
-             (open > 0 || std::string_view(",}]").find(peek()) == std::string_view::npos));
+    } while (at_ < text_.size() && (open > 0 || std::string_view(",}]").find(peek()) == std::string_view::npos));
   }
 
   std::string_view text_;

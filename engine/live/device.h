@@ -10,9 +10,9 @@
 #include <limits>
 #include <string>
 
+#include "engine/base/result.h"
 #include "engine/live/device_health.h"
 #include "engine/live/force_limiter.h"
-#include "engine/base/result.h"
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {
@@ -41,6 +41,8 @@ class ToolInput {
   // A target that is not finite is ignored.
   virtual void set_target(double position_m, double now_s) noexcept = 0;
   virtual void nudge(double by_m, double now_s) noexcept = 0;
+  // Nobody moves it any more.
+  virtual void leave() noexcept = 0;
   // Whether the tool moves by itself until somebody takes over.
   virtual bool hand_is_exploring() const noexcept = 0;
 };
@@ -75,6 +77,8 @@ class Device {
   virtual SensorSpec sensor() const noexcept = 0;
   // Whether the force that is written is felt by whatever moves the tool.
   virtual bool renders_force() const noexcept = 0;
+  // Whether its samples carry the force of a sensor.
+  virtual bool measures_force() const noexcept { return false; }
   // What the device may be given, see ForceLimiter.
   virtual ForceLimits limits() const noexcept = 0;
 

@@ -26,12 +26,11 @@ struct DeviceHealth {
   bool grip_held = false;         // of a dead-man switch on the handle
   float zeroing_progress = 0.0F;  // 0 to 1 while hold_still
   double sample_age_s = 0.0;      // of the newest sample
+  double interval_s = 0.0;        // between samples, of late; 0: not known
   // From a command to the report that confirms it; NaN: the device confirms none.
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
 
-  bool may_push() const noexcept {
-    return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done);
-  }
+  bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
 };
 static_assert(std::is_trivially_copyable_v<DeviceHealth>);
 

@@ -25,8 +25,8 @@ struct FaultTick {
   double sample_time_s = 0.0;
   double position_m = 0.0;
   double velocity_m_per_s = 0.0;
-  double commanded_N = 0.0;    // of the models
-  double rendered_N = 0.0;  // of the limiter
+  double commanded_N = 0.0;  // of the models
+  double rendered_N = 0.0;   // of the limiter
   double sample_age_s = 0.0;
   double round_trip_s = 0.0;        // NaN: not measured
   std::uint32_t faults = 0;         // loop_fault

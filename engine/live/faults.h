@@ -18,7 +18,7 @@ namespace loop_fault {
 inline constexpr std::uint32_t kBadSample = 1;
 inline constexpr std::uint32_t kTimeNotLater = 2;
 inline constexpr std::uint32_t kModelNotFinite = 4;
-inline constexpr std::uint32_t kForceNotFinite = 8;   // reached the limiter
+inline constexpr std::uint32_t kForceNotFinite = 8;  // reached the limiter
 inline constexpr std::uint32_t kForceClamped = 16;
 inline constexpr std::uint32_t kForceSlewed = 32;
 inline constexpr std::uint32_t kDeadlineMissed = 64;  // set by the loop; not latched, missed_deadlines tells
@@ -76,26 +76,26 @@ inline constexpr std::array<Fault, 23> kFaults = {{
      true},
     {FaultSource::device, device_fault::kReset, "the firmware started again: check its supply, then zero the device",
      true, true},
-    {FaultSource::device, device_fault::kWriteStalled, "commands do not reach the device: no force until they do",
-     true, true},
+    {FaultSource::device, device_fault::kWriteStalled, "commands do not reach the device: no force until they do", true,
+     true},
     {FaultSource::device, device_fault::kOwn, "the device reports a fault of its own: check its motor and encoder",
      true, true},
     {FaultSource::device, device_fault::kWrongFirmware,
      "the firmware speaks another version of the protocol: install the one in devices/", true, true},
-    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number; the force let go",
-     true, true},
+    {FaultSource::loop, loop_fault::kBadSample, "the device gave a sample that is not a number; the force let go", true,
+     true},
     {FaultSource::loop, loop_fault::kTimeNotLater,
      "the device gave a sample that is not later than the one before; skipped", false, true},
     // That of the one model alone, active or not.
     {FaultSource::loop, loop_fault::kModelNotFinite, "a model gave a force that is not a number; 0 N instead", true,
      true},
     {FaultSource::loop, loop_fault::kForceNotFinite, "the force became not a number; 0 N instead", true, true},
-    {FaultSource::loop, loop_fault::kForceClamped, "the force was above what the device may be given; held back",
-     false, true},
+    {FaultSource::loop, loop_fault::kForceClamped, "the force was above what the device may be given; held back", false,
+     true},
     // The limiter slews at every ramp, and when the tool hits the block hard: that is what it is for.
     {FaultSource::loop, loop_fault::kForceSlewed, "", false, false},
-    {FaultSource::loop, loop_fault::kStaleSample,
-     "the device's newest sample is too old to push by; the force let go", true, true},
+    {FaultSource::loop, loop_fault::kStaleSample, "the device's newest sample is too old to push by; the force let go",
+     true, true},
     {FaultSource::loop, loop_fault::kForceThermal, "the motor is near its thermal limit; the force held back", false,
      true},
     // Told by the device's own rows.

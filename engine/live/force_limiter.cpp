@@ -29,8 +29,7 @@ double ForceLimiter::clamp_N() const noexcept {
   if (!(lasting_N < limits_.largest_N)) return limits_.largest_N;
   const double left = std::clamp((1.0 - heat_share()) / (1.0 - kFoldback), 0.0, 1.0);
   if (left == 1.0) return limits_.largest_N;
-  return std::sqrt(lasting_N * lasting_N +
-                   left * (limits_.largest_N * limits_.largest_N - lasting_N * lasting_N));
+  return std::sqrt(lasting_N * lasting_N + left * (limits_.largest_N * limits_.largest_N - lasting_N * lasting_N));
 }
 
 bool ForceLimiter::stops(double commanded_N, const ForceConditions& conditions) noexcept {
@@ -65,9 +64,8 @@ double ForceLimiter::limit(double commanded_N, double step_s, const ForceConditi
   flags_ = 0;
   if (stops(commanded_N, conditions)) {
     if (!stopping_) {
-      stop_N_per_s_ =
-          std::max(limits_.fastest_N_per_s, limits_.stop_s > 0.0 ? std::abs(force_N_) / limits_.stop_s
-                                                                 : std::numeric_limits<double>::infinity());
+      stop_N_per_s_ = std::max(limits_.fastest_N_per_s, limits_.stop_s > 0.0 ? std::abs(force_N_) / limits_.stop_s
+                                                                             : std::numeric_limits<double>::infinity());
     }
     stopping_ = true;
     share_ = 0.0;

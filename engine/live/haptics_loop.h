@@ -37,12 +37,12 @@ struct LoopSettings {
 
 struct LoopStatistics {
   std::uint64_t ticks = 0;
-  std::uint64_t missed_deadlines = 0;      // skipped
-  std::uint64_t late_by_a_period = 0;      // ticks that began a period late or more, to 3 %
-  std::uint64_t dropped_snapshots = 0;     // the ring was full
-  TimePercentiles lateness;                // of each tick's deadline
-  TimePercentiles tick;                    // duration of a tick, publishing included
-  double age_s = 0.0;                      // since the last tick ended; a stall shows here
+  std::uint64_t missed_deadlines = 0;   // skipped
+  std::uint64_t late_by_a_period = 0;   // ticks that began a period late or more, to 3 %
+  std::uint64_t dropped_snapshots = 0;  // the ring was full
+  TimePercentiles lateness;             // of each tick's deadline
+  TimePercentiles tick;                 // duration of a tick, publishing included
+  double age_s = 0.0;                   // since the last tick ended; a stall shows here
 };
 
 // Snapshots the ring holds: four seconds.
@@ -78,9 +78,7 @@ class HapticsLoop {
   // One reader thread, wait-free. The newest snapshot.
   const LoopSnapshot& newest() noexcept { return newest_.newest(); }
   // One reader thread, wait-free, O(most). Every snapshot, oldest first.
-  std::size_t read_snapshots(LoopSnapshot* snapshots, std::size_t most) noexcept {
-    return ring_->pop(snapshots, most);
-  }
+  std::size_t read_snapshots(LoopSnapshot* snapshots, std::size_t most) noexcept { return ring_->pop(snapshots, most); }
 
   // One reader thread, the recorder's, wait-free, O(most). Every sample that was
   // taken while the controls asked for a recording, oldest first.

@@ -179,9 +179,12 @@ void LiveTick::acknowledge(const LoopControls& controls) noexcept {
 
 bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
   switch (controls.dead_man) {
-    case DeadMan::key: return !(now_s_ - controls.held_s < kDeadManHold_s);
-    case DeadMan::grip: return !snapshot_.device.grip_held;
-    case DeadMan::off: break;
+    case DeadMan::key:
+      return !(now_s_ - controls.held_s < kDeadManHold_s);
+    case DeadMan::grip:
+      return !snapshot_.device.grip_held;
+    case DeadMan::off:
+      break;
   }
   return false;
 }
@@ -203,7 +206,8 @@ void LiveTick::render(double commanded_N, double passive_N, double step_s, bool 
   snapshot_.commanded_N = commanded_N;
   snapshot_.passive_N = passive_N;
   snapshot_.dead_man_released = dead_man_released;
-  snapshot_.rendered_N = limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released});
+  snapshot_.rendered_N =
+      limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released});
   snapshot_.faults |= limiter_bits(limiter_.flags());
   snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
@@ -239,8 +243,7 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   update_models();
   process_samples(now_s);
   snapshot_.device = device_.health(now_s);
-  const double commanded_N =
-      source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
+  const double commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
   render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
   snapshot_.device_faults_latched |= snapshot_.device.faults;

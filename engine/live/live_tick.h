@@ -21,11 +21,11 @@
 #include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
-#include "engine/tick/haptics_tick.h"
-#include "engine/tick/jnd.h"
 #include "engine/live/model_slot.h"
 #include "engine/live/passivity_controller.h"
 #include "engine/live/spsc_ring.h"
+#include "engine/tick/haptics_tick.h"
+#include "engine/tick/jnd.h"
 
 namespace palpate {
 
@@ -96,7 +96,7 @@ inline constexpr double kNoForce = std::numeric_limits<double>::quiet_NaN();
 struct LoopSnapshot {
   TickSnapshot tick;
   double loop_time_s = 0.0;  // steady clock; goes on where `tick.time_s` starts over
-  double commanded_N = 0.0;      // what the models ask for
+  double commanded_N = 0.0;  // what the models ask for
   double passive_N = 0.0;    // what the passivity controller left of it, before the limiter
   double rendered_N = 0.0;
   double measured_N = kNoForce;   // of the device's force sensor; NaN: none
@@ -104,16 +104,16 @@ struct LoopSnapshot {
   std::uint64_t missed_deadlines = 0;
   std::uint32_t models_id = 0;  // whose forces these are
   std::uint32_t selected = 0;
-  std::uint32_t samples = 0;  // taken from the device in this tick; 0: state as before
+  std::uint32_t samples = 0;         // taken from the device in this tick; 0: state as before
   std::uint32_t faults = 0;          // of this tick, loop_fault
   std::uint32_t faults_latched = 0;  // of all ticks since the last were acknowledged
   DeviceHealth device;               // at this tick
   std::uint32_t device_faults_latched = 0;
-  float heat_share = 0.0F;  // of the motor's thermal budget
-  bool dead_man_released = false;    // nobody holds the dead-man switch: no force
-  bool ramping = false;  // the limiter still holds back
-  bool fading = false;   // the hand is on its way from one model to another
-  bool restarted = false;  // a new stream began in this tick
+  float heat_share = 0.0F;         // of the motor's thermal budget
+  bool dead_man_released = false;  // nobody holds the dead-man switch: no force
+  bool ramping = false;            // the limiter still holds back
+  bool fading = false;             // the hand is on its way from one model to another
+  bool restarted = false;          // a new stream began in this tick
   float lateness_us = 0.0F;
   float tick_us = 0.0F;  // of the tick before this one
   std::array<float, kMaxModels> evaluation_ns{};
@@ -140,8 +140,8 @@ using RecordedRing = SpscRing<RecordedSample, kRecordedRing>;
 struct LiveTickSettings {
   JndLine jnd;
   RecordedRing* recorded = nullptr;  // outlives the tick; null: nobody records
-  ForceSource* source = nullptr;  // outlives the tick; null: the models
-  bool passivity = true;  // false: for tests of what its controller is needed for
+  ForceSource* source = nullptr;     // outlives the tick; null: the models
+  bool passivity = true;             // false: for tests of what its controller is needed for
 };
 
 class LiveTick {

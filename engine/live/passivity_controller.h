@@ -69,8 +69,8 @@ class PassivityController {
   std::size_t count_ = 1;
   double energy_J_ = 0.0;
   double debt_J_ = 0.0;
-  double depth_m_ = 0.0;    // at the tick before, with the play
-  double felt_N_ = 0.0;     // between that tick and this one
+  double depth_m_ = 0.0;  // at the tick before, with the play
+  double felt_N_ = 0.0;   // between that tick and this one
   double under_way_N_ = 0.0;
   double less_N_ = 0.0;  // taken in this tick
 };

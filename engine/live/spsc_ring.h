@@ -54,6 +54,11 @@ class SpscRing {
     return count;
   }
 
+  // Consumer thread. Wait-free. How many are there to pop.
+  std::size_t size() const noexcept {
+    return static_cast<std::size_t>(written_.load(std::memory_order_acquire) - read_.load(std::memory_order_relaxed));
+  }
+
   // Any thread. Wait-free. Values that found no room since the beginning.
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 

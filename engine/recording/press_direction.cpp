@@ -12,6 +12,8 @@ constexpr std::size_t kEndSlices = 4;
 // An end whose force is less than this share of the other end's is out of contact or
 // just touching; above it, an offset of the force may hide which is which.
 constexpr double kShallowShare = 0.35;
+// Free air: flat to this share of the force at the deep end, and below it.
+constexpr double kAirShare = 0.1;
 // How much more the force must change at one end than at the other to tell.
 constexpr double kClearRatio = 2.0;
 
@@ -71,6 +73,9 @@ PressDirection find_press_direction(const std::vector<RecordingRow>& rows) {
   direction.position_flipped = clear ? high_N < low_N : high.spread_N < low.spread_N;
   direction.shallow_force_N = (direction.position_flipped ? high : low).outermost_N;
   direction.deep_force_N = (direction.position_flipped ? low : high).outermost_N;
+  const EndForce& shallow = direction.position_flipped ? high : low;
+  direction.certain =
+      std::max(shallow.spread_N, std::abs(shallow.outermost_N)) < kAirShare * std::abs(direction.deep_force_N);
   direction.force_flipped = direction.deep_force_N < direction.shallow_force_N;
   return direction;
 }

@@ -4,7 +4,9 @@
 // The mean force is taken over sixteenths of the range of positions. The end whose
 // force is (nearly) zero is the shallow one; where an offset of the force hides that,
 // the end where the force changes less. Position is right when the shallow end is the
-// low one, force is right when it is larger at the deep end.
+// low one, force is right when it is larger at the deep end. Certain is only what free air
+// says: at the shallow end the force is flat, and small against that at the deep end. A
+// material that softens, drags or yields looks like a flipped sign without it.
 // Thread guarantee: slow side; one thread per object.
 #pragma once
 
@@ -18,6 +20,7 @@ namespace palpate {
 
 struct PressDirection {
   bool known = false;             // false: the data do not say
+  bool certain = false;           // no material can look like this the right way round
   bool position_flipped = false;  // deeper is more negative
   bool force_flipped = false;     // pushing out is negative
   double shallow_force_N = 0.0;   // mean over the shallowest samples

@@ -24,11 +24,11 @@ Error cannot_open(const std::string& path, int error_number) {
     return Error{path + ": found no such file, expected a recording (CSV); check the path"};
   }
   if (error_number == EACCES || error_number == EPERM) {
-    return Error{path + ": found no permission to read it, expected a readable recording; "
-                        "change its permissions (chmod u+r)"};
+    return Error{path +
+                 ": found no permission to read it, expected a readable recording; "
+                 "change its permissions (chmod u+r)"};
   }
-  return Error{path + ": the file cannot be opened (" + std::strerror(error_number) +
-               "); check the path"};
+  return Error{path + ": the file cannot be opened (" + std::strerror(error_number) + "); check the path"};
 }
 
 // A pipe or a device could block for ever or never end, so only plain files
@@ -41,8 +41,9 @@ Status check_is_file(const std::string& path) {
   if (S_ISDIR(status.st_mode)) {
     return Error{path + ": found a folder, expected a recording (CSV); name a file in it"};
   }
-  return Error{path + ": found a pipe or a device, expected a recording (CSV); save it to a file "
-                      "first"};
+  return Error{path +
+               ": found a pipe or a device, expected a recording (CSV); save it to a file "
+               "first"};
 }
 
 }  // namespace
@@ -64,8 +65,7 @@ Result<RecordingReader> RecordingReader::open(const std::string& path) {
   if (descriptor < 0) return cannot_open(path, errno);
   auto parser = RecordingParser::start(std::make_unique<DescriptorSource>(descriptor), path);
   if (!parser) return parser.error();
-  return RecordingReader(
-      std::make_unique<State>(State{name_of(path), std::move(*parser)}));
+  return RecordingReader(std::make_unique<State>(State{name_of(path), std::move(*parser)}));
 }
 
 const std::string& RecordingReader::name() const { return state_->name; }
@@ -84,8 +84,7 @@ Result<Recording> read_recording(const std::string& path) {
     const auto count = reader->read(batch.data(), batch.size());
     if (!count) return count.error();
     if (*count == 0) return recording;
-    recording.rows.insert(recording.rows.end(), batch.begin(),
-                          batch.begin() + static_cast<std::ptrdiff_t>(*count));
+    recording.rows.insert(recording.rows.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(*count));
   }
 }
 

@@ -39,6 +39,7 @@ struct RecordingRow {
 struct RecordingColumns {
   bool velocity = false;
   bool acceleration = false;
+  bool force = true;  // false: motion alone, which a RecordingWriter writes and no reader takes
 };
 
 struct Recording {
@@ -85,7 +86,7 @@ Result<Recording> read_recording(const std::string& path);
 // Errors: the file exists and `overwrite` is false, the disk refuses, or the
 // reader would refuse the file (row by row, the rules above); then no file is
 // left.
-Status write_recording(const std::string& path, const Recording& recording,
-                       const std::vector<std::string>& comments, bool overwrite);
+Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
+                       bool overwrite);
 
 }  // namespace palpate

@@ -21,14 +21,11 @@ std::vector<std::string_view> fields_of(std::string_view text) {
   }
 }
 
-std::string fields_in_words(std::size_t count) {
-  return std::to_string(count) + (count == 1 ? " field" : " fields");
-}
+std::string fields_in_words(std::size_t count) { return std::to_string(count) + (count == 1 ? " field" : " fields"); }
 
 bool is_number(std::string_view text) {
   double value = 0.0;
-  return parse_recording_number(text.data(), text.data() + text.size(), value) ==
-         text.data() + text.size();
+  return parse_recording_number(text.data(), text.data() + text.size(), value) == text.data() + text.size();
 }
 
 std::string lower_case(std::string_view text) {
@@ -62,9 +59,7 @@ std::string joined(const std::vector<std::string_view>& names) {
 
 // ';' or tab where it, and not the comma, separates the fields of `text`.
 const char* foreign_separator(std::string_view text, std::size_t expected_fields) {
-  const auto count = [text](char c) {
-    return static_cast<std::size_t>(std::count(text.begin(), text.end(), c));
-  };
+  const auto count = [text](char c) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), c)); };
   if (count(';') + 1 >= expected_fields) return "semicolons";
   if (count('\t') + 1 >= expected_fields) return "tabs";
   return nullptr;
@@ -79,17 +74,17 @@ Error separator_error(const LineScanner& scanner, const CsvLine& line, const cha
   return scanner.error_at(line.number, line.text.find_first_of(";\t") + 1, separator_fault(separator));
 }
 
-Error missing_columns(const LineScanner& scanner, const CsvLine& line,
-                      const std::vector<std::string_view>& names,
+Error missing_columns(const LineScanner& scanner, const CsvLine& line, const std::vector<std::string_view>& names,
                       const std::vector<std::string_view>& missing) {
   // A file of another program most often: said once, for whatever is wrong with it.
   const auto at = [&](std::size_t column, const std::string& text) {
-    return scanner.error_at(line.number, column, text + ", or let palpate import " + scanner.label() + " --out REC.csv do it");
+    return scanner.error_at(line.number, column,
+                            text + ", or let palpate import " + scanner.label() + " --out REC.csv do it");
   };
   if (trimmed(line.text).empty()) {
     return scanner.error_at(line.number, 1,
-              "found a blank line, expected a header row with time_s, position_m and force_N; "
-              "remove the blank line");
+                            "found a blank line, expected a header row with time_s, position_m and force_N; "
+                            "remove the blank line");
   }
   if (missing.size() == kRequiredColumns) {
     if (const char* separator = foreign_separator(line.text, kRequiredColumns)) {
@@ -99,9 +94,8 @@ Error missing_columns(const LineScanner& scanner, const CsvLine& line,
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (const std::string_view wanted : missing) {
       if (lower_case(bare(names[i])) != lower_case(wanted)) continue;
-      return at(field_column(line.text, i), "found column '" + printable(names[i]) +
-                                                "', expected exactly " + std::string(wanted) +
-                                                "; rename the column");
+      return at(field_column(line.text, i), "found column '" + printable(names[i]) + "', expected exactly " +
+                                                std::string(wanted) + "; rename the column");
     }
   }
   if (missing.size() == kRequiredColumns && std::all_of(names.begin(), names.end(), is_number)) {
@@ -109,14 +103,13 @@ Error missing_columns(const LineScanner& scanner, const CsvLine& line,
               "found a row of numbers, expected a header row with time_s, position_m and force_N; "
               "add the header row");
   }
-  return at(1, "found columns " + printable(line.text, 80) + ", expected also " + joined(missing) +
-                   "; add the column" + (missing.size() > 1 ? "s" : "") +
-                   " or rename what holds the values");
+  return at(1, "found columns " + printable(line.text, 80) + ", expected also " + joined(missing) + "; add the column" +
+                   (missing.size() > 1 ? "s" : "") + " or rename what holds the values");
 }
 
 // A row whose number of fields is not that of the header.
-Error field_count_error(const LineScanner& scanner, const CsvLine& line,
-                        const RecordingHeader& header, std::size_t found) {
+Error field_count_error(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header,
+                        std::size_t found) {
   const std::size_t expected = header.roles.size();
   const std::string wanted = ", expected " + std::to_string(expected) + " as in the header; ";
   const std::string text = "found " + fields_in_words(found);
@@ -126,24 +119,20 @@ Error field_count_error(const LineScanner& scanner, const CsvLine& line,
       return separator_error(scanner, line, separator);
     }
     if (!line.terminated) {
-      return scanner.error_at(line.number, end, text + " where the file ends" + wanted +
-                                                    "the file was cut off, remove its last line");
+      return scanner.error_at(line.number, end,
+                              text + " where the file ends" + wanted + "the file was cut off, remove its last line");
     }
     if (header.ends_with_comma && found + 1 == expected) {
-      return scanner.error_at(line.number, end,
-                              text + wanted + "remove the comma at the end of the header");
+      return scanner.error_at(line.number, end, text + wanted + "remove the comma at the end of the header");
     }
-    return scanner.error_at(line.number, end,
-                            text + wanted + "add the missing values or remove the row");
+    return scanner.error_at(line.number, end, text + wanted + "add the missing values or remove the row");
   }
   const std::size_t extra = field_column(line.text, expected);
   if (found == expected + 1 && trimmed(line.text).ends_with(',')) {
-    return scanner.error_at(line.number, extra,
-                            text + wanted + "remove the comma at the end of the row");
+    return scanner.error_at(line.number, extra, text + wanted + "remove the comma at the end of the row");
   }
   if (line.text.find('"') != std::string_view::npos) {
-    return scanner.error_at(line.number, extra,
-                            text + wanted + "remove quotes and the commas inside them");
+    return scanner.error_at(line.number, extra, text + wanted + "remove quotes and the commas inside them");
   }
   return scanner.error_at(line.number, extra,
                           text + wanted +
@@ -193,12 +182,11 @@ Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto known = std::find(kColumnNames.begin(), kColumnNames.end(), names[i]);
     const auto role = static_cast<std::size_t>(known - kColumnNames.begin());
-    header.roles.push_back(role < kKnownColumns ? static_cast<ColumnRole>(role)
-                                                : ColumnRole::kIgnored);
+    header.roles.push_back(role < kKnownColumns ? static_cast<ColumnRole>(role) : ColumnRole::kIgnored);
     if (role < kKnownColumns && ++seen[role] > 1) {
-      return scanner.error_at(line.number, field_column(line.text, i),
-                              "found column " + std::string(names[i]) +
-                                  " twice, expected it once; remove or rename one of the two");
+      return scanner.error_at(
+          line.number, field_column(line.text, i),
+          "found column " + std::string(names[i]) + " twice, expected it once; remove or rename one of the two");
     }
   }
   std::vector<std::string_view> missing;
@@ -210,8 +198,7 @@ Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const
   return header;
 }
 
-Error explain_recording_row(const LineScanner& scanner, const CsvLine& line,
-                            const RecordingHeader& header) {
+Error explain_recording_row(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header) {
   if (line.text.starts_with('#')) {
     return scanner.error_at(line.number, 1,
                             "found a comment after the header, expected a row; move it above the "

@@ -49,8 +49,8 @@ std::size_t field_column(std::string_view text, std::size_t index) {
   return static_cast<std::size_t>((is_empty ? at : value) - text.data()) + 1;
 }
 
-Result<RecordingParser> RecordingParser::start(std::unique_ptr<ByteSource> source,
-                                               std::string label, std::size_t buffer_bytes) {
+Result<RecordingParser> RecordingParser::start(std::unique_ptr<ByteSource> source, std::string label,
+                                               std::size_t buffer_bytes) {
   LineScanner scanner(std::move(source), std::move(label), buffer_bytes);
   CsvLine line;
   while (scanner.next(line)) {
@@ -107,9 +107,8 @@ bool RecordingParser::parse(std::string_view text, RecordingRow& row) const {
   const std::size_t count = header_.roles.size();
   for (std::size_t i = 0; i < count; ++i) {
     const ColumnRole role = header_.roles[i];
-    at = role == ColumnRole::kIgnored
-             ? find_comma(at, end)
-             : parse_recording_number(at, end, values[static_cast<std::size_t>(role)]);
+    at = role == ColumnRole::kIgnored ? find_comma(at, end)
+                                      : parse_recording_number(at, end, values[static_cast<std::size_t>(role)]);
     if (at == nullptr) return false;
     const bool is_last = i + 1 == count;
     if (is_last != (at == end)) return false;
@@ -126,8 +125,7 @@ bool RecordingParser::skip_last_blank_lines(const CsvLine& blank) {
   while (scanner_.next(line)) {
     if (trimmed(line.text).empty()) continue;
     return fail(scanner_.error_at(number, 1,
-                                  "found a blank line, expected a row with " +
-                                      std::to_string(header_.roles.size()) +
+                                  "found a blank line, expected a row with " + std::to_string(header_.roles.size()) +
                                       " fields; remove the blank line"));
   }
   return finish();

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "engine/recording/recording_rules.h"
-#include "engine/base/result.h"
 
 namespace palpate {
 
@@ -31,8 +31,7 @@ Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const
 
 // Says what is wrong with a row that `RecordingParser` could not read: one
 // sentence with its place. Slow, and only ever called once per file.
-Error explain_recording_row(const LineScanner& scanner, const CsvLine& line,
-                            const RecordingHeader& header);
+Error explain_recording_row(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header);
 
 // One decimal number with blanks around it, '.' as decimal point, exactly
 // rounded. Returns where it ends (at a comma or at `end`), or nullptr if there

@@ -20,8 +20,7 @@ std::string rounded(double value) {
 }
 
 bool rate_in_range(double step_s) {
-  return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz &&
-         step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
+  return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz && step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
 }
 
 // What to do about a median step that no recording has.
@@ -31,9 +30,8 @@ std::string rate_advice(double step_s) {
     const char* divisor;
     double seconds;
   };
-  static constexpr Unit kUnits[] = {{"milliseconds", "1000", 1e-3},
-                                    {"microseconds", "1000000", 1e-6},
-                                    {"nanoseconds", "1000000000", 1e-9}};
+  static constexpr Unit kUnits[] = {
+      {"milliseconds", "1000", 1e-3}, {"microseconds", "1000000", 1e-6}, {"nanoseconds", "1000000000", 1e-9}};
   if (step_s < 1.0 / kMaximumRate_Hz) return "keep fewer samples, or check that time_s is in seconds";
   for (const Unit& unit : kUnits) {
     if (rate_in_range(step_s * unit.seconds)) {
@@ -62,8 +60,8 @@ RowFault RowRules::explain(const RecordingRow& row) const {
   for (std::size_t i = 0; i < kKnownColumns; ++i) {
     if (std::isfinite(values[i])) continue;
     return {RowFault::Place::kThisRow, static_cast<ColumnRole>(i),
-            "found " + shortest(values[i]) + ", expected a finite number in " +
-                std::string(kColumnNames[i]) + "; remove the row or repair the value"};
+            "found " + shortest(values[i]) + ", expected a finite number in " + std::string(kColumnNames[i]) +
+                "; remove the row or repair the value"};
   }
   if (!(row.time_s > last_time_s_)) return time_fault(row.time_s, last_time_s_);
   if (std::abs(row.position_m) > kMaximumPosition_m) {
@@ -92,17 +90,15 @@ std::optional<RowFault> RowRules::check_rate() {
   const double step_s = *middle;
   if (rate_in_range(step_s)) return std::nullopt;
   return RowFault{RowFault::Place::kFirstRow, ColumnRole::kTime,
-                  "found a median time step of " + rounded(step_s) + " s (" +
-                      rounded(1.0 / step_s) + " Hz), expected 10 Hz to 20 kHz; " +
-                      rate_advice(step_s)};
+                  "found a median time step of " + rounded(step_s) + " s (" + rounded(1.0 / step_s) +
+                      " Hz), expected 10 Hz to 20 kHz; " + rate_advice(step_s)};
 }
 
 std::optional<RowFault> RowRules::finish() {
   if (rows_ < kRecordingMinimumRows) {
     return RowFault{RowFault::Place::kEnd, ColumnRole::kTime,
-                    "found " + std::to_string(rows_) + (rows_ == 1 ? " row" : " rows") +
-                        ", expected at least " + std::to_string(kRecordingMinimumRows) +
-                        "; record for longer"};
+                    "found " + std::to_string(rows_) + (rows_ == 1 ? " row" : " rows") + ", expected at least " +
+                        std::to_string(kRecordingMinimumRows) + "; record for longer"};
   }
   return rows_ < kRateRows ? check_rate() : std::nullopt;
 }

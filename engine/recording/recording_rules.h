@@ -57,10 +57,8 @@ class RowRules {
   std::optional<RowFault> check(const RecordingRow& row) {
     // A comparison with NaN is false, so each of these refuses it.
     const bool sane = row.time_s > last_time_s_ && row.time_s < HUGE_VAL &&
-                      std::abs(row.position_m) <= kMaximumPosition_m &&
-                      std::abs(row.force_N) <= kMaximumForce_N &&
-                      std::abs(row.velocity_m_per_s) < HUGE_VAL &&
-                      std::abs(row.acceleration_m_per_s2) < HUGE_VAL;
+                      std::abs(row.position_m) <= kMaximumPosition_m && std::abs(row.force_N) <= kMaximumForce_N &&
+                      std::abs(row.velocity_m_per_s) < HUGE_VAL && std::abs(row.acceleration_m_per_s2) < HUGE_VAL;
     if (!sane) return explain(row);
     if (rows_ < kRateRows) return accept_early(row);
     last_time_s_ = row.time_s;

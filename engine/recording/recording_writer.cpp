@@ -41,7 +41,7 @@ void append_number(std::string& out, double value) {
 }
 
 void append_header(std::string& out, RecordingColumns columns) {
-  out += "time_s,position_m,force_N";
+  out += columns.force ? "time_s,position_m,force_N" : "time_s,position_m";
   if (columns.velocity) out += ",velocity_m_per_s";
   if (columns.acceleration) out += ",acceleration_m_per_s2";
   out += '\n';
@@ -51,8 +51,7 @@ void append_row(std::string& out, RecordingColumns columns, const RecordingRow& 
   append_number(out, row.time_s);
   out += ',';
   append_number(out, row.position_m);
-  out += ',';
-  append_number(out, row.force_N);
+  if (columns.force) append_number(out += ',', row.force_N);
   if (columns.velocity) append_number(out += ',', row.velocity_m_per_s);
   if (columns.acceleration) append_number(out += ',', row.acceleration_m_per_s2);
   out += '\n';
@@ -61,22 +60,19 @@ void append_row(std::string& out, RecordingColumns columns, const RecordingRow& 
 Status check_comments(const std::string& path, const std::vector<std::string>& comments) {
   for (const std::string& comment : comments) {
     if (comment.size() <= kMaximumCommentBytes) continue;
-    return Error{path + ": found a comment of " + std::to_string(comment.size()) +
-                 " bytes, expected at most " + std::to_string(kMaximumCommentBytes) +
-                 "; shorten it"};
+    return Error{path + ": found a comment of " + std::to_string(comment.size()) + " bytes, expected at most " +
+                 std::to_string(kMaximumCommentBytes) + "; shorten it"};
   }
   return {};
 }
 
 // A file that the reader would refuse is not written at all.
-Status check_writable(const std::string& path, const Recording& recording,
-                      const std::vector<std::string>& comments) {
+Status check_writable(const std::string& path, const Recording& recording, const std::vector<std::string>& comments) {
   if (Status checked = check_comments(path, comments); !checked) return checked;
   RowRules rules;
   for (const RecordingRow& row : recording.rows) {
     if (const auto fault = rules.check(row)) {
-      return Error{path + ": cannot write row " + std::to_string(rules.rows() + 1) + ": " +
-                   fault->text};
+      return Error{path + ": cannot write row " + std::to_string(rules.rows() + 1) + ": " + fault->text};
     }
   }
   if (const auto fault = rules.finish()) return Error{path + ": cannot write: " + fault->text};
@@ -114,6 +110,12 @@ void RecordingWriter::flush() {
   piece_.clear();
 }
 
+Status RecordingWriter::publish() {
+  if (rules_.rows() < kRateRows) return {};
+  flush();
+  return file_.publish();
+}
+
 Status RecordingWriter::commit() {
   flush();
   if (file_.failed()) return file_.commit();
@@ -124,8 +126,8 @@ Status RecordingWriter::commit() {
   return file_.commit();
 }
 
-Status write_recording(const std::string& path, const Recording& recording,
-                       const std::vector<std::string>& comments, bool overwrite) {
+Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
+                       bool overwrite) {
   if (Status checked = check_writable(path, recording, comments); !checked) return checked;
   auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
   if (!writer) return writer.error();

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/result.h"
 #include "engine/recording/recording.h"
 #include "engine/recording/recording_rules.h"
-#include "engine/base/result.h"
 
 namespace palpate {
 
@@ -28,6 +28,11 @@ class RecordingWriter {
   std::uint64_t rows() const { return rules_.rows(); }
   // Whether the disk has refused something already; commit says what.
   bool failed() const noexcept { return file_.failed(); }
+
+  // What was added so far is on the disk under its name, whole rows whenever the program is
+  // killed (AtomicFile::publish); a file that the reader would still refuse waits. Errors:
+  // as `commit`.
+  Status publish();
 
   // Errors: as AtomicFile::commit; fewer than 10 rows, or a rate outside the
   // reader's range. Then no file is left.

@@ -72,36 +72,47 @@ PALPATE_INLINE double held_by_groups(const BranchLanes::Group* group, std::size_
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-PALPATE_INLINE void bend_groups(StopLanes::Group* group, std::size_t count, const double* last_depth_m,
-                                double depth_m, V4* force_N) noexcept {
+// What half a step of creep leaves of the bends.
+PALPATE_INLINE void creep_on(V4& bend, const V4& creep_per_m2_s, double step_s) noexcept {
+  const V4 squared = 1.0 + step_s * creep_per_m2_s * bend * bend;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) bend[lane] /= std::sqrt(squared[lane]);
+}
+
+// `step_s`: 0 for no step.
+PALPATE_INLINE void bend_groups(BristleLanes::Group* group, std::size_t count, double last_depth_m, double depth_m,
+                                double step_s, V4* force_N) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
-    const V4 limit = group[i].threshold_m;
+    const V4& limit = depth_m > 0.0 ? group[i].limit_m : group[i].air_limit_m;
     V4 bend = group[i].bend_m;
-    if (last_depth_m != nullptr) bend = bend + depth_m - *last_depth_m;
+    if (step_s > 0.0) {
+      if (group[i].creeps) creep_on(bend, group[i].creep_per_m2_s, step_s);
+      bend = bend + depth_m - last_depth_m;
+      if (group[i].creeps) creep_on(bend, group[i].creep_per_m2_s, step_s);
+    }
     bend = bend < -limit ? -limit : (limit < bend ? limit : bend);
     V4 force;
     curve_at(force, group[i].drive, depth_m);
     group[i].bend_m = bend;
-    force_N[i] = force * bend / limit;
+    force_N[i] = force * bend / group[i].threshold_m;
   }
 }
 
 // Plainly, and with four lanes to an instruction: the same bits.
-#define PALPATE_LANE_LOOPS(attribute, suffix)                                                                     \
-  attribute void prepare_##suffix(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {         \
-    prepare_groups(group, count, step_s);                                                                         \
-  }                                                                                                               \
-  attribute void steps_##suffix(const double* time_s, std::size_t count, double clock, double step_s,             \
-                                BranchStep* steps) noexcept {                                                     \
-    steps_of(time_s, count, clock, step_s, steps);                                                                \
-  }                                                                                                               \
-  attribute double held_##suffix(const BranchLanes::Group* group, std::size_t count, double surface_m,            \
-                                 const BranchStates& from, BranchStates& to) noexcept {                                       \
-    return held_by_groups(group, count, surface_m, from, to);                                                     \
-  }                                                                                                               \
-  attribute void bend_##suffix(StopLanes::Group* group, std::size_t count, const double* last_depth_m,            \
-                               double depth_m, V4* force_N) noexcept {                                            \
-    bend_groups(group, count, last_depth_m, depth_m, force_N);                                                    \
+#define PALPATE_LANE_LOOPS(attribute, suffix)                                                                      \
+  attribute void prepare_##suffix(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {          \
+    prepare_groups(group, count, step_s);                                                                          \
+  }                                                                                                                \
+  attribute void steps_##suffix(const double* time_s, std::size_t count, double clock, double step_s,              \
+                                BranchStep* steps) noexcept {                                                      \
+    steps_of(time_s, count, clock, step_s, steps);                                                                 \
+  }                                                                                                                \
+  attribute double held_##suffix(const BranchLanes::Group* group, std::size_t count, double surface_m,             \
+                                 const BranchStates& from, BranchStates& to) noexcept {                            \
+    return held_by_groups(group, count, surface_m, from, to);                                                      \
+  }                                                                                                                \
+  attribute void bend_##suffix(BristleLanes::Group* group, std::size_t count, double last_depth_m, double depth_m, \
+                               double step_s, V4* force_N) noexcept {                                              \
+    bend_groups(group, count, last_depth_m, depth_m, step_s, force_N);                                             \
   }
 
 PALPATE_LANE_LOOPS(, plain)
@@ -199,33 +210,42 @@ void BranchLanes::adopt(std::size_t place, const BranchLanes& from, std::size_t 
   states_[now_].drive_N[place / kLanes][place % kLanes] = old.drive_N[other / kLanes][other % kLanes];
 }
 
-std::size_t StopLanes::add(const DriveCurve& drive, double threshold_m) {
+std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, double creep_time_s) {
   Group& group = group_of_next(groups_, count_);
-  group.drive.set(count_ % kLanes, drive);
-  group.threshold_m[count_ % kLanes] = threshold_m;
+  const std::size_t lane = count_ % kLanes;
+  group.drive.set(lane, drive);
+  group.threshold_m[lane] = threshold_m;
+  group.limit_m[lane] = threshold_m;
+  if (creep_time_s > 0.0) {
+    group.limit_m[lane] = group.air_limit_m[lane] = std::numeric_limits<double>::infinity();
+    group.creep_per_m2_s[lane] = 1.0 / (creep_time_s * threshold_m * threshold_m);
+    group.creeps = true;
+  }
   return count_++;
 }
 
-void StopLanes::advance(double last_depth_m, double depth_m) noexcept {
-  kBend(groups_.data(), groups_.size(), &last_depth_m, depth_m, force_N_);
+void BristleLanes::advance(double last_depth_m, double depth_m, double step_s) noexcept {
+  kBend(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, force_N_);
 }
 
-void StopLanes::stay(double depth_m) noexcept { kBend(groups_.data(), groups_.size(), nullptr, depth_m, force_N_); }
+void BristleLanes::stay(double depth_m) noexcept {
+  kBend(groups_.data(), groups_.size(), depth_m, depth_m, 0.0, force_N_);
+}
 
-void StopLanes::release() noexcept {
+void BristleLanes::release() noexcept {
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     groups_[i].bend_m = V4{};
     force_N_[i] = V4{};
   }
 }
 
-double StopLanes::force_N(std::size_t place, std::size_t count) const noexcept {
+double BristleLanes::force_N(std::size_t place, std::size_t count) const noexcept {
   double sum = 0.0;
   for (std::size_t i = place; i < place + count; ++i) sum += force_N_[i / kLanes][i % kLanes];
   return sum;
 }
 
-void StopLanes::adopt(std::size_t place, const StopLanes& from, std::size_t other) noexcept {
+void BristleLanes::adopt(std::size_t place, const BristleLanes& from, std::size_t other) noexcept {
   groups_[place / kLanes].bend_m[place % kLanes] = from.groups_[other / kLanes].bend_m[other % kLanes];
 }
 

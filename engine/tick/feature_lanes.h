@@ -1,6 +1,6 @@
-// The parts of relaxation spectra and of stop operators (features.h has the equations), four
-// at a time. All branches of a filter stand in one row, each feature's beside one another,
-// and so do all stops.
+// The parts of relaxation spectra and of bristles, stop operators and those that creep
+// (features.h has the equations), four at a time. All branches of a filter stand in one row,
+// each feature's beside one another, and so do all bristles.
 // Thread guarantee: value types; constructors allocate, all else is wait-free; one thread at
 // a time.
 #pragma once
@@ -82,25 +82,31 @@ class BranchLanes {
   double held_at_m_ = std::numeric_limits<double>::quiet_NaN();  // of those that are not now
 };
 
-class StopLanes {
+class BristleLanes {
  public:
   struct alignas(sizeof(V4)) Group {
     CurveLanes drive;
     V4 threshold_m{1.0, 1.0, 1.0, 1.0};
-    V4 bend_m{};  // s
+    // Further than this none bends: the threshold of a stop, nothing for one that creeps.
+    V4 limit_m{1.0, 1.0, 1.0, 1.0};
+    V4 air_limit_m{};     // the same out of contact
+    V4 creep_per_m2_s{};  // 1 / (tau r^2); 0 of stops
+    V4 bend_m{};          // s, q
+    bool creeps = false;  // one of them
   };
 
-  std::size_t add(const DriveCurve& drive, double threshold_m);
+  // `creep_time_s`: tau, or 0 for a stop.
+  std::size_t add(const DriveCurve& drive, double threshold_m, double creep_time_s);
   bool empty() const noexcept { return count_ == 0; }
 
-  // The bristles follow the depth from the last one.
-  void advance(double last_depth_m, double depth_m) noexcept;
+  // The bristles follow the depth from the last one; out of contact a stop lets go.
+  void advance(double last_depth_m, double depth_m, double step_s) noexcept;
   // They stay as they are, and their forces are those of the depth.
   void stay(double depth_m) noexcept;
   void release() noexcept;
   double force_N(std::size_t place, std::size_t count) const noexcept;
   // The bend alone: `stay` gives the forces.
-  void adopt(std::size_t place, const StopLanes& from, std::size_t other) noexcept;
+  void adopt(std::size_t place, const BristleLanes& from, std::size_t other) noexcept;
 
  private:
   std::vector<Group> groups_;

@@ -56,14 +56,22 @@ double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
 
 std::string_view feature_kind_name(FeatureKind kind) {
   switch (kind) {
-    case FeatureKind::depth: return "depth";
-    case FeatureKind::velocity: return "velocity";
-    case FeatureKind::lowpass_velocity: return "lowpass_velocity";
-    case FeatureKind::maxwell_branch: return "maxwell_branch";
-    case FeatureKind::maxwell_spectrum: return "maxwell_spectrum";
-    case FeatureKind::stops: return "stops";
-    case FeatureKind::fading_peak: return "fading_peak";
-    case FeatureKind::surface_lag: return "surface_lag";
+    case FeatureKind::depth:
+      return "depth";
+    case FeatureKind::velocity:
+      return "velocity";
+    case FeatureKind::lowpass_velocity:
+      return "lowpass_velocity";
+    case FeatureKind::maxwell_branch:
+      return "maxwell_branch";
+    case FeatureKind::maxwell_spectrum:
+      return "maxwell_spectrum";
+    case FeatureKind::stops:
+      return "stops";
+    case FeatureKind::creep:
+      return "creep";
+    case FeatureKind::surface_lag:
+      return "surface_lag";
   }
   return "depth";
 }
@@ -76,17 +84,23 @@ std::string feature_name(const FeatureSpec& spec) {
   };
   const std::string time = four_digits(spec.relaxation_time_s);
   switch (spec.kind) {
-    case FeatureKind::depth: return "feature_depth_m";
-    case FeatureKind::velocity: return "feature_velocity_m_per_s";
-    case FeatureKind::lowpass_velocity: return "feature_lowpass_velocity_" + time + "s_m_per_s";
-    case FeatureKind::maxwell_branch: return "feature_maxwell_branch_" + time + "s_N";
+    case FeatureKind::depth:
+      return "feature_depth_m";
+    case FeatureKind::velocity:
+      return "feature_velocity_m_per_s";
+    case FeatureKind::lowpass_velocity:
+      return "feature_lowpass_velocity_" + time + "s_m_per_s";
+    case FeatureKind::maxwell_branch:
+      return "feature_maxwell_branch_" + time + "s_N";
     case FeatureKind::maxwell_spectrum:
-      return "feature_maxwell_spectrum_" + first_to_last([](const FeaturePart& part) { return part.relaxation_time_s; }) +
-             "s_N";
+      return "feature_maxwell_spectrum_" +
+             first_to_last([](const FeaturePart& part) { return part.relaxation_time_s; }) + "s_N";
     case FeatureKind::stops:
       return "feature_stops_" + first_to_last([](const FeaturePart& part) { return 1e3 * part.threshold_m; }) + "mm_N";
-    case FeatureKind::fading_peak: return "feature_fading_peak_" + time + "s_m";
-    case FeatureKind::surface_lag: return "feature_surface_lag_m";
+    case FeatureKind::creep:
+      return "feature_creep_" + first_to_last([](const FeaturePart& part) { return part.relaxation_time_s; }) + "s_N";
+    case FeatureKind::surface_lag:
+      return "feature_surface_lag_m";
   }
   return {};
 }
@@ -100,8 +114,10 @@ FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
     if (spec.kind == FeatureKind::surface_lag) lag_ = i;
     slows_ = slows_ || (is_branch(spec.kind) && spec.slowing != 0.0);
     for (std::size_t p = 0; p < lane_count(spec); ++p) {
+      const bool creeps = spec.kind == FeatureKind::creep;
       const std::size_t place = is_branch(spec.kind) ? branches_.add(branch_drive(spec, p), branch_time_s(spec, p))
-                                                     : stops_.add(spec.parts[p].drive, spec.parts[p].threshold_m);
+                                                     : bristles_.add(spec.parts[p].drive, spec.parts[p].threshold_m,
+                                                                     creeps ? spec.parts[p].relaxation_time_s : 0.0);
       if (p == 0) place_[i] = place;
     }
   }
@@ -115,7 +131,7 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
   const bool advance = started_ && step_s > 0.0;
   if (advance) prepare_branches(depth_m, step_s);
   const double surface_m = advance && lag_ < count_ ? surface_above_m(depth_m) : depth_m;
-  advance_parts(depth_m, surface_m, advance);
+  advance_parts(depth_m, surface_m, advance ? step_s : 0.0);
   for (std::size_t i = 0; i < count_; ++i) {
     const FeatureSpec& spec = specs_[i];
     double& value = vector_.values[i];
@@ -145,16 +161,8 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
         value = surface_m - depth_m;
         break;
       case FeatureKind::stops:
-        value = stops_.force_N(place_[i], lane_count(spec));
-        break;
-      case FeatureKind::fading_peak:
-        if (advance) {
-          value = std::max(depth_m, depth_m_ + (value - depth_m_) * std::exp(-step_s / spec.relaxation_time_s));
-          // Healed, to far below an atom.
-          if (value < 1e-15) value = 0.0;
-        } else if (!started_) {
-          value = depth_m;
-        }
+      case FeatureKind::creep:
+        value = bristles_.force_N(place_[i], lane_count(spec));
         break;
     }
   }
@@ -210,21 +218,21 @@ double FeatureFilter::surface_above_m(double depth_m) noexcept {
   return middle_m;
 }
 
-void FeatureFilter::advance_parts(double depth_m, double surface_m, bool advance) noexcept {
+// `step_s`: 0 for no step.
+void FeatureFilter::advance_parts(double depth_m, double surface_m, double step_s) noexcept {
   if (!branches_.empty()) {
-    if (advance) {
+    if (step_s > 0.0) {
       branches_.advance(surface_m);
     } else {
       branches_.stay(surface_m, !started_);
     }
   }
-  if (stops_.empty()) return;
-  if (!started_ || !(depth_m > 0.0)) {
-    stops_.release();
-  } else if (advance) {
-    stops_.advance(depth_m_, depth_m);
+  if (bristles_.empty()) return;
+  if (!started_) bristles_.release();
+  if (step_s > 0.0) {
+    bristles_.advance(depth_m_, depth_m, step_s);
   } else {
-    stops_.stay(depth_m);
+    bristles_.stay(depth_m);
   }
 }
 
@@ -240,15 +248,16 @@ void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
 void FeatureFilter::adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept {
   const FeatureSpec& spec = specs_[index];
   const FeatureSpec& old = before.specs_[other];
-  if (spec.kind == FeatureKind::stops) {
+  if (is_bristle(spec.kind)) {
     for (std::size_t p = 0; p < spec.part_count; ++p) {
       for (std::size_t q = 0; q < old.part_count; ++q) {
         if (spec.parts[p].threshold_m != old.parts[q].threshold_m) continue;
-        stops_.adopt(place_[index] + p, before.stops_, before.place_[other] + q);
+        if (spec.parts[p].relaxation_time_s != old.parts[q].relaxation_time_s) continue;
+        bristles_.adopt(place_[index] + p, before.bristles_, before.place_[other] + q);
       }
     }
-    stops_.stay(depth_m_);
-    vector_.values[index] = stops_.force_N(place_[index], spec.part_count);
+    bristles_.stay(depth_m_);
+    vector_.values[index] = bristles_.force_N(place_[index], spec.part_count);
   } else if (spec == old) {
     vector_.values[index] = before.vector_.values[other];
     if (index == lag_) surface_m_ = before.surface_m_;

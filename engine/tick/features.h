@@ -8,18 +8,19 @@
 //   maxwell_branch    z with dz/dt = g'(d) dd/dt - z / tau                  [N]
 //   maxwell_spectrum  z = sum_p z_p, each a branch with tau_p and g_p       [N]
 //   stops             y = sum_p g_p(d) s_p / r_p, s_p a stop operator       [N]
-//   fading_peak       m = the deepest depth, fading: dm/dt = -(m - d) / tau
-//                     while d < m, m = d while d is the deepest             [m]
+//   creep             y = sum_p g_p(d) q_p / r_p, q_p a bristle that creeps
+//                     by a power law                                        [N]
 //   surface_lag       s - d, s the depth of the material's surface          [m]
 //
 // The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the
 // same filter behind a spring whose stiffness g'(d) depends on depth; g is
-// identified from the recording (models/training/fit_trend.h), and with g = d / tau it is the
+// identified from the recording (models/training/trend_regression.h), and with g = d / tau it is the
 // low-pass. Both are driven by the depth, not by the velocity estimate: free
 // air relaxes the material and does not load it.
 //
 // The surface is where position_m is 0, or, for a model of recordings whose surface lay
-// deeper, at the depth feature's `surface_position_m`: the tool is in contact beyond it.
+// elsewhere, at the depth feature's `surface_position_m`, on either side of 0: the tool is
+// in contact beyond it.
 //
 // With a surface_lag among the features, the branches follow the surface and not the
 // tool: s = d while the elastic response E and all branches together push the tool
@@ -38,18 +39,26 @@
 // bends by at most r and then slips: s' = clamp(s + d' - d, -r, r), and 0 out of
 // contact. Several together are a Prandtl-Ishlinskii operator: dry friction with
 // presliding. With every g_p >= 0 a closed cycle of depth takes the energy
-//   sum_p closed integral G_p dp_p / r_p >= 0,  G_p' = g_p, p_p = d - s_p,
-// for p_p moves up only at d = p_p + r and down only at d = p_p - r. The fading
-// peak is the memory of materials that soften below their deepest press and heal.
+//   sum_p closed integral G_p(d) dp_p / r_p >= 0,  G_p' = g_p, p_p = d - s_p,
+// for p_p moves up only at d = p_p + r and down only at d = p_p - r; of a bristle that
+// creeps up only at d > p_p and down only at d < p_p, which is enough.
+//
+// A bristle that creeps slips at every bend, by a power law of it,
+//   dq/dt = dd/dt - (q / tau) (q / r)^2:
+// a stop operator has the power infinity and a Maxwell branch 1. What it holds after a
+// hold of t falls as t^-1/2, as networks of rubber do (Bergstrom & Boyce 1998), and its
+// force over speed rises with the cube root. Free air lets it creep on.
 //
 // Discretisation is exact for a depth that is linear between samples, with the
 // measured time step h and e = exp(-h / tau):
 //   y' = e y + (1 - e) (d' - d) / h
 //   z' = e z + tau (1 - e) (g(d') - g(d)) / h
-// so recordings of one motion at different rates give the same features.
+// so recordings of one motion at different rates give the same features. A creeping
+// bristle takes half of its step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), before it
+// follows the depth and half of it after (Strang 1968).
 // Sources: Visintin (1994), "Differential models of hysteresis" (stop and play
-// operators); Dahl (1968) (friction with presliding); Diani, Fayolle & Gilormini
-// (2009) (softening below the deepest press, and recovery).
+// operators); Dahl (1968) (friction with presliding); Bergstrom & Boyce (1998), "Constitutive
+// modeling of the large strain time-dependent behavior of elastomers".
 //
 // Thread guarantee: value types; `update` is wait-free, allocates nothing and
 // never throws; one thread at a time.
@@ -70,11 +79,20 @@ namespace palpate {
 inline constexpr std::size_t kMaxFeatures = 8;
 inline constexpr std::size_t kMaxFeatureParts = 8;
 
-enum class FeatureKind { depth, velocity, lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak, surface_lag };
-inline constexpr std::array kFeatureKinds{FeatureKind::depth,          FeatureKind::velocity,
-                                          FeatureKind::lowpass_velocity, FeatureKind::maxwell_branch,
-                                          FeatureKind::maxwell_spectrum, FeatureKind::stops,
-                                          FeatureKind::fading_peak,      FeatureKind::surface_lag};
+enum class FeatureKind {
+  depth,
+  velocity,
+  lowpass_velocity,
+  maxwell_branch,
+  maxwell_spectrum,
+  stops,
+  creep,
+  surface_lag
+};
+inline constexpr std::array kFeatureKinds{
+    FeatureKind::depth,          FeatureKind::velocity,         FeatureKind::lowpass_velocity,
+    FeatureKind::maxwell_branch, FeatureKind::maxwell_spectrum, FeatureKind::stops,
+    FeatureKind::creep,          FeatureKind::surface_lag};
 
 // g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
 // u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
@@ -89,23 +107,23 @@ struct DriveCurve {
   bool operator==(const DriveCurve&) const = default;
 };
 
-// One branch of a maxwell_spectrum, or one stop operator.
+// One branch of a maxwell_spectrum, one stop operator or one creeping bristle.
 struct FeaturePart {
-  double relaxation_time_s = 0.0;  // maxwell_spectrum
-  double threshold_m = 0.0;        // stops
-  DriveCurve drive;                // g_p; of stops never negative
+  double relaxation_time_s = 0.0;  // maxwell_spectrum; tau of creep
+  double threshold_m = 0.0;        // r of stops and creep
+  DriveCurve drive;                // g_p; of stops and creep never negative
 
   bool operator==(const FeaturePart&) const = default;
 };
 
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::depth;
-  double relaxation_time_s = 0.0;  // lowpass_velocity, maxwell_branch, fading_peak
+  double relaxation_time_s = 0.0;  // lowpass_velocity, maxwell_branch
   DriveCurve drive{};              // maxwell_branch; of surface_lag E
-  std::size_t part_count = 0;      // maxwell_spectrum and stops
+  std::size_t part_count = 0;      // maxwell_spectrum, stops and creep
   std::array<FeaturePart, kMaxFeatureParts> parts{};
-  double slowing = 0.0;  // b of maxwell_branch and maxwell_spectrum
-  double surface_position_m = 0.0;  // depth: >= 0, for all features beside it
+  double slowing = 0.0;             // b of maxwell_branch and maxwell_spectrum
+  double surface_position_m = 0.0;  // depth: for all features beside it
 
   bool operator==(const FeatureSpec&) const = default;
 };
@@ -113,11 +131,13 @@ struct FeatureSpec {
 // Whether the kind has one time constant, parts, a drive of its own, and is made of
 // Maxwell branches.
 constexpr bool has_time(FeatureKind kind) noexcept {
-  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch ||
-         kind == FeatureKind::fading_peak;
+  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch;
+}
+constexpr bool is_bristle(FeatureKind kind) noexcept {
+  return kind == FeatureKind::stops || kind == FeatureKind::creep;
 }
 constexpr bool has_parts(FeatureKind kind) noexcept {
-  return kind == FeatureKind::maxwell_spectrum || kind == FeatureKind::stops;
+  return kind == FeatureKind::maxwell_spectrum || is_bristle(kind);
 }
 
 constexpr bool has_drive(FeatureKind kind) noexcept {
@@ -174,13 +194,13 @@ class FeatureFilter {
   void prepare_branches(double depth_m, double step_s) noexcept;
   double held_N(double surface_m) noexcept;
   double surface_above_m(double depth_m) noexcept;
-  void advance_parts(double depth_m, double surface_m, bool advance) noexcept;
+  void advance_parts(double depth_m, double surface_m, double step_s) noexcept;
   void adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept;
 
   std::array<FeatureSpec, kMaxFeatures> specs_{};
   std::array<std::size_t, kMaxFeatures> place_{};  // of its first part in the lanes
   BranchLanes branches_;
-  StopLanes stops_;
+  BristleLanes bristles_;
   bool slows_ = false;              // some branch has a slowing
   std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
   double surface_position_m_ = 0.0;

@@ -1,5 +1,6 @@
 #include "engine/tick/haptics_tick.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -15,8 +16,8 @@ constexpr double kLongestGap_s = 5.0;
 constexpr double kRehearsedStep_s = 1e-3;
 
 bool finite(const ToolSample& sample) noexcept {
-  return std::isfinite(sample.time_s) && std::isfinite(sample.position_m) &&
-         std::isfinite(sample.velocity_m_per_s) && std::isfinite(sample.acceleration_m_per_s2);
+  return std::isfinite(sample.time_s) && std::isfinite(sample.position_m) && std::isfinite(sample.velocity_m_per_s) &&
+         std::isfinite(sample.acceleration_m_per_s2);
 }
 
 bool same_features(const FeatureFilter& filter, const std::vector<FeatureSpec>& specs) {
@@ -115,7 +116,9 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
   snapshot_.time_s = sample.time_s;
   snapshot_.position_m = sample.position_m;
   snapshot_.in_contact = sample.position_m > 0.0;
-  snapshot_.depth_m = snapshot_.in_contact ? sample.position_m : 0.0;
+  // A model's own surface may lie further out.
+  for (const FeatureVector& vector : vectors_) snapshot_.in_contact = snapshot_.in_contact || vector.in_contact;
+  snapshot_.depth_m = std::max(0.0, sample.position_m);
   snapshot_.velocity_m_per_s = motion.velocity_m_per_s;
   evaluate_models();
   return snapshot_;

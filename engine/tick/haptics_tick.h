@@ -97,9 +97,7 @@ class HapticsTick {
   std::size_t model_count() const noexcept { return models_.size(); }
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }
   // The features that model `index` was last given.
-  const FeatureVector& features_of(std::size_t index) const noexcept {
-    return vectors_[filter_of_[index]];
-  }
+  const FeatureVector& features_of(std::size_t index) const noexcept { return vectors_[filter_of_[index]]; }
   std::size_t filter_count() const noexcept { return filters_.size(); }
   const FeatureFilter& filter(std::size_t index) const noexcept { return filters_[index]; }
   const FeatureVector& vector(std::size_t index) const noexcept { return vectors_[index]; }

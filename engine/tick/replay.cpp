@@ -1,7 +1,10 @@
 #include "engine/tick/replay.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
@@ -13,12 +16,39 @@ Status check_count(const ForceModels& models) {
                "; replay them in several runs"};
 }
 
-void run(HapticsTick& tick, const RecordingRow* rows, std::size_t count, const ReplayVisitor& visitor,
-         double surface_offset_m, ReplaySummary& summary) {
+constexpr double kForceNoises = 5.0;
+
+// Fewer tell no deviation.
+constexpr std::size_t kFewestAirRows = 20;
+
+// The deviation of the force before the first contact: a sensor that wanders, a mass that
+// it carries, cables that drag. 0 where too little of it was recorded.
+double air_deviation_N(const RecordingRow* rows, std::size_t count) {
+  double sum = 0.0;
+  double squares = 0.0;
+  std::size_t air = 0;
+  for (; air < count && rows[air].position_m <= 0.0; ++air) {
+    sum += rows[air].force_N;
+    squares += rows[air].force_N * rows[air].force_N;
+  }
+  if (air < kFewestAirRows) return 0.0;
+  const auto n = static_cast<double>(air);
+  return std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
+}
+
+// Beyond it a measured force is contact.
+double least_contact_N(const RecordingRow* rows, std::size_t count) {
+  const double noise_N = std::max(identify_force_noise_N(rows, count), air_deviation_N(rows, count));
+  return std::max(JndLine{}.at(0.0), kForceNoises * noise_N);
+}
+
+void run(HapticsTick& tick, double least_contact_N, const RecordingRow* rows, std::size_t count,
+         const ReplayVisitor& visitor, double surface_offset_m, ReplaySummary& summary) {
   for (std::size_t i = 0; i < count; ++i) {
     ToolSample sample = tool_sample(rows[i]);
     sample.position_m -= surface_offset_m;
-    const TickSnapshot& snapshot = tick.step(sample);
+    TickSnapshot snapshot = tick.step(sample);
+    snapshot.in_contact = sample.position_m > 0.0 || std::abs(rows[i].force_N) > least_contact_N;
     ++summary.samples;
     if (snapshot.in_contact) ++summary.contact_samples;
     if (snapshot.fault != TickFault::none) ++summary.faults;
@@ -46,7 +76,8 @@ Result<ReplaySummary> replay(const Recording& recording, const ForceModels& mode
   ReplaySummary summary;
   summary.sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
   HapticsTick tick(summary.sensor, models);
-  run(tick, recording.rows.data(), recording.rows.size(), visitor, surface_offset_m, summary);
+  run(tick, least_contact_N(recording.rows.data(), recording.rows.size()), recording.rows.data(), recording.rows.size(),
+      visitor, surface_offset_m, summary);
   return summary;
 }
 
@@ -59,9 +90,10 @@ Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models,
   if (!count) return count.error();
   ReplaySummary summary;
   summary.sensor = identify_sensor(rows.data(), *count, reader.columns());
+  const double least_N = least_contact_N(rows.data(), *count);
   HapticsTick tick(summary.sensor, models);
   while (*count > 0) {
-    run(tick, rows.data(), *count, visitor, surface_offset_m, summary);
+    run(tick, least_N, rows.data(), *count, visitor, surface_offset_m, summary);
     count = read_full(reader, rows);
     if (!count) return count.error();
   }

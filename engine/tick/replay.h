@@ -5,6 +5,10 @@
 // kSensorIdentificationRows rows, so a recording in memory and the same one read
 // in chunks give the same forces.
 //
+// In contact, for the visitor, is a sample at a position above 0, or one whose measured
+// force is beyond both the JND at 0 N and five times its noise: an adhesive material pulls
+// outside, too.
+//
 // Thread guarantee: slow side (allocates before the first row, calls the
 // visitor); one thread at a time.
 #pragma once
@@ -15,9 +19,9 @@
 #include <memory>
 #include <vector>
 
-#include "engine/tick/haptics_tick.h"
-#include "engine/recording/recording.h"
 #include "engine/base/result.h"
+#include "engine/recording/recording.h"
+#include "engine/tick/haptics_tick.h"
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {

@@ -125,9 +125,8 @@ TEST(AtomicFile, RefusesAFolderADeviceAndAnEmptyName) {
 TEST(AtomicFile, NamesAMissingFolder) {
   const TemporaryFolder folder;
   const std::string path = folder.file("none/out");
-  EXPECT_EQ(
-      write_file_atomically(path, "x", false).error().message,
-      "cannot write " + path + ": the folder " + folder.file("none") + " does not exist; create it first");
+  EXPECT_EQ(write_file_atomically(path, "x", false).error().message,
+            "cannot write " + path + ": the folder " + folder.file("none") + " does not exist; create it first");
   const std::string under_a_file = folder.with_file("file", "") + "/out";
   EXPECT_EQ(write_file_atomically(under_a_file, "x", false).error().message,
             "cannot write " + under_a_file + ": " + folder.file("file") + " is not a folder");
@@ -149,8 +148,7 @@ TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
     const rlimit limit{1000, 1000};  // stands in for a disk with 1000 bytes left
     setrlimit(RLIMIT_FSIZE, &limit);
     const Status written = write_file_atomically(path, kMegabyte, true);
-    const bool explained =
-        !written.ok() && written.error().message == "cannot write " + path + ": File too large";
+    const bool explained = !written.ok() && written.error().message == "cannot write " + path + ": File too large";
     _exit(explained ? 0 : 4);
   });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;

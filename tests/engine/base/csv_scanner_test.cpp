@@ -35,8 +35,8 @@ TEST(IsUtf8, FollowsRfc3629) {
     EXPECT_TRUE(is_utf8(good, bad_offset)) << good;
   }
   // Lone, overlong, surrogate, beyond U+10FFFF, cut short.
-  for (const char* bad : {"a\x80", "a\xC0\x80", "a\xE0\x80\x80", "a\xED\xA0\x80",
-                          "a\xF4\x90\x80\x80", "a\xF5\x80\x80\x80", "a\xE2\x82", "a\xF0\x9F\x98z"}) {
+  for (const char* bad : {"a\x80", "a\xC0\x80", "a\xE0\x80\x80", "a\xED\xA0\x80", "a\xF4\x90\x80\x80",
+                          "a\xF5\x80\x80\x80", "a\xE2\x82", "a\xF0\x9F\x98z"}) {
     EXPECT_FALSE(is_utf8(bad, bad_offset));
     EXPECT_EQ(bad_offset, 1u);
   }

@@ -88,7 +88,10 @@ TEST(Signals, AnsweredByNobodyASignalEndsTheProgramAgain) {
 
 TEST(Signals, ANewListenerForgetsTheRequestBefore) {
   const Ended ended = in_child([] {
-    { const StopListener listener; raise(SIGINT); }
+    {
+      const StopListener listener;
+      raise(SIGINT);
+    }
     trace(stop_requested() == SIGINT ? '1' : '?');
     const StopListener listener;
     trace(stop_requested() == 0 ? '2' : '?');

@@ -11,7 +11,9 @@
 namespace palpate {
 namespace {
 
-std::string file(const std::string& name) { return std::string(PALPATE_SOURCE_DIR) + "/tests/engine/import/files/" + name; }
+std::string file(const std::string& name) {
+  return std::string(PALPATE_SOURCE_DIR) + "/tests/engine/import/files/" + name;
+}
 
 RecordingRow press_row(std::size_t i) {
   RecordingRow row;
@@ -109,24 +111,31 @@ TEST(ImportTable, SaysWhatIsAmbiguousAndWhatToAdd) {
             "rig.txt: found no header, expected names of columns; say which column is which: --columns "
             "time=1,position=2,force=3, or --rate HZ if the rows are evenly spaced; the first row is 1 \"0.010\", 2 "
             "\"0.5\", 3 \"0.25\"");
-  EXPECT_EQ(message("t [s],pos [mm],F [N]\n" + rows_of(","), request({"", "weg", ""})),
-            "rig.txt: found no column \"weg\" for the position, expected one of 1 \"t [s]\", 2 \"pos [mm]\", 3 \"F [N]\"");
+  EXPECT_EQ(
+      message("t [s],pos [mm],F [N]\n" + rows_of(","), request({"", "weg", ""})),
+      "rig.txt: found no column \"weg\" for the position, expected one of 1 \"t [s]\", 2 \"pos [mm]\", 3 \"F [N]\"");
 }
 
 TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
-  EXPECT_EQ(message(""), "rig.txt: found an empty file, expected a table as text (CSV, TXT); check that the recording was saved");
+  EXPECT_EQ(message(""),
+            "rig.txt: found an empty file, expected a table as text (CSV, TXT); check that the recording was saved");
   EXPECT_EQ(message("PK\x03\x04rest"),
-            "rig.txt: found an Excel workbook or another archive, expected a table as text (CSV, TXT); save the sheet as CSV");
-  EXPECT_EQ(message("only words\nand more\n"),
-            "rig.txt: found no rows of numbers in the first 2 lines, expected a table with columns of time, position and "
-            "force; export the recording as CSV");
+            "rig.txt: found an Excel workbook or another archive, expected a table as text (CSV, TXT); save the sheet "
+            "as CSV");
+  EXPECT_EQ(
+      message("only words\nand more\n"),
+      "rig.txt: found no rows of numbers in the first 2 lines, expected a table with columns of time, position and "
+      "force; export the recording as CSV");
   const std::string header = "t [s],pos [mm],F [N]\n";
   EXPECT_EQ(message(header + rows_of(",") + "0.030,oops,1\n0.040,0.5,1\n"),
-            "rig.txt:14: found \"oops\" in column 2 \"pos [mm]\", expected the position; remove the row or repair the value");
-  EXPECT_EQ(message(header + rows_of(",") + "0.021,0.5,1\n"),
-            "rig.txt:14: found the time of the row before once more \"t [s]\", expected later times in every row; if the "
-            "rows are evenly spaced, add --rate 1000 (the mean rate so far), or remove the repeated row");
-  EXPECT_EQ(message(header + rows_of(",", 4)), "rig.txt: found 4 rows of numbers, expected at least 10; record for longer");
+            "rig.txt:14: found \"oops\" in column 2 \"pos [mm]\", expected the position; remove the row, repair the "
+            "value, or say how many such rows may go: --skip-bad-rows N");
+  EXPECT_EQ(
+      message(header + rows_of(",") + "0.021,0.5,1\n"),
+      "rig.txt:14: found the time of the row before once more \"t [s]\", expected later times in every row; if the "
+      "rows are evenly spaced, add --rate 1000 (the mean rate so far), or remove the repeated row");
+  EXPECT_EQ(message(header + rows_of(",", 4)),
+            "rig.txt: found 4 rows of numbers, expected at least 10; record for longer");
 }
 
 TEST(ImportTable, ShiftsTheTimeAndSaysSo) {

@@ -20,8 +20,7 @@ TEST(DeviceHealth, SaysHowToZero) {
   DeviceHealth health;
   EXPECT_EQ(zeroing_words(health), "");
   health.zeroing = Zeroing::needed;
-  EXPECT_EQ(zeroing_words(health),
-            "bring the tool to its marked rest position and start zeroing; no force before");
+  EXPECT_EQ(zeroing_words(health), "bring the tool to its marked rest position and start zeroing; no force before");
   health.zeroing = Zeroing::hold_still;
   health.zeroing_progress = 0.5F;
   EXPECT_EQ(zeroing_words(health), "zeroing: hold the tool still (50 %)");

@@ -137,7 +137,8 @@ TEST(ForceLimiter, AReleasedDeadManSwitchTakesTheForceAwayInTenMilliseconds) {
 }
 
 TEST(ForceLimiter, RampsUpAfterEachStop) {
-  for (const ForceConditions& stop : {ForceConditions{1.0}, ForceConditions{0.0, true}, ForceConditions{0.0, false, true}}) {
+  for (const ForceConditions& stop :
+       {ForceConditions{1.0}, ForceConditions{0.0, true}, ForceConditions{0.0, false, true}}) {
     ForceLimiter limiter = with(100.0, 1e9, 0.1);
     for (int i = 0; i < 200; ++i) limiter.limit(4.0, kTick_s);
     for (int i = 0; i < 20; ++i) limiter.limit(4.0, kTick_s, stop);

@@ -84,7 +84,8 @@ TEST(HapticsLoop, RehearsesTwiceBeforeADeadlineUnlessItWakesLate) {
   settings.rehearse_ns = 60'000;
   HapticsLoop loop(device, settings);
   auto counting = std::make_shared<test::CountingModel>();
-  loop.publish_models(std::make_unique<LiveModels>(1, device.sensor(), std::vector<std::shared_ptr<const ForceModel>>{counting}));
+  loop.publish_models(
+      std::make_unique<LiveModels>(1, device.sensor(), std::vector<std::shared_ptr<const ForceModel>>{counting}));
   std::vector<std::uint64_t> evaluations;
   // Each tick waits three times: until it wakes up, until the last quarter, and for the
   // deadline; one that wakes up too late twice.

@@ -82,7 +82,8 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
   faulty.faults = device_fault::kJump;
   not_zeroed.zeroing = Zeroing::needed;
   old.sample_age_s = 0.02;
-  for (const auto& [trouble, bit] : {std::pair{faulty, loop_fault::kDeviceFault}, {old, loop_fault::kStaleSample}, {not_zeroed, 0u}}) {
+  for (const auto& [trouble, bit] :
+       {std::pair{faulty, loop_fault::kDeviceFault}, {old, loop_fault::kStaleSample}, {not_zeroed, 0u}}) {
     device.state = well;
     run(500);
     EXPECT_NEAR(device.written_N, 5.0, 0.01);

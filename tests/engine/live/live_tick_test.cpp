@@ -318,8 +318,8 @@ TEST(LiveTick, HandsOverEverySampleWhileRecording) {
     ASSERT_EQ(samples.back().reference_N, snapshot.reference_N);
   }
   ASSERT_NEAR(static_cast<double>(samples.size()), 1200.0, 4.0);
-  const auto first = static_cast<std::size_t>(std::lround(
-      (samples.front().tool.time_s - recording.rows.front().time_s) * 4000.0));
+  const auto first =
+      static_cast<std::size_t>(std::lround((samples.front().tool.time_s - recording.rows.front().time_s) * 4000.0));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     ASSERT_EQ(samples[i].tool.position_m, recording.rows[first + i].position_m);
     ASSERT_EQ(samples[i].measured_N, recording.rows[first + i].force_N);

@@ -29,7 +29,8 @@ struct Stroke {
     const double direction = steps < 0 ? -1.0 : 1.0;
     for (int i = 0; i < std::abs(steps); ++i) {
       depth_m += direction * kStep_m;
-      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N, kTick_s);
+      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N,
+                                   kTick_s);
     }
     return written_N;
   }

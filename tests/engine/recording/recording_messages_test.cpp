@@ -11,8 +11,7 @@ namespace {
 
 // What the parser says about `text`, or "accepted".
 std::string verdict(const std::string& text, std::size_t piece_bytes) {
-  auto parser =
-      RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
+  auto parser = RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
   if (!parser) return parser.error().message;
   RecordingRow rows[7];
   for (;;) {
@@ -22,9 +21,7 @@ std::string verdict(const std::string& text, std::size_t piece_bytes) {
   }
 }
 
-TEST(RecordingMessages, TableHoldsAtLeastFortyFiles) {
-  EXPECT_GE(test::broken_recordings().size(), 40u);
-}
+TEST(RecordingMessages, TableHoldsAtLeastFortyFiles) { EXPECT_GE(test::broken_recordings().size(), 40u); }
 
 TEST(RecordingMessages, NameThePlaceAndSayWhatToDo) {
   for (const auto& broken : test::broken_recordings()) {
@@ -45,8 +42,7 @@ TEST(RecordingMessages, AreOneLineOfPrintableText) {
     std::size_t bad_offset = 0;
     EXPECT_TRUE(is_utf8(broken.message, bad_offset)) << broken.name;
     const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    EXPECT_TRUE(std::none_of(broken.message.begin(), broken.message.end(), is_control))
-        << broken.name;
+    EXPECT_TRUE(std::none_of(broken.message.begin(), broken.message.end(), is_control)) << broken.name;
   }
 }
 

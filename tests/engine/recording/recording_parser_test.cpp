@@ -17,8 +17,8 @@ std::pair<bool, double> number(std::string_view text) {
 
 // strtod is exactly rounded in glibc, which makes it an independent truth.
 TEST(ParseRecordingNumber, IsExactlyRounded) {
-  for (const char* text : {"0.1", "123456.7890123", "9007199254740993", "1.7976931348623157e308",
-                           "4.9e-324", "0.00000000012345678901234567890", "-2.2250738585072011e-308"}) {
+  for (const char* text : {"0.1", "123456.7890123", "9007199254740993", "1.7976931348623157e308", "4.9e-324",
+                           "0.00000000012345678901234567890", "-2.2250738585072011e-308"}) {
     const auto [whole, value] = number(text);
     EXPECT_TRUE(whole) << text;
     EXPECT_EQ(value, std::strtod(text, nullptr)) << text;
@@ -28,8 +28,7 @@ TEST(ParseRecordingNumber, IsExactlyRounded) {
 TEST(ParseRecordingNumber, StopsAtTheCommaBehindBlanks) {
   const std::string text = " +1.5 \t,2";
   double value = 0.0;
-  const char* const at =
-      parse_recording_number(text.data(), text.data() + text.size(), value);
+  const char* const at = parse_recording_number(text.data(), text.data() + text.size(), value);
   EXPECT_EQ(at, text.data() + 7);
   EXPECT_EQ(value, 1.5);
 }

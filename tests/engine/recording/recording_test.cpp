@@ -53,22 +53,21 @@ TEST(Recording, RefusesEveryBrokenFileWithItsWholeMessage) {
     if (const auto at = expected.find("palpate import rec.csv"); at != std::string::npos) {
       expected.insert(at + std::string("palpate import ").size(), folder.path() + "/");
     }
-    EXPECT_EQ(message_for(folder.with_file("rec.csv", broken.text)), expected)
-        << broken.name;
+    EXPECT_EQ(message_for(folder.with_file("rec.csv", broken.text)), expected) << broken.name;
   }
 }
 
 TEST(Recording, RefusesWhatIsNotAFile) {
   const TemporaryFolder folder;
   EXPECT_EQ(message_for(folder.file("none.csv")),
-            folder.file("none.csv") +
-                ": found no such file, expected a recording (CSV); check the path");
+            folder.file("none.csv") + ": found no such file, expected a recording (CSV); check the path");
   EXPECT_EQ(message_for(folder.path()),
             folder.path() + ": found a folder, expected a recording (CSV); name a file in it");
   const std::string pipe = folder.file("pipe.csv");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(message_for(pipe), pipe + ": found a pipe or a device, expected a recording (CSV); "
-                                      "save it to a file first");
+  EXPECT_EQ(message_for(pipe), pipe +
+                                   ": found a pipe or a device, expected a recording (CSV); "
+                                   "save it to a file first");
   EXPECT_EQ(message_for("/dev/zero"),
             "/dev/zero: found a pipe or a device, expected a recording (CSV); save it to a file "
             "first");
@@ -79,8 +78,9 @@ TEST(Recording, RefusesAFileItMayNotRead) {
   const TemporaryFolder folder;
   const std::string path = folder.with_file("rec.csv", test::good_recording());
   ASSERT_EQ(chmod(path.c_str(), 0), 0);
-  EXPECT_EQ(message_for(path), path + ": found no permission to read it, expected a readable "
-                                      "recording; change its permissions (chmod u+r)");
+  EXPECT_EQ(message_for(path), path +
+                                   ": found no permission to read it, expected a readable "
+                                   "recording; change its permissions (chmod u+r)");
 }
 
 TEST(Recording, AcceptsByteOrderMarkCrlfAndAMissingLastNewline) {
@@ -156,8 +156,7 @@ TEST(Recording, AcceptsJitter) {
 
 TEST(RecordingReader, StreamsTheSameRowsInPiecesOfAnySize) {
   const TemporaryFolder folder;
-  const std::string path =
-      folder.with_file("rec.csv", test::good_header() + test::good_rows(900));
+  const std::string path = folder.with_file("rec.csv", test::good_header() + test::good_rows(900));
   const auto whole = read_recording(path);
   ASSERT_TRUE(whole.ok()) << whole.error().message;
   for (const std::size_t capacity : {1u, 7u, 900u, 5000u}) {
@@ -181,8 +180,7 @@ TEST(RecordingReader, StreamsTheSameRowsInPiecesOfAnySize) {
 
 TEST(RecordingReader, RepeatsItsError) {
   const TemporaryFolder folder;
-  auto reader =
-      RecordingReader::open(folder.with_file("rec.csv", test::good_header() + test::good_rows(3)));
+  auto reader = RecordingReader::open(folder.with_file("rec.csv", test::good_header() + test::good_rows(3)));
   ASSERT_TRUE(reader.ok());
   RecordingRow rows[20];
   const auto first = reader->read(rows, 20);
@@ -218,10 +216,13 @@ TEST(Recording, ReadsTheRealRecordings) {
   const std::filesystem::path data = std::filesystem::path(PALPATE_SOURCE_DIR) / "../shared/data";
   if (!std::filesystem::is_directory(data)) GTEST_SKIP() << "no real recordings beside the source";
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
-    if (entry.path().extension() != ".csv") continue;
-    EXPECT_EQ(message_for(entry.path().string()), "accepted");
-    ++files;
+  for (const std::filesystem::path& folder : {data, data / "../labs"}) {
+    if (!std::filesystem::is_directory(folder)) continue;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.path().extension() != ".csv") continue;
+      EXPECT_EQ(message_for(entry.path().string()), "accepted");
+      ++files;
+    }
   }
   EXPECT_GT(files, 0u);
 }

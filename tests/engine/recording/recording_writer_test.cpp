@@ -26,16 +26,13 @@ Recording random_recording(std::size_t rows, RecordingColumns columns) {
   double time_s = 0.0;
   for (std::size_t i = 0; i < rows; ++i) {
     time_s += jitter(random);
-    recording.rows.push_back({time_s, 0.02 * unit(random), 6.0 * unit(random),
-                              columns.velocity ? unit(random) : 0.0,
+    recording.rows.push_back({time_s, 0.02 * unit(random), 6.0 * unit(random), columns.velocity ? unit(random) : 0.0,
                               columns.acceleration ? 40.0 * unit(random) : 0.0});
   }
   return recording;
 }
 
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 void expect_same_bits(const Recording& a, const Recording& b) {
   ASSERT_EQ(a.rows.size(), b.rows.size());
@@ -45,8 +42,7 @@ void expect_same_bits(const Recording& a, const Recording& b) {
     const RecordingRow& x = a.rows[i];
     const RecordingRow& y = b.rows[i];
     ASSERT_TRUE(same_bits(x.time_s, y.time_s) && same_bits(x.position_m, y.position_m) &&
-                same_bits(x.force_N, y.force_N) &&
-                same_bits(x.velocity_m_per_s, y.velocity_m_per_s) &&
+                same_bits(x.force_N, y.force_N) && same_bits(x.velocity_m_per_s, y.velocity_m_per_s) &&
                 same_bits(x.acceleration_m_per_s2, y.acceleration_m_per_s2))
         << "row " << i;
   }
@@ -98,8 +94,9 @@ TEST(WriteRecording, WritesPlainTextWithCommentsFirst) {
   const std::string path = folder.file("rec.csv");
   ASSERT_TRUE(write_recording(path, recording, {"seed 1", "a\r\tb"}, false).ok());
   const std::string text = test::read_text(path);
-  EXPECT_TRUE(text.starts_with("# seed 1\n# a  b\ntime_s,position_m,force_N,velocity_m_per_s\n"
-                               "0,0.25,-1.5,2\n5e-04,0.25,-1.5,2\n"))
+  EXPECT_TRUE(
+      text.starts_with("# seed 1\n# a  b\ntime_s,position_m,force_N,velocity_m_per_s\n"
+                       "0,0.25,-1.5,2\n5e-04,0.25,-1.5,2\n"))
       << text;
   EXPECT_TRUE(text.ends_with("\n"));
 }
@@ -130,8 +127,7 @@ TEST(WriteRecording, RefusesWhatTheReaderWouldRefuse) {
             "every row; remove the repeated row or write time_s with more digits");
   bad = good;
   bad.rows.resize(9);
-  EXPECT_EQ(message_for(bad),
-            "rec.csv: cannot write: found 9 rows, expected at least 10; record for longer");
+  EXPECT_EQ(message_for(bad), "rec.csv: cannot write: found 9 rows, expected at least 10; record for longer");
   EXPECT_EQ(message_for(good, {std::string(70000, 'x')}),
             "rec.csv: found a comment of 70000 bytes, expected at most 65534; shorten it");
 }
@@ -165,8 +161,7 @@ TEST(WriteRecording, LeavesNoFileWhenTheDiskIsFull) {
     written = write_recording(folder.file("rec.csv"), recording, {}, false);
   }
   ASSERT_FALSE(written.ok());
-  EXPECT_NE(written.error().message.find(folder.file("rec.csv")), std::string::npos)
-      << written.error().message;
+  EXPECT_NE(written.error().message.find(folder.file("rec.csv")), std::string::npos) << written.error().message;
   EXPECT_TRUE(folder.entries().empty());
 }
 

@@ -54,7 +54,10 @@ TEST(FeatureMemory, ASurfaceOnItsOwnRelaxesByItsOwnDepth) {
 
 // The same touches in the frame of a rig whose zero lies half a millimetre above.
 TEST(FeatureMemory, ASurfaceDeeperThanZeroOnlyMovesTheZero) {
-  std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity}, fading_peak(2.0), maxwell(0.3, stiffening()),
+  std::vector<FeatureSpec> specs = {FeatureSpec{},
+                                    {FeatureKind::velocity},
+                                    creep({2.0}, stiffening()),
+                                    maxwell(0.3, stiffening()),
                                     stops({1e-4}, stiffening())};
   FeatureFilter plain(specs);
   specs[0].surface_position_m = 0.5e-3;
@@ -95,7 +98,8 @@ TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
       for (int i = 1; i <= 4 * kSteps; ++i) {
         const double phase = static_cast<double>(i) / kSteps;
         const double position_m = closed_motion_m(phase);
-        const double force_N = std::max(0.0, elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[1]);
+        const double force_N =
+            std::max(0.0, elastic.at(position_m) + feed(filter, duration_s * phase, position_m).values[1]);
         work += 0.5 * (force_N + before_N) * (position_m - closed_motion_m(phase - 1.0 / kSteps));
         before_N = force_N;
       }
@@ -106,11 +110,11 @@ TEST(FeatureMemory, ASurfaceThatLagsAndTimesThatSlowMakeNoEnergy) {
 
 // What a change of models in mid-press does: the memory of the same features goes on.
 TEST(FeatureMemory, AnotherFilterAdoptsTheMemoryOfTheSameFeatures) {
-  const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()), fading_peak(2.0),
-                                                 maxwell(0.3, stiffening())};
+  const std::vector<FeatureSpec> before_specs = {FeatureSpec{}, stops({1e-4, 3e-4}, stiffening()),
+                                                 creep({2.0}, stiffening()), maxwell(0.3, stiffening())};
   const DriveCurve softer{5e-3, {0.2, 0.1, 0.0, 0.0}};
-  const std::vector<FeatureSpec> specs = {maxwell(0.3, stiffening()), stops({3e-4, 1e-4}, softer), fading_peak(2.0),
-                                          maxwell(0.3, softer)};
+  const std::vector<FeatureSpec> specs = {maxwell(0.3, stiffening()), stops({3e-4, 1e-4}, softer),
+                                          creep({2.0}, stiffening()), maxwell(0.3, softer)};
   FeatureFilter before(before_specs);
   FeatureFilter always(specs);
   const auto at = [](int i) { return closed_motion_m(2e-4 * i); };

@@ -43,26 +43,32 @@ TEST(Features, AStopBendsThenSlipsAndTurnsWithTheTool) {
   EXPECT_NEAR(feed(filter, 9.4, 4e-3).values[0], at(4e-3, -1e-4), 1e-14) << "time alone changes nothing";
 }
 
-TEST(Features, FreeAirForgetsStopsAndHealsThePeak) {
-  FeatureFilter filter({stops({1e-4}, stiffening()), fading_peak(0.5)});
+TEST(Features, FreeAirForgetsStopsAndCreepGoesOnInIt) {
+  FeatureFilter filter({stops({1e-4}, stiffening()), creep({0.5}, stiffening())});
   feed(filter, 0.0, 0.0);
-  EXPECT_EQ(feed(filter, 0.1, 5e-3).values[1], 5e-3);
+  EXPECT_GT(feed(filter, 0.1, 5e-3).values[1], 0.0);
   feed(filter, 0.2, -1e-3);
   EXPECT_EQ(feed(filter, 0.3, -1e-3).values[0], 0.0);
-  for (int i = 1; i <= 200; ++i) feed(filter, 0.3 + 0.1 * i, -1e-3);
-  EXPECT_LT(filter.vector().values[1], 1e-15);
-  EXPECT_NEAR(feed(filter, 21.0, 5e-5).values[0], stiffening().at(5e-5) * 0.5, 1e-15) << "bristles arrive unbent";
+  const FeatureFilter left = filter;
+  EXPECT_LT(feed(filter, 0.4, 5e-5).values[1], stiffening().at(5e-5) * 5e-5 / 5e-3) << "bent backwards by the way out";
+  filter = left;
+  for (int i = 1; i <= 20000; ++i) feed(filter, 0.3 + 10.0 * i, -1e-3);
+  // After 4e5 times its own, q = r / sqrt(2 t / tau) is a thousandth of r.
+  EXPECT_NEAR(feed(filter, 200001.0, 5e-5).values[1], stiffening().at(5e-5) * 5e-5 / 5e-3,
+              2e-3 * stiffening().at(5e-5));
+  EXPECT_NEAR(filter.vector().values[0], stiffening().at(5e-5) * 0.5, 1e-15) << "bristles arrive unbent";
 }
 
-TEST(Features, ThePeakIsTheDeepestDepthAndFadesTowardsThePresentOne) {
-  FeatureFilter filter({fading_peak(2.0)});
-  feed(filter, 0.0, 6e-3);
-  for (int i = 1; i <= 4000; ++i) {
-    const double t = 1e-3 * i;
-    ASSERT_NEAR(feed(filter, t, 2e-3).values[0], 2e-3 + 4e-3 * std::exp(-(t - 1e-3) / 2.0) , 4e-3 * 6e-4)
-        << "one step late, of 2 s";
+// dq/dt = -(q / tau) (q / r)^2 from q_0: q = q_0 / sqrt(1 + 2 (t / tau) (q_0 / r)^2), and
+// steps of any length give the same.
+TEST(Features, CreepFallsWithTheRootOfTime) {
+  FeatureFilter filter({creep({0.5}, {5e-3, {1.0, 0.0, 0.0, 0.0}})});
+  feed(filter, 0.0, 0.0);
+  const double first = feed(filter, 1e-6, 4e-3).values[0];
+  EXPECT_NEAR(first, 0.8 * 0.8, 1e-6);
+  for (const double t : {0.01, 0.1, 3.0, 500.0}) {
+    EXPECT_NEAR(feed(filter, t, 4e-3).values[0], first / std::sqrt(1.0 + 2.0 * t / 0.5 * 0.64), 1e-5 * first) << t;
   }
-  EXPECT_EQ(feed(filter, 5.0, 7e-3).values[0], 7e-3);
 }
 
 // The work over a closed cycle in the limit cycle, by the trapezoidal rule.
@@ -75,8 +81,7 @@ double work_of_a_cycle(const FeatureSpec& spec, double duration_s, int steps) {
     for (int i = 0; i < steps; ++i) {
       const double phase = static_cast<double>(i) / steps;
       const double next = static_cast<double>(i + 1) / steps;
-      const double force_N =
-          feed(filter, duration_s * (cycle + next), closed_motion_m(next)).values[0];
+      const double force_N = feed(filter, duration_s * (cycle + next), closed_motion_m(next)).values[0];
       work += 0.5 * (force_N + before_N) * (closed_motion_m(next) - closed_motion_m(phase));
       before_N = force_N;
     }
@@ -188,8 +193,7 @@ TEST(Features, AMaxwellBranchAgreesWithFineIntegration) {
 
 // The discretisation is exact for straight motion between samples; for this one the
 // depth between two samples at 500 Hz is curved by at most a h^2 / 8 = 0.1 um, and the
-// filters forget it: 0.1 % of each feature's range is a bound with a margin of ten. The
-// peak fades from a sample late, 2 ms of its 2 s.
+// filters forget it: 0.1 % of each feature's range is a bound with a margin of ten.
 void expect_same_at_every_rate(const std::vector<FeatureSpec>& specs) {
   using Values = std::array<double, kMaxFeatures>;
   const auto run = [&](double rate_Hz, std::vector<Values>& at_500_Hz) {
@@ -227,10 +231,14 @@ void expect_same_at_every_rate(const std::vector<FeatureSpec>& specs) {
 }
 
 TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
-  const std::vector<FeatureSpec> specs = {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17),
-                                          lowpass(1.27), maxwell(0.1, stiffening()),
+  const std::vector<FeatureSpec> specs = {FeatureSpec{},
+                                          {FeatureKind::velocity, 0.0, {}},
+                                          lowpass(0.17),
+                                          lowpass(1.27),
+                                          maxwell(0.1, stiffening()),
                                           spectrum({0.02, 0.2, 2.0}, stiffening()),
-                                          stops({1e-4, 4e-4}, stiffening()), fading_peak(2.0)};
+                                          stops({1e-4, 4e-4}, stiffening()),
+                                          creep({2.0}, stiffening())};
   expect_same_at_every_rate(specs);
   FeatureSpec slowing = maxwell(0.1, stiffening());
   slowing.slowing = 2.0;
@@ -238,8 +246,13 @@ TEST(Features, TheSameMotionGivesTheSameFeaturesAtEveryRate) {
 }
 
 TEST(Features, FreeAirRelaxesAndDoesNotLoad) {
-  FeatureFilter filter({FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, lowpass(0.17), maxwell(0.1, stiffening()),
-                        spectrum({0.1}, stiffening()), stops({1e-4}, stiffening()), fading_peak(0.5)});
+  FeatureFilter filter({FeatureSpec{},
+                        {FeatureKind::velocity, 0.0, {}},
+                        lowpass(0.17),
+                        maxwell(0.1, stiffening()),
+                        spectrum({0.1}, stiffening()),
+                        stops({1e-4}, stiffening()),
+                        creep({0.5}, stiffening())});
   int i = 0;
   // Fast strokes in the air leave everything at rest.
   for (; i < 500; ++i) {
@@ -295,7 +308,7 @@ TEST(Features, HaveNamesWithUnits) {
   EXPECT_EQ(feature_name(maxwell(1.27, stiffening())), "feature_maxwell_branch_1.27s_N");
   EXPECT_EQ(feature_name(spectrum({0.02, 0.3}, stiffening())), "feature_maxwell_spectrum_0.02-0.3s_N");
   EXPECT_EQ(feature_name(stops({1e-4}, stiffening())), "feature_stops_0.1mm_N");
-  EXPECT_EQ(feature_name(fading_peak(6.0)), "feature_fading_peak_6s_m");
+  EXPECT_EQ(feature_name(creep({0.1, 6.0}, stiffening())), "feature_creep_0.1-6s_N");
   EXPECT_EQ(feature_name(surface_lag(stiffening())), "feature_surface_lag_m");
 }
 

@@ -43,7 +43,9 @@ class Hand {
  public:
   Hand(double seconds, std::uint64_t seed) {
     std::mt19937_64 engine(seed);
-    const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(engine() >> 11) * 0x1p-53; };
+    const auto uniform = [&](double a, double b) {
+      return a + (b - a) * static_cast<double>(engine() >> 11) * 0x1p-53;
+    };
     double t = 0.2;
     double depth_m = 0.0;
     while (t < seconds) {

@@ -14,7 +14,7 @@ namespace {
 
 using Models = std::vector<std::shared_ptr<const ForceModel>>;
 
-constexpr std::size_t kJoin = 1900;  // in mid-press
+constexpr std::size_t kJoin = 1900;   // in mid-press
 constexpr std::size_t kNotSeen = 40;  // ticks before it that the slow side has not read yet
 
 struct Join {

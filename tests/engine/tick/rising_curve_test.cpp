@@ -12,7 +12,8 @@ const std::array<double, kDriveKnots> kKnots{1.0, -2.0, 3.0, 0.5, -0.25, 2.0, -4
 
 double by_powers(double u) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < kCoefficients.size(); ++k) sum += kCoefficients[k] * std::pow(u, static_cast<double>(k + 1));
+  for (std::size_t k = 0; k < kCoefficients.size(); ++k)
+    sum += kCoefficients[k] * std::pow(u, static_cast<double>(k + 1));
   for (std::size_t k = 0; k < kDriveKnots; ++k) {
     sum += kKnots[k] * std::pow(std::max(0.0, u - static_cast<double>(k + 1) / 8.0), 3.0);
   }
@@ -23,7 +24,8 @@ double by_powers(double u) {
 constexpr double kRounding = 1e-14;
 
 TEST(RisingCurve, IsThePolynomialAndTheKnots) {
-  for (double u = 0.0; u <= 1.0; u += 0.01) EXPECT_NEAR(rising_curve(kCoefficients, &kKnots, u), by_powers(u), kRounding);
+  for (double u = 0.0; u <= 1.0; u += 0.01)
+    EXPECT_NEAR(rising_curve(kCoefficients, &kKnots, u), by_powers(u), kRounding);
   EXPECT_NEAR(rising_curve(kCoefficients, nullptr, 0.5), 0.25 - 0.05 + 0.0875, kRounding);
 }
 
