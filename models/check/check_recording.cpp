@@ -6,11 +6,10 @@
 #include <cstdio>
 #include <utility>
 
-#include "engine/base/parallel.h"
 #include "engine/recording/press_direction.h"
 #include "engine/tick/sensor_identification.h"
-#include "models/check/force_lag.h"
 #include "models/check/recording_measures.h"
+#include "models/surface/force_lag.h"
 #include "models/surface/surface_estimate.h"
 
 namespace palpate {
@@ -33,16 +32,11 @@ constexpr double kGap_s = 0.25;
 constexpr double kGapSteps = 20.0;
 constexpr double kClippedTravelShare = 0.015;
 constexpr std::size_t kClippedRows = 5;
-constexpr double kLeastLag_s = 0.01;
-// The residual without the lag must be this much larger: less may be the material.
-constexpr double kLagImprovement = 0.8;
 constexpr double kMonotonicShare = 0.1;
 constexpr double kRelaxationsToSee = 3.0;
 constexpr double kSlowRate_Hz = 100.0;
-constexpr double kLargeOffset_m = 0.2e-3;
 constexpr double kSurfaceDrift_m = 0.1e-3;
 constexpr int kFewStrokes = 5;
-constexpr double kLeastCell_s = 0.05;
 // Ten minutes at 500 Hz.
 constexpr std::size_t kSurfaceRows = 300000;
 
@@ -97,7 +91,8 @@ bool Checker::check_signal() {
         "check the sensor's cable and which column was recorded as force_N");
   }
   if (!motion) {
-    add("no_motion", Severity::fatal, travel_m(), words("the position changes by %.3g mm over the whole recording", 1e3 * travel_m()),
+    add("no_motion", Severity::fatal, travel_m(),
+        words("the position changes by %.3g mm over the whole recording", 1e3 * travel_m()),
         "check the encoder and which column was recorded as position_m");
   }
   return force && motion;
@@ -107,9 +102,18 @@ void Checker::check_signs() {
   const PressDirection direction = find_press_direction(recording_.rows);
   const double change_N = direction.deep_force_N - direction.shallow_force_N;
   if (!direction.known || std::abs(change_N) < std::max(2.0 * kLeastForce_N, 5.0 * noise_N_)) return;
+  const bool flipped = direction.position_flipped || direction.force_flipped;
+  if (flipped && !direction.certain) {
+    add("signs", Severity::warning, change_N,
+        words("the force is %.3g N at the %s end of the positions and %.3g N at the other: a material that softens or "
+              "drags, or a sign that is flipped",
+              direction.deep_force_N, direction.position_flipped ? "low" : "high", direction.shallow_force_N),
+        "where pressing makes position_m or force_N fall, turn its sign round (palpate import --flip)");
+    return;
+  }
   if (direction.position_flipped) {
     add("position_sign", Severity::fatal, change_N,
-        words("the force grows as the position falls: %.3g N at the lowest position, %.3g N at the highest",
+        words("free air lies at the highest positions and force at the lowest: %.3g N there, %.3g N at the highest",
               direction.deep_force_N, direction.shallow_force_N),
         "position_m must be positive inside the block: turn its sign round (palpate import --flip position)");
   }
@@ -117,7 +121,8 @@ void Checker::check_signs() {
     add("force_sign", Severity::fatal, change_N,
         words("the force falls from %.3g N at the surface to %.3g N at the deepest", direction.shallow_force_N,
               direction.deep_force_N),
-        "force_N must be positive when the block pushes the tool out: turn its sign round (palpate import --flip force)");
+        "force_N must be positive when the block pushes the tool out: turn its sign round (palpate import --flip "
+        "force)");
   }
 }
 
@@ -133,7 +138,8 @@ void Checker::check_units() {
   if (!impossible && peak_N <= kStrangeForce_N && stiffness_N_per_m <= kStrangeStiffness_N_per_m) return;
   add("force_unit", impossible ? Severity::fatal : Severity::warning, peak_N,
       words("the force reaches %.4g N over %.3g mm, %.3g kN/m", peak_N, 1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
-      "force_N must be in newtons and position_m in metres: if the force is in mN or grams, import it with --units mm,mN "
+      "force_N must be in newtons and position_m in metres: if the force is in mN or grams, import it with --units "
+      "mm,mN "
       "or --units mm,g");
 }
 
@@ -156,7 +162,8 @@ void Checker::check_sensors() {
         coarse ? "less than 50 steps over the depth: use a finer encoder or press deeper" : "");
   }
   const bool loud = noise_N_ > 0.5 * request_.jnd.offset_N;
-  add("force_noise", loud ? Severity::warning : Severity::note, noise_N_, words("the force noise is %.3g mN rms", 1e3 * noise_N_),
+  add("force_noise", loud ? Severity::warning : Severity::note, noise_N_,
+      words("the force noise is %.3g mN rms", 1e3 * noise_N_),
       loud ? "small forces drown in it: shield or filter the sensor, and read errors against the noise floor" : "");
 }
 
@@ -182,8 +189,8 @@ void Checker::check_clipping() {
   if (!(measures_.highest_force_N > 0.0)) return;
   if (measures_.flat_rows < kClippedRows || measures_.flat_travel_m < kClippedTravelShare * travel_m()) return;
   add("clipping", Severity::warning, measures_.highest_force_N,
-      words("the force stays at exactly %.5g N for %zu rows while the tool moves on by %.3g mm", measures_.highest_force_N,
-            measures_.flat_rows, 1e3 * measures_.flat_travel_m),
+      words("the force stays at exactly %.5g N for %zu rows while the tool moves on by %.3g mm",
+            measures_.highest_force_N, measures_.flat_rows, 1e3 * measures_.flat_travel_m),
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
@@ -199,37 +206,50 @@ void Checker::check_lag() {
   // Of a long recording every so-many-th row: the onset needs no more, and the motion of
   // every row costs more than reading it.
   const std::size_t step = (recording_.rows.size() + kSurfaceRows - 1) / kSurfaceRows;
-  ForceLag lag;
-  std::vector<SurfaceRow> rows;
-  parallel_for(step > 1 ? 1 : 2, [&](int part) {
-    // The longer one first: another thread takes its time to begin.
-    if (part == 0 && step == 1) rows = all_rows(recording_);
-    else lag = find_force_lag(recording_);
-  });
-  const bool late = lag.known && lag.lag_s >= kLeastLag_s && lag.improvement <= kLagImprovement;
-  if (late) {
-    surface_ = estimate_surface(every_so_many(without_lag(recording_, lag.lag_s), step));
-  } else if (step > 1) {
-    surface_ = estimate_surface(every_so_many(recording_, step));
-  } else {
-    surface_ = estimate_surface(rows, noise_N_);
+  const std::vector<SurfaceRow> rows = all_rows(step > 1 ? every_so_many(recording_, step) : recording_);
+  surface_ = estimate_surface(rows, noise_N_);
+  if (step == 1) {
+    check_.motion.reserve(rows.size());
+    for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   }
-  check_.motion.reserve(rows.size());
-  for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
-  if (!late) return;
-  add("lag", Severity::warning, lag.lag_s,
-      words("the force comes %.3g ms behind the position: moved back, it fits %.2g times better", 1e3 * lag.lag_s,
-            1.0 / lag.improvement),
-      "record both with one clock, or move the force column back by as much");
+  // Without an onset a lag cannot be told from the material's memory.
+  if (!surface_.free_air) return;
+  const Located lag = find_force_lag(rows, noise_N_);
+  if (lag.not_zero && !lag.told) {
+    surface_.standard_error_m = HUGE_VAL;
+    surface_.offset_m = 0.0;
+    add("lag_unknown", Severity::note, 0.0,
+        "the force may come at another time than the position, but by how much cannot be told, and so not the surface",
+        "record both with one clock");
+  }
+  if (lag.at == 0.0) return;
+  surface_ = estimate_surface(without_lag(rows, lag.at), noise_N_, lag.standard_error);
+  add("lag", Severity::warning, lag.at,
+      words("the force comes %.3g ms (+- %.2g) %s the position", 1e3 * std::abs(lag.at), 1e3 * lag.standard_error,
+            lag.at > 0.0 ? "behind" : "before"),
+      "record both with one clock; palpate fit takes it off");
 }
 
 void Checker::check_surface() {
+  check_.surface_told = surface_.told();
   check_.surface_offset_m = surface_.offset_m;
+  if (!surface_.told()) {
+    add("surface_unknown", Severity::note, 0.0,
+        surface_.free_air ? "where force begins cannot be told; depth counts from position 0"
+                          : "the tool never leaves the material for certain: where its surface lies cannot be told; "
+                            "depth counts from position 0",
+        "");
+  }
   if (surface_.offset_m != 0.0) {
-    const bool large = std::abs(surface_.offset_m) > kLargeOffset_m;
-    add("surface_offset", large ? Severity::warning : Severity::note, surface_.offset_m,
+    add("surface_offset", Severity::note, surface_.offset_m,
         words("force begins at %+.3g mm (+- %.2g), not at 0", 1e3 * surface_.offset_m, 1e3 * surface_.standard_error_m),
-        large ? "subtract it from position_m, or find the surface anew before each recording" : "");
+        "a model of such recordings has its surface there; tested with another model it has to be moved");
+  }
+  if (surface_.tool_mass_kg > 0.0) {
+    add("tool_mass", Severity::note, surface_.tool_mass_kg,
+        words("the force sensor carries %.3g g: in free air its force follows the acceleration",
+              1e3 * surface_.tool_mass_kg),
+        "");
   }
   if (std::isfinite(surface_.offset_drift_error_m) &&
       std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {
@@ -239,19 +259,22 @@ void Checker::check_surface() {
   }
   if (measures_.contact_rows == 0) {  // as recorded, the surface at 0
     add("no_contact", Severity::fatal, measures_.highest_position_m,
-        words("the highest position is %.3g mm, so the tool never touches the surface at 0", 1e3 * measures_.highest_position_m),
-        "set position_m to 0 where force begins, and check its sign");
+        words("the highest position is %.3g mm, so the tool never touches the surface at 0",
+              1e3 * measures_.highest_position_m),
+        "set position_m to 0 where force begins (palpate import FILE --zero contact), and check its sign");
   }
 }
 
 void Checker::check_exploration() {
   add("strokes", Severity::note, measures_.strokes,
-      words("%d strokes, %.3g s in contact, to %.3g mm", measures_.strokes,
+      words("%d %s, %.3g s in contact, to %.3g mm", measures_.strokes, measures_.strokes == 1 ? "stroke" : "strokes",
             static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * depth_m()),
       measures_.strokes < kFewStrokes ? "record more strokes of different depth and speed" : "");
+  if (!(depth_m() > 0.0)) return;
   int empty = 0;
   std::string where;
-  constexpr const char* kBands[kSpeedBands] = {"slow (below 10 mm/s)", "by hand (10 to 50 mm/s)", "fast (above 50 mm/s)"};
+  constexpr const char* kBands[kSpeedBands] = {"slow (below 10 mm/s)", "by hand (10 to 50 mm/s)",
+                                               "fast (above 50 mm/s)"};
   for (std::size_t band = 0; band < kSpeedBands; ++band) {
     std::string quarters;
     for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
@@ -273,7 +296,8 @@ void Checker::check_memory() {
   if (request_.relaxation_times_s.empty()) return;
   const double longest_s = *std::max_element(request_.relaxation_times_s.begin(), request_.relaxation_times_s.end());
   if (measures_.outward_travel_m < kMonotonicShare * measures_.inward_travel_m) {
-    add("monotonic", Severity::warning, measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
+    add("monotonic", Severity::warning,
+        measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
         "the tool goes in and hardly comes out, so that depth and memory cannot be told apart",
         "record releases and holds, or fit a scene without relaxation (--scene elastic_block)");
   }
@@ -283,8 +307,8 @@ void Checker::check_memory() {
         words("record at least %.2g s, or fit a scene with shorter times", kRelaxationsToSee * longest_s));
   } else if (measures_.longest_hold_s < longest_s) {
     add("no_hold", Severity::note, measures_.longest_hold_s,
-        words("the longest hold in contact is %.2g s, the scene's longest relaxation time %.3g s", measures_.longest_hold_s,
-              longest_s),
+        words("the longest hold in contact is %.2g s, the scene's longest relaxation time %.3g s",
+              measures_.longest_hold_s, longest_s),
         words("hold still for %.2g s at two or three depths", 2.0 * longest_s));
   }
 }
@@ -340,6 +364,7 @@ RecordingCheck Checker::run() {
   find_noise_floor();
   std::stable_sort(check_.findings.begin(), check_.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  check_.measures = measures_;
   return std::move(check_);
 }
 

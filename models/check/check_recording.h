@@ -15,6 +15,7 @@
 #include "engine/recording/recording.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/motion_estimator.h"
+#include "models/check/recording_measures.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
@@ -41,11 +42,13 @@ struct RecordingCheck {
   // The share of contact samples that a perfect model would have within the JND, given
   // the force noise: mean of P(|noise| <= JND(f)).
   double noise_floor_within_jnd = 1.0;
-  double surface_offset_m = 0.0;  // to be subtracted from position_m
-  double force_zero_N = 0.0;      // to be subtracted from force_N
+  bool surface_told = false;
+  double surface_offset_m = 0.0;   // to be subtracted from position_m; 0 where it is not told
+  double force_zero_N = 0.0;       // to be subtracted from force_N
   std::uint64_t content_hash = 0;  // of all rows; equal for copies under other names
   // Of all rows, as a fit estimates it, when the check had to know it; otherwise empty.
   std::vector<MotionEstimate> motion;
+  RecordingMeasures measures;
 
   // "usable", "care" (a warning) or "unusable" (fatal).
   const char* verdict() const;
@@ -69,7 +72,8 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
 
 // Several recordings of one set; the same rows twice are a finding of the later one.
 // Errors: those of the first file that cannot be read.
-Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths, const CheckRequest& request);
+Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
+                                                       const CheckRequest& request);
 
 // Files that were checked as training recordings: what the check has read and estimated
 // need not be read and estimated again.

@@ -63,7 +63,8 @@ Result<CheckedFile> check_recording_file(const std::string& path, const CheckReq
   return file;
 }
 
-Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths, const CheckRequest& request) {
+Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,
+                                                       const CheckRequest& request) {
   std::vector<CheckedFile> files;
   for (const std::string& path : paths) {
     auto file = check_recording_file(path, request);

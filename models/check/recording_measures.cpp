@@ -8,10 +8,12 @@ namespace palpate {
 namespace {
 
 constexpr double kHoldShare = 0.02;
+constexpr double kSmallestStroke = 0.05, kLargestSmallStroke = 0.4;
 // A speed is the way over this time, so that encoder steps do not look like motion.
 constexpr double kSpeedWindow_s = 0.02;
-// Out of contact for less than this is the same stroke: noise at the surface.
-constexpr double kStrokePause_s = 0.05;
+// A stroke goes in by this share of the deepest after it came out by as much: whatever the
+// rate, and neither noise nor creep.
+constexpr double kStrokeShare = 0.15;
 constexpr std::size_t kShortestFlat = 3;
 
 void measure_sampling(const std::vector<RecordingRow>& rows, RecordingMeasures& measures) {
@@ -65,10 +67,9 @@ class MotionMeasure {
   // A row and the first row of the window that ends with it.
   void add(const RecordingRow& before, const RecordingRow& row, double step_s) {
     const double depth_m = row.position_m - surface_m_;
+    count_stroke(std::max(0.0, depth_m));
     if (!(depth_m > 0.0)) return;
     ++measures_.contact_rows;
-    if (row.time_s - last_contact_s_ > kStrokePause_s) ++measures_.strokes;
-    last_contact_s_ = row.time_s;
     const double window_s = row.time_s - before.time_s;
     const double way_m = row.position_m - before.position_m;
     const double speed_m_per_s = window_s > 0.0 ? way_m / window_s : 0.0;
@@ -78,6 +79,7 @@ class MotionMeasure {
         std::upper_bound(kSpeedEdges_m_per_s.begin(), kSpeedEdges_m_per_s.end(), std::abs(speed_m_per_s)) -
         kSpeedEdges_m_per_s.begin());
     measures_.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures_.median_step_s);
+    follow_turns(depth_m);
     if (std::abs(row.position_m - hold_m_) > kHoldShare * deepest_m_) {
       hold_m_ = row.position_m;
       hold_since_s_ = row.time_s;
@@ -86,12 +88,37 @@ class MotionMeasure {
   }
 
  private:
+  void count_stroke(double depth_m) {
+    turn_m_ = going_in_ ? std::max(turn_m_, depth_m) : std::min(turn_m_, depth_m);
+    const double back_m = going_in_ ? turn_m_ - depth_m : depth_m - turn_m_;
+    if (!(back_m > kStrokeShare * deepest_m_)) return;
+    going_in_ = !going_in_;
+    turn_m_ = depth_m;
+    if (going_in_) ++measures_.strokes;
+  }
+
+  // A turn: the tool has come back from its farthest by more than noise.
+  void follow_turns(double depth_m) {
+    const double way_m = (depth_m - farthest_m_) * direction_;
+    if (way_m >= 0.0) farthest_m_ = depth_m;
+    if (way_m > -kSmallestStroke * deepest_m_) return;
+    const double stroke_m = std::abs(farthest_m_ - turned_m_);
+    if (stroke_m > kSmallestStroke * deepest_m_ && stroke_m < kLargestSmallStroke * deepest_m_) {
+      ++measures_.small_strokes;
+    }
+    turned_m_ = farthest_m_;
+    farthest_m_ = depth_m;
+    direction_ = -direction_;
+  }
+
   RecordingMeasures& measures_;
+  bool going_in_ = false;
+  double turn_m_ = 0.0;  // the outermost depth since the last way in, or the innermost of this
   double surface_m_;
   double deepest_m_;
-  double last_contact_s_ = -HUGE_VAL;
   double hold_m_ = HUGE_VAL;
   double hold_since_s_ = 0.0;
+  double turned_m_ = 0.0, farthest_m_ = 0.0, direction_ = 1.0;
 };
 
 }  // namespace

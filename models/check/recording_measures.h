@@ -13,6 +13,7 @@ namespace palpate {
 inline constexpr std::size_t kDepthQuarters = 4;
 inline constexpr std::size_t kSpeedBands = 3;
 inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_m_per_s = {0.01, 0.05};
+inline constexpr double kLeastCell_s = 0.05;  // less time in a cell: it was not visited
 
 struct RecordingMeasures {
   double duration_s = 0.0;
@@ -32,6 +33,7 @@ struct RecordingMeasures {
   int strokes = 0;
   double inward_travel_m = 0.0;
   double outward_travel_m = 0.0;
+  int small_strokes = 0;        // turns in contact, 5 to 40 % of the deepest apart
   double longest_hold_s = 0.0;  // in contact, moving by less than 2 % of the depth
   std::array<std::array<double, kSpeedBands>, kDepthQuarters> seconds{};  // depth x speed
 };

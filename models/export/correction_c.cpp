@@ -9,17 +9,6 @@
 namespace palpate {
 namespace {
 
-// phi of `squared`, the squared distance. As models/model/rbf/rbf_simd.cpp.
-std::string kernel_text(KernelKind kernel) {
-  switch (kernel) {
-    case KernelKind::linear: return "SQRT(squared)";
-    case KernelKind::thin_plate: return "R(0.5) * squared * logarithm(squared)";
-    case KernelKind::cubic: return "squared * SQRT(squared)";
-    case KernelKind::quintic: return "squared * squared * SQRT(squared)";
-  }
-  return "squared * SQRT(squared)";
-}
-
 std::string tail_text(const RbfFunction& function) {
   const int degree = tail_degree(function.kernel);
   std::string text = "  real sum = tail[0];\n  int i, k;\n";
@@ -36,10 +25,11 @@ std::string tail_text(const RbfFunction& function) {
 void emit_rbf(CText& out, const RbfFunction& function) {
   const auto n = static_cast<std::size_t>(function.centre_count());
   const auto d = static_cast<std::size_t>(function.dimension());
-  const bool plate = function.kernel == KernelKind::thin_plate;
+  const std::string kernel = kernel_facts(function.kernel).c_text;
+  const bool logarithm = kernel.find("logarithm") != std::string::npos;
   out.count({.arithmetic = n * (3 * d + 4) + 2 * static_cast<std::size_t>(function.tail.size()),
-             .roots = plate ? 0 : n,
-             .logarithms = plate ? n : 0});
+             .roots = logarithm ? 0 : n,
+             .logarithms = logarithm ? n : 0});
   Eigen::MatrixXd rows(function.dimension() + 1, function.centre_count());
   rows << function.centres, function.weights.transpose();
   out.add("\n/* ---- correction: radial basis functions; a row: the centre, then its weight ---- */\n\n");
@@ -50,7 +40,7 @@ void emit_rbf(CText& out, const RbfFunction& function) {
           "; ++i) {\n    real squared = R(0.0);\n    for (k = 0; k < FEATURES; ++k) {\n"
           "      const real difference = u[k] - centres[i][k];\n      squared += difference * difference;\n    }\n"
           "    squared = larger(squared, R(1e-36));\n    sum += centres[i][FEATURES] * (" +
-          kernel_text(function.kernel) + ");\n  }\n  return sum;\n}\n");
+          kernel + ");\n  }\n  return sum;\n}\n");
 }
 
 constexpr const char* kGridC = R"C(
@@ -102,8 +92,8 @@ void emit_grid(CText& out, const VoxelGrid& grid) {
           "\nstatic const int axis_begin[FEATURES] = {" + begins + "};\nstatic const int axis_size[FEATURES] = {" +
           sizes + "};\nstatic const int axis_stride[FEATURES] = {" + strides + "};\n");
   out.list("axes", Eigen::Map<const Eigen::VectorXd>(nodes.data(), static_cast<Eigen::Index>(nodes.size())));
-  out.list("grid_values", Eigen::Map<const Eigen::VectorXd>(grid.values_N.data(),
-                                                            static_cast<Eigen::Index>(grid.values_N.size())));
+  out.list("grid_values",
+           Eigen::Map<const Eigen::VectorXd>(grid.values_N.data(), static_cast<Eigen::Index>(grid.values_N.size())));
   out.add(kGridC);
 }
 
@@ -138,8 +128,9 @@ static real trust_in(const real *u) {
 
 Status write_correction(CText& out, const CorrectionPtr& correction) {
   if (correction->is_none()) {
-    out.add("\n/* no correction: the model is its trend */\n\nstatic real correction_of(const real *u) {\n"
-            "  (void)u;\n  return R(0.0);\n}\n");
+    out.add(
+        "\n/* no correction: the model is its trend */\n\nstatic real correction_of(const real *u) {\n"
+        "  (void)u;\n  return R(0.0);\n}\n");
     return {};
   }
   if (const RbfFunction* function = rbf_of(correction)) {
@@ -155,7 +146,8 @@ Status write_correction(CText& out, const CorrectionPtr& correction) {
 
 void write_trust(CText& out, const DomainCover& cover) {
   const auto n = static_cast<std::size_t>(cover.points.cols());
-  out.count({.arithmetic = n * (3 * static_cast<std::size_t>(cover.points.rows()) + 1) + 5, .divisions = 1, .roots = 1});
+  out.count(
+      {.arithmetic = n * (3 * static_cast<std::size_t>(cover.points.rows()) + 1) + 5, .divisions = 1, .roots = 1});
   // Compared in single precision, as the library does; its processors add a square
   // with one rounding, which a sum in double precision and then one gives as well.
   out.add("\n/* ---- trust: the distance to the nearest of the data ---- */\n\n#define COVER_POINTS " +

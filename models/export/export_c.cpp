@@ -10,8 +10,8 @@ namespace palpate {
 namespace {
 
 // Of kMotionC on a quantised sample, estimated from its source.
-constexpr TickOperations kMotionOperations{.arithmetic = 1500, .divisions = 60, .roots = 3, .exponentials = 20,
-                                           .logarithms = 6};
+constexpr TickOperations kMotionOperations{
+    .arithmetic = 1500, .divisions = 60, .roots = 3, .exponentials = 20, .logarithms = 6};
 // Filters, their mixture, features and the last sample.
 constexpr std::size_t kMotionNumbers = 2 * 3 * 13 + 8;
 
@@ -27,7 +27,8 @@ std::string in_comment(const std::string& text) {
 
 // What the file takes the positions for.
 std::string sensor_text(const CText& exact, const PositionSensor& sensor) {
-  const std::string step = sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
+  const std::string step =
+      sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
   const std::string noise =
       sensor.position_noise_m > 0.0 ? "with a noise of " + exact.number(sensor.position_noise_m) + " m" : "";
   if (step.empty() && noise.empty()) return "exact";
@@ -39,28 +40,40 @@ std::string head(const ModelData& data, const ExportRequest& request) {
   const CText exact(false);
   std::string features;
   for (const FeatureSpec& spec : data.features) features += (features.empty() ? "" : ", ") + feature_name(spec);
-  return "/* Force model " + in_comment(data.name) + ", written by palpate export. C99; needs sqrt and exp.\n"
-         " * Features: " + features + "\n"
+  return "/* Force model " + in_comment(data.name) +
+         ", written by palpate export. C99; needs sqrt and exp.\n"
+         " * Features: " +
+         features +
+         "\n"
          " *\n"
-         " * " + real + " palpate_force(" + real + " time_s, " + real + " position_m): the force in N, positive out of the\n"
+         " * " +
+         real + " palpate_force(" + real + " time_s, " + real +
+         " position_m): the force in N, positive out of the\n"
          " *   material. position_m: as in the recordings, whose undisturbed surface lies at\n"
-         " *   " + exact.number(surface_position_m(data.features)) + " m, positive inside. A value that is\n"
+         " *   " +
+         exact.number(surface_position_m(data.features)) +
+         " m, positive inside. A value that is\n"
          " *   not finite, or a time that is not later than the last one: 0, and nothing changes.\n"
-         " * " + real + " palpate_force_after(" + real + " step_s, " + real + " position_m): the same, `step_s` after the last\n"
+         " * " +
+         real + " palpate_force_after(" + real + " step_s, " + real +
+         " position_m): the same, `step_s` after the last\n"
          " *   call; better in single precision, where a large time has coarse steps.\n"
          " * int palpate_out_of_domain(void): the last motion was unlike the recordings.\n"
          " * void palpate_reset(void): the next sample begins a new contact.\n"
          " *\n"
          " * One tool, one thread: the state is static. For two models in one program compile one\n"
          " * with -Dpalpate_force=other_force and so on.\n"
-         " * Positions are taken to be " + sensor_text(exact, request.sensor) + ". For another sensor define\n"
+         " * Positions are taken to be " +
+         sensor_text(exact, request.sensor) +
+         ". For another sensor define\n"
          " * PALPATE_ENCODER_STEP_M and PALPATE_POSITION_NOISE_M when compiling: the step that\n"
          " * positions come in, 0 where there is none, and the deviation beside it.\n"
          " * A recording of such positions, without measured velocity or acceleration, gives the\n"
          " * forces of palpate replay.\n"
          " */\n"
          "#include <stdint.h>\n\n"
-         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " + exact.number(request.sensor.encoder_step_m) +
+         "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " +
+         exact.number(request.sensor.encoder_step_m) +
          "\n#endif\n#ifndef PALPATE_POSITION_NOISE_M\n#define PALPATE_POSITION_NOISE_M " +
          exact.number(request.sensor.position_noise_m) + "\n#endif\n\n";
 }
@@ -107,7 +120,7 @@ static real model_force(void) {
     const real correction_N = correction_of(u) - CORRECTED_SHARE * force_N;
     force_N += trust * clamped(correction_N, -CORRECTION_LIMIT_N, CORRECTION_LIMIT_N);
   }
-  if (!(force_N > R(0.0))) force_N = R(0.0);
+  if (!(force_N > R(0.0))) force_N = force_N < R(0.0) ? larger(force_N, LOWEST_FORCE_N) : R(0.0);
   return smaller(force_N, LARGEST_FORCE_N);
 }
 
@@ -150,14 +163,19 @@ std::string too_deep(const CText& out, const ModelData& data) {
   std::size_t feature = 0;
   const double deepest_m = deepest_in_domain_m(data, feature);
   if (!std::isfinite(deepest_m)) return "0";
-  return std::string("(value[").append(std::to_string(feature)).append("] > ").append(out.number(deepest_m)).append(")");
+  return std::string("(value[")
+      .append(std::to_string(feature))
+      .append("] > ")
+      .append(out.number(deepest_m))
+      .append(")");
 }
 
 void write_constants(CText& out, const ModelData& data) {
   out.add("\n/* ---- the force ---- */\n\n#define CORRECTED_SHARE " +
-          std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") + "\n#define CORRECTION_LIMIT_N " +
-          out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
-          out.number(kForceMargin * data.largest_force_N) + "\n");
+          std::string(data.corrects_trend || data.correction->is_none() ? "R(0.0)" : "R(1.0)") +
+          "\n#define CORRECTION_LIMIT_N " + out.number(data.correction_limit_N) + "\n#define LARGEST_FORCE_N " +
+          out.number(kForceMargin * data.largest_force_N) + "\n#define LOWEST_FORCE_N " +
+          out.number(data.lowest_force_N) + "\n");
   out.add("#define IS_TOO_DEEP " + too_deep(out, data) + "\n");
   out.list("offset", data.offset);
   out.list("inverse_scale", data.scale.cwiseInverse());

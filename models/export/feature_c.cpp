@@ -80,6 +80,11 @@ static real surface_above(real step_s) {
 }
 )C";
 
+constexpr const char* kCreepC = R"C(
+/* What half a step of creep leaves of a bend. */
+static real crept(real bend, real creep) { return bend / SQRT(R(1.0) + creep * bend * bend); }
+)C";
+
 constexpr const char* kFilterC = R"C(
 /* 1 - exp(-x) for x >= 0, without cancellation in single precision. */
 static real lost_share(real x) {
@@ -138,11 +143,11 @@ std::string emit_branch(CText& out, const std::string& target, const std::string
   out.count({.arithmetic = drive.has_knots ? std::size_t{60} : std::size_t{26}, .divisions = 3, .exponentials = 1});
   const std::string curve = coefficients(out, name, drive, "s");
   const std::string clock = slowing == 0.0 ? ""
-                                           : "EXP(" + out.number(slowing) + " * smaller(R(1.0), " + kSurfaceHalfwayC + " / " +
-                                                 out.number(drive.reference_depth_m) + ")) * ";
+                                           : "EXP(" + out.number(slowing) + " * smaller(R(1.0), " + kSurfaceHalfwayC +
+                                                 " / " + out.number(drive.reference_depth_m) + ")) * ";
   out.add("static real " + name + "_last;\nstatic real " + name + "_drive(real s) { return " + curve +
-          "; }\nstatic real " + name + "_after(real step_s, real s) {\n  const real time_s = " + clock + out.number(time_s) +
-          ";\n  return filtered(" + target + ", " + name + "_drive(s) - " + name +
+          "; }\nstatic real " + name + "_after(real step_s, real s) {\n  const real time_s = " + clock +
+          out.number(time_s) + ";\n  return filtered(" + target + ", " + name + "_drive(s) - " + name +
           "_last, step_s, time_s, time_s);\n}\n");
   return "  " + target + " = first ? R(0.0) : " + name + "_after(step_s, s);\n  " + name + "_last = " + name +
          "_drive(s);\n";
@@ -188,32 +193,31 @@ std::string emit_spectrum(CText& out, const FeatureSpec& spec, std::size_t index
   return text + "  value" + index_text(index) + " = " + sum + ";\n";
 }
 
-// Stop operators: bristles that bend by at most their threshold and then slip.
-std::string emit_stops(CText& out, const FeatureSpec& spec, std::size_t index) {
+// Bristles: a stop bends by at most its threshold and then slips, others creep on at any bend.
+std::string emit_bristles(CText& out, const FeatureSpec& spec, std::size_t index) {
   const std::string state = "part_" + std::to_string(index);
   out.add("static real " + state + index_text(spec.part_count) + ";\n");
   const std::string target = "value" + index_text(index);
   std::string text = "  " + target + " = R(0.0);\n";
   for (std::size_t p = 0; p < spec.part_count; ++p) {
-    out.count({.arithmetic = 27, .divisions = 2});
     const std::string part = state + index_text(p);
     const std::string threshold = out.number(spec.parts[p].threshold_m);
     const std::string curve =
-        coefficients(out, "stop_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive);
-    text += "  " + part + " = first || !(depth_m > R(0.0)) ? R(0.0) : clamped(" + part +
-            " + depth_m - last_depth_m, -" + threshold + ", " + threshold + ");\n";
+        coefficients(out, "bristle_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive);
+    if (spec.kind == FeatureKind::stops) {
+      out.count({.arithmetic = 27, .divisions = 2});
+      text += "  " + part + " = first || !(depth_m > R(0.0)) ? R(0.0) : clamped(" + part +
+              " + depth_m - last_depth_m, -" + threshold + ", " + threshold + ");\n";
+    } else {
+      out.count({.arithmetic = 36, .divisions = 5, .roots = 2});
+      const double r_m = spec.parts[p].threshold_m;
+      const std::string creep = "step_s * " + out.number(1.0 / (spec.parts[p].relaxation_time_s * r_m * r_m));
+      text += "  " + part + " = first ? R(0.0) : crept(crept(" + part + ", " + creep + ") + depth_m - last_depth_m, " +
+              creep + ");\n";
+    }
     text += "  " + target + " += " + curve + " * " + part + " / " + threshold + ";\n";
   }
   return text;
-}
-
-std::string emit_fading_peak(CText& out, const FeatureSpec& spec, std::size_t index) {
-  out.count({.arithmetic = 6, .divisions = 1, .exponentials = 1});
-  const std::string target = "value" + index_text(index);
-  return "  if (first) {\n    " + target + " = depth_m;\n  } else {\n    " + target +
-         " = larger(depth_m, last_depth_m + (" + target + " - last_depth_m) * EXP(-step_s / " +
-         out.number(spec.relaxation_time_s) + "));\n    if (" + target + " < R(1e-15)) " + target +
-         " = R(0.0);\n  }\n";
 }
 
 struct FeatureRow {
@@ -227,8 +231,8 @@ constexpr FeatureRow kFeatureRows[] = {
     {FeatureKind::lowpass_velocity, emit_lowpass},
     {FeatureKind::maxwell_branch, emit_maxwell},
     {FeatureKind::maxwell_spectrum, emit_spectrum},
-    {FeatureKind::stops, emit_stops},
-    {FeatureKind::fading_peak, emit_fading_peak},
+    {FeatureKind::stops, emit_bristles},
+    {FeatureKind::creep, emit_bristles},
     {FeatureKind::surface_lag, emit_surface_lag},
 };
 
@@ -268,31 +272,7 @@ bool has_splines(const std::vector<FeatureSpec>& features) {
 }
 
 // Features whose value is a force by itself.
-bool is_force(FeatureKind kind) {
-  return is_branch(kind) || kind == FeatureKind::stops;
-}
-
-bool has_peak(const std::vector<FeatureSpec>& features) {
-  return std::any_of(features.begin(), features.end(),
-                     [](const FeatureSpec& spec) { return spec.kind == FeatureKind::fading_peak; });
-}
-
-// What softening adds to the trend, as lines of trend_of; tables go to `out`.
-std::string softening_text(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {
-  static_assert(kSofteningPowers[0] == 1 && kSofteningPowers[1] == 4 && kSofteningPowers[2] == 12 &&
-                kSofteningPowers.size() == 3);
-  constexpr const char* kShare[] = {"x", "x4", "x4 * x4 * x4"};
-  const std::string depth = feature_of(features, FeatureKind::depth);
-  const std::string peak = feature_of(features, FeatureKind::fading_peak);
-  std::string text = "  {\n    const real x = " + depth + " < " + peak + " ? " + depth + " / " + peak +
-                     " : R(1.0);\n    const real x4 = x * x * x * x;\n";
-  for (std::size_t j = 0; j < kSofteningPowers.size(); ++j) {
-    out.count({.arithmetic = 25, .divisions = 1});
-    const std::string curve = coefficients(out, "softening_" + std::to_string(j), trend.softening[j], depth);
-    text += "    force_N += " + curve + " * (" + kShare[j] + ");\n";
-  }
-  return text + "  }\n";
-}
+bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
 }  // namespace
 
@@ -302,6 +282,10 @@ Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
   if (std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) { return has_filter(spec.kind); })) {
     out.add(kFilterC);
   }
+  if (std::any_of(features.begin(), features.end(),
+                  [](const FeatureSpec& spec) { return spec.kind == FeatureKind::creep; })) {
+    out.add(kCreepC);
+  }
   std::string body;
   for (std::size_t i = 0; i < features.size(); ++i) {
     const FeatureEmitter emit = emitter_of(features[i].kind);
@@ -309,9 +293,8 @@ Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
     out.add("\n/* " + feature_name(features[i]) + " */\n");
     body += emit(out, features[i], i);
   }
-  const auto lag = std::find_if(features.begin(), features.end(), [](const FeatureSpec& spec) {
-    return spec.kind == FeatureKind::surface_lag;
-  });
+  const auto lag = std::find_if(features.begin(), features.end(),
+                                [](const FeatureSpec& spec) { return spec.kind == FeatureKind::surface_lag; });
   const bool lags = lag != features.end();
   if (lags) write_surface(out, features, *lag);
   out.add(
@@ -339,7 +322,6 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
   coefficients_of("viscosity", trend.viscosity_Ns_per_m);
   coefficients_of("thinning", trend.thinning_Ns_per_m);
   const std::string limit = out.number(trend.velocity_limit_m_per_s);
-  const std::string softening = has_peak(features) ? softening_text(out, trend, features) : "";
   std::string text =
       "\nstatic real quadratic(const real *c, real u) { return (c[2] * u + c[1]) * u + c[0]; }\n\n"
       "static real trend_of(void) {\n  const real u = " +
@@ -347,13 +329,14 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
       ";\n  const real inside = smaller(u, R(1.0));\n  const real v = clamped(" +
       feature_of(features, FeatureKind::velocity) + ", -" + limit + ", " + limit +
       ");\n  const real thinned = v / (R(1.0) + absolute(v) / " + out.number(trend.thinning_velocity_m_per_s) +
-      ");\n  real force_N = " + elastic + ";\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, inside) * thinned;\n";
+      ");\n  real force_N = " + elastic +
+      ";\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, inside) * thinned;\n";
   static_assert(kViscosityCoefficients == 3, "quadratic() has three");
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (is_force(features[i].kind)) text += "  force_N += value" + index_text(i) + ";\n";
   }
   out.count({.arithmetic = 46, .divisions = 3});
-  out.add(text + softening + "  return force_N;\n}\n");
+  out.add(text + "  return force_N;\n}\n");
 }
 
 }  // namespace palpate

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "models/training/fit_trend.h"
+#include "models/training/trend_regression.h"
 
 namespace palpate {
 namespace {
@@ -18,7 +18,7 @@ constexpr double kLeastFloor_N = 1e-3;
 }  // namespace
 
 std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& predictions, double inner_radius,
-                                          const JndLine& jnd, double largest_force_N, double spread) {
+                                          const JndLine& jnd, double largest_force_N) {
   if (predictions.size() < kFewest) return std::nullopt;
   const auto beyond = [&](const LeftOutPrediction& one) { return std::max(0.0, one.distance - inner_radius); };
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
@@ -30,7 +30,8 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
     right += row * scale * one.error_N;
   }
   const Eigen::VectorXd shape = solve_non_negative(gram, right);
-  ErrorBound bound{std::max(shape(0), kLeastFloor_N), shape(1), std::max(shape(2), kLeastPerDistance * largest_force_N)};
+  ErrorBound bound{std::max(shape(0), kLeastFloor_N), shape(1),
+                   std::max(shape(2), kLeastPerDistance * largest_force_N)};
   std::vector<double> ratios;
   for (const LeftOutPrediction& one : predictions) {
     ratios.push_back(one.error_N / bound.at(one.predicted_N, beyond(one)));
@@ -39,7 +40,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
   const auto n = static_cast<double>(ratios.size());
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
-  const double factor = std::max(spread, 1.0) * ratios[rank];
+  const double factor = ratios[rank];
   bound.floor_N = std::max(factor * bound.floor_N, kLeastFloor_N);
   bound.per_force *= factor;
   bound.per_distance_N = std::max(factor * bound.per_distance_N, kLeastPerDistance * largest_force_N);

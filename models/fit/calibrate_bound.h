@@ -20,9 +20,8 @@
 
 namespace palpate {
 
-// `spread`: how much larger errors are on strokes left out of the trend too, at least
-// 1. Nothing when there are fewer than 50 predictions.
+// Nothing when there are fewer than 50 predictions.
 std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& predictions, double inner_radius,
-                                          const JndLine& jnd, double largest_force_N, double spread);
+                                          const JndLine& jnd, double largest_force_N);
 
 }  // namespace palpate

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <cstdlib>
+#include <numeric>
 #include <vector>
 
 #include "models/fit/calibrate_bound.h"
@@ -10,65 +11,63 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLeftOutSamples = 3000;
-// How much larger the error on a new recording is, of which the trend has seen nothing:
-// this power of how much worse the trend is on strokes left out than on its own data.
-// Measured: with 2 the bounds hold 92 to 99 % on materials and real recordings.
-constexpr double kSpreadPower = 2.0;
-constexpr double kUnknownSpread = 1.25;  // when the features were given
-constexpr std::size_t kFewStrokes = 5;
-constexpr double kFewStrokesSpread = 1.2;
+// More tell the same.
+constexpr std::size_t kLeftOutRows = 5000;
 // One or two presses say nothing of how the next differs: 5 % of the force, as two
-// specimens of a cast silicone do.
+// specimens of a cast silicone do (Dawood et al. 2026).
 constexpr std::size_t kFewPresses = 3;
 constexpr double kLeastPerForce = 0.05;
 
-double spread_of(const FeatureSelection& selection, std::size_t strokes) {
-  const double few = strokes < kFewStrokes ? kFewStrokesSpread : 1.0;
-  if (!(selection.training_error_over_jnd > 0.0)) return few * kUnknownSpread;
-  return few * std::pow(selection.left_out_error_over_jnd / selection.training_error_over_jnd, kSpreadPower);
-}
-
-std::vector<LeftOutSample> left_out_samples(const PreparedTraining& prepared) {
-  const ModelData& common = prepared.common;
-  const auto d = static_cast<Eigen::Index>(common.features.size());
-  const std::size_t stride = prepared.evaluation_force_N.size() / kLeftOutSamples + 1;
-  std::vector<LeftOutSample> samples;
-  for (std::size_t i = 0; i < prepared.evaluation_force_N.size(); i += stride) {
-    const double* features = prepared.evaluation_features[i].data();
-    LeftOutSample sample;
-    sample.point = (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
-    sample.trend_N = common.trend.at(features, common.features);
-    sample.force_N = prepared.evaluation_force_N[i];
-    sample.depth_m = features[0];
-    sample.fold = prepared.evaluation_fold[i];
-    samples.push_back(std::move(sample));
+LeftOutRows left_out_rows(const ModelData& common, const TrendRows& rows, const Eigen::MatrixXd& row_features,
+                          const LeftOutTrend& left_out, const TrendProblem& problem) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < rows.count(); i += rows.count() / kLeftOutRows + 1) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rows.fold(a) < rows.fold(b); });
+  const auto n = static_cast<Eigen::Index>(order.size());
+  LeftOutRows out;
+  out.points.resize(row_features.rows(), n);
+  for (Eigen::VectorXd* values : {&out.force_N, &out.depth_m, &out.row_scale}) values->resize(n);
+  out.trend_N.resize(n, left_out.solutions.cols());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const std::size_t i = order[static_cast<std::size_t>(k)];
+    const auto row = static_cast<Eigen::Index>(i);
+    out.points.col(k) = (row_features.col(row) - common.offset).cwiseQuotient(common.scale);
+    out.force_N(k) = rows.force_N(i);
+    out.depth_m(k) = rows.depth_m(i);
+    out.row_scale(k) = row_scale(problem.weighting, problem.jnd, rows.force_N(i));
+    out.trend_N.row(k) =
+        Eigen::Map<const Eigen::RowVectorXd>(rows.row(i), left_out.solutions.rows()) * left_out.solutions;
+    out.fold.push_back(rows.fold(i));
+    out.no_force.push_back(std::abs(rows.force_N(i)) <= problem.force_noise_floor_N ? 1 : 0);
   }
-  return samples;
+  return out;
 }
 
 }  // namespace
 
-void decide_strength(PreparedTraining& prepared, const JndLine& jnd, int folds, std::size_t strokes) {
+void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
+                     const LeftOutTrend& left_out, const TrendProblem& problem, std::size_t strokes) {
   ModelData& common = prepared.common;
-  const std::vector<LeftOutSample> samples = left_out_samples(prepared);
-  StrengthInput input{prepared.sites, samples, folds, KernelKind::cubic, jnd};
+  const LeftOutRows of_rows = left_out_rows(common, rows, row_features, left_out, problem);
+  StrengthInput input{of_rows, static_cast<int>(left_out.solutions.cols()), KernelKind::cubic, problem.jnd};
   input.correction_limit_N = common.correction_limit_N;
+  input.lowest_force_N = common.lowest_force_N;
   input.least_radius = common.cover.inner_radius;
   input.outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
   prepared.strength = choose_strength(input);
   prepared.sites.smoothing = prepared.strength->smoothing;
   prepared.sites.strength = prepared.strength->strength;
-  const double spread = spread_of(prepared.selection, strokes);
+  const double radius = prepared.strength->inner_radius;
   const auto bound_from = [&](const std::vector<LeftOutPrediction>& predictions) {
-    auto bound = calibrate_bound(predictions, prepared.strength->inner_radius, jnd, common.largest_force_N, spread);
+    auto bound = calibrate_bound(predictions, radius, problem.jnd, common.largest_force_N);
     if (bound && strokes < kFewPresses) bound->per_force = std::max(bound->per_force, kLeastPerForce);
     return bound;
   };
   common.error_bound = bound_from(prepared.strength->predictions);
   prepared.trend_bound = bound_from(prepared.strength->trend_predictions);
-  common.cover.inner_radius = prepared.strength->inner_radius;
-  common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
+  common.cover.inner_radius = radius;
+  common.cover.outer_radius = input.outer_to_inner * radius;
 }
 
 }  // namespace palpate

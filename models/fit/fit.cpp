@@ -46,13 +46,14 @@ Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
   return jnd_N;
 }
 
-Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
-                             const FitControl& control, const MethodFit* base) {
+Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request, const FitControl& control,
+                             const MethodFit* base) {
   const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   const Method& method = *request.method;
   std::optional<FittedCorrection> from;
   if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};
-  auto fitted = fit_correction({prepared.sites, prepared.common.features, jnd_N, request, from ? &*from : nullptr}, control);
+  auto fitted =
+      fit_correction({prepared.sites, prepared.common.features, jnd_N, request, from ? &*from : nullptr}, control);
   if (!fitted) return fitted.error();
   MethodFit fit{prepared.common, std::move(fitted->report)};
   fit.data.method = method.name;

@@ -16,18 +16,18 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/fit_control.h"
+#include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
-#include "engine/base/result.h"
-#include "engine/base/fit_control.h"
 #include "models/fit/correction_strength.h"
 #include "models/fit/methods.h"
-#include "models/training/feature_selection.h"
-#include "models/training/fit_trend.h"
 #include "models/model/fitted_model.h"
+#include "models/training/memory_law.h"
 #include "models/training/motion_source.h"
 #include "models/training/sites.h"
 #include "models/training/training_set.h"
+#include "models/training/trend_dictionary.h"
 #include "models/training/weighting.h"
 
 namespace palpate {
@@ -37,8 +37,8 @@ enum class Relaxation { scene, automatic, given };
 inline constexpr std::array<const char*, 3> kRelaxationNames{"scene", "auto", "given"};
 // Where the surface of each recording is: estimated, or 0 as recorded.
 enum class Surface { automatic, recorded };
-// Which features: those that the recordings support (feature_selection.h), the
-// scene's (with `relaxation`), or a list.
+// Which features: the whole dictionary (trend_dictionary.h), the scene's (with
+// `relaxation`), or a list.
 enum class FeatureChoice { automatic, scene, given };
 
 struct TrainingRequest {
@@ -51,21 +51,20 @@ struct TrainingRequest {
   FeatureList list;  // when given
   Relaxation relaxation = Relaxation::scene;
   std::vector<double> relaxation_times_s;  // when given
-  BranchDrive drive = BranchDrive::elastic_rate;
+  std::size_t relaxation_count = 0;        // when automatic: one to three; 0: as many as the recordings support
   Surface surface = Surface::automatic;
 };
 
 struct PreparedTraining {
   TrainingSet set;
-  Sites sites;       // normalised; target: what h has to fit
-  ModelData common;  // everything of a model but its method's part
-  FeatureSelection selection;              // what each feature is worth; empty unless chosen here
+  Sites sites;                             // normalised; target: what h has to fit
+  ModelData common;                        // everything of a model but its method's part
+  std::vector<FeatureWorth> worth;         // of each part of the dictionary; empty unless all of it was tried
   std::optional<ErrorBound> trend_bound;   // of the trend alone; that of `common` is of a correction
   std::optional<StrengthChoice> strength;  // of the correction; none for the paper's recipe
   // In-contact feature vectors and forces to evaluate the fit with, at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> evaluation_features;
   std::vector<double> evaluation_force_N;
-  std::vector<int> evaluation_fold;
 };
 
 struct MethodFit {

@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "models/model/rbf/rbf_correction.h"
+#include "engine/base/parallel.h"
 #include "models/fit/methods.h"
+#include "models/model/rbf/rbf_correction.h"
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/lapack.h"
-#include "engine/base/parallel.h"
 #include "models/solve/projected_kernel.h"
 #include "models/solve/refined_solve.h"
 
@@ -126,9 +126,12 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
   }
   if (!control.may_continue(0.2)) return interrupted();
   switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
-    case Outcome::cancelled: return interrupted();
-    case Outcome::failed: return failed;
-    case Outcome::solved: break;
+    case Outcome::cancelled:
+      return interrupted();
+    case Outcome::failed:
+      return failed;
+    case Outcome::solved:
+      break;
   }
   solution.criterion = criterion;
   return solution;

@@ -11,10 +11,10 @@
 
 #include <optional>
 
-#include "engine/base/result.h"
 #include "engine/base/fit_control.h"
-#include "models/solve/fit_report.h"
+#include "engine/base/result.h"
 #include "models/fit/methods.h"
+#include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
 namespace palpate {

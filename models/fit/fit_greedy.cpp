@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "models/model/rbf/rbf_correction.h"
+#include "engine/base/random_stream.h"
 #include "models/fit/methods.h"
+#include "models/model/rbf/rbf_correction.h"
 #include "models/solve/candidate_gains.h"
 #include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
-#include "engine/base/random_stream.h"
 #include "models/solve/solve_weights.h"
 
 namespace palpate {
@@ -24,9 +24,7 @@ namespace {
 class Selection {
  public:
   Selection(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
-      : gains_(sites, options.kernel),
-        basis_(sites, options.kernel, options.centres),
-        left_(std::move(distinct)) {}
+      : gains_(sites, options.kernel), basis_(sites, options.kernel, options.centres), left_(std::move(distinct)) {}
   virtual ~Selection() = default;
   virtual Eigen::Index next() = 0;
 
@@ -109,8 +107,7 @@ class AllSites final : public Selection {
   // Whether the recurrence still knows this column; 1 % is far below any
   // difference in gain that matters.
   bool agrees(Eigen::Index site, const OrthogonalBasis::Outside& part) const {
-    return gains_.useful(site, part) &&
-           part.correlation * part.correlation / part.squared >= 0.99 * gains_.gain(site);
+    return gains_.useful(site, part) && part.correlation * part.correlation / part.squared >= 0.99 * gains_.gain(site);
   }
 
   void accept(const OrthogonalBasis::Outside& part) {
@@ -123,8 +120,7 @@ class AllSites final : public Selection {
   KernelProduct product_;
 };
 
-bool select(Selection& selection, Eigen::Index count, const FitControl& control,
-            std::vector<Eigen::Index>& chosen) {
+bool select(Selection& selection, Eigen::Index count, const FitControl& control, std::vector<Eigen::Index>& chosen) {
   for (Eigen::Index step = 0; step < count; ++step) {
     if (!control.may_continue(0.95 * static_cast<double>(step) / static_cast<double>(count))) return false;
     const Eigen::Index site = selection.next();
@@ -154,7 +150,8 @@ Result<CentreSequence> choose_greedy(const Sites& sites, const GreedyOptions& op
   }
   if (!finished) return interrupted();
   Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
-  for (Eigen::Index j = 0; j < centres.cols(); ++j) centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
+  for (Eigen::Index j = 0; j < centres.cols(); ++j)
+    centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
   CentreSequence sequence = CentreSequence::growing(std::move(centres));
   if (sequence.most < options.centres) {
     sequence.shortage =

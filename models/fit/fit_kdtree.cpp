@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "models/model/rbf/rbf_correction.h"
+#include "engine/base/parallel.h"
 #include "models/fit/methods.h"
+#include "models/model/rbf/rbf_correction.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
-#include "engine/base/parallel.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/site_tree.h"
 #include "models/solve/solve_weights.h"
 

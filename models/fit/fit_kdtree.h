@@ -11,8 +11,8 @@
 // Source: Hoever & Harders (2009), section 4.2.2.
 #pragma once
 
-#include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "engine/base/result.h"
 #include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"

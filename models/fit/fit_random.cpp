@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/base/random_stream.h"
-#include "models/model/rbf/rbf_correction.h"
 #include "models/fit/methods.h"
+#include "models/model/rbf/rbf_correction.h"
 #include "models/solve/solve_weights.h"
 
 namespace palpate {

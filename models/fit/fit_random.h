@@ -6,8 +6,8 @@
 
 #include <cstdint>
 
-#include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "engine/base/result.h"
 #include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"

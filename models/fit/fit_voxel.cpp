@@ -6,10 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "models/solve/fill_grid.h"
 #include "models/fit/methods.h"
 #include "models/model/grid/grid_correction.h"
 #include "models/model/rbf/rbf_correction.h"
+#include "models/solve/fill_grid.h"
 
 namespace palpate {
 namespace {
@@ -69,14 +69,16 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
                  " features; give one size per feature, e.g. --grid 25x11x11x11 for four"};
   }
   VoxelGrid grid;
-  const double nodes = std::accumulate(sizes.begin(), sizes.end(), 1.0, [](double product, int n) { return product * n; });
+  const double nodes =
+      std::accumulate(sizes.begin(), sizes.end(), 1.0, [](double product, int n) { return product * n; });
   if (nodes > kMaximumGridNodes) {
     char asked[32];
     std::snprintf(asked, sizeof asked, "%.3g", nodes);
     return Error{"the grid would have " + std::string(asked) + " nodes, at most 1e7 can be saved; give smaller sizes"};
   }
   for (std::size_t k = 0; k < d; ++k) {
-    if (sizes[k] < 2) return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
+    if (sizes[k] < 2)
+      return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
     grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k]));
   }
   const RbfEvaluator evaluator(function);
@@ -89,7 +91,8 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
 
 std::string grid_size_text(const VoxelGrid& grid) {
   std::string text;
-  for (const std::vector<double>& axis : grid.nodes) text.append(text.empty() ? "" : "x").append(std::to_string(axis.size()));
+  for (const std::vector<double>& axis : grid.nodes)
+    text.append(text.empty() ? "" : "x").append(std::to_string(axis.size()));
   return text;
 }
 

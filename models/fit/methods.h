@@ -16,10 +16,10 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
-#include "models/solve/centre_sequence.h"
-#include "models/solve/fit_report.h"
 #include "models/model/correction.h"
 #include "models/model/rbf/kernels.h"
+#include "models/solve/centre_sequence.h"
+#include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
 // The table, in the order of reports and lists.
@@ -60,9 +60,9 @@ struct FittedCorrection {
 
 // What a method is given. References last as long as the call.
 struct MethodTask {
-  const Sites& sites;                       // normalised
+  const Sites& sites;                        // normalised
   const std::vector<FeatureSpec>& features;  // of the rows of sites.points
-  const Eigen::VectorXd& jnd_N;             // threshold at each site, > 0
+  const Eigen::VectorXd& jnd_N;              // threshold at each site, > 0
   const MethodRequest& request;
   const FittedCorrection* base = nullptr;  // the fit of the row's base, if it has one
 };
@@ -80,8 +80,8 @@ enum MethodOption : unsigned {
 inline constexpr std::uint32_t kNeutralColour = 0x000000;
 
 struct Method {
-  const char* name = "";   // in commands, files and scenes
-  const char* label = "";  // in figures and tables
+  const char* name = "";                  // in commands, files and scenes
+  const char* label = "";                 // in figures and tables
   std::uint32_t colour = kNeutralColour;  // 0xRRGGBB, the same everywhere
   unsigned takes = 0;                     // MethodOption flags
   // The method whose fit this one starts from; null for most.

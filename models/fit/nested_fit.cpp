@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "models/solve/lapack.h"
 #include "models/fit/methods.h"
 #include "models/model/rbf/rbf_correction.h"
+#include "models/solve/lapack.h"
 
 namespace palpate {
 

@@ -8,10 +8,10 @@
 #include "models/fit/fit.h"
 #include "models/fit/fit_random.h"
 #include "models/solve/solve_weights.h"
-#include "models/training/feature_list.h"
-#include "models/training/relaxation.h"
-#include "models/training/training_extent.h"
 #include "models/surface/surface_registration.h"
+#include "models/training/relaxation_times.h"
+#include "models/training/training_extent.h"
+#include "models/training/trend_dictionary.h"
 
 namespace palpate {
 namespace {
@@ -25,16 +25,8 @@ constexpr Eigen::Index kQuickCentres = 100;
 constexpr int kOneSidedPasses = 3;
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumEvaluationSamples = 100000;
-// Where the error on strokes left out stays above these, other lists of features are
-// tried beside the selected one.
-constexpr double kLittleIsLeft_jnd = 0.2;
-constexpr double kMuchIsLeft_jnd = 0.3;
-constexpr int kLadderTimes = 6;
-// As a hand moves.
-constexpr double kLadderFrom_s = 0.01;
-constexpr double kLadderTo_s = 3.0;
 // Of the trend's regression: the noise of so many averages out.
-constexpr std::size_t kTrendRows = 10000;
+constexpr std::size_t kTrendRows = 8000;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
 
@@ -71,6 +63,18 @@ std::vector<FeatureSpec> with_filters(const std::vector<FeatureSpec>& scene, con
   }
   features.insert(features.end(), filters.begin(), filters.end());
   return features;
+}
+
+// The relaxation times behind the features of a model.
+std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
+  std::vector<RelaxationTime> times;
+  for (const FeatureSpec& spec : features) {
+    if (spec.kind == FeatureKind::maxwell_branch) times.push_back({spec.relaxation_time_s, 0.0});
+    for (std::size_t p = 0; spec.kind == FeatureKind::maxwell_spectrum && p < spec.part_count; ++p) {
+      times.push_back({spec.parts[p].relaxation_time_s, 0.0});
+    }
+  }
+  return times;
 }
 
 // Keeps the targets of one-sided sites on their side: where the model stays
@@ -123,8 +127,8 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     const double residual_N = site.force_N - base_N(k);
     sites.target_N(k) = prepared.common.corrects_trend ? residual_N : site.force_N;
     if (site.no_force && base_N(k) < 0.0 && prepared.common.corrects_trend) sites.target_N(k) = 0.0;
-    sites.row_scale(k) = row_scale(request.weighting, request.jnd, site.force_N) *
-                         std::sqrt(std::min(site.count, kMaximumSiteCount));
+    sites.row_scale(k) =
+        row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
     sites.group[i] = prepared.strength ? site.fold : site.stroke;
     any_one_sided = any_one_sided || site.no_force;
   }
@@ -143,137 +147,131 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   return {};
 }
 
-Status fit_common_trend(PreparedTraining& prepared, MotionSource& source, const TrainingRequest& request,
-                        const TrainingExtent& extent, double force_noise_floor_N, const FeatureList& list, const FitControl& control) {
-  const bool papers = is_papers_recipe(request);
-  TrendTerms terms{extent.depth_m, 0.0, {}, {}, {}};
-  if (!papers) terms = terms_of(list, extent.depth_m, extent.rms_velocity_m_per_s);
-  TrendRows rows(terms, kTrendRows);
-  const Status status = source.for_each([&](const MotionRow& row) {
-    if (row.first) rows.begin_recording();
-    if (row.run_up) rows.advance(row.sample, row.motion);
-    else rows.add(row.sample, row.motion, row.force_N, row.stroke);
-    return true;
-  }, control, 0.15);
-  if (!status) return status;
-  const FittedTrend fitted =
-      fit_trend(rows, papers ? Weighting::jnd : request.weighting, request.jnd, force_noise_floor_N, request.drive,
-                !papers);
-  prepared.common.trend = fitted.trend;
-  prepared.common.corrects_trend = !papers;
-  if (!papers) {
-    prepared.common.features = features_of(list, fitted);
-    return {};
-  }
-  std::vector<FeatureSpec> filters;
-  for (const double time_s : all_times(list)) filters.push_back({FeatureKind::lowpass_velocity, time_s, {}});
-  prepared.common.features = with_filters(request.features, filters);
-  return {};
-}
-
-// Moves every recording to its own surface.
-Status find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
-                     const FitControl& control) {
+// Moves every recording to where depth counts from; returns where that is, m.
+Result<double> find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
+                             const FitControl& control) {
   source.correct({});
-  if (request.surface == Surface::recorded) return {};
-  const auto surfaces = register_surfaces(source, request.features, control);
-  if (!surfaces) return surfaces.error();
-  source.correct(corrections_of(*surfaces));
-  for (std::size_t i = 0; i < surfaces->size(); ++i) {
-    const RegisteredSurface& one = (*surfaces)[i];
-    provenance.surfaces.push_back({source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N});
+  if (request.surface == Surface::recorded) return 0.0;
+  const auto found = register_surfaces(source, control);
+  if (!found) return found.error();
+  std::vector<RowCorrection> corrections;
+  for (std::size_t i = 0; i < found->recordings.size(); ++i) {
+    const RegisteredSurface& one = found->recordings[i];
+    corrections.push_back({one.offset_m + found->surface_position_m, one.force_zero_N, found->lag_s});
+    provenance.surfaces.push_back(
+        {source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N, found->lag_s});
   }
-  return {};
-}
-
-// Positions of a model are those of its recordings: a surface that all of them have
-// deeper than 0 is the model's own place of contact, and a recording of the same rig
-// needs no moving. (A surface above 0 cannot be: the tool is in contact beyond 0 at the
-// latest, so such recordings are moved to it.)
-void keep_position_zero(ModelData& common) {
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const RecordingSurface& one : common.provenance.surfaces) least_m = std::min(least_m, one.offset_m);
-  if (!(least_m > 0.0) || !std::isfinite(least_m)) return;
-  for (FeatureSpec& spec : common.features) {
-    if (spec.kind == FeatureKind::depth) spec.surface_position_m = least_m;
-  }
+  source.correct(std::move(corrections));
+  return found->surface_position_m;
 }
 
 // Keeps samples to evaluate the fit with, of as many in contact as there will be.
 class EvaluationSamples {
  public:
-  EvaluationSamples(PreparedTraining& prepared, const FoldDealer& dealer, std::size_t contact_samples)
-      : prepared_(prepared), folds_(dealer), stride_(contact_samples / kMaximumEvaluationSamples + 1) {}
+  EvaluationSamples(PreparedTraining& prepared, std::size_t contact_samples)
+      : prepared_(prepared), stride_(contact_samples / kMaximumEvaluationSamples + 1) {}
 
   void add(const MotionRow& row, const FeatureVector& vector) {
-    const int fold = folds_.next(row);
     if (seen_++ % stride_ != 0) return;
     prepared_.evaluation_features.push_back(vector.values);
     prepared_.evaluation_force_N.push_back(row.force_N);
-    prepared_.evaluation_fold.push_back(fold);
   }
 
  private:
   PreparedTraining& prepared_;
-  FoldDealer folds_;
   std::size_t stride_;
   std::size_t seen_ = 0;
 };
 
-// The relaxation times of the scene, given ones instead, or identified ones.
-Result<std::vector<double>> scene_times(MotionSource& source, const TrainingRequest& request, const TrainingExtent& extent,
-                                        double force_noise_floor_N, Provenance& provenance, const FitControl& control) {
-  std::vector<double> times_s = filter_times(request.features);
-  if (request.relaxation != Relaxation::scene && times_s.empty()) {
-    return Error{"scene \"" + request.scene + "\" has no relaxation features; leave out --relaxation, or use a scene "
-                 "that has them (palpate scenes)"};
-  }
-  if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
-  if (request.relaxation != Relaxation::automatic) {
-    for (const double time_s : times_s) provenance.relaxation_times.push_back({time_s, 0.0});
-    return times_s;
-  }
-  const auto identified = identify_relaxation(source, extent.depth_m,
-                                              has_velocity(request.features) ? extent.rms_velocity_m_per_s : 0.0,
-                                              request.weighting, request.jnd, force_noise_floor_N, control);
-  if (!identified) return identified.error();
-  times_s.clear();
-  for (const IdentifiedTime& time : identified->times) {
-    times_s.push_back(time.time_s);
-    provenance.relaxation_times.push_back({time.time_s, time.standard_error_s});
-  }
-  return times_s;
-}
-
-// What all candidate lists of features share.
-struct Ground {
+// What all lists of features share.
+struct Given {
   MotionSource& source;
   DecisionRows& decisions;
   const TrainingRequest& request;
   const TrainingExtent& extent;
   const FoldDealer& dealer;  // of the source
-  double force_noise_floor_N;
+  const TrendProblem& problem;
 };
 
-// Trend, sites and correction strength of one list of features.
-Status prepare_list(PreparedTraining& prepared, const Ground& ground, const FeatureList& list,
-                    const FitControl& control) {
-  const TrainingRequest& request = ground.request;
-  ModelData& common = prepared.common;
-  if (Status status = fit_common_trend(prepared, ground.decisions.rows(), request, ground.extent,
-                                       ground.force_noise_floor_N, list, control);
-      !status) {
-    return status;
+// The relaxation times of the scene, given ones instead, or identified ones.
+Result<std::vector<double>> scene_times(const Given& given, Provenance& provenance, const FitControl& control) {
+  const TrainingRequest& request = given.request;
+  std::vector<double> times_s = filter_times(request.features);
+  if (request.relaxation != Relaxation::scene && times_s.empty()) {
+    return Error{"scene \"" + request.scene +
+                 "\" has no relaxation features; leave out --relaxation, or use a scene "
+                 "that has them (palpate scenes)"};
   }
+  if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
+  if (request.relaxation == Relaxation::automatic) {
+    auto identified = identify_relaxation(given.decisions.rows(), given.decisions.dealer(), given.problem,
+                                          has_velocity(request.features), request.relaxation_count, control, 0.1);
+    if (!identified) return identified.error();
+    times_s = std::move(*identified);
+  }
+  for (const double time_s : times_s) provenance.relaxation_times.push_back({time_s, 0.0});
+  return times_s;
+}
+
+// Everything, with the law of memory that the recordings show.
+Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& given, const FitControl& control) {
+  const auto scales = measure_times(given.decisions.rows(), control, 0.1);
+  if (!scales) return scales.error();
+  return find_memory_law(given.decisions.rows(), given.decisions.dealer(),
+                         dictionary(scales->sample_s, scales->longest_recording_s, given.extent.depth_m), given.problem,
+                         prepared.worth, control, 0.15);
+}
+
+// Of each part of the list: what the folds left out lose without it.
+void add_worth(PreparedTraining& prepared, const FeatureList& list, const TrendRows& rows,
+               const TrendRegression& regression, const LeftOutTrend& with_all, const Eigen::VectorXd& x) {
+  for (const FeatureColumns& group : feature_columns(list, rows)) {
+    ColumnList others;
+    for (const Eigen::Index column : regression.all_columns()) {
+      if (!std::binary_search(group.columns.begin(), group.columns.end(), column)) others.push_back(column);
+    }
+    const bool taken = (x(group.columns).array() > 0.0).any();
+    prepared.worth.push_back({group.name, taken, with_all.rms(), regression.left_out(others, &with_all).rms()});
+  }
+  std::stable_partition(prepared.worth.begin(), prepared.worth.end(),
+                        [](const FeatureWorth& one) { return one.taken; });
+}
+
+// Trend, sites and correction strength of one list of features.
+Status prepare_list(PreparedTraining& prepared, const Given& given, const FeatureList& list,
+                    const FitControl& control) {
+  const TrainingRequest& request = given.request;
   const bool papers = is_papers_recipe(request);
-  EvaluationSamples evaluation(prepared, ground.dealer, ground.extent.contact_samples);
-  TrainingSetOptions options{0.2, papers ? nullptr : &ground.dealer, ground.decisions.sample(), {}};
+  const bool automatic = request.choice == FeatureChoice::automatic && !papers;
+  ModelData& common = prepared.common;
+  common.corrects_trend = !papers;
+  const FoldDealer& dealer = given.decisions.dealer();
+  const FeatureList terms = papers ? FeatureList{} : list;
+  const auto rows = gather_rows(given.decisions.rows(), dealer, terms, given.problem, kTrendRows, 0.0, control, 0.2);
+  if (!rows) return rows.error();
+  const TrendRegression regression(*rows, dealer.folds(), given.problem.weighting, request.jnd,
+                                   given.problem.force_noise_floor_N);
+  const LeftOutTrend left_out = regression.left_out(regression.all_columns());
+  const Eigen::VectorXd x = regression.solve(regression.all_columns());
+  if (automatic) add_worth(prepared, list, *rows, regression, left_out, x);
+  FittedTrend fitted = fitted_trend(terms, *rows, x, !automatic);
+  common.trend = fitted.trend;
+  common.features = fitted.features;
+  if (papers) {
+    std::vector<FeatureSpec> filters;
+    for (const double time_s : all_times(list)) filters.push_back({FeatureKind::lowpass_velocity, time_s, {}});
+    common.features = with_filters(request.features, filters);
+  }
+  EvaluationSamples evaluation(prepared, given.extent.contact_samples);
+  TrainingSetOptions options{0.25, papers ? nullptr : &given.dealer, given.decisions.sample(), {}};
   options.also = [&](const MotionRow& row, const FeatureVector& vector) { evaluation.add(row, vector); };
-  auto set = make_training_set(ground.source, common.features, request.reduction, ground.force_noise_floor_N, control, options);
+  auto set = make_training_set(given.source, common.features, request.reduction, given.problem.force_noise_floor_N,
+                               control, options);
   if (!set) return set.error();
   prepared.set = std::move(*set);
-  if (!control.may_continue(0.25)) return interrupted();
-  common.largest_force_N = std::max(0.0, ground.extent.force_N);
+  if (!control.may_continue(0.3)) return interrupted();
+  common.largest_force_N = std::max(0.0, given.extent.force_N);
+  common.lowest_force_N = given.extent.lowest_force_N;
   common.offset = prepared.set.normalisation.offset;
   common.scale = prepared.set.normalisation.scale;
   common.lower = prepared.set.normalisation.lower;
@@ -281,62 +279,8 @@ Status prepare_list(PreparedTraining& prepared, const Ground& ground, const Feat
   common.jnd = request.jnd;
   if (!papers) prepared.strength.emplace();
   if (Status status = make_sites(prepared, request); !status) return status;
-  if (!papers) decide_strength(prepared, request.jnd, ground.dealer.folds(), ground.extent.strokes);
+  if (!papers) decide_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
   return {};
-}
-
-// Lists that the selected one must not lose against: the scene's own, and, where much
-// is left to explain, six times on a logarithmic ladder, each a feature.
-std::vector<FeatureList> rivals_of(const FeatureSelection& selection, const TrainingRequest& request,
-                                   double left_over_jnd) {
-  std::vector<FeatureList> rivals;
-  const auto add = [&](FeatureList rival) {
-    rival.slowing = selection.list.slowing;
-    rival.spline_elastic = selection.list.spline_elastic;
-    rival.spline_branches = selection.list.spline_branches;
-    rival.surface = selection.list.surface;
-    rivals.push_back(std::move(rival));
-  };
-  if (selection.turns_round && left_over_jnd > kLittleIsLeft_jnd) {
-    add(scene_list(request.features, filter_times(request.features)));
-  }
-  if (selection.turns_round && left_over_jnd > kMuchIsLeft_jnd) {
-    FeatureList ladder;
-    ladder.velocity = selection.list.surface.empty();  // eight features in all
-    const double shortest_s = std::max(kLadderFrom_s, selection.shortest_s);
-    const double longest_s = std::min(kLadderTo_s, selection.longest_s);
-    for (int i = 0; i < kLadderTimes; ++i) {
-      const double share = static_cast<double>(i) / (kLadderTimes - 1);
-      ladder.relaxation_times_s.push_back({shortest_s * std::pow(longest_s / shortest_s, share)});
-    }
-    add(std::move(ladder));
-  }
-  return rivals;
-}
-
-// Features as the recordings have it; `prepared` brings its provenance.
-Result<PreparedTraining> prepare_automatic(const PreparedTraining& begun, const Ground& ground,
-                                           const FitControl& control) {
-  const TrainingRequest& request = ground.request;
-  const SelectionInput input{ground.extent.depth_m,       ground.extent.rms_velocity_m_per_s, ground.force_noise_floor_N,
-                             ground.extent.turns_round(), request.weighting,                  request.jnd};
-  auto selection = select_features(ground.decisions.rows(), ground.decisions.dealer(), input, control, 0.1);
-  if (!selection) return selection.error();
-  const auto prepare = [&](const FeatureList& list) -> Result<PreparedTraining> {
-    PreparedTraining prepared = begun;
-    prepared.selection = *selection;
-    for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
-    if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
-    return prepared;
-  };
-  auto best = prepare(selection->list);
-  if (!best) return best.error();
-  for (const FeatureList& rival : rivals_of(*selection, request, best->strength->error_over_jnd)) {
-    auto other = prepare(rival);
-    if (!other) return other.error();
-    if (is_better(*other->strength, *best->strength)) best = std::move(other);
-  }
-  return best;
 }
 
 }  // namespace
@@ -344,41 +288,48 @@ Result<PreparedTraining> prepare_automatic(const PreparedTraining& begun, const 
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
   PreparedTraining prepared;
-  if (Status status = find_surfaces(source, request, prepared.common.provenance, control); !status) {
-    return status.error();
-  }
+  const auto surface_m = find_surfaces(source, request, prepared.common.provenance, control);
+  if (!surface_m) return surface_m.error();
   const auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (!control.may_continue(0.05)) return interrupted();
   if (!(extent->depth_m > 0.0)) {
-    return Error{"no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
-                 "record a press, or check the sign and zero of position_m"};
+    return Error{
+        "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
+        "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
-  const double force_noise_floor_N = std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
+  // Contact with a material that pulls is not one-sided: there no force is a force, too.
+  const double force_noise_floor_N = extent->lowest_force_N < 0.0
+                                         ? -std::numeric_limits<double>::infinity()
+                                         : std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
+  const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
+                             is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
   const FoldDealer dealer = dealer_for(source, *extent);
   auto decisions = DecisionRows::of(source, *extent, control);
   if (!decisions) return decisions.error();
-  const Ground ground{source, *decisions, request, *extent, dealer, force_noise_floor_N};
-  if (request.choice == FeatureChoice::automatic) {
-    auto automatic = prepare_automatic(prepared, ground, control);
-    if (!automatic) return automatic.error();
-    prepared = std::move(*automatic);
-  } else {
-    FeatureList list = request.list;
-    if (request.choice == FeatureChoice::scene) {
-      const auto times_s = scene_times(source, request, *extent, force_noise_floor_N, prepared.common.provenance, control);
-      if (!times_s) return times_s.error();
-      list = scene_list(request.features, *times_s);
-    } else {
-      for (const double time_s : all_times(list)) prepared.common.provenance.relaxation_times.push_back({time_s, 0.0});
-    }
-    if (!control.may_continue(0.15)) return interrupted();
-    if (Status status = prepare_list(prepared, ground, list, control); !status) return status.error();
+  const Given given{source, *decisions, request, *extent, dealer, problem};
+  FeatureList list = request.list;
+  // The paper's recipe has the scene's features, whatever the recordings would support.
+  const bool everything = request.choice == FeatureChoice::automatic && !is_papers_recipe(request);
+  if (everything) {
+    auto found = automatic_list(prepared, given, control);
+    if (!found) return found.error();
+    list = std::move(*found);
+  } else if (request.choice != FeatureChoice::given) {
+    const auto times_s = scene_times(given, prepared.common.provenance, control);
+    if (!times_s) return times_s.error();
+    list = scene_list(request.features, *times_s);
   }
+  if (Status status = prepare_list(prepared, given, list, control); !status) return status.error();
 
-  keep_position_zero(prepared.common);
+  // Positions of a model are those of its recordings.
+  for (FeatureSpec& spec : prepared.common.features) {
+    if (spec.kind == FeatureKind::depth) spec.surface_position_m = *surface_m;
+  }
   prepared.common.sensor = PositionSensor{source.encoder_step_m(), source.position_noise_m()};
   Provenance& provenance = prepared.common.provenance;
+  if (everything || request.choice == FeatureChoice::given)
+    provenance.relaxation_times = times_of(prepared.common.features);
   provenance.recordings = source.names();
   provenance.scene = request.scene;
   provenance.samples = source.rows();

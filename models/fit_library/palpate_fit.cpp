@@ -45,8 +45,10 @@ Status import_to(const std::string& table, const std::string& recording, bool ov
 
 palpate_check_result result_of(const RecordingCheck& check) {
   const std::string verdict = check.verdict();
-  return {verdict == "usable" ? 2 : verdict == "care" ? 1 : 0, check.noise_floor_within_jnd, check.surface_offset_m,
-          check.force_zero_N};
+  return {verdict == "usable" ? 2
+          : verdict == "care" ? 1
+                              : 0,
+          check.noise_floor_within_jnd, check.surface_offset_m, check.force_zero_N};
 }
 
 std::string findings_of(const RecordingCheck& check) {

@@ -123,8 +123,7 @@ const char* palpate_model_name(const palpate_model* model) {
   return model == nullptr ? "" : model->model->name().c_str();
 }
 
-palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error,
-                                   size_t error_size) {
+palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error, size_t error_size) {
   palpate_sensor sensor{};
   if (model != nullptr) {
     const palpate::PositionSensor known = palpate::sensor_with_step(model->model->data(), encoder_step_m);
@@ -156,12 +155,9 @@ int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* 
       place.fail(spec.error().message);
       return -1;
     }
-    *sensor = {spec->encoder_step_m,
-               spec->position_noise_m,
-               spec->velocity_noise_m_per_s,
-               spec->acceleration_noise_m_per_s2,
-               spec->has_velocity ? 1 : 0,
-               spec->has_acceleration ? 1 : 0};
+    *sensor = {spec->encoder_step_m,         spec->position_noise_m,
+               spec->velocity_noise_m_per_s, spec->acceleration_noise_m_per_s2,
+               spec->has_velocity ? 1 : 0,   spec->has_acceleration ? 1 : 0};
     return 0;
   });
 }

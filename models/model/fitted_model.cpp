@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -31,15 +32,21 @@ Status validate_positive(const std::string& field, double value) {
   return wrong(field, std::to_string(value), "a positive number");
 }
 
+Status validate_not_negative(const std::string& field, double value) {
+  if (value >= 0.0 && std::isfinite(value)) return {};
+  return wrong(field, std::to_string(value), "0 or more");
+}
+
+// Of a branch that relaxes at once the curve may be large, but it is a force.
+bool is_force(double value_N) { return std::abs(value_N) <= 1e9; }
+
 Status validate_drive(const std::string& field, const DriveCurve& drive) {
   if (Status status = validate_positive(field + ".reference_depth_m", drive.reference_depth_m); !status) return status;
-  for (const double coefficient : drive.coefficient_N) {
-    if (!std::isfinite(coefficient)) return wrong(field, "a non-finite number", "finite numbers");
+  if (std::all_of(drive.coefficient_N.begin(), drive.coefficient_N.end(), is_force) &&
+      std::all_of(drive.knot_N.begin(), drive.knot_N.end(), is_force)) {
+    return {};
   }
-  for (const double knot : drive.knot_N) {
-    if (!std::isfinite(knot)) return wrong(field + ".knot_N", "a non-finite number", "finite numbers");
-  }
-  return {};
+  return wrong(field, "a number that is no force", "at most 1e9 N");
 }
 
 Status validate_features(const std::vector<FeatureSpec>& features) {
@@ -48,24 +55,29 @@ Status validate_features(const std::vector<FeatureSpec>& features) {
   }
   for (const FeatureSpec& spec : features) {
     if (has_time(spec.kind)) {
-      if (Status status = validate_positive("features.relaxation_time_s", spec.relaxation_time_s); !status) return status;
+      if (Status status = validate_positive("features.relaxation_time_s", spec.relaxation_time_s); !status)
+        return status;
     }
     if (Status status = validate_drive("features.drive", spec.drive); !status) return status;
     if (!(std::abs(spec.slowing) <= kMostSlowing)) {
       return wrong("features.slowing", std::to_string(spec.slowing), "a number from -20 to 20");
     }
-    if (!(spec.surface_position_m >= 0.0) || !std::isfinite(spec.surface_position_m)) {
-      return wrong("features.surface_position_m", std::to_string(spec.surface_position_m), "0 or more");
+    if (!std::isfinite(spec.surface_position_m)) {
+      return wrong("features.surface_position_m", std::to_string(spec.surface_position_m), "a finite number");
     }
     if (!has_parts(spec.kind)) continue;
     if (spec.part_count < 1 || spec.part_count > kMaxFeatureParts) {
       return wrong("features.parts", std::to_string(spec.part_count) + " parts", "1 to 8");
     }
     for (std::size_t p = 0; p < spec.part_count; ++p) {
-      const bool stops = spec.kind == FeatureKind::stops;
-      const double constant = stops ? spec.parts[p].threshold_m : spec.parts[p].relaxation_time_s;
-      const char* field = stops ? "features.parts.threshold_m" : "features.parts.relaxation_time_s";
-      if (Status status = validate_positive(field, constant); !status) return status;
+      const FeaturePart& part = spec.parts[p];
+      if (is_bristle(spec.kind)) {
+        if (Status status = validate_positive("features.parts.threshold_m", part.threshold_m); !status) return status;
+      }
+      if (spec.kind != FeatureKind::stops) {
+        const Status status = validate_positive("features.parts.relaxation_time_s", part.relaxation_time_s);
+        if (!status) return status;
+      }
       if (Status status = validate_drive("features.parts.drive", spec.parts[p].drive); !status) return status;
     }
   }
@@ -73,9 +85,7 @@ Status validate_features(const std::vector<FeatureSpec>& features) {
 }
 
 Status validate_trend(const Trend& trend) {
-  if (!(trend.reference_depth_m > 0.0 && std::isfinite(trend.reference_depth_m))) {
-    return wrong("trend.reference_depth_m", std::to_string(trend.reference_depth_m), "a positive number");
-  }
+  if (Status status = validate_positive("trend.reference_depth_m", trend.reference_depth_m); !status) return status;
   const auto finite = [](double value) { return std::isfinite(value); };
   if (!std::all_of(trend.elastic_N.begin(), trend.elastic_N.end(), finite) ||
       !std::all_of(trend.elastic_knot_N.begin(), trend.elastic_knot_N.end(), finite) ||
@@ -83,17 +93,9 @@ Status validate_trend(const Trend& trend) {
       !std::all_of(trend.thinning_Ns_per_m.begin(), trend.thinning_Ns_per_m.end(), finite)) {
     return wrong("trend", "a non-finite number", "finite numbers");
   }
-  if (!(trend.thinning_velocity_m_per_s > 0.0) || !std::isfinite(trend.thinning_velocity_m_per_s)) {
-    return wrong("trend.thinning_velocity_m_per_s", std::to_string(trend.thinning_velocity_m_per_s),
-                 "a positive number");
-  }
-  for (const DriveCurve& curve : trend.softening) {
-    if (Status status = validate_drive("trend.softening", curve); !status) return status;
-  }
-  if (!(trend.velocity_limit_m_per_s >= 0.0) || !std::isfinite(trend.velocity_limit_m_per_s)) {
-    return wrong("trend.velocity_limit_m_per_s", std::to_string(trend.velocity_limit_m_per_s), "0 or more");
-  }
-  return {};
+  if (Status status = validate_positive("trend.thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s); !status)
+    return status;
+  return validate_not_negative("trend.velocity_limit_m_per_s", trend.velocity_limit_m_per_s);
 }
 
 Status validate_cover(const DomainCover& cover, Eigen::Index dimension) {
@@ -111,15 +113,44 @@ Status validate_cover(const DomainCover& cover, Eigen::Index dimension) {
   return {};
 }
 
+// A part of the force that is beyond this multiple of the largest forces that the file names
+// is a damaged number: the model would jump between 0 and its limit. The parts of a fitted
+// model cancel one another to within far less.
+constexpr double kMostOfLimit = 100.0;
+
+// At the recorded samples that the domain is made of.
+Status validate_forces(const ModelData& data) {
+  const double limit_N = kMostOfLimit * (data.largest_force_N + data.correction_limit_N + data.jnd.offset_N);
+  const TrendInputs inputs(data.features);
+  std::array<double, kMaxFeatures> features{};
+  for (Eigen::Index j = 0; j < data.cover.points.cols(); ++j) {
+    const auto u = data.cover.points.col(j);
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      features[static_cast<std::size_t>(i)] = data.offset(i) + data.scale(i) * u(i);
+    }
+    const double correction_N = data.correction->is_none() ? 0.0 : data.correction->evaluate(u.data());
+    for (const auto& [part_N, name] :
+         {std::pair{data.trend.at(features.data(), inputs), "trend"}, std::pair{correction_N, "correction"}}) {
+      if (std::abs(part_N) <= limit_N) continue;
+      char text[160];
+      std::snprintf(text, sizeof text, "%.3g N at domain.points[%d]", part_N, static_cast<int>(j));
+      const std::string found = text;
+      std::snprintf(text, sizeof text, "at most %.4g N, a hundred times the sum of largest_force_N, %s", limit_N,
+                    "correction_limit_N and the JND");
+      return wrong(name, found, text);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Status validate_model(const ModelData& data) {
   if (Status status = validate_features(data.features); !status) return status;
   const auto n = static_cast<Eigen::Index>(data.features.size());
-  for (const auto& [values, field] : {std::pair{&data.offset, "normalisation.offset"},
-                                      std::pair{&data.scale, "normalisation.scale"},
-                                      std::pair{&data.lower, "domain.lower"},
-                                      std::pair{&data.upper, "domain.upper"}}) {
+  for (const auto& [values, field] :
+       {std::pair{&data.offset, "normalisation.offset"}, std::pair{&data.scale, "normalisation.scale"},
+        std::pair{&data.lower, "domain.lower"}, std::pair{&data.upper, "domain.upper"}}) {
     if (Status status = validate_vector(*values, field, n); !status) return status;
   }
   if (!(data.scale.array() > 0.0).all()) return wrong("normalisation.scale", "0 or less", "positive numbers");
@@ -128,22 +159,25 @@ Status validate_model(const ModelData& data) {
   if (data.error_bound) {
     for (const double value :
          {data.error_bound->floor_N, data.error_bound->per_force, data.error_bound->per_distance_N}) {
-      if (!(value >= 0.0) || !std::isfinite(value)) return wrong("error_bound", std::to_string(value), "0 or more");
+      if (Status status = validate_not_negative("error_bound", value); !status) return status;
     }
   }
   if (data.sensor) {
     for (const double value : {data.sensor->encoder_step_m, data.sensor->position_noise_m}) {
-      if (!(value >= 0.0) || !std::isfinite(value)) return wrong("sensor", std::to_string(value), "0 or more");
+      if (Status status = validate_not_negative("sensor", value); !status) return status;
     }
   }
-  for (const auto& [value, field] : {std::pair{data.correction_limit_N, "correction_limit_N"},
-                                     std::pair{data.largest_force_N, "largest_force_N"},
-                                     std::pair{data.jnd.offset_N, "jnd.offset_N"},
-                                     std::pair{data.jnd.weber_fraction, "jnd.weber_fraction"}}) {
-    if (!(value >= 0.0) || !std::isfinite(value)) return wrong(field, std::to_string(value), "0 or more");
+  for (const auto& [value, field] :
+       {std::pair{data.correction_limit_N, "correction_limit_N"}, std::pair{data.largest_force_N, "largest_force_N"},
+        std::pair{data.jnd.offset_N, "jnd.offset_N"}, std::pair{data.jnd.weber_fraction, "jnd.weber_fraction"}}) {
+    if (Status status = validate_not_negative(field, value); !status) return status;
+  }
+  if (!(data.lowest_force_N <= 0.0) || !std::isfinite(data.lowest_force_N)) {
+    return wrong("lowest_force_N", std::to_string(data.lowest_force_N), "0 or less");
   }
   if (data.correction == nullptr) return wrong("model", "no correction", "centres, a grid, or the trend alone");
-  return data.correction->validate(static_cast<int>(n));
+  if (Status status = data.correction->validate(static_cast<int>(n)); !status) return status;
+  return validate_forces(data);
 }
 
 PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m) {
@@ -194,11 +228,11 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   }
   // A comparison that fails for NaN, so that nothing but a force leaves.
   const double largest_N = kForceMargin * data_.largest_force_N;
-  if (!(force_N > 0.0)) force_N = 0.0;
+  if (!(force_N > 0.0)) force_N = force_N < 0.0 ? std::max(force_N, data_.lowest_force_N) : 0.0;
   ForceEstimate estimate{std::min(force_N, largest_N), trust < 0.5 || features[depth_] > deepest_m_};
   if (data_.error_bound) {
     const double beyond = std::sqrt(squared_distance) - data_.cover.inner_radius;
-    estimate.predicted_error_N = data_.error_bound->at(estimate.force_N, beyond);
+    estimate.predicted_error_N = data_.error_bound->at(std::abs(estimate.force_N), beyond);
   }
   return estimate;
 }

@@ -1,16 +1,16 @@
 // A fitted force model: everything that evaluation needs, as data, and the
 // ForceModel that computes it.
 //
-//   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), 0, largest )
+//   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), lowest, largest )
 //   u = (x - offset) / scale                                    normalised features
 //
 // T: the trend (models/model/trend.h). h: the correction (models/model/correction.h):
-// eq. 2 of Hoever & Harders (2009), its grid, or none at all. g: trust, 1 near the data, 0 out of domain (models/model/domain_guard.h). b: 0
-// when h was fitted to what the trend leaves over (default), T(x) when h was
-// fitted to the force itself (the paper's own recipe). limit: the largest
-// correction that the training data called for. largest: 1.2 x the largest
-// training force. So out of its domain every method is the trend: continuous,
-// bounded, and never pulling the tool in.
+// eq. 2 of Hoever & Harders (2009), its grid, or none at all. g: trust, 1 near the data, 0 out of domain
+// (models/model/domain_guard.h). b: 0 when h was fitted to what the trend leaves over (default), T(x) when h was fitted
+// to the force itself (the paper's own recipe). limit: the largest correction that the training data called for.
+// largest: 1.2 x the largest training force. lowest: the lowest one where a material that sticks to the tool was
+// recorded, else 0. So out of its domain every method is the trend: continuous, bounded, and never pulling the tool in
+// by more than the material did.
 //
 // Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
 #pragma once
@@ -37,13 +37,14 @@ struct RelaxationTime {
   double standard_error_s = 0.0;  // 0: given, not identified
 };
 
-// Where the surface of a training recording was found, and what its force sensor
-// reads in air; both were subtracted.
+// How a training recording lies to the others of its set, what its force sensor reads in
+// air, and how late that is; all were taken off.
 struct RecordingSurface {
   std::string name;
   double offset_m = 0.0;
   double standard_error_m = 0.0;  // infinite: not known
   double force_zero_N = 0.0;
+  double lag_s = 0.0;  // by which the forces were moved back
 };
 
 // What the positions of the training recordings came in: the coarsest of them.
@@ -80,6 +81,7 @@ struct ModelData {
   bool corrects_trend = true;  // h was fitted to f - T; false: to f
   double correction_limit_N = 0.0;
   double largest_force_N = 0.0;  // of the training data; output stays below 1.2 times it
+  double lowest_force_N = 0.0;   // <= 0; of the training data where they pull, else 0
   DomainCover cover;
   std::optional<ErrorBound> error_bound;  // none in files of before, and of the paper's recipe
   // No effect on the force of a feature vector: what a stream, or an exported file, takes
@@ -123,7 +125,7 @@ class FittedModel final : public ForceModel {
   DomainGuard guard_;
   const Correction* correction_ = nullptr;  // of data_; null when the trend stands alone
   std::size_t dimension_ = 0;
-  std::size_t depth_ = 0;  // which feature
+  std::size_t depth_ = 0;   // which feature
   double deepest_m_ = 0.0;  // depths beyond are out of the domain whatever the guard's radius
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};

@@ -25,7 +25,8 @@ std::size_t whole_vectors(std::size_t count) {
 // The points `order`, and the last again up to `stride`; one row a coordinate.
 void fill_rows(const Eigen::MatrixXd& points, const std::vector<Eigen::Index>& order, std::size_t stride, float* to) {
   for (Eigen::Index k = 0; k < points.rows(); ++k)
-    for (std::size_t i = 0; i < stride; ++i) *to++ = simd::nearest_float(points(k, order[std::min(i, order.size() - 1)]));
+    for (std::size_t i = 0; i < stride; ++i)
+      *to++ = simd::nearest_float(points(k, order[std::min(i, order.size() - 1)]));
 }
 
 std::vector<Eigen::Index> all_of(const Eigen::MatrixXd& points) {

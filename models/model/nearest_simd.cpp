@@ -1,7 +1,6 @@
 #include "models/model/nearest_simd.h"
+#include "models/model/simd_targets.h"  // before the headers of Highway
 
-// As in rbf_simd.cpp.
-#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "models/model/nearest_simd.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
@@ -26,7 +25,8 @@ HWY_INLINE FloatVector float_squares(const float* coordinates, size_t stride, co
   const Floats d;
   FloatVector sum = hn::Zero(d);
   for (int k = 0; k < kDimension; ++k) {
-    const FloatVector difference = hn::Sub(hn::Set(d, x[k]), hn::Load(d, coordinates + static_cast<size_t>(k) * stride));
+    const FloatVector difference =
+        hn::Sub(hn::Set(d, x[k]), hn::Load(d, coordinates + static_cast<size_t>(k) * stride));
     sum = hn::MulAdd(difference, difference, sum);
   }
   return sum;

@@ -17,14 +17,22 @@ TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto index = static_cast<std::uint8_t>(i);
     switch (specs[i].kind) {
-      case FeatureKind::depth: depth = index; break;
-      case FeatureKind::velocity: velocity = index; break;
+      case FeatureKind::depth:
+        depth = index;
+        break;
+      case FeatureKind::velocity:
+        velocity = index;
+        break;
       case FeatureKind::maxwell_branch:
       case FeatureKind::maxwell_spectrum:
-      case FeatureKind::stops: force[force_count++] = index; break;
-      case FeatureKind::fading_peak: peak = index; break;
-      case FeatureKind::lowpass_velocity: break;  // the paper's features carry no stiffness
-      case FeatureKind::surface_lag: break;       // the branches follow it
+      case FeatureKind::stops:
+      case FeatureKind::creep:
+        force[force_count++] = index;
+        break;
+      case FeatureKind::lowpass_velocity:
+        break;  // the paper's features carry no stiffness
+      case FeatureKind::surface_lag:
+        break;  // the branches follow it
     }
   }
 }
@@ -34,10 +42,6 @@ double Trend::at(const double* features, const TrendInputs& inputs) const noexce
   const double velocity_m_per_s = inputs.velocity != TrendInputs::kNone ? features[inputs.velocity] : 0.0;
   double branches_N = 0.0;
   for (std::size_t b = 0; b < inputs.force_count; ++b) branches_N += features[inputs.force[b]];
-  if (inputs.peak != TrendInputs::kNone) {
-    const auto shares = softening_shares(depth_m, features[inputs.peak]);
-    for (std::size_t j = 0; j < shares.size(); ++j) branches_N += softening[j].at(depth_m) * shares[j];
-  }
   const double u = depth_m / reference_depth_m;
   const double speed = std::clamp(velocity_m_per_s, -velocity_limit_m_per_s, velocity_limit_m_per_s);
   const double inside = std::min(u, 1.0);

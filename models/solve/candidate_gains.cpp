@@ -81,7 +81,8 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
   parallel_for(kParts, [&](int part) {
     std::vector<Sums>& mine = sums[static_cast<std::size_t>(part)];
     for (Eigen::Index group = 0; group < groups; ++group) {
-      mine.push_back({Eigen::MatrixXd::Zero(kGroup, basis.size() + 1 - known_to(group)), Eigen::VectorXd::Zero(kGroup)});
+      mine.push_back(
+          {Eigen::MatrixXd::Zero(kGroup, basis.size() + 1 - known_to(group)), Eigen::VectorXd::Zero(kGroup)});
     }
     Eigen::MatrixXd centres(sites_.dimension(), kGroup);
     Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(kRows, kGroup);
@@ -98,8 +99,9 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
           scale_column(memory.col(j).data(), sites_.row_scale.data() + row, static_cast<std::size_t>(rows),
                        &sum.length_squared[j]);
         }
-        inner_products(&directions.coeffRef(row, known_to(group)), direction_stride, static_cast<std::size_t>(sum.shares.cols()),
-                       memory.data(), static_cast<std::size_t>(memory.outerStride()), static_cast<std::size_t>(rows),
+        inner_products(&directions.coeffRef(row, known_to(group)), direction_stride,
+                       static_cast<std::size_t>(sum.shares.cols()), memory.data(),
+                       static_cast<std::size_t>(memory.outerStride()), static_cast<std::size_t>(rows),
                        sum.shares.data());
       }
     }
@@ -114,8 +116,7 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
     for (Eigen::Index j = 0; j < group_size(group); ++j) {
       const Eigen::Index site = sites[static_cast<std::size_t>(group * kGroup + j)];
       const Eigen::Index known = known_to_[static_cast<std::size_t>(site)];
-      if (known == 0)
-        length_squared_[site] = outside_squared_[site] = exact_squared_[site] = total.length_squared[j];
+      if (known == 0) length_squared_[site] = outside_squared_[site] = exact_squared_[site] = total.length_squared[j];
       const Eigen::Index fresh = basis.size() - known;
       outside_squared_[site] -= total.shares.row(j).segment(known - first_known, fresh).squaredNorm();
       correlation_[site] = total.shares(j, total.shares.cols() - 1);

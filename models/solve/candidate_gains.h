@@ -17,8 +17,8 @@
 #include <span>
 #include <vector>
 
-#include "models/solve/orthogonal_basis.h"
 #include "models/model/rbf/rbf_evaluate.h"
+#include "models/solve/orthogonal_basis.h"
 
 namespace palpate {
 

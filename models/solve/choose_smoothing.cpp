@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/solve/lapack.h"
 #include "engine/base/parallel.h"
+#include "models/solve/lapack.h"
 #include "models/solve/projected_kernel.h"
 
 namespace palpate {
@@ -69,9 +69,7 @@ class Smoother {
   }
 
  private:
-  Eigen::VectorXd shares_left(double smoothing) const {
-    return (smoothing / (values_.array() + smoothing)).matrix();
-  }
+  Eigen::VectorXd shares_left(double smoothing) const { return (smoothing / (values_.array() + smoothing)).matrix(); }
 
   Eigen::MatrixXd vectors_;
   Eigen::VectorXd values_;
@@ -131,7 +129,8 @@ Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, 
   if (choice.criterion == kInfinity) choice = search(unit, smallest, [&](double s) { return smoother.generalised(s); });
   // Within two units of log likelihood.
   const double as_good = 1.0 + 4.0 / static_cast<double>(smoother.rank());
-  const SmoothingChoice likely = search(unit, smallest, [&](double s) { return smoother.likelihood(s); }, as_good);
+  const SmoothingChoice likely = search(
+      unit, smallest, [&](double s) { return smoother.likelihood(s); }, as_good);
   if (likely.smoothing > choice.smoothing) {
     choice.smoothing = likely.smoothing;
     choice.criterion = choice.by_group ? smoother.by_group(likely.smoothing) : smoother.generalised(likely.smoothing);

@@ -25,8 +25,7 @@ Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitContro
     for (std::size_t i = 0; i < batch; ++i) {
       std::size_t rest = first + i;
       for (std::size_t k = dimension; k-- > 0; rest /= grid.nodes[k].size())
-        points(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
-            grid.nodes[k][rest % grid.nodes[k].size()];
+        points(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = grid.nodes[k][rest % grid.nodes[k].size()];
     }
     out.resize(points.cols());
     function(points, out);

@@ -1,7 +1,6 @@
 #include "models/solve/inner_products_simd.h"
+#include "models/model/simd_targets.h"  // before the headers of Highway
 
-// As in rbf_simd.cpp.
-#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "models/solve/inner_products_simd.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
@@ -56,12 +55,18 @@ void inner_products(const double* directions, size_t direction_stride, size_t co
   const double* rest = directions + j * direction_stride;
   double* rest_shares = shares + j * kProductColumns;
   switch (count - j) {
-    case 5: return inner_products_tile<5>(rest, direction_stride, columns, column_stride, rows, rest_shares);
-    case 4: return inner_products_tile<4>(rest, direction_stride, columns, column_stride, rows, rest_shares);
-    case 3: return inner_products_tile<3>(rest, direction_stride, columns, column_stride, rows, rest_shares);
-    case 2: return inner_products_tile<2>(rest, direction_stride, columns, column_stride, rows, rest_shares);
-    case 1: return inner_products_tile<1>(rest, direction_stride, columns, column_stride, rows, rest_shares);
-    default: return;
+    case 5:
+      return inner_products_tile<5>(rest, direction_stride, columns, column_stride, rows, rest_shares);
+    case 4:
+      return inner_products_tile<4>(rest, direction_stride, columns, column_stride, rows, rest_shares);
+    case 3:
+      return inner_products_tile<3>(rest, direction_stride, columns, column_stride, rows, rest_shares);
+    case 2:
+      return inner_products_tile<2>(rest, direction_stride, columns, column_stride, rows, rest_shares);
+    case 1:
+      return inner_products_tile<1>(rest, direction_stride, columns, column_stride, rows, rest_shares);
+    default:
+      return;
   }
 }
 

@@ -21,8 +21,8 @@ void dtrsm_(const char*, const char*, const char*, const char*, const int*, cons
             const int*, double*, const int*);
 void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
             double*, const int*);
-void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*,
-             const int*, int*);
+void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*, const int*,
+             int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
 void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
 void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
@@ -60,7 +60,8 @@ std::recursive_mutex& blas_mutex() {
 bool choose_blas_core() {
 #ifdef __x86_64__
   constexpr const char* kVariable = "OPENBLAS_CORETYPE";
-  if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr) return false;
+  if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr)
+    return false;
   if (std::getenv(kVariable) != nullptr || std::string_view(openblas_get_corename()) != "Prescott") return false;
   __builtin_cpu_init();
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return false;
@@ -200,8 +201,7 @@ bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
   const int work_size = static_cast<int>(wanted);
   Eigen::VectorXd work(work_size);
   std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
-  dsyevd_("V", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, integers.data(), &wanted_integers,
-          &info);
+  dsyevd_("V", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, integers.data(), &wanted_integers, &info);
   return info == 0;
 }
 
@@ -209,8 +209,10 @@ namespace {
 
 template <typename Scalar, typename Single, typename Double>
 constexpr auto of(Single* in_single, Double* in_double) {
-  if constexpr (std::is_same_v<Scalar, float>) return in_single;
-  else return in_double;
+  if constexpr (std::is_same_v<Scalar, float>)
+    return in_single;
+  else
+    return in_double;
 }
 
 // The routines of either precision.

@@ -3,9 +3,9 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "models/solve/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
+#include "models/solve/lapack.h"
 
 namespace palpate {
 namespace {
@@ -90,8 +90,7 @@ Eigen::VectorXd weights_of(const Eigen::VectorXd& unknowns, const PenaltySpace& 
 
 PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres) {
   const Eigen::Index n = centres.cols();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
-      tail_matrix(tail_degree(kernel), centres));
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(tail_matrix(tail_degree(kernel), centres));
   PenaltySpace space;
   gather_reflectors(qr, qr.rank(), space);
   space.free = n - qr.rank();
@@ -146,8 +145,8 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   report.rank = solution.rank + (n - free);
   report.condition = solution.condition;
   report.smoothing = smoothing;
-  const Eigen::VectorXd rest =
-      triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights - triangle.middleCols(n, tail) * fitted.function.tail;
+  const Eigen::VectorXd rest = triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights -
+                               triangle.middleCols(n, tail) * fitted.function.tail;
   report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(folded.sites));
   fitted.function.weights *= folded.strength;
   fitted.function.tail *= folded.strength;

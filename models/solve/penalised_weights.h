@@ -11,10 +11,10 @@
 
 #include <Eigen/Core>
 
+#include "models/model/rbf/kernels.h"
 #include "models/solve/fit_report.h"
 #include "models/solve/lapack.h"
 #include "models/solve/solve_weights.h"
-#include "models/model/rbf/kernels.h"
 
 namespace palpate {
 

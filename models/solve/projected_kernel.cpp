@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "models/solve/lapack.h"
 #include "engine/base/parallel.h"
 #include "models/model/rbf/polynomial_tail.h"
+#include "models/solve/lapack.h"
 
 namespace palpate {
 

@@ -58,9 +58,9 @@ class ProjectedKernel {
   KernelKind kernel_;
   PointArrays points_;
   KernelProduct product_;
-  Eigen::MatrixXd q_;             // N x rank
-  Eigen::MatrixXd to_tail_;       // L x rank: coefficients of G from those of q
-  Eigen::MatrixXd half_update_;   // V of P K P = K - q V^T - V q^T
+  Eigen::MatrixXd q_;            // N x rank
+  Eigen::MatrixXd to_tail_;      // L x rank: coefficients of G from those of q
+  Eigen::MatrixXd half_update_;  // V of P K P = K - q V^T - V q^T
   Eigen::VectorXd data_;
   double mean_eigenvalue_ = 1.0;
   double smallest_smoothing_ = 0.0;

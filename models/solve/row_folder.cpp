@@ -69,8 +69,8 @@ RowFolder::Factor RowFolder::append(Eigen::Index block, Eigen::MatrixXd& triangl
 void RowFolder::carry(const Factor& factor, Half& half) const {
   Eigen::VectorXd data(columns_ + factor.rows);
   data.head(columns_) = half.data;
-  data.tail(factor.rows) =
-      sites_.target_N.segment(factor.first, factor.rows).cwiseProduct(sites_.row_scale.segment(factor.first, factor.rows));
+  data.tail(factor.rows) = sites_.target_N.segment(factor.first, factor.rows)
+                               .cwiseProduct(sites_.row_scale.segment(factor.first, factor.rows));
   apply_transposed_q(factor.qr, factor.factors, data);
   half.data = data.head(columns_);
   half.rest_squared += data.tail(factor.rows).squaredNorm();

@@ -33,9 +33,8 @@ bool SiteTree::split(Eigen::Index leaf) {
   const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(range.begin);
   const auto end = order_.begin() + static_cast<std::ptrdiff_t>(range.end);
   const auto value = [&](Eigen::Index site) { return points_(widest, site); };
-  std::sort(begin, end, [&](Eigen::Index a, Eigen::Index b) {
-    return value(a) != value(b) ? value(a) < value(b) : a < b;
-  });
+  std::sort(begin, end,
+            [&](Eigen::Index a, Eigen::Index b) { return value(a) != value(b) ? value(a) < value(b) : a < b; });
   // The boundary between different values nearest to the middle.
   const auto middle = begin + (end - begin) / 2;
   const double median = value(*middle);

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "models/solve/lapack.h"
-#include "models/solve/row_folder.h"
 #include "models/solve/penalised_weights.h"
+#include "models/solve/row_folder.h"
 
 namespace palpate {
 namespace {
@@ -149,8 +149,8 @@ Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
                std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
 }
 
-Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres,
-                               Ridge ridge, double truncation) {
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres, Ridge ridge,
+                               double truncation) {
   if (ridge == Ridge::by_evidence && folded.smoothing && kernel == KernelKind::cubic) {
     return penalised_weights(folded, kernel, centres);
   }

@@ -27,8 +27,8 @@
 #include <memory>
 #include <optional>
 
-#include "engine/base/result.h"
 #include "engine/base/fit_control.h"
+#include "engine/base/result.h"
 #include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
@@ -46,7 +46,7 @@ struct FoldedRows {
   // last row is 0 but for its last value. R of the QR factorisation, for one.
   Eigen::MatrixXd triangle;
   Eigen::Index sites = 0;
-  Eigen::Index rows = 0;  // the sites that count for something
+  Eigen::Index rows = 0;            // the sites that count for something
   std::optional<double> smoothing;  // of the sites
   double strength = 1.0;
 };
@@ -60,8 +60,8 @@ Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres);
 enum class Ridge { none, by_evidence };
 
 // solve_weights without its first step.
-Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres,
-                               Ridge ridge, double truncation);
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres, Ridge ridge,
+                               double truncation);
 
 // `centres`: d x n, any points, n may be 0. Errors: those of validate_sites; a
 // wrong centre size; the decomposition did not converge; interrupted.

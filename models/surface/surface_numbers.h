@@ -14,6 +14,11 @@ namespace palpate {
 inline constexpr double kUnknownError = std::numeric_limits<double>::infinity();
 // An offset counts when it is this many standard errors from 0.
 inline constexpr double kSignificantErrors = 2.0;
+// Smaller offsets are not told from 0: no motion estimate from one touch is finer.
+inline constexpr double kLeastOffset_m = 0.02e-3;
+// A surface that is not told better than to this, two standard errors, is not told: in
+// soft materials, where forces begin to rise by 0.1 N/mm, it is one JND.
+inline constexpr double kWidestSurface_m = 0.5e-3;
 
 // What an error counts: its square up to `limit`, in proportion beyond (Huber 1964).
 inline double huber(double error, double limit) {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "models/training/fit_trend.h"
 #include "models/surface/surface_estimate.h"
 #include "models/surface/surface_numbers.h"
+#include "models/training/trend_regression.h"
 
 namespace palpate {
 namespace {
@@ -112,16 +112,6 @@ std::size_t approach_end(const std::vector<SurfaceRow>& rows, std::size_t at, do
   return at;
 }
 
-double outermost_m(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches) {
-  double outermost_m = kUnknownError;
-  for (const Touch& touch : touches) {
-    for (std::size_t i = touch.begin; i < touch.end; ++i) {
-      outermost_m = std::min(outermost_m, rows[i].motion.position_m);
-    }
-  }
-  return outermost_m;
-}
-
 struct FormOnset {
   double at_m = 0.0;
   double cost = 0.0;       // N^2
@@ -145,20 +135,24 @@ FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
     step_m *= 0.25;
     scan(around_m - 4.0 * step_m, around_m + 4.0 * step_m, step_m);
   }
-  onset.curvature = (cost.at(onset.at_m - kCurvatureStep_m) + cost.at(onset.at_m + kCurvatureStep_m) -
-                     2.0 * onset.cost) / (kCurvatureStep_m * kCurvatureStep_m);
+  onset.curvature =
+      (cost.at(onset.at_m - kCurvatureStep_m) + cost.at(onset.at_m + kCurvatureStep_m) - 2.0 * onset.cost) /
+      (kCurvatureStep_m * kCurvatureStep_m);
   return onset;
 }
 
 }  // namespace
 
-std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double zero_N, double threshold_N) {
+std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double zero_N, double threshold_N,
+                                   double air_end_m) {
   std::vector<Touch> touches;
+  bool in_air = false;
   bool rested = true;  // nothing is known of what came before
   double left_s = 0.0;
   std::size_t run = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double time_s = rows[i].sample.time_s;
+    in_air = in_air || rows[i].motion.position_m < air_end_m;
     if (!(rows[i].force_N - zero_N > threshold_N)) {
       run = 0;
       const bool out = touches.empty() || rows[i].motion.position_m < touches.front().first_force_m;
@@ -170,9 +164,10 @@ std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double z
     rested = false;
     const std::size_t first = i + 1 - kForceRun;
     const double first_m = rows[first].motion.position_m;
-    const Touch touch{approach_begin(rows, first, first_m - kTouchOut_m), approach_end(rows, first, first_m + kTouchIn_m),
-                      first_m};
-    if (touch.end >= first + kLeastTouchRows) touches.push_back(touch);
+    const Touch touch{approach_begin(rows, first, first_m - kTouchOut_m),
+                      approach_end(rows, first, first_m + kTouchIn_m), first_m};
+    if (in_air && touch.end >= first + kLeastTouchRows) touches.push_back(touch);
+    in_air = false;
   }
   return touches;
 }
@@ -185,16 +180,12 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
       std::max(std::min(linear.cost, ball.cost) / linear.degrees_of_freedom, force_noise_N * force_noise_N);
   const double drop = (ball.cost - linear.cost) / std::max(variance, 1e-18);
   const FormOnset& chosen = drop > kLinearDrop ? linear : ball;
-  Onset onset{chosen.at_m, kUnknownError, false};
+  Onset onset{chosen.at_m, kUnknownError};
   if (chosen.curvature > 0.0) {
     // J rises by noise^2 within one standard error.
     onset.standard_error_m = std::max(kOnsetFloor_m, std::sqrt(2.0 * variance / chosen.curvature));
     const bool clear = drop > kClearDrop || drop < -kClearDrop;
     if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * (linear.at_m - ball.at_m));
-    // A recording that begins in contact never saw its onset.
-    const double unseen_m = std::max(0.0, outermost_m(rows, touches) - onset.at_m);
-    onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * unseen_m);
-    onset.seen = unseen_m <= kLeastOffset_m;
   }
   return onset;
 }

@@ -20,11 +20,12 @@ struct Touch {
 struct Onset {
   double at_m = 0.0;
   double standard_error_m = 0.0;  // infinite where there is no minimum
-  bool seen = false;  // the tool was out there before it touched
 };
 
-// `zero_N`: what the force sensor reads in air. `threshold_N`: beyond its noise.
-std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double zero_N, double threshold_N);
+// `zero_N`: what the force sensor reads in air. `threshold_N`: beyond its noise. Of touches
+// before which the tool was outside `air_end_m`.
+std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double zero_N, double threshold_N,
+                                   double air_end_m);
 
 // Of all `touches`, at least one, together; they share the onset and nothing else.
 Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches, double zero_N,

@@ -1,186 +1,226 @@
 #include "models/surface/surface_registration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <utility>
 
-#include "models/surface/common_trend.h"
+#include "engine/tick/jnd.h"
+#include "models/surface/common_fit.h"
+#include "models/surface/force_lag.h"
+#include "models/surface/free_air.h"
+#include "models/surface/surface_estimate.h"
 #include "models/surface/surface_numbers.h"
 
 namespace palpate {
 namespace {
 
-// Rows of all recordings together for the common trend, and of each for its onset.
+// Rows of all recordings together for the common fit, and of each for its onset.
 constexpr std::size_t kCommonRows = 4000;
+constexpr std::size_t kLeastMemberRows = 300;
 constexpr std::size_t kOnsetRows = 400000;
 // Further apart the rows of an approach are too few to tell where force begins: of a
 // recording of hours at 1 kHz the first seven minutes tell it.
 constexpr double kCoarsestOnset_s = 1.5e-3;
-// A shift common to all recordings changes no force of the model, only where its zero
-// lies; below what the onset of real specimens tells it stays as recorded.
-constexpr double kLeastCommonShift_m = 0.25e-3;
-constexpr int kSteps = 12;
-constexpr double kConverged_m = 0.2e-6;
-constexpr double kLongestStep_m = 0.5e-3;
-// The share of what the trend cannot follow that may look like a shift: on pairs of
-// virtual recordings, most of materials that are no sum of springs and dashpots, two of
-// these shares were never exceeded (worst: a sponge with 0.43 of its misfit).
-constexpr double kMisfitShare = 0.35;
-constexpr double kNoForceDeviations = 3.0;
-constexpr double kNoForceFloor_N = 0.01;
+// Two recordings must share so much of the shorter way.
+constexpr double kLeastOverlap = 0.3;
+constexpr double kCoarseSteps = 120.0;
+constexpr double kFineShift_m = 2e-6;
+// Lags that agree to this are one.
+constexpr double kSameLag_s = 3e-3;
+// Of the rows in contact, beyond which some lie outside of the surface for certain.
+constexpr double kOuterShare = 0.005;
+constexpr double kOuterNoises = 5.0;
+constexpr double kOuterRange = 0.01;  // of the largest force: sensors wander
+// A depth that lies elsewhere by less changes no force of the model.
+constexpr double kLeastSurface_m = 0.25e-3;
 
-RegisteredMember member_of(const std::vector<SurfaceRow>& rows, double force_noise_N, std::size_t common_rows) {
-  RegisteredMember member;
+struct Member {
+  std::vector<SurfaceRow> rows;  // thinned, force zero taken off
+  SurfaceEstimate own;
+  double low_m = 0.0;
+  double high_m = 0.0;
+  Located place;
+
+  double way_m() const { return high_m - low_m; }
+};
+
+// The lag that the recordings have in common.
+double common_lag_s(const std::vector<std::vector<SurfaceRow>>& recordings, double force_noise_N) {
+  std::vector<double> lags_s;
+  for (const auto& rows : recordings) {
+    if (!find_free_air(rows, force_noise_N).found) continue;
+    const Located lag = find_force_lag(rows, force_noise_N);
+    if (lag.at != 0.0) lags_s.push_back(lag.at);
+  }
+  if (lags_s.empty() || 2 * lags_s.size() < recordings.size()) return 0.0;
+  const double lag_s = median_of(lags_s);
+  const bool agree =
+      std::all_of(lags_s.begin(), lags_s.end(), [&](double one_s) { return std::abs(one_s - lag_s) <= kSameLag_s; });
+  return agree ? lag_s : 0.0;
+}
+
+Member member_of(const std::vector<SurfaceRow>& rows, double force_noise_N, std::size_t common_rows) {
+  Member member;
   member.own = estimate_surface(rows, force_noise_N);
   member.rows = thinned_rows(rows, common_rows);
-  for (SurfaceRow& row : member.rows) row.force_N -= member.own.force_zero_N;
+  const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
+    return a.motion.position_m < b.motion.position_m;
+  });
+  member.low_m = low->motion.position_m;
+  member.high_m = high->motion.position_m;
   return member;
 }
 
-struct Consistent {
-  std::vector<double> offset_m;
-  std::vector<double> error_m;
-
-  // What cannot be told from 0.
-  double least_m(std::size_t r) const { return std::max(kLeastOffset_m, kSignificantErrors * error_m[r]); }
-};
-
-Consistent align(CommonTrend& trend, std::vector<double> offset_m) {
-  double cost = trend.fit(offset_m);
-  for (int round = 0; round < kSteps; ++round) {
-    trend.gather();
-    const std::vector<double> step = trend.step();
-    double longest_m = 0.0;
-    for (const double value : step) longest_m = std::max(longest_m, std::abs(value));
-    double share = std::min(1.0, kLongestStep_m / std::max(longest_m, 1e-12));
-    bool better = false;
-    for (int halving = 0; halving < 4 && !better && share * longest_m > kConverged_m; ++halving, share *= 0.5) {
-      std::vector<double> trial = offset_m;
-      for (std::size_t r = 0; r < trial.size(); ++r) trial[r] += share * step[r];
-      const double trial_cost = trend.fit(trial);
-      better = trial_cost < cost;
-      if (!better) continue;
-      cost = trial_cost;
-      offset_m = trial;
-    }
-    if (!better) break;
-  }
-  trend.fit(offset_m);
-  trend.gather();
-  Consistent result{offset_m, std::vector<double>(offset_m.size(), 0.0)};
-  std::vector<std::vector<double>> left_out;
-  for (std::size_t fold = 0; fold < CommonTrend::kFolds; ++fold) left_out.push_back(trend.step(fold));
-  for (std::size_t r = 0; r < offset_m.size(); ++r) {
-    double mean = 0.0;
-    double sum = 0.0;
-    for (const auto& step : left_out) mean += step[r] / CommonTrend::kFolds;
-    for (const auto& step : left_out) sum += (step[r] - mean) * (step[r] - mean);
-    const double jackknife_m = std::sqrt(sum * (CommonTrend::kFolds - 1.0) / CommonTrend::kFolds);
-    result.error_m[r] = std::hypot(jackknife_m, kMisfitShare * trend.misfit_m(r));
-  }
-  return result;
+// Where `member` lies to those in `fit`, which go from `low_m` to `high_m`.
+Located place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
+  const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
+  const double from_m = member.low_m - high_m + overlap_m;
+  const double to_m = member.high_m - low_m - overlap_m;
+  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFineShift_m, kWidestSurface_m};
+  return locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
 }
 
-// Recordings that this shift leaves as recorded.
-std::size_t unmoved(const Consistent& consistent, double shift_m) {
-  std::size_t count = 0;
-  for (std::size_t r = 0; r < consistent.offset_m.size(); ++r) {
-    if (std::abs(consistent.offset_m[r] + shift_m) <= consistent.least_m(r)) ++count;
+// The recording with the longest way stays at 0; the others, the longest first, are
+// placed one by one beside those that are.
+void place_all(std::vector<Member>& members, double force_noise_N, const FitControl& control) {
+  std::vector<std::size_t> order(members.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return members[a].way_m() > members[b].way_m(); });
+  Member& first = members[order.front()];
+  first.place.told = true;
+  double low_m = first.low_m;
+  double high_m = first.high_m;
+  CommonFit fit(low_m, high_m, force_noise_N);
+  fit.add(first.rows, 0.0);
+  for (std::size_t k = 1; k < order.size() && control.may_continue(0.0); ++k) {
+    Member& member = members[order[k]];
+    member.place = place_of(fit, member, low_m, high_m);
+    if (!member.place.told) continue;
+    fit.add(member.rows, member.place.at);
+    low_m = std::min(low_m, member.low_m - member.place.at);
+    high_m = std::max(high_m, member.high_m - member.place.at);
   }
-  return count;
 }
 
-// Of the shifts within `tolerance_m` of what the onsets say, the one that leaves most
-// recordings as they are, and of those the nearest.
-double simplest_shift_m(const Consistent& consistent, double onset_m, double tolerance_m) {
-  double best_m = onset_m;
-  std::size_t most = unmoved(consistent, onset_m);
-  for (const double offset_m : consistent.offset_m) {
-    if (std::abs(-offset_m - onset_m) > tolerance_m) continue;
-    const std::size_t count = unmoved(consistent, -offset_m);
-    const bool nearer = count == most && std::abs(-offset_m - onset_m) < std::abs(best_m - onset_m);
-    if (count > most || nearer) {
+bool unmoved(const Member& member, double shift_m) {
+  return std::abs(member.place.at - shift_m) <=
+         std::max(kLeastOffset_m, kSignificantErrors * member.place.standard_error);
+}
+
+// Of the shifts common to all, the one that leaves most recordings as they are, and of
+// those the smallest.
+double common_shift_m(const std::vector<Member>& members) {
+  double best_m = 0.0;
+  std::ptrdiff_t most = -1;
+  for (const Member& candidate : members) {
+    if (!candidate.place.told) continue;
+    const double shift_m = candidate.place.at;
+    const auto count = std::count_if(members.begin(), members.end(),
+                                     [&](const Member& one) { return one.place.told && unmoved(one, shift_m); });
+    if (count > most || (count == most && std::abs(shift_m) < std::abs(best_m))) {
       most = count;
-      best_m = -offset_m;
+      best_m = shift_m;
     }
   }
   return best_m;
 }
 
-// Adds the shift common to all, from the onsets, weighted by their errors; without
-// any the one that moves half of the recordings one way and half the other. Returns
-// its error.
-double anchor(Consistent& consistent, const std::vector<RegisteredMember>& members) {
+// Where force begins in all recordings together, moved by their offsets; 0 where none
+// of them shows free air, or where it cannot be told from 0.
+double common_surface_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces) {
   double sum = 0.0;
   double weights = 0.0;
   for (std::size_t r = 0; r < members.size(); ++r) {
-    const double own_error_m = members[r].own.standard_error_m;
-    if (!std::isfinite(own_error_m)) continue;
-    const double weight = 1.0 / (own_error_m * own_error_m);
-    sum += weight * (members[r].own.raw_offset_m - consistent.offset_m[r]);
+    const SurfaceEstimate& own = members[r].own;
+    if (!own.told()) continue;
+    const double weight = 1.0 / (own.standard_error_m * own.standard_error_m);
+    sum += weight * (own.raw_offset_m - surfaces[r].offset_m);
     weights += weight;
   }
-  const double onset_m = weights > 0.0 ? sum / weights : -median_of(consistent.offset_m);
-  const double error_m = weights > 0.0 ? std::sqrt(1.0 / weights) : kUnknownError;
-  const double shift_m =
-      simplest_shift_m(consistent, onset_m, std::max(kSignificantErrors * error_m, kLeastCommonShift_m));
-  for (double& offset_m : consistent.offset_m) offset_m += shift_m;
-  return error_m;
+  if (!(weights > 0.0)) return 0.0;
+  const double at_m = sum / weights;
+  return std::abs(at_m) > std::max(kLeastSurface_m, kSignificantErrors / std::sqrt(weights)) ? at_m : 0.0;
 }
 
-std::vector<RegisteredSurface> registered(const std::vector<RegisteredMember>& members,
-                                          const std::vector<FeatureSpec>& features, double force_noise_floor_N) {
-  std::vector<RegisteredSurface> surfaces;
-  for (const RegisteredMember& member : members) {
-    const bool told = members.size() > 1 || (member.own.onset_seen && std::abs(member.own.offset_m) > kLeastCommonShift_m);
-    surfaces.push_back({told ? member.own.offset_m : 0.0, member.own.standard_error_m, member.own.force_zero_N});
+// The outermost position with a force for certain, of all moved by their offsets; at
+// least `surface_m` where no more than a few rows lie outside of that.
+double outermost_contact_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces,
+                           double force_noise_N, double surface_m) {
+  double largest_N = 0.0;
+  for (const Member& member : members) {
+    for (const SurfaceRow& row : member.rows) largest_N = std::max(largest_N, std::abs(row.force_N));
   }
-  if (members.size() < 2) return surfaces;
-  std::vector<double> start_m;
-  for (const RegisteredMember& member : members) {
-    start_m.push_back(std::isfinite(member.own.standard_error_m) ? member.own.raw_offset_m : 0.0);
-  }
-  CommonTrend trend(members, features, force_noise_floor_N, start_m);
-  Consistent consistent = align(trend, start_m);
-  const double common_error_m = anchor(consistent, members);
-  // One that is certainly elsewhere calls for all: half of a set moved is worse than none.
-  const bool any = unmoved(consistent, 0.0) < members.size();
+  const double least_N = std::max({JndLine{}.at(0.0), kOuterNoises * force_noise_N, kOuterRange * largest_N});
+  std::vector<double> positions_m;
   for (std::size_t r = 0; r < members.size(); ++r) {
-    const double offset_m = consistent.offset_m[r];
-    surfaces[r].offset_m = any && std::abs(offset_m) > kLeastOffset_m ? offset_m : 0.0;
-    surfaces[r].standard_error_m = std::hypot(consistent.error_m[r], common_error_m);
+    if (members[r].own.tool_mass_kg > 0.0) return surface_m;
+    for (const SurfaceRow& row : members[r].rows) {
+      const bool air = members[r].own.free_air && row.motion.position_m < members[r].own.air_end_m;
+      if (!air && std::abs(row.force_N) > least_N) positions_m.push_back(row.motion.position_m - surfaces[r].offset_m);
+    }
   }
-  return surfaces;
+  const auto few = static_cast<std::size_t>(kOuterShare * static_cast<double>(positions_m.size()));
+  if (positions_m.size() <= few + 1) return surface_m;
+  const auto at = positions_m.begin() + static_cast<std::ptrdiff_t>(few);
+  std::nth_element(positions_m.begin(), at, positions_m.end());
+  return *at < surface_m ? *std::min_element(positions_m.begin(), at + 1) : surface_m;
+}
+
+RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N, const FitControl& control) {
+  const bool zeros = std::all_of(members.begin(), members.end(), [](const Member& one) { return one.own.free_air; });
+  for (Member& member : members) {
+    if (!zeros) member.own.force_zero_N = 0.0;
+    for (SurfaceRow& row : member.rows) row.force_N -= member.own.force_zero_N;
+  }
+  RegisteredSurfaces result;
+  if (members.size() > 1) place_all(members, force_noise_N, control);
+  const double shift_m = members.size() > 1 ? common_shift_m(members) : 0.0;
+  for (const Member& member : members) {
+    RegisteredSurface one{0.0, kUnknownError, member.own.force_zero_N};
+    if (members.size() == 1) one.standard_error_m = member.own.standard_error_m;
+    if (member.place.told) {
+      one.standard_error_m = member.place.standard_error;
+      if (!unmoved(member, shift_m)) one.offset_m = member.place.at - shift_m;
+    }
+    result.recordings.push_back(one);
+  }
+  result.surface_position_m =
+      outermost_contact_m(members, result.recordings, force_noise_N, common_surface_m(members, result.recordings));
+  return result;
 }
 
 }  // namespace
 
-Result<std::vector<RegisteredSurface>> register_surfaces(MotionSource& source, const std::vector<FeatureSpec>& features,
-                                                         const FitControl& control, double fraction) {
-  std::vector<RegisteredMember> members;
+Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control, double fraction) {
+  std::vector<Member> members;
   GrowingStride rows(kOnsetRows, kCoarsestOnset_s);
   std::vector<std::vector<SurfaceRow>> recordings;
-  const Status status = source.for_each([&](const MotionRow& row) {
-    if (row.first && row.recording > 0) {
-      recordings.push_back(rows.rows());
-      rows = GrowingStride(kOnsetRows, kCoarsestOnset_s);
-    }
-    rows.add({row.sample, row.motion, row.force_N});
-    return true;
-  }, control, fraction);
+  const Status status = source.for_each(
+      [&](const MotionRow& row) {
+        if (row.first && row.recording > 0) {
+          recordings.push_back(rows.rows());
+          rows = GrowingStride(kOnsetRows, kCoarsestOnset_s);
+        }
+        rows.add({row.sample, row.motion, row.force_N});
+        return true;
+      },
+      control, fraction);
   if (!status) return status.error();
   recordings.push_back(rows.rows());
-  const std::size_t share = std::max<std::size_t>(200, kCommonRows / recordings.size());
+  const double lag_s = common_lag_s(recordings, source.force_noise_N());
+  if (!control.may_continue(fraction)) return interrupted();
+  for (auto& recording : recordings) {
+    if (lag_s != 0.0) recording = without_lag(recording, lag_s);
+  }
+  const std::size_t share = std::max(kLeastMemberRows, kCommonRows / recordings.size());
   for (const auto& recording : recordings) members.push_back(member_of(recording, source.force_noise_N(), share));
   if (!control.may_continue(fraction)) return interrupted();
-  return registered(members, features, std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N()));
-}
-
-std::vector<RowCorrection> corrections_of(const std::vector<RegisteredSurface>& surfaces) {
-  std::vector<RowCorrection> corrections;
-  for (const RegisteredSurface& surface : surfaces) corrections.push_back({surface.offset_m, surface.force_zero_N});
-  return corrections;
+  RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), control);
+  result.lag_s = lag_s;
+  if (!control.may_continue(fraction)) return interrupted();
+  return result;
 }
 
 }  // namespace palpate

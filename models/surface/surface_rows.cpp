@@ -1,5 +1,8 @@
 #include "models/surface/surface_rows.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
@@ -38,6 +41,18 @@ std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t mos
 
 std::vector<SurfaceRow> all_rows(const Recording& recording) {
   return thinned_rows(recording, recording.rows.size() + 1);
+}
+
+std::vector<std::size_t> blocks_by_way(const std::vector<SurfaceRow>& rows, std::size_t blocks) {
+  std::vector<double> way_m(rows.size(), 0.0);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    way_m[i] = way_m[i - 1] + std::abs(rows[i].motion.position_m - rows[i - 1].motion.position_m);
+  }
+  std::vector<std::size_t> block(rows.size(), 0);
+  for (std::size_t i = 0; i < rows.size() && way_m.back() > 0.0; ++i) {
+    block[i] = std::min(blocks - 1, static_cast<std::size_t>(way_m[i] / way_m.back() * static_cast<double>(blocks)));
+  }
+  return block;
 }
 
 }  // namespace palpate

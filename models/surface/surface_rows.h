@@ -42,4 +42,7 @@ std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::s
 std::vector<SurfaceRow> all_rows(const Recording& recording);
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
 
+// Which of `blocks` pieces of equal way of the tool each row is in.
+std::vector<std::size_t> blocks_by_way(const std::vector<SurfaceRow>& rows, std::size_t blocks);
+
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <deque>
 #include <future>
 #include <optional>
 #include <span>
@@ -111,7 +112,8 @@ constexpr std::size_t kLongestStretch = 16384;
 class ContentHash {
  public:
   void add(const RecordingRow& row) {
-    for (const double value : {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2}) {
+    for (const double value :
+         {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2}) {
       value_ = (value_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
       value_ ^= value_ >> 29;
     }
@@ -134,7 +136,37 @@ class CorrectedRows {
  public:
   explicit CorrectedRows(const std::vector<RowCorrection>& corrections) : corrections_(corrections) {}
 
-  const MotionRow& next(const MotionRow& recorded) {
+  // Visits the rows that `recorded` completes: it itself, or, with a lag, those whose force
+  // comes with it. False when a visit says so.
+  template <typename Visit>
+  bool feed(const MotionRow& recorded, const Visit& visit) {
+    const double lag_s = corrections_.empty() ? 0.0 : corrections_[static_cast<std::size_t>(recorded.recording)].lag_s;
+    if (lag_s == 0.0) return visit(moved(recorded));
+    if (recorded.first) {
+      waiting_.clear();
+      forces_.clear();
+      first_ = true;
+    }
+    waiting_.push_back(recorded);
+    forces_.push_back({recorded.sample.time_s, recorded.force_N});
+    while (!waiting_.empty()) {
+      MotionRow row = waiting_.front();
+      const double wanted_s = row.sample.time_s + lag_s;
+      if (forces_.back().first < wanted_s) break;
+      while (forces_.size() > 2 && forces_[1].first <= wanted_s) forces_.pop_front();
+      waiting_.pop_front();
+      if (wanted_s < forces_.front().first || forces_.size() < 2) continue;
+      const auto& [from_s, from_N] = forces_[0];
+      const auto& [to_s, to_N] = forces_[1];
+      row.force_N = from_N + (to_N - from_N) * (wanted_s - from_s) / (to_s - from_s);
+      row.first = std::exchange(first_, false);
+      if (!visit(moved(row))) return false;
+    }
+    return true;
+  }
+
+ private:
+  const MotionRow& moved(const MotionRow& recorded) {
     row_ = recorded;
     if (!corrections_.empty()) {
       const RowCorrection& correction = corrections_[static_cast<std::size_t>(recorded.recording)];
@@ -149,8 +181,10 @@ class CorrectedRows {
     return row_;
   }
 
- private:
   const std::vector<RowCorrection>& corrections_;
+  std::deque<MotionRow> waiting_;
+  std::deque<std::pair<double, double>> forces_;  // s, N
+  bool first_ = true;
   MotionRow row_;
   int stroke_ = 0;
   bool was_in_contact_ = false;
@@ -320,7 +354,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
   std::size_t seen = 0;
   CorrectedRows corrected(corrections_);
   return visit_recorded([&](const MotionRow& row) {
-    return visit(corrected.next(row)) && (++seen % kRowsPerQuestion != 0 || control.may_continue(fraction));
+    return corrected.feed(row, visit) && (++seen % kRowsPerQuestion != 0 || control.may_continue(fraction));
   });
 }
 

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/tick/motion_estimator.h"
-#include "engine/recording/recording.h"
-#include "engine/base/result.h"
-#include "engine/tick/tool_sample.h"
 #include "engine/base/fit_control.h"
+#include "engine/base/result.h"
+#include "engine/recording/recording.h"
+#include "engine/tick/motion_estimator.h"
+#include "engine/tick/tool_sample.h"
 #include "models/training/spilled_rows.h"
 
 namespace palpate {
@@ -40,23 +40,24 @@ struct MotionRow {
   MotionEstimate motion;
   double force_N = 0.0;
   int recording = 0;
-  int stroke = 0;        // counts contacts, over all recordings
-  bool first = false;    // of its recording: filters start anew
-  bool run_up = false;   // of a sample (below): filters take it, nothing else does
+  int stroke = 0;       // counts contacts, over all recordings
+  bool first = false;   // of its recording: filters start anew
+  bool run_up = false;  // of a sample (below): filters take it, nothing else does
 };
 
-// What is subtracted from the rows of one recording on their way into training;
-// velocity and acceleration stay as they are.
+// What is taken off the rows of one recording on their way into training; velocity and
+// acceleration stay as they are. With a lag, rows at its end that have no force go.
 struct RowCorrection {
   double offset_m = 0.0;
   double force_zero_N = 0.0;
+  double lag_s = 0.0;  // the force of a row is what was recorded so much later
 };
 
 class MotionSource {
  public:
   // One training recording: a file, or rows in memory.
   struct Input {
-    std::string path;                        // used when `loaded` is empty
+    std::string path;  // used when `loaded` is empty
     std::shared_ptr<const Recording> loaded;
     // Of every row of `loaded`, when it is known already.
     std::shared_ptr<const std::vector<MotionEstimate>> motion{};

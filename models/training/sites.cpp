@@ -10,8 +10,8 @@ namespace palpate {
 namespace {
 
 Error wrong_size(const std::string& name, Eigen::Index found, Eigen::Index expected) {
-  return Error{"sites: " + name + " has " + std::to_string(found) + " entries, expected " +
-               std::to_string(expected) + ", one per point"};
+  return Error{"sites: " + name + " has " + std::to_string(found) + " entries, expected " + std::to_string(expected) +
+               ", one per point"};
 }
 
 }  // namespace

@@ -80,14 +80,16 @@ bool SpilledRows::flush() {
 Status SpilledRows::read(std::size_t first, std::span<Row> rows) const {
   auto offset = static_cast<off_t>(first * sizeof(Row));
   errno = 0;
-  const bool there = transfer_all(reinterpret_cast<char*>(rows.data()), rows.size_bytes(), [&](char* at, std::size_t size) {
-    const ssize_t done = pread(file_, at, size, offset);
-    if (done > 0) offset += done;
-    return done;
-  });
+  const bool there =
+      transfer_all(reinterpret_cast<char*>(rows.data()), rows.size_bytes(), [&](char* at, std::size_t size) {
+        const ssize_t done = pread(file_, at, size, offset);
+        if (done > 0) offset += done;
+        return done;
+      });
   if (there) return {};
   return Error{std::string("cannot read back the temporary file of a long recording: ") +
-               (errno != 0 ? std::strerror(errno) : "it has become shorter") + "; check the disk of $TMPDIR or /var/tmp"};
+               (errno != 0 ? std::strerror(errno) : "it has become shorter") +
+               "; check the disk of $TMPDIR or /var/tmp"};
 }
 
 }  // namespace palpate

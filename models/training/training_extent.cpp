@@ -1,5 +1,7 @@
 #include "models/training/training_extent.h"
 
+#include "engine/tick/jnd.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,26 +20,44 @@ FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent) 
   return {source.names().size(), extent.strokes, extent.contact_samples, extent.turns_round()};
 }
 
+namespace {
+
+// Forces below the JND at rest are a pull where there are so many, down to so many
+// deviations of the noise.
+constexpr double kLeastPulls = 10.0;
+constexpr double kPullShare = 1e-3;
+constexpr double kPullNoises = 5.0;
+
+}  // namespace
+
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control) {
   TrainingExtent extent;
   double squares = 0.0;
   double count = 0.0;
   double last_m = 0.0;
-  const Status status = source.for_each([&](const MotionRow& row) {
-    if (row.sample.position_m > 0.0) {
-      extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
-      extent.force_N = std::max(extent.force_N, row.force_N);
-      squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
-      count += 1.0;
-      extent.strokes = static_cast<std::size_t>(row.stroke);
-      const double way_m = row.motion.position_m - last_m;
-      if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
-    }
-    last_m = row.motion.position_m;
-    return true;
-  }, control, 0.0);
+  double lowest_N = 0.0;
+  double pulls = 0.0;
+  const Status status = source.for_each(
+      [&](const MotionRow& row) {
+        if (row.sample.position_m > 0.0) {
+          extent.depth_m = std::max({extent.depth_m, row.motion.position_m, 1e-9});
+          extent.force_N = std::max(extent.force_N, row.force_N);
+          if (row.force_N < -JndLine{}.at(0.0)) ++pulls;
+          lowest_N = std::min(lowest_N, row.force_N);
+          squares += row.motion.velocity_m_per_s * row.motion.velocity_m_per_s;
+          count += 1.0;
+          extent.strokes = static_cast<std::size_t>(row.stroke);
+          const double way_m = row.motion.position_m - last_m;
+          if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
+        }
+        last_m = row.motion.position_m;
+        return true;
+      },
+      control, 0.0);
   extent.contact_samples = static_cast<std::size_t>(count);
   if (!status) return status.error();
+  const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
+  if (pulling && lowest_N < -kPullNoises * source.force_noise_N()) extent.lowest_force_N = lowest_N;
   // A tool that never moved still needs a scale: 1 um/s.
   extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
   return extent;

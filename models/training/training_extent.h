@@ -16,6 +16,7 @@ namespace palpate {
 struct TrainingExtent {
   double depth_m = 0.0;
   double force_N = 0.0;
+  double lowest_force_N = 0.0;        // of a material that pulls for certain, else 0
   double rms_velocity_m_per_s = 0.0;  // in contact
   std::size_t contact_samples = 0;
   std::size_t strokes = 0;

@@ -124,8 +124,10 @@ class CoverageReduction {
 
   void place(const TrainingSite& site) {
     const auto [number, fresh] = cells_.place_of(key(site));
-    if (fresh) sites_.push_back(site);
-    else merge(sites_[number], site);
+    if (fresh)
+      sites_.push_back(site);
+    else
+      merge(sites_[number], site);
   }
 
   static void merge(TrainingSite& into, const TrainingSite& site) {
@@ -215,12 +217,14 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   // `handle` sees every sample in contact with its features.
   const auto pass = [&](MotionSource& rows, const auto& handle) {
     FeatureFilter filter(features);
-    return rows.for_each([&](const MotionRow& row) {
-      if (row.first) filter.reset();
-      const FeatureVector& vector = filter.update(row.sample, row.motion);
-      if (vector.in_contact && !row.run_up) handle(row, vector);
-      return true;
-    }, control, options.fraction);
+    return rows.for_each(
+        [&](const MotionRow& row) {
+          if (row.first) filter.reset();
+          const FeatureVector& vector = filter.update(row.sample, row.motion);
+          if (vector.in_contact && !row.run_up) handle(row, vector);
+          return true;
+        },
+        control, options.fraction);
   };
   const auto values_of = [n](const FeatureVector& vector) {
     return Eigen::Map<const Eigen::VectorXd>(vector.values.data(), n);
@@ -235,8 +239,9 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   if (!status) return status.error();
   set.contact_samples = static_cast<std::uint64_t>(moments.bounds.count);
   if (set.contact_samples == 0) {
-    return Error{"no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
-                 "record a press, or check the sign and zero of position_m"};
+    return Error{
+        "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
+        "record a press, or check the sign and zero of position_m"};
   }
   set.normalisation = moments.normalisation();
 
@@ -253,9 +258,15 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
     const int fold = folds ? folds->next(row) : 0;
     const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
-      case Reduction::coverage: coverage.add(site); break;
-      case Reduction::force: force.add(site, row.recording != recording); break;
-      case Reduction::none: none.add(site); break;
+      case Reduction::coverage:
+        coverage.add(site);
+        break;
+      case Reduction::force:
+        force.add(site, row.recording != recording);
+        break;
+      case Reduction::none:
+        none.add(site);
+        break;
     }
     recording = row.recording;
   });

@@ -27,14 +27,14 @@
 // Thread guarantee: slow side.
 #pragma once
 
-#include <array>
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
-#include "engine/tick/features.h"
 #include "engine/base/result.h"
+#include "engine/tick/features.h"
 #include "models/training/fold_dealer.h"
 #include "models/training/motion_source.h"
 
@@ -46,9 +46,9 @@ inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force",
 inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
-inline constexpr double kReductionForce_N = 0.05;   // the paper's 50 mN
+inline constexpr double kReductionForce_N = 0.05;    // the paper's 50 mN
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
-inline constexpr double kCoverageStep = 0.005;      // of normalised feature space, to begin with
+inline constexpr double kCoverageStep = 0.005;       // of normalised feature space, to begin with
 
 struct Normalisation {
   Eigen::VectorXd offset;  // SI
@@ -76,9 +76,9 @@ struct TrainingSet {
 };
 
 struct TrainingSetOptions {
-  double fraction = 0.0;                // of the progress
-  const FoldDealer* dealer = nullptr;   // none: all sites are of fold 0
-  MotionSource* scales = nullptr;       // a sample of a long source: has offset and scale of its features
+  double fraction = 0.0;               // of the progress
+  const FoldDealer* dealer = nullptr;  // none: all sites are of fold 0
+  MotionSource* scales = nullptr;      // a sample of a long source: has offset and scale of its features
   // Called with every sample in contact and its features, once.
   std::function<void(const MotionRow&, const FeatureVector&)> also{};
 };

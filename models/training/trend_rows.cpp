@@ -21,19 +21,12 @@ void keep_every_other(std::vector<T>& values, std::size_t width) {
 }
 
 // Of every k, once: the sums of a row are many.
-constexpr auto kElasticBasis = [] {
-  std::array<std::array<double, kElasticCoefficients>, kElasticCoefficients> basis{};
-  for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein_integral<kElasticCoefficients - 1>(k);
-  return basis;
-}();
 constexpr auto kViscousBasis = [] {
   std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> basis{};
   for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein<kViscosityCoefficients - 1>(k);
   return basis;
 }();
 
-// Of the weight of the data themselves: it decides only where they say nothing.
-constexpr double kSmoothness = 1e-4;
 constexpr std::size_t kSplinePieces = kDriveKnots + 1;
 constexpr double kSplinePiece = 1.0 / kSplinePieces;
 
@@ -52,17 +45,30 @@ double b_spline(std::size_t i, int degree, double u) {
   }
   const auto width = static_cast<std::size_t>(degree);
   double value = 0.0;
-  if (const double rise = knot_at(i + width) - first; rise > 0.0) value += (u - first) / rise * b_spline(i, degree - 1, u);
+  if (const double rise = knot_at(i + width) - first; rise > 0.0)
+    value += (u - first) / rise * b_spline(i, degree - 1, u);
   const double end = knot_at(i + width + 1);
   if (const double fall = end - knot_at(i + 1); fall > 0.0) value += (end - u) / fall * b_spline(i + 1, degree - 1, u);
   return value;
 }
 
 std::vector<DriveCurve> branch_curves(const TrendTerms& terms) {
-  if (terms.spline_branches) return spline_basis(terms.reference_depth_m);
   std::vector<DriveCurve> curves;
   for (const FeatureSpec& spec : branch_basis(1.0, terms.reference_depth_m)) curves.push_back(spec.drive);
   return curves;
+}
+
+// The terms of one bristle, each a feature.
+std::vector<FeatureSpec> bristle_basis(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
+  std::vector<FeatureSpec> specs(kBristleTerms);
+  for (std::size_t k = 0; k < kBristleTerms; ++k) {
+    std::array<double, kBristleTerms> one{};
+    one[k] = 1.0;
+    specs[k].kind = kind;
+    specs[k].part_count = 1;
+    specs[k].parts[0] = {time_s, threshold_m, combined_friction(one.data(), reference_depth_m)};
+  }
+  return specs;
 }
 
 }  // namespace
@@ -78,9 +84,11 @@ std::vector<DriveCurve> spline_basis(double reference_depth_m) {
       const double begin = kSplinePiece * static_cast<double>(piece);
       const double at_begin = b_spline(i, 2, begin);
       const double at_end = b_spline(i, 2, piece + 1 == kSplinePieces ? 1.0 : begin + kSplinePiece);
-      const double square = 2.0 * (at_begin - 2.0 * b_spline(i, 2, begin + 0.5 * kSplinePiece) + at_end) / (kSplinePiece * kSplinePiece);
+      const double square =
+          2.0 * (at_begin - 2.0 * b_spline(i, 2, begin + 0.5 * kSplinePiece) + at_end) / (kSplinePiece * kSplinePiece);
       if (piece == 0) {
-        curve.coefficient_N = {at_begin, 0.5 * ((at_end - at_begin) / kSplinePiece - square * kSplinePiece), square / 3.0, 0.0};
+        curve.coefficient_N = {at_begin, 0.5 * ((at_end - at_begin) / kSplinePiece - square * kSplinePiece),
+                               square / 3.0, 0.0};
       } else {
         curve.knot_N[piece - 1] = (square - before) / 3.0;
       }
@@ -123,46 +131,30 @@ DriveCurve combined_drive(const double* weights, double reference_depth_m) {
 }
 
 DriveCurve combined_friction(const double* weights, double reference_depth_m) {
-  constexpr std::array<std::array<double, kDriveCoefficients>, kStopTerms> kShapes{
+  constexpr std::array<std::array<double, kDriveCoefficients>, kBristleTerms> kShapes{
       {{4.0, -6.0, 4.0, -1.0}, {1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}};
   DriveCurve drive;
   drive.reference_depth_m = reference_depth_m;
-  for (std::size_t k = 0; k < kStopTerms; ++k) {
+  for (std::size_t k = 0; k < kBristleTerms; ++k) {
     for (std::size_t j = 0; j < kDriveCoefficients; ++j) drive.coefficient_N[j] += weights[k] * kShapes[k][j];
   }
   return drive;
 }
 
-TrendRows::TrendRows(double reference_depth_m, double thinning_velocity_m_per_s,
-                     std::vector<double> relaxation_times_s)
-    : TrendRows(TrendTerms{reference_depth_m, thinning_velocity_m_per_s, std::move(relaxation_times_s), {}, {}}) {}
-
 TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows)
     : terms_(std::move(terms)),
       most_rows_(most_rows),
-      ladder_(terms_.relaxation_times_s, branch_curves(terms_), terms_.slowing) {
+      ladder_(terms_.relaxation_times_s, branch_curves(terms_), terms_.slowing),
+      elastic_basis_(spline_basis(terms_.reference_depth_m)) {
   if (!terms_.surface.empty()) surface_.emplace_back(terms_.surface);
-  if (terms_.spline_elastic) elastic_basis_ = spline_basis(terms_.reference_depth_m);
-  for (std::size_t k = 0; k < kBranchTerms; ++k) {
-    std::array<double, kBranchTerms> one{};
-    one[k] = 1.0;
-    softening_basis_[k] = combined_drive(one.data(), terms_.reference_depth_m);
-  }
   for (const double threshold_m : terms_.stop_thresholds_m) {
-    std::vector<FeatureSpec> specs(kStopTerms);
-    for (std::size_t k = 0; k < kStopTerms; ++k) {
-      std::array<double, kStopTerms> one{};
-      one[k] = 1.0;
-      specs[k].kind = FeatureKind::stops;
-      specs[k].part_count = 1;
-      specs[k].parts[0] = {0.0, threshold_m, combined_friction(one.data(), terms_.reference_depth_m)};
-    }
-    stops_.emplace_back(specs);
+    bristles_.emplace_back(bristle_basis(FeatureKind::stops, threshold_m, 0.0, terms_.reference_depth_m));
   }
-  for (const double time_s : terms_.peak_times_s) {
-    peaks_.emplace_back(std::vector<FeatureSpec>{{FeatureKind::fading_peak, time_s}});
+  for (const double time_s : terms_.creep_times_s) {
+    bristles_.emplace_back(
+        bristle_basis(FeatureKind::creep, terms_.reference_depth_m, time_s, terms_.reference_depth_m));
   }
-  columns_ = first_softening() + kSofteningTerms * peaks_.size();
+  columns_ = first_creep() + kBristleTerms * terms_.creep_times_s.size();
 }
 
 std::size_t TrendRows::viscous_columns() const {
@@ -171,20 +163,20 @@ std::size_t TrendRows::viscous_columns() const {
 
 void TrendRows::begin_recording() {
   ladder_.reset();
-  for (auto* filters : {&surface_, &stops_, &peaks_}) {
+  for (auto* filters : {&surface_, &bristles_}) {
     for (FeatureFilter& filter : *filters) filter.reset();
   }
 }
 
 void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
-  for (auto* filters : {&surface_, &stops_, &peaks_}) {
+  for (auto* filters : {&surface_, &bristles_}) {
     for (FeatureFilter& filter : *filters) filter.update(sample, motion);
   }
   const double depth_m = std::max(0.0, motion.position_m);
   ladder_.update(sample.time_s, depth_m, surface_.empty() ? depth_m : surface_.front().surface_m());
 }
 
-void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke) {
+void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold) {
   advance(sample, motion);
   if (!(sample.position_m > 0.0)) return;
   if (phase_++ % stride_ != 0) return;
@@ -194,46 +186,19 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   values_.resize(values_.size() + columns_);
   double* to = values_.data() + (values_.size() - columns_);
   for (const DriveCurve& curve : elastic_basis_) *to++ = curve.at(depth_m);
-  if (elastic_basis_.empty()) {
-    for (const auto& power : kElasticBasis) *to++ = u * polynomial(power, u);
-  }
   if (viscous_columns() > 0) {
     for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, terms_.thinning_velocity_m_per_s)}) {
       for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
     }
   }
   to = std::copy(ladder_.values().begin(), ladder_.values().end(), to);
-  for (const FeatureFilter& stop : stops_) to = std::copy_n(stop.vector().values.begin(), kStopTerms, to);
-  put_softening(depth_m, to);
+  for (const FeatureFilter& bristle : bristles_) to = std::copy_n(bristle.vector().values.begin(), kBristleTerms, to);
   force_N_.push_back(force_N);
   velocity_m_per_s_.push_back(velocity_m_per_s);
   depth_m_.push_back(depth_m);
-  stroke_.push_back(stroke);
+  lag_m_.push_back(surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m);
+  fold_.push_back(fold);
   if (count() > most_rows_) halve();
-}
-
-void TrendRows::put_softening(double depth_m, double* to) const {
-  for (const FeatureFilter& peak : peaks_) {
-    for (const double share : softening_shares(depth_m, peak.vector().values[0])) {
-      for (const DriveCurve& basis : softening_basis_) *to++ = share * basis.at(depth_m);
-    }
-  }
-}
-
-void TrendRows::smooth_splines(Eigen::MatrixXd& gram) const {
-  const auto smooth = [&](std::size_t first) {
-    const auto begin = static_cast<Eigen::Index>(first);
-    const double weight = kSmoothness * gram.diagonal().segment(begin, kSplineTerms).mean();
-    for (auto i = begin; i + 1 < begin + static_cast<Eigen::Index>(kSplineTerms); ++i) {
-      gram(i, i) += weight;
-      gram(i + 1, i + 1) += weight;
-      gram(i, i + 1) -= weight;
-      gram(i + 1, i) -= weight;
-    }
-  };
-  if (terms_.spline_elastic) smooth(0);
-  if (!terms_.spline_branches) return;
-  for (std::size_t t = 0; t < terms_.relaxation_times_s.size(); ++t) smooth(first_branch() + t * kSplineTerms);
 }
 
 void TrendRows::halve() {
@@ -241,7 +206,8 @@ void TrendRows::halve() {
   keep_every_other(force_N_, 1);
   keep_every_other(velocity_m_per_s_, 1);
   keep_every_other(depth_m_, 1);
-  keep_every_other(stroke_, 1);
+  keep_every_other(lag_m_, 1);
+  keep_every_other(fold_, 1);
   stride_ *= 2;
   phase_ = 1;  // the newest row was kept
 }

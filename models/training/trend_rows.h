@@ -2,16 +2,14 @@
 // bounded memory.
 //
 // Each row holds the trend's basis at one sample in contact:
-//   elastic    int_0^u B_k,5           k = 0..5
+//   elastic    int_0^u of the quadratic B-splines on kDriveKnots inner knots
 //   viscous    v B_k,2(min(u, 1))      k = 0..2, when the scene has velocity,
 //              then the same with v / (1 + |v| / v_0)
 //   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
 //   stop       s / r times 1 - (1 - u)^4, u and u^2, per threshold r
-//   softening  (d / m)^p int_0^u B_k,2, k = 0..2 for each p, per fading time of m
-// As splines, elastic response and branches have int_0^u of the quadratic B-splines on
-// kDriveKnots inner knots instead: they follow a layer below the surface that no
-// polynomial of few terms does. With a `surface`, branches follow the material's
-// surface instead of the tool (engine/tick/features.h).
+//   creep      q / r times the same, per time at the greatest depth r
+// With a `surface`, branches follow the material's surface instead of the tool
+// (engine/tick/features.h).
 // The filters are the features' own code, or that of branch_ladder.h. When more than
 // kMaximumTrendRows rows (or as many as asked for) come, every other one is dropped and the stride
 // doubles.
@@ -49,31 +47,26 @@ struct TrendTerms {
   double thinning_velocity_m_per_s = 0.0;  // v_0; 0: no viscosity
   std::vector<double> relaxation_times_s;
   std::vector<double> stop_thresholds_m;
-  std::vector<double> peak_times_s;
-  double slowing = 0.0;          // of the relaxation times with depth
-  bool spline_elastic = false;   // kSplineTerms columns instead of kElasticCoefficients
-  bool spline_branches = false;  // kSplineTerms columns a time instead of kBranchTerms
+  std::vector<double> creep_times_s{};
+  double slowing = 0.0;  // of the relaxation times with depth
   // A surface_lag and the branches that decide where the surface is; none: it is
   // under the tool.
   std::vector<FeatureSpec> surface{};
 };
 
-inline constexpr std::size_t kStopTerms = 3;
-inline constexpr std::size_t kSofteningTerms = kBranchTerms * kSofteningPowers.size();
+inline constexpr std::size_t kBristleTerms = 3;
 
-// g of stops from its kStopTerms weights: as many shapes of rising friction.
+// g of a bristle from its kBristleTerms weights: as many shapes of rising friction.
 DriveCurve combined_friction(const double* weights, double reference_depth_m);
 
 class TrendRows {
  public:
   explicit TrendRows(TrendTerms terms, std::size_t most_rows = kMaximumTrendRows);
-  // `thinning_velocity_m_per_s`: v_0; 0 when the scene has no velocity.
-  TrendRows(double reference_depth_m, double thinning_velocity_m_per_s, std::vector<double> relaxation_times_s);
 
   // A new recording begins: filters start anew.
   void begin_recording();
-  // Every sample in order, in contact or not. `stroke` numbers contacts.
-  void add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int stroke);
+  // Every sample in order, in contact or not. `fold`: fold_dealer.h.
+  void add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold);
 
   // A sample that only moves the filters and makes no row.
   void advance(const ToolSample& sample, const MotionEstimate& motion);
@@ -81,44 +74,37 @@ class TrendRows {
   std::size_t columns() const { return columns_; }
   std::size_t viscous_columns() const;
   std::size_t count() const { return force_N_.size(); }
-  // Adds to a Gram matrix of all columns what keeps the coefficients of a spline near
-  // their neighbours' where the data do not say: kSmoothness times the mean of the
-  // curve's diagonal, on the squared differences.
-  void smooth_splines(Eigen::MatrixXd& gram) const;
   const double* row(std::size_t index) const { return values_.data() + index * columns_; }
   double force_N(std::size_t index) const { return force_N_[index]; }
   double velocity_m_per_s(std::size_t index) const { return velocity_m_per_s_[index]; }
   double depth_m(std::size_t index) const { return depth_m_[index]; }
-  int stroke(std::size_t index) const { return stroke_[index]; }
+  double lag_m(std::size_t index) const { return lag_m_[index]; }
+  int fold(std::size_t index) const { return fold_[index]; }
   const TrendTerms& terms() const { return terms_; }
   double reference_depth_m() const { return terms_.reference_depth_m; }
   double thinning_velocity_m_per_s() const { return terms_.thinning_velocity_m_per_s; }
   const std::vector<double>& relaxation_times_s() const { return terms_.relaxation_times_s; }
   // Where the columns of each kind begin; those of the elastic response begin at 0.
-  std::size_t elastic_columns() const { return terms_.spline_elastic ? kSplineTerms : kElasticCoefficients; }
-  std::size_t branch_terms() const { return terms_.spline_branches ? kSplineTerms : kBranchTerms; }
-  std::size_t first_branch() const { return elastic_columns() + viscous_columns(); }
-  std::size_t first_stop() const { return first_branch() + branch_terms() * terms_.relaxation_times_s.size(); }
-  std::size_t first_softening() const { return first_stop() + kStopTerms * terms_.stop_thresholds_m.size(); }
+  std::size_t first_branch() const { return kSplineTerms + viscous_columns(); }
+  std::size_t first_stop() const { return first_branch() + kBranchTerms * terms_.relaxation_times_s.size(); }
+  std::size_t first_creep() const { return first_stop() + kBristleTerms * terms_.stop_thresholds_m.size(); }
 
  private:
   void halve();
-  void put_softening(double depth_m, double* to) const;
 
   TrendTerms terms_;
   std::size_t most_rows_;
   BranchLadder ladder_;
   std::vector<FeatureFilter> surface_;   // one or none
-  std::vector<FeatureFilter> stops_;     // kStopTerms values each
-  std::vector<FeatureFilter> peaks_;
-  DriveCurve softening_basis_[kBranchTerms];
-  std::vector<DriveCurve> elastic_basis_;  // of splines
+  std::vector<FeatureFilter> bristles_;  // kBristleTerms values each
+  std::vector<DriveCurve> elastic_basis_;
   std::size_t columns_;
   std::vector<double> values_;
   std::vector<double> force_N_;
   std::vector<double> velocity_m_per_s_;
   std::vector<double> depth_m_;
-  std::vector<int> stroke_;
+  std::vector<double> lag_m_;
+  std::vector<int> fold_;
   std::size_t stride_ = 1;
   std::size_t phase_ = 0;
 };

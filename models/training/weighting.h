@@ -26,9 +26,12 @@ inline constexpr double kRelativeWeightFloor_N = 0.05;
 
 inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
   switch (weighting) {
-    case Weighting::jnd: return 1.0 / jnd.at(force_N);
-    case Weighting::relative: return 1.0 / std::max(std::abs(force_N), kRelativeWeightFloor_N);
-    case Weighting::none: return 1.0;
+    case Weighting::jnd:
+      return 1.0 / jnd.at(force_N);
+    case Weighting::relative:
+      return 1.0 / std::max(std::abs(force_N), kRelativeWeightFloor_N);
+    case Weighting::none:
+      return 1.0;
   }
   return 1.0;
 }

@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-using test::fit_all;
 using test::evaluate_moved;
+using test::fit_all;
 using test::ModelPtr;
 using test::prepare;
 using test::press_and_hold;
@@ -70,8 +70,8 @@ bool have_press() { return std::filesystem::exists(test::real_data()); }
 const Subject& press() {
   static const Subject subject = [] {
     Subject made = subject_of(
-        "press",
-        prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")), 0.01);
+        "press", prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, scene_request("silicone_block")),
+        0.01);
     // Its position counts from where the force first passed 0.1 N.
     made.onset_N = 0.1;
     // Falls short of one JND with an encoder unlike its own. Below 1 N, where
@@ -94,7 +94,7 @@ std::vector<const Subject*> subjects() {
 struct Stroke {
   double largest_step_over_jnd = 0.0;  // between consecutive samples, over what is allowed
   double largest_N = 0.0;
-  std::size_t outside = 0;       // samples deeper than 1.3 times the training
+  std::size_t outside = 0;  // samples deeper than 1.3 times the training
   std::size_t outside_unmarked = 0;
 };
 
@@ -105,31 +105,31 @@ std::vector<Stroke> stroke_over(const Subject& subject, const ScriptedPress& mot
   std::vector<double> last_N(subject.models.size(), 0.0);
   std::size_t row_index = 0;
   bool was_in_contact = false;
-  test::must(replay(
-      motion.recording, ForceModels(subject.models.begin(), subject.models.end()),
-      [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-        double true_step_N = row_index > 0 ? std::abs(motion.true_N[row_index] - motion.true_N[row_index - 1]) : 0.0;
-        if (snapshot.in_contact != was_in_contact) true_step_N = std::max(true_step_N, subject.onset_N);
-        was_in_contact = snapshot.in_contact;
-        EXPECT_EQ(snapshot.fault, TickFault::none);
-        for (std::size_t i = 0; i < strokes.size(); ++i) {
-          const double force_N = snapshot.force_N[i];
-          Stroke& stroke = strokes[i];
-          EXPECT_TRUE(std::isfinite(force_N));
-          EXPECT_GE(force_N, 0.0);
-          stroke.largest_N = std::max(stroke.largest_N, force_N);
-          const double jnd_N = subject.models[i]->data().jnd.at(std::max(force_N, last_N[i]));
-          const double allowed_N = std::max(jnd_N, true_step_N);
-          stroke.largest_step_over_jnd =
-              std::max(stroke.largest_step_over_jnd, std::abs(force_N - last_N[i]) / allowed_N);
-          last_N[i] = force_N;
-          if (row.position_m > 1.3 * subject.deepest_m) {
-            ++stroke.outside;
-            if ((snapshot.out_of_domain_mask >> i & 1U) == 0) ++stroke.outside_unmarked;
-          }
-        }
-        ++row_index;
-      }));
+  test::must(replay(motion.recording, ForceModels(subject.models.begin(), subject.models.end()),
+                    [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+                      double true_step_N =
+                          row_index > 0 ? std::abs(motion.true_N[row_index] - motion.true_N[row_index - 1]) : 0.0;
+                      if (snapshot.in_contact != was_in_contact) true_step_N = std::max(true_step_N, subject.onset_N);
+                      was_in_contact = snapshot.in_contact;
+                      EXPECT_EQ(snapshot.fault, TickFault::none);
+                      for (std::size_t i = 0; i < strokes.size(); ++i) {
+                        const double force_N = snapshot.force_N[i];
+                        Stroke& stroke = strokes[i];
+                        EXPECT_TRUE(std::isfinite(force_N));
+                        EXPECT_GE(force_N, 0.0);
+                        stroke.largest_N = std::max(stroke.largest_N, force_N);
+                        const double jnd_N = subject.models[i]->data().jnd.at(std::max(force_N, last_N[i]));
+                        const double allowed_N = std::max(jnd_N, true_step_N);
+                        stroke.largest_step_over_jnd =
+                            std::max(stroke.largest_step_over_jnd, std::abs(force_N - last_N[i]) / allowed_N);
+                        last_N[i] = force_N;
+                        if (row.position_m > 1.3 * subject.deepest_m) {
+                          ++stroke.outside;
+                          if ((snapshot.out_of_domain_mask >> i & 1U) == 0) ++stroke.outside_unmarked;
+                        }
+                      }
+                      ++row_index;
+                    }));
   return strokes;
 }
 
@@ -242,10 +242,9 @@ std::vector<std::vector<Stretch>> presses(const std::vector<double>& depths_m, d
 
 TEST(UnlikeTheTraining, SlowPressesThenPokes) {
   for (const std::string material : {"silicone", "foam"}) {
-    expect_no_worse_than_position(material + ", slow to fast",
-                                  thinned(scripted(material, presses({0.003, 0.006, 0.009, 0.005}, 0.015, 0.7), 1)),
-                                  scripted(material, presses({0.004, 0.008, 0.006}, 0.15, 0.05), 2),
-                                  material + "_block");
+    expect_no_worse_than_position(
+        material + ", slow to fast", thinned(scripted(material, presses({0.003, 0.006, 0.009, 0.005}, 0.015, 0.7), 1)),
+        scripted(material, presses({0.004, 0.008, 0.006}, 0.15, 0.05), 2), material + "_block");
   }
 }
 

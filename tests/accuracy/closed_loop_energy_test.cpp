@@ -97,8 +97,7 @@ TEST(ClosedLoop, TheControllerCostsAHandLessThanOneJnd) {
         }
       }
     }
-    say("passivity costs on " + block, "%.3f JND mean, %.2f JND at most", worst.mean_cost_jnd,
-        worst.largest_cost_jnd);
+    say("passivity costs on " + block, "%.3f JND mean, %.2f JND at most", worst.mean_cost_jnd, worst.largest_cost_jnd);
     return worst;
   };
   EXPECT_LE(cost("silicone", silicone_models(), kFirm).largest_cost_jnd, 0.1);

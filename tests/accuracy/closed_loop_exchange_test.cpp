@@ -54,21 +54,22 @@ double largest_change_jnd(const std::vector<ForcePtr>& models, const Grip& grip,
     std::vector<double> time_s, force_N;
     std::size_t published = 0;
     const double aim_m = kFirm.depth_m + kFirm.force_N / grip.stiffness_N_per_m;
-    loop.run(3.0, [&](double time) { return test::minimum_jerk(-2e-3, aim_m, 0.3, time); },
-             [&](const LoopSnapshot& snapshot) {
-               EXPECT_TRUE(std::isfinite(snapshot.commanded_N) && std::isfinite(snapshot.rendered_N));
-               time_s.push_back(snapshot.loop_time_s);
-               force_N.push_back(snapshot.rendered_N);
-               if (time_s.back() < 1.0) return;
-               for (std::size_t i = time_s.size(); i-- > 0 && time_s.back() - time_s[i] < 0.01 + 1e-9;) {
-                 const double jnd_N = JndLine{}.at(std::min(force_N[i], force_N.back()));
-                 largest = std::max(largest, std::abs(force_N.back() - force_N[i]) / jnd_N);
-               }
-               if (time_s.back() < 1.0 + 0.01 * static_cast<double>(published)) return;
-               loop.publish(models[++published % models.size()]);
-               // In the hand, fading out, pending, retired since.
-               EXPECT_LE(sets_alive(models, own), 4);
-             });
+    loop.run(
+        3.0, [&](double time) { return test::minimum_jerk(-2e-3, aim_m, 0.3, time); },
+        [&](const LoopSnapshot& snapshot) {
+          EXPECT_TRUE(std::isfinite(snapshot.commanded_N) && std::isfinite(snapshot.rendered_N));
+          time_s.push_back(snapshot.loop_time_s);
+          force_N.push_back(snapshot.rendered_N);
+          if (time_s.back() < 1.0) return;
+          for (std::size_t i = time_s.size(); i-- > 0 && time_s.back() - time_s[i] < 0.01 + 1e-9;) {
+            const double jnd_N = JndLine{}.at(std::min(force_N[i], force_N.back()));
+            largest = std::max(largest, std::abs(force_N.back() - force_N[i]) / jnd_N);
+          }
+          if (time_s.back() < 1.0 + 0.01 * static_cast<double>(published)) return;
+          loop.publish(models[++published % models.size()]);
+          // In the hand, fading out, pending, retired since.
+          EXPECT_LE(sets_alive(models, own), 4);
+        });
     EXPECT_GE(published, 190u);
     EXPECT_EQ(loop.faults() & loop_fault::kStops, 0u);
     if (test::rt_guard_works()) {

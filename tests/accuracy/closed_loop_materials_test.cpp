@@ -129,7 +129,8 @@ TEST(ClosedLoop, StrokesIntoMaterialsWithMemoryGiveLessThanTheyTake) {
       }
       say(std::string("strokes, ") + material + " " + model->name(),
           "%.1f %% comes out again, passivity costs %.3f JND on the mean", 100.0 * worst_return, cost_jnd);
-      EXPECT_LE(worst_return, std::string(material) == "sponge" ? kReturnOnSponge : 1.0) << material << ", " << model->name();
+      EXPECT_LE(worst_return, std::string(material) == "sponge" ? kReturnOnSponge : 1.0)
+          << material << ", " << model->name();
       EXPECT_LE(cost_jnd, 1.0) << material << ", " << model->name();
     }
   }
@@ -164,13 +165,14 @@ TEST(ClosedLoop, MaterialsExchangedInMidPressStayBounded) {
   for (const ModelPtr& model : models) largest_N = std::max(largest_N, 1.2 * model->data().largest_force_N);
   loop.publish(models.front());
   std::size_t published = 0;
-  loop.run(3.0, [](double time_s) { return test::minimum_jerk(-2e-3, 6e-3, 0.3, time_s); },
-           [&](const LoopSnapshot& snapshot) {
-             EXPECT_TRUE(std::isfinite(snapshot.rendered_N));
-             EXPECT_LE(snapshot.rendered_N, largest_N);
-             if (snapshot.loop_time_s < 0.5 + 0.01 * static_cast<double>(published)) return;
-             loop.publish(models[++published % models.size()]);
-           });
+  loop.run(
+      3.0, [](double time_s) { return test::minimum_jerk(-2e-3, 6e-3, 0.3, time_s); },
+      [&](const LoopSnapshot& snapshot) {
+        EXPECT_TRUE(std::isfinite(snapshot.rendered_N));
+        EXPECT_LE(snapshot.rendered_N, largest_N);
+        if (snapshot.loop_time_s < 0.5 + 0.01 * static_cast<double>(published)) return;
+        loop.publish(models[++published % models.size()]);
+      });
   EXPECT_GT(published, 200U);
   EXPECT_EQ(loop.faults() & loop_fault::kStops, 0U);
   if (test::rt_guard_works()) {

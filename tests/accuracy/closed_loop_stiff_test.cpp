@@ -13,8 +13,8 @@ namespace {
 
 using test::Grip;
 using test::held;
-using test::hold;
 using test::held_and_late_Ns_per_m;
+using test::hold;
 using test::kFirmOnStiff;
 using test::kOneTick_s;
 using test::kStiffSpring_N_per_m;

@@ -55,9 +55,7 @@ void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0);
 }
 
-TEST(Determinism, TheSameFitTwiceGivesTheSameBits) {
-  expect_same_bits(forces_of(fitted()), forces_of(fitted_anew()));
-}
+TEST(Determinism, TheSameFitTwiceGivesTheSameBits) { expect_same_bits(forces_of(fitted()), forces_of(fitted_anew())); }
 
 TEST(Determinism, ASavedModelGivesTheSameBits) {
   const test::TemporaryFolder folder;

@@ -11,14 +11,14 @@
 namespace palpate {
 namespace {
 
+using test::default_request;
+using test::evaluate_moved;
 using test::fit;
 using test::fit_all;
-using test::evaluate_moved;
 using test::ModelPtr;
 using test::prepare;
 using test::real_recording;
 using test::RecordingPtr;
-using test::default_request;
 
 class RealAccuracy : public testing::Test {
  protected:
@@ -49,9 +49,10 @@ TEST_F(RealAccuracy, SkinOnTrialsOfOtherForces) {
     within += n * summary.within_jnd;
     samples += n;
   }
-  // Measured: 100 % and 8.3 mN; as recorded 98.5 % and 35 mN.
+  // Measured: 100 % and 34 mN as recorded; moved by -0.2 mm it would be 8 mN, but where the
+  // surface lies these recordings, which begin on it, do not tell: nothing is moved.
   EXPECT_GE(within / samples, 0.999);
-  EXPECT_LE(std::sqrt(squares / samples), 0.015);
+  EXPECT_LE(std::sqrt(squares / samples), 0.040);
 }
 
 // The surface lies elsewhere in every trial, by up to a millimetre.
@@ -61,8 +62,7 @@ TEST_F(RealAccuracy, SiliconeUnderAnIndenterOnAnotherSpot) {
     training.push_back(real_recording(std::string("zwick_silicone/train_trial") + trial + ".csv"));
   }
   const ModelPtr greedy = fit(prepare(training, default_request("silicone_block")), &kGreedyMethod);
-  const ErrorSummary summary =
-      evaluate_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
+  const ErrorSummary summary = evaluate_moved(*real_recording("zwick_silicone/test_trial9.csv"), {greedy}).front();
   std::cout << test::figures("trial 9", summary) << "\n";
   EXPECT_GE(summary.within_jnd, 0.995);
   EXPECT_LE(summary.rms_error_N, 0.015);  // measured: 8.2 mN

@@ -48,11 +48,11 @@ typedef struct palpate_limiter palpate_limiter; /* one actuator; one thread at a
 /* ---- models: slow side, allocate ---- */
 
 /* A model file as `palpate fit` writes it. NULL: no such file, not a model, damaged. */
-PALPATE_API palpate_model *palpate_model_load(const char *path, char *error, size_t error_size);
+PALPATE_API palpate_model* palpate_model_load(const char* path, char* error, size_t error_size);
 /* Streams of the model stay valid. */
-PALPATE_API void palpate_model_free(palpate_model *);
+PALPATE_API void palpate_model_free(palpate_model*);
 /* E.g. "greedy-100"; valid until the model is freed. */
-PALPATE_API const char *palpate_model_name(const palpate_model *);
+PALPATE_API const char* palpate_model_name(const palpate_model*);
 
 /* ---- streams ---- */
 
@@ -71,36 +71,36 @@ typedef struct palpate_sensor {
  * and so it is when the step is theirs. The same positions as in a recording of that rig
  * give replay's forces to the last bit. Positions that are exact, or of another sensor
  * with noise: palpate_stream_new_with_sensor. Slow side. */
-PALPATE_API palpate_stream *palpate_stream_new(const palpate_model *, double encoder_step_m, char *error,
+PALPATE_API palpate_stream* palpate_stream_new(const palpate_model*, double encoder_step_m, char* error,
                                                size_t error_size);
 /* With everything that is known, as it is. NULL: a number is negative or not finite. Slow side. */
-PALPATE_API palpate_stream *palpate_stream_new_with_sensor(const palpate_model *, const palpate_sensor *,
-                                                           char *error, size_t error_size);
+PALPATE_API palpate_stream* palpate_stream_new_with_sensor(const palpate_model*, const palpate_sensor*, char* error,
+                                                           size_t error_size);
 /* The sensor that made a recording, as replay finds it from the first 30,000 rows. Its
  * encoder_step_m is 0 when the positions are not in whole steps; position_noise_m is then
  * their noise. Slow side.
  * Returns 0, or -1: the file is no recording. */
-PALPATE_API int palpate_sensor_of_recording(const char *path, palpate_sensor *, char *error, size_t error_size);
+PALPATE_API int palpate_sensor_of_recording(const char* path, palpate_sensor*, char* error, size_t error_size);
 
-PALPATE_API void palpate_stream_free(palpate_stream *);
+PALPATE_API void palpate_stream_free(palpate_stream*);
 /* Forgets motion and filters; the next sample begins a new contact. Wait-free. */
-PALPATE_API void palpate_stream_reset(palpate_stream *);
+PALPATE_API void palpate_stream_reset(palpate_stream*);
 
 /* The next sample; returns the force in N, between 0 and 1.2 times the largest force that
  * the model was fitted to. A value that is not finite, or a time that is not later than the
  * last one: 0 N, and the state is kept. Wait-free: no allocation, lock, system call. */
-PALPATE_API double palpate_stream_force(palpate_stream *, double time_s, double position_m);
+PALPATE_API double palpate_stream_force(palpate_stream*, double time_s, double position_m);
 /* The same with measured velocity and acceleration; a channel that the sensor does not
  * have is ignored, whatever is in it. */
-PALPATE_API double palpate_stream_force_with_motion(palpate_stream *, double time_s, double position_m,
+PALPATE_API double palpate_stream_force_with_motion(palpate_stream*, double time_s, double position_m,
                                                     double velocity_m_per_s, double acceleration_m_per_s2);
 
 /* Of the last sample that was taken: 1 when its motion is unlike the recordings, so that
  * the force is the model's safe trend; 0 otherwise, and out of contact. Wait-free. */
-PALPATE_API int palpate_stream_out_of_domain(const palpate_stream *);
+PALPATE_API int palpate_stream_out_of_domain(const palpate_stream*);
 /* Of the same sample: the error that 95 of 100 samples stay below, in N. 0 out of contact;
  * NaN when the model does not know. Wait-free. */
-PALPATE_API double palpate_stream_predicted_error(const palpate_stream *);
+PALPATE_API double palpate_stream_predicted_error(const palpate_stream*);
 
 /* ---- the last word before an actuator ---- */
 
@@ -117,27 +117,27 @@ typedef struct palpate_limits {
 } palpate_limits;
 
 enum { /* what the limiter did to a force: bits of palpate_limiter_flags */
-  PALPATE_LIMIT_NOT_FINITE = 1,
-  PALPATE_LIMIT_CLAMPED = 2,
-  PALPATE_LIMIT_SLEWED = 4,
-  PALPATE_LIMIT_RAMPING = 8,
-  PALPATE_LIMIT_THERMAL = 16,
-  PALPATE_LIMIT_STALE = 32,
-  PALPATE_LIMIT_STOPPED = 64
+       PALPATE_LIMIT_NOT_FINITE = 1,
+       PALPATE_LIMIT_CLAMPED = 2,
+       PALPATE_LIMIT_SLEWED = 4,
+       PALPATE_LIMIT_RAMPING = 8,
+       PALPATE_LIMIT_THERMAL = 16,
+       PALPATE_LIMIT_STALE = 32,
+       PALPATE_LIMIT_STOPPED = 64
 };
 
 /* 10 N, 5000 N/s, ramp 0.3 s, no thermal budget, stale after 10 ms, stop within 10 ms. */
-PALPATE_API void palpate_limits_default(palpate_limits *);
+PALPATE_API void palpate_limits_default(palpate_limits*);
 /* NULL limits: the default ones. NULL: a limit is out of its range. Slow side. */
-PALPATE_API palpate_limiter *palpate_limiter_new(const palpate_limits *, char *error, size_t error_size);
-PALPATE_API void palpate_limiter_free(palpate_limiter *);
+PALPATE_API palpate_limiter* palpate_limiter_new(const palpate_limits*, char* error, size_t error_size);
+PALPATE_API void palpate_limiter_free(palpate_limiter*);
 /* The force to render instead of `commanded_N`, always finite. `step_s`: since the last
  * call; `sample_age_s`: of the sample behind the force, 0 when it is new. Wait-free. */
-PALPATE_API double palpate_limiter_force(palpate_limiter *, double commanded_N, double step_s, double sample_age_s);
+PALPATE_API double palpate_limiter_force(palpate_limiter*, double commanded_N, double step_s, double sample_age_s);
 /* Device fault, released dead-man switch: the next force goes to 0. Once per tick while it
  * lasts. Wait-free. */
-PALPATE_API void palpate_limiter_stop(palpate_limiter *);
-PALPATE_API unsigned palpate_limiter_flags(const palpate_limiter *);
+PALPATE_API void palpate_limiter_stop(palpate_limiter*);
+PALPATE_API unsigned palpate_limiter_flags(const palpate_limiter*);
 
 #ifdef __cplusplus
 }

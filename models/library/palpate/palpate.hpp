@@ -101,9 +101,8 @@ class Stream {
  public:
   // The sensor is that of the recordings which the model was fitted to.
   explicit Stream(const Model& model)
-      : stream_(detail::checked([&](char* error, std::size_t size) {
-          return palpate_stream_new(model.handle(), 0.0, error, size);
-        })) {}
+      : stream_(detail::checked(
+            [&](char* error, std::size_t size) { return palpate_stream_new(model.handle(), 0.0, error, size); })) {}
   // Throws: a number of the sensor is negative or not finite.
   Stream(const Model& model, const Sensor& sensor)
       : stream_(detail::checked([&](char* error, std::size_t size) {
@@ -117,8 +116,7 @@ class Stream {
   }
   // With what the sensor measures beside the position.
   double force(double time_s, double position_m, double velocity_m_per_s, double acceleration_m_per_s2) noexcept {
-    return palpate_stream_force_with_motion(stream_.get(), time_s, position_m, velocity_m_per_s,
-                                            acceleration_m_per_s2);
+    return palpate_stream_force_with_motion(stream_.get(), time_s, position_m, velocity_m_per_s, acceleration_m_per_s2);
   }
   // Of the last sample: its motion is unlike the recordings.
   bool out_of_domain() const noexcept { return palpate_stream_out_of_domain(stream_.get()) != 0; }
@@ -155,8 +153,8 @@ class Limiter {
   // Throws: a limit is out of its range.
   explicit Limiter(const Limits& limits = {})
       : limiter_(detail::checked([&](char* error, std::size_t size) {
-          const palpate_limits plain = {limits.largest_N,      limits.fastest_N_per_s, limits.ramp_s,
-                                        limits.continuous_N,   limits.thermal_time_s,  limits.stale_after_s,
+          const palpate_limits plain = {limits.largest_N,    limits.fastest_N_per_s, limits.ramp_s,
+                                        limits.continuous_N, limits.thermal_time_s,  limits.stale_after_s,
                                         limits.stop_s};
           return palpate_limiter_new(&plain, error, size);
         })) {}
@@ -230,8 +228,7 @@ struct FitOptions : palpate_fit_options {
 
 // `palpate fit`: one model of all recordings, written to a file. Throws: a recording that is
 // not usable; an option out of its range; the file exists; stopped.
-inline void fit(const std::vector<std::string>& recordings, const std::string& model,
-                const FitOptions& options = {}) {
+inline void fit(const std::vector<std::string>& recordings, const std::string& model, const FitOptions& options = {}) {
   std::vector<const char*> paths;
   for (const std::string& path : recordings) paths.push_back(path.c_str());
   detail::checked([&](char* error, std::size_t size) {

@@ -4,12 +4,13 @@
 //   name, method, features [{kind, relaxation_time_s, drive}, the depth with its
 //   surface_position_m where that is not 0], normalisation
 //   {offset, scale}, domain {lower, upper, inner_radius, outer_radius, points},
-//   trend, corrects_trend, correction_limit_N, largest_force_N, jnd,
+//   trend, corrects_trend, correction_limit_N, largest_force_N, lowest_force_N [0], jnd,
 //   provenance, and the correction: kernel, tail, centres and weights, or grid
 //   {nodes, values_N}, or trend_alone, or what another kind in the table of
 //   models/model/correction.h writes.
-// Every field is required, and others are refused (but provenance.fit_seconds, which
-// older files have).
+// Every field is required but error_bound, sensor, provenance.surfaces (and the
+// standard_error_m of one), a feature's slowing and surface_position_m, and the knots of a
+// curve. Others are refused (but provenance.fit_seconds, which older files have).
 // Centres, weights and cover points stand one to a line, so that two models can
 // be compared line by line. Numbers are the shortest decimals that read back as
 // the same double, so a model read back gives bit-identical forces. "filters" in

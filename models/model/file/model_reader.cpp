@@ -59,6 +59,7 @@ class ModelReader : private JsonFields {
     data_.corrects_trend = boolean(top, "corrects_trend");
     data_.correction_limit_N = number(top, "correction_limit_N", Sign::kNotNegative);
     data_.largest_force_N = number(top, "largest_force_N", Sign::kNotNegative);
+    if (top.value->contains("lowest_force_N")) data_.lowest_force_N = number(top, "lowest_force_N");
     const JsonNode jnd = member(top, "jnd", "an object with offset_N and weber_fraction");
     data_.jnd.offset_N = number(jnd, "offset_N", Sign::kPositive);
     data_.jnd.weber_fraction = number(jnd, "weber_fraction", Sign::kNotNegative);
@@ -124,13 +125,17 @@ class ModelReader : private JsonFields {
       spec.kind = candidate;
       known = true;
     }
-    if (!known) {
+    if (kind == "fading_peak") {
+      complain(node.pointer + "/kind",
+               "found \"fading_peak\", a feature that fits no longer use; fit again (palpate fit)");
+    } else if (!known) {
       complain(node.pointer + "/kind", "found \"" + printable(kind) + "\", expected one of " + known_kinds);
     }
     if (has_time(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
-    if (is_branch(spec.kind) && optional_member(node, "slowing").value != nullptr) spec.slowing = number(node, "slowing");
+    if (is_branch(spec.kind) && optional_member(node, "slowing").value != nullptr)
+      spec.slowing = number(node, "slowing");
     if (spec.kind == FeatureKind::depth && optional_member(node, "surface_position_m").value != nullptr) {
-      spec.surface_position_m = number(node, "surface_position_m", Sign::kPositive);
+      spec.surface_position_m = number(node, "surface_position_m");
     }
     if (has_drive(spec.kind)) spec.drive = drive_member(node, "drive");
     if (has_parts(spec.kind)) read_parts(node, spec);
@@ -175,9 +180,8 @@ class ModelReader : private JsonFields {
     spec.part_count = parts.value->size();
     for (std::size_t p = 0; p < spec.part_count; ++p) {
       const JsonNode part{&(*parts.value)[p], parts.pointer + "/" + std::to_string(p)};
-      if (spec.kind == FeatureKind::stops) {
-        spec.parts[p].threshold_m = number(part, "threshold_m", Sign::kPositive);
-      } else {
+      if (is_bristle(spec.kind)) spec.parts[p].threshold_m = number(part, "threshold_m", Sign::kPositive);
+      if (spec.kind != FeatureKind::stops) {
         spec.parts[p].relaxation_time_s = number(part, "relaxation_time_s", Sign::kPositive);
       }
       spec.parts[p].drive = drive_member(part, "drive");
@@ -193,24 +197,6 @@ class ModelReader : private JsonFields {
     coefficients(node, "thinning_Ns_per_m", data_.trend.thinning_Ns_per_m);
     data_.trend.thinning_velocity_m_per_s = number(node, "thinning_velocity_m_per_s", Sign::kPositive);
     data_.trend.velocity_limit_m_per_s = number(node, "velocity_limit_m_per_s", Sign::kNotNegative);
-    const bool softens = std::any_of(data_.features.begin(), data_.features.end(), [](const FeatureSpec& spec) {
-      return spec.kind == FeatureKind::fading_peak;
-    });
-    if (softens) read_softening(node);
-  }
-
-  // Only a model with a fading peak has it.
-  void read_softening(const JsonNode& node) {
-    const std::string expected = "a list of " + std::to_string(kSofteningPowers.size()) + " curves";
-    const JsonNode curves = list(node, "softening", expected);
-    if (curves.value == nullptr) return;
-    if (curves.value->size() != data_.trend.softening.size()) {
-      complain(curves.pointer, found(*curves.value) + ", expected " + expected);
-      return;
-    }
-    for (std::size_t j = 0; j < data_.trend.softening.size(); ++j) {
-      data_.trend.softening[j] = read_drive({&(*curves.value)[j], curves.pointer + "/" + std::to_string(j)});
-    }
   }
 
   // Exactly one of the fields that tell the kinds of correction apart.
@@ -242,6 +228,7 @@ class ModelReader : private JsonFields {
       surface.name = text(node, "name");
       surface.offset_m = number(node, "surface_offset_m");
       surface.force_zero_N = number(node, "force_zero_N");
+      if (optional_member(node, "force_lag_s").value != nullptr) surface.lag_s = number(node, "force_lag_s");
       surface.standard_error_m = std::numeric_limits<double>::infinity();
       if (optional_member(node, "standard_error_m").value != nullptr) {
         surface.standard_error_m = number(node, "standard_error_m", Sign::kNotNegative);

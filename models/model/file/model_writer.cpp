@@ -22,9 +22,11 @@ std::string parts(const FeatureSpec& spec) {
   for (std::size_t p = 0; p < spec.part_count; ++p) {
     const FeaturePart& part = spec.parts[p];
     text += p == 0 ? "{" : ", {";
-    text += spec.kind == FeatureKind::stops ? "\"threshold_m\": " + json_number(part.threshold_m)
-                                            : "\"relaxation_time_s\": " + json_number(part.relaxation_time_s);
-    text += ", \"drive\": " + drive(part.drive) + "}";
+    if (is_bristle(spec.kind)) text += "\"threshold_m\": " + json_number(part.threshold_m) + ", ";
+    if (spec.kind != FeatureKind::stops) {
+      text += "\"relaxation_time_s\": " + json_number(part.relaxation_time_s) + ", ";
+    }
+    text += "\"drive\": " + drive(part.drive) + "}";
   }
   return "[" + text + "]";
 }
@@ -48,17 +50,6 @@ std::string error_bound(const ErrorBound& bound) {
          ", \"per_distance_N\": " + json_number(bound.per_distance_N) + "}";
 }
 
-bool softens(const std::vector<FeatureSpec>& specs) {
-  return std::any_of(specs.begin(), specs.end(),
-                     [](const FeatureSpec& spec) { return spec.kind == FeatureKind::fading_peak; });
-}
-
-std::string softening(const Trend& trend) {
-  std::string text;
-  for (const DriveCurve& curve : trend.softening) text += (text.empty() ? "" : ", ") + drive(curve);
-  return ",\n    \"softening\": [" + text + "]";
-}
-
 std::string domain(const ModelData& data) {
   return "{\n    \"lower\": " + json_list(data.lower) + ",\n    \"upper\": " + json_list(data.upper) +
          ",\n    \"inner_radius\": " + json_number(data.cover.inner_radius) +
@@ -74,7 +65,7 @@ std::string trend(const ModelData& data) {
          ",\n    \"viscosity_Ns_per_m\": " + json_list(trend.viscosity_Ns_per_m) +
          ",\n    \"thinning_Ns_per_m\": " + json_list(trend.thinning_Ns_per_m) +
          ",\n    \"thinning_velocity_m_per_s\": " + json_number(trend.thinning_velocity_m_per_s) +
-         ",\n    \"velocity_limit_m_per_s\": " + json_number(trend.velocity_limit_m_per_s) + (softens(data.features) ? softening(trend) : "") + "\n  }";
+         ",\n    \"velocity_limit_m_per_s\": " + json_number(trend.velocity_limit_m_per_s) + "\n  }";
 }
 
 // File name without its folders.
@@ -84,9 +75,12 @@ std::string stem_of(const std::string& name) { return name.substr(name.find_last
 std::string surfaces(const std::vector<RecordingSurface>& all) {
   std::vector<std::string> items;
   for (const RecordingSurface& one : all) {
-    std::string text = "{\"name\": " + json_quoted(stem_of(one.name)) + ", \"surface_offset_m\": " + json_number(one.offset_m);
+    std::string text =
+        "{\"name\": " + json_quoted(stem_of(one.name)) + ", \"surface_offset_m\": " + json_number(one.offset_m);
     if (std::isfinite(one.standard_error_m)) text += ", \"standard_error_m\": " + json_number(one.standard_error_m);
-    items.push_back(text + ", \"force_zero_N\": " + json_number(one.force_zero_N) + "}");
+    text += ", \"force_zero_N\": " + json_number(one.force_zero_N);
+    if (one.lag_s != 0.0) text += ", \"force_lag_s\": " + json_number(one.lag_s);
+    items.push_back(text + "}");
   }
   return items.empty() ? "" : ",\n    \"surfaces\": " + json_lines(items);
 }
@@ -108,16 +102,13 @@ std::string provenance(const Provenance& provenance) {
   }
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
   return "{\n    \"recordings\": [" + recordings + "]" + surfaces(provenance.surfaces) +
-         ",\n    \"scene\": " + json_quoted(provenance.scene) +
-         ",\n    \"samples\": " + count(provenance.samples) +
+         ",\n    \"scene\": " + json_quoted(provenance.scene) + ",\n    \"samples\": " + count(provenance.samples) +
          ",\n    \"contact_samples\": " + count(provenance.contact_samples) +
          ",\n    \"samples_after_reduction\": " + count(provenance.samples_after_reduction) +
-         ",\n    \"seed\": " + count(provenance.seed) +
-         ",\n    \"weighting\": " + json_quoted(provenance.weighting) +
+         ",\n    \"seed\": " + count(provenance.seed) + ",\n    \"weighting\": " + json_quoted(provenance.weighting) +
          ",\n    \"reduction\": " + json_quoted(provenance.reduction) +
-         ",\n    \"relaxation\": " + json_quoted(provenance.relaxation) +
-         ",\n    \"relaxation_times\": [" + times + "],\n    \"training_within_jnd\": " +
-         json_number(provenance.training_within_jnd) + "\n  }";
+         ",\n    \"relaxation\": " + json_quoted(provenance.relaxation) + ",\n    \"relaxation_times\": [" + times +
+         "],\n    \"training_within_jnd\": " + json_number(provenance.training_within_jnd) + "\n  }";
 }
 
 Status check(const ModelData& data) {
@@ -142,21 +133,22 @@ Status check(const ModelData& data) {
 
 Result<std::string> write_model_text(const ModelData& data) {
   if (const Status status = check(data); !status) return status.error();
-  FileFields fields = {
-      {"format", json_quoted("palpate-model")},
-      {"version", std::to_string(kModelVersion)},
-      {"name", json_quoted(data.name)},
-      {"method", json_quoted(data.method)},
-      {"features", features(data.features)},
-      {"normalisation", "{\n    \"offset\": " + json_list(data.offset) + ",\n    \"scale\": " + json_list(data.scale) + "\n  }"},
-      {"trend", trend(data)},
-      {"corrects_trend", data.corrects_trend ? "true" : "false"},
-      {"correction_limit_N", json_number(data.correction_limit_N)},
-      {"largest_force_N", json_number(data.largest_force_N)},
-      {"jnd", "{\"offset_N\": " + json_number(data.jnd.offset_N) +
-                  ", \"weber_fraction\": " + json_number(data.jnd.weber_fraction) + "}"},
-      {"provenance", provenance(data.provenance)},
-      {"domain", domain(data)}};
+  FileFields fields = {{"format", json_quoted("palpate-model")},
+                       {"version", std::to_string(kModelVersion)},
+                       {"name", json_quoted(data.name)},
+                       {"method", json_quoted(data.method)},
+                       {"features", features(data.features)},
+                       {"normalisation", "{\n    \"offset\": " + json_list(data.offset) +
+                                             ",\n    \"scale\": " + json_list(data.scale) + "\n  }"},
+                       {"trend", trend(data)},
+                       {"corrects_trend", data.corrects_trend ? "true" : "false"},
+                       {"correction_limit_N", json_number(data.correction_limit_N)},
+                       {"largest_force_N", json_number(data.largest_force_N)},
+                       {"jnd", "{\"offset_N\": " + json_number(data.jnd.offset_N) +
+                                   ", \"weber_fraction\": " + json_number(data.jnd.weber_fraction) + "}"},
+                       {"provenance", provenance(data.provenance)},
+                       {"domain", domain(data)}};
+  if (data.lowest_force_N < 0.0) fields.emplace_back("lowest_force_N", json_number(data.lowest_force_N));
   if (data.sensor) fields.emplace_back("sensor", sensor(*data.sensor));
   if (data.error_bound) fields.emplace_back("error_bound", error_bound(*data.error_bound));
   for (auto& field : data.correction->file_fields()) fields.push_back(std::move(field));

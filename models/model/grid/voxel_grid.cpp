@@ -41,9 +41,8 @@ Status validate_voxel_grid(const VoxelGrid& grid, int dimension) {
   }
   std::size_t count = 1;
   for (const std::vector<double>& axis : grid.nodes) {
-    const bool ascending = std::adjacent_find(axis.begin(), axis.end(), [](double a, double b) {
-                             return !(a < b);
-                           }) == axis.end();
+    const bool ascending =
+        std::adjacent_find(axis.begin(), axis.end(), [](double a, double b) { return !(a < b); }) == axis.end();
     const bool finite = std::all_of(axis.begin(), axis.end(), [](double v) { return std::isfinite(v); });
     if (axis.size() < 2 || !ascending || !finite) {
       return Error{"grid.nodes: found an axis that is not ascending, expected at least 2 finite, ascending nodes"};

@@ -26,7 +26,8 @@ inline Eigen::Array2d between(const double* corner, const std::size_t* stride, c
 }  // namespace
 
 VoxelLookup::VoxelLookup(const VoxelGrid& grid)
-    : values_(grid.values_N), interpolate_(pick(static_cast<int>(grid.nodes.size()))),
+    : values_(grid.values_N),
+      interpolate_(pick(static_cast<int>(grid.nodes.size()))),
       dimension_(static_cast<int>(grid.nodes.size())) {
   assert(validate_voxel_grid(grid, dimension_).ok());
   std::size_t stride = 1;
@@ -86,14 +87,22 @@ double VoxelLookup::interpolate(const double* x) const noexcept {
 
 VoxelLookup::Interpolate VoxelLookup::pick(int dimension) {
   switch (dimension) {
-    case 1: return &VoxelLookup::interpolate<1>;
-    case 2: return &VoxelLookup::interpolate<2>;
-    case 3: return &VoxelLookup::interpolate<3>;
-    case 4: return &VoxelLookup::interpolate<4>;
-    case 5: return &VoxelLookup::interpolate<5>;
-    case 6: return &VoxelLookup::interpolate<6>;
-    case 7: return &VoxelLookup::interpolate<7>;
-    default: return &VoxelLookup::interpolate<8>;
+    case 1:
+      return &VoxelLookup::interpolate<1>;
+    case 2:
+      return &VoxelLookup::interpolate<2>;
+    case 3:
+      return &VoxelLookup::interpolate<3>;
+    case 4:
+      return &VoxelLookup::interpolate<4>;
+    case 5:
+      return &VoxelLookup::interpolate<5>;
+    case 6:
+      return &VoxelLookup::interpolate<6>;
+    case 7:
+      return &VoxelLookup::interpolate<7>;
+    default:
+      return &VoxelLookup::interpolate<8>;
   }
 }
 

@@ -14,8 +14,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpate {
 
@@ -24,49 +27,44 @@ enum class KernelKind { cubic, linear, thin_plate, quintic };
 inline constexpr std::array<KernelKind, 4> kKernelKinds = {KernelKind::cubic, KernelKind::linear,
                                                            KernelKind::thin_plate, KernelKind::quintic};
 
-// Degree of the polynomial tail that goes with the kernel.
-constexpr int tail_degree(KernelKind kind) noexcept {
-  switch (kind) {
-    case KernelKind::linear: return 0;
-    case KernelKind::thin_plate: return 1;
-    case KernelKind::cubic: return 1;
-    case KernelKind::quintic: return 2;
-  }
-  return 1;
-}
+struct KernelFacts {
+  const char* name;
+  int tail_degree;           // of the polynomial tail that goes with it
+  double definiteness_sign;  // +1 or -1: sign * phi is conditionally positive definite
+  double (*value)(double r) noexcept;
+  // For exported C, of `squared`, the squared distance.
+  const char* c_text;
+};
 
-// +1 or -1: sign * phi is conditionally positive definite.
-constexpr double definiteness_sign(KernelKind kind) noexcept {
-  return kind == KernelKind::linear || kind == KernelKind::quintic ? -1.0 : 1.0;
-}
+// One row a kind, in the order of the kinds. A new kernel is a kind and a row here, and its
+// vector form in rbf_simd.cpp; and data: its name in assets/formats/model.schema.json.
+inline constexpr std::array<KernelFacts, kKernelKinds.size()> kKernels = {{
+    {"cubic", 1, 1.0, [](double r) noexcept { return r * r * r; }, "squared * SQRT(squared)"},
+    {"linear", 0, -1.0, [](double r) noexcept { return r; }, "SQRT(squared)"},
+    {"thin-plate", 1, 1.0, [](double r) noexcept { return r > 0.0 ? r * r * std::log(r) : 0.0; },
+     "R(0.5) * squared * logarithm(squared)"},
+    {"quintic", 2, -1.0, [](double r) noexcept { return r * r * r * r * r; }, "squared * squared * SQRT(squared)"},
+}};
 
-// phi(r) for one r >= 0, in plain scalar code. The hot loops have their own
-// vector form in models/model/rbf/rbf_simd.cpp; this one is the reference.
-inline double kernel_value(KernelKind kind, double r) noexcept {
-  switch (kind) {
-    case KernelKind::linear: return r;
-    case KernelKind::thin_plate: return r > 0.0 ? r * r * std::log(r) : 0.0;
-    case KernelKind::cubic: return r * r * r;
-    case KernelKind::quintic: return r * r * r * r * r;
-  }
-  return 0.0;
-}
+constexpr const KernelFacts& kernel_facts(KernelKind kind) noexcept { return kKernels[static_cast<std::size_t>(kind)]; }
+constexpr int tail_degree(KernelKind kind) noexcept { return kernel_facts(kind).tail_degree; }
+constexpr double definiteness_sign(KernelKind kind) noexcept { return kernel_facts(kind).definiteness_sign; }
+constexpr std::string_view kernel_name(KernelKind kind) noexcept { return kernel_facts(kind).name; }
 
-constexpr std::string_view kernel_name(KernelKind kind) noexcept {
-  switch (kind) {
-    case KernelKind::linear: return "linear";
-    case KernelKind::thin_plate: return "thin-plate";
-    case KernelKind::cubic: return "cubic";
-    case KernelKind::quintic: return "quintic";
-  }
-  return "cubic";
-}
+// phi(r) for one r >= 0, in plain scalar code: the reference for the vector form.
+inline double kernel_value(KernelKind kind, double r) noexcept { return kernel_facts(kind).value(r); }
 
 // The kernel of that name, or nothing when there is none.
 constexpr std::optional<KernelKind> kernel_from_name(std::string_view name) noexcept {
   for (const KernelKind kind : kKernelKinds)
     if (kernel_name(kind) == name) return kind;
   return std::nullopt;
+}
+
+inline std::vector<std::string> kernel_names() {
+  std::vector<std::string> names;
+  for (const KernelFacts& kernel : kKernels) names.emplace_back(kernel.name);
+  return names;
 }
 
 }  // namespace palpate

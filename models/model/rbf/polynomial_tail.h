@@ -40,8 +40,7 @@ inline Eigen::MatrixXd tail_matrix(int degree, const Eigen::MatrixXd& points) {
   if (degree >= 2) {
     Eigen::Index column = 1 + dimension;
     for (int i = 0; i < dimension; ++i)
-      for (int j = i; j < dimension; ++j)
-        matrix.col(column++) = points.row(i).cwiseProduct(points.row(j)).transpose();
+      for (int j = i; j < dimension; ++j) matrix.col(column++) = points.row(i).cwiseProduct(points.row(j)).transpose();
   }
   return matrix;
 }

@@ -1,24 +1,20 @@
 #include "models/model/rbf/rbf_correction.h"
 
 #include "engine/base/csv_scanner.h"
-#include "models/model/file/json_arrays.h"
 #include "engine/json/json_fields.h"
+#include "models/model/file/json_arrays.h"
 #include "models/model/file/json_text.h"
 
 namespace palpate {
 namespace {
 
-std::string kernel_names() {
-  std::string names;
-  for (const KernelKind kind : kKernelKinds) names += (names.empty() ? "" : ", ") + std::string(kernel_name(kind));
-  return names;
-}
-
 CorrectionPtr read_rbf(JsonFields& fields, const JsonNode& top, int dimension) {
   const std::string name = fields.text(top, "kernel");
   const std::optional<KernelKind> kernel = kernel_from_name(name);
   if (!kernel) {
-    fields.complain("/kernel", "found \"" + printable(name) + "\", expected one of " + kernel_names());
+    std::string known;
+    for (const std::string& one : kernel_names()) known += (known.empty() ? "" : ", ") + one;
+    fields.complain("/kernel", "found \"" + printable(name) + "\", expected one of " + known);
     return nullptr;
   }
   RbfFunction function;

@@ -19,10 +19,10 @@
 #include <memory>
 #include <vector>
 
+#include "engine/tick/features.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_function.h"
 #include "models/model/rbf/rbf_simd.h"
-#include "engine/tick/features.h"
 
 namespace palpate {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "models/model/rbf/polynomial_tail.h"
 #include "engine/tick/features.h"
+#include "models/model/rbf/polynomial_tail.h"
 
 namespace palpate {
 

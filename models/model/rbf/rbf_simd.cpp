@@ -1,8 +1,6 @@
 #include "models/model/rbf/rbf_simd.h"
+#include "models/model/simd_targets.h"  // before the headers of Highway
 
-// Left out to keep the build short: AVX3_DL adds nothing these loops use, and
-// machines with SSSE3 but not SSE4 are older than ten years.
-#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "models/model/rbf/rbf_simd.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
@@ -102,6 +100,8 @@ HWY_INLINE Vector add_kernel(Vector sum, Vector weight, Vector squared) {
 // A point with every coordinate in all lanes.
 template <int kDimension>
 struct Broadcast {
+  // Written out: g++ gives one of its own no instruction set but the machine's least.
+  HWY_INLINE Broadcast() {}
   Vector coordinate[kDimension];
 };
 
@@ -284,30 +284,42 @@ using Dimensions = std::make_integer_sequence<int, 8>;
 
 EvaluateFunction get_evaluate(KernelKind kind, int dimension) {
   switch (kind) {
-    case KernelKind::cubic: return pick_evaluate<KernelKind::cubic>(dimension, Dimensions{});
-    case KernelKind::linear: return pick_evaluate<KernelKind::linear>(dimension, Dimensions{});
-    case KernelKind::thin_plate: return pick_evaluate<KernelKind::thin_plate>(dimension, Dimensions{});
-    case KernelKind::quintic: return pick_evaluate<KernelKind::quintic>(dimension, Dimensions{});
+    case KernelKind::cubic:
+      return pick_evaluate<KernelKind::cubic>(dimension, Dimensions{});
+    case KernelKind::linear:
+      return pick_evaluate<KernelKind::linear>(dimension, Dimensions{});
+    case KernelKind::thin_plate:
+      return pick_evaluate<KernelKind::thin_plate>(dimension, Dimensions{});
+    case KernelKind::quintic:
+      return pick_evaluate<KernelKind::quintic>(dimension, Dimensions{});
   }
   return nullptr;
 }
 
 ColumnFunction get_column(KernelKind kind, int dimension) {
   switch (kind) {
-    case KernelKind::cubic: return pick_column<KernelKind::cubic>(dimension, Dimensions{});
-    case KernelKind::linear: return pick_column<KernelKind::linear>(dimension, Dimensions{});
-    case KernelKind::thin_plate: return pick_column<KernelKind::thin_plate>(dimension, Dimensions{});
-    case KernelKind::quintic: return pick_column<KernelKind::quintic>(dimension, Dimensions{});
+    case KernelKind::cubic:
+      return pick_column<KernelKind::cubic>(dimension, Dimensions{});
+    case KernelKind::linear:
+      return pick_column<KernelKind::linear>(dimension, Dimensions{});
+    case KernelKind::thin_plate:
+      return pick_column<KernelKind::thin_plate>(dimension, Dimensions{});
+    case KernelKind::quintic:
+      return pick_column<KernelKind::quintic>(dimension, Dimensions{});
   }
   return nullptr;
 }
 
 ProductFunction get_product(KernelKind kind, int dimension) {
   switch (kind) {
-    case KernelKind::cubic: return pick_product<KernelKind::cubic>(dimension, Dimensions{});
-    case KernelKind::linear: return pick_product<KernelKind::linear>(dimension, Dimensions{});
-    case KernelKind::thin_plate: return pick_product<KernelKind::thin_plate>(dimension, Dimensions{});
-    case KernelKind::quintic: return pick_product<KernelKind::quintic>(dimension, Dimensions{});
+    case KernelKind::cubic:
+      return pick_product<KernelKind::cubic>(dimension, Dimensions{});
+    case KernelKind::linear:
+      return pick_product<KernelKind::linear>(dimension, Dimensions{});
+    case KernelKind::thin_plate:
+      return pick_product<KernelKind::thin_plate>(dimension, Dimensions{});
+    case KernelKind::quintic:
+      return pick_product<KernelKind::quintic>(dimension, Dimensions{});
   }
   return nullptr;
 }

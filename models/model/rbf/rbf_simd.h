@@ -36,15 +36,13 @@ struct Points {
 using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* tail,
                                     const double* x) noexcept;
 // out[i] = phi(|point_i - centre|) for i < count.
-using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre,
-                                double* out) noexcept;
+using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
 // For rows i in [row_begin, row_end) and columns j in [column_begin,
 // column_end), which must not overlap unless they are equal:
 //   y[i] += sum_j phi_ij v[j], and, when they differ, y[j] += sum_i phi_ij v[i].
 // All bounds are multiples of kSimdPad.
 using ProductFunction = void (*)(const Points& points, std::size_t row_begin, std::size_t row_end,
-                                 std::size_t column_begin, std::size_t column_end, const double* v,
-                                 double* y) noexcept;
+                                 std::size_t column_begin, std::size_t column_end, const double* v, double* y) noexcept;
 
 // The loops for this kernel and dimension (1 to 8) on the chosen target.
 EvaluateFunction evaluate_function(KernelKind kind, int dimension);

@@ -135,7 +135,8 @@ TEST(ExportC, TheSameModelGivesTheSameBytesAndCountsItsTables) {
     EXPECT_GT(once->table_bytes, single->table_bytes);
     const bool rbf = rbf_of(data.correction) != nullptr;
     if (!rbf) continue;
-    EXPECT_GE(once->operations.roots + once->operations.logarithms, 4U + static_cast<std::size_t>(data.correction->size()));
+    EXPECT_GE(once->operations.roots + once->operations.logarithms,
+              4U + static_cast<std::size_t>(data.correction->size()));
   }
 }
 

@@ -9,10 +9,10 @@
 #include "models/model/file/json_arrays.h"
 #include "models/model/file/json_text.h"
 #include "models/model/file/model_io.h"
-#include "scenes/worker/slot_plan.h"
-#include "scenes/report/figures/figure.h"
-#include "scenes/report/data/plan.h"
+#include "scenes/report/figures.h"
+#include "scenes/report/plan.h"
 #include "scenes/scene/method_look.h"
+#include "scenes/worker/slot_plan.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
 #include "tests/support/temporary_folder.h"
@@ -54,7 +54,8 @@ Result<FittedCorrection> fit_polynomial(const MethodTask& task, const FitControl
     rows.row(i) = task.sites.row_scale(i) * terms(task.sites.points(0, i), task.sites.points(1, i)).transpose();
   }
   const Eigen::VectorXd scaled = task.sites.row_scale.cwiseProduct(task.sites.target_N);
-  return FittedCorrection{std::make_shared<const PolynomialCorrection>(rows.colPivHouseholderQr().solve(scaled)), {}, ""};
+  return FittedCorrection{
+      std::make_shared<const PolynomialCorrection>(rows.colPivHouseholderQr().solve(scaled)), {}, ""};
 }
 
 const Method kPolynomialMethod{
@@ -106,18 +107,20 @@ TEST_F(AnotherMethod, HasItsColourLabelSlotAndPlaceInTheReport) {
   ASSERT_TRUE(slots.ok()) << slots.error().message;
   EXPECT_EQ((*slots)[0].method, &kPolynomialMethod);
   EXPECT_EQ(plan_name((*slots)[0]), "polynomial");
-  const ReportPlan plan = make_plan(true, 4);
-  const auto at = std::find_if(plan.models.begin(), plan.models.end(),
-                               [](const PlannedModel& model) { return model.request.method == &kPolynomialMethod; });
-  ASSERT_NE(at, plan.models.end());
+  const std::vector<PlannedModel> plan = make_plan(true, 4);
+  const auto at = std::find_if(plan.begin(), plan.end(), [](const PlannedModel& model) {
+    return model.request.method == &kPolynomialMethod && model.recipe == Recipe::palpate;
+  });
+  ASSERT_NE(at, plan.end());
   EXPECT_TRUE(at->main);
-  EXPECT_EQ(model_label(*at), "polynomial");
+  EXPECT_EQ(model_colour(*at), 0x7F3C8Du);
 }
 
 TEST_F(AnotherMethod, IsListedWhereMethodsAre) {
   EXPECT_NE(method_names().find("polynomial"), std::string::npos);
-  EXPECT_NE(plan_slots(test::must(load_scene("silicone_block")), {"polynomal"}, false).error().message.find("polynomial"),
-            std::string::npos);
+  EXPECT_NE(
+      plan_slots(test::must(load_scene("silicone_block")), {"polynomal"}, false).error().message.find("polynomial"),
+      std::string::npos);
 }
 
 }  // namespace

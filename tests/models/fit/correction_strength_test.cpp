@@ -16,71 +16,63 @@ double between(test::Numbers& numbers, double low, double high) {
 
 constexpr int kFolds = 5;
 
-struct Case {
-  Sites sites;
-  std::vector<LeftOutSample> samples;
-};
-
 // `shared`: what every stroke leaves over; `own`: what each has for itself.
-Case make_case(double shared, double own) {
-  Case made;
+LeftOutRows make_rows(double shared, double own) {
   test::Numbers numbers(3);
-  constexpr Eigen::Index kSites = 1000;
-  made.sites.points.resize(2, kSites);
-  made.sites.target_N.resize(kSites);
-  made.sites.row_scale = Eigen::VectorXd::Constant(kSites, 1.0 / 0.1);
-  for (Eigen::Index i = 0; i < kSites; ++i) {
-    const int fold = static_cast<int>(i) % kFolds;
-    for (Eigen::Index k = 0; k < 2; ++k) made.sites.points(k, i) = between(numbers, -1.0, 1.0);
-    const double rest = shared * std::sin(3.0 * made.sites.points(0, i)) + own * std::cos(2.0 * fold) +
-                        between(numbers, -0.005, 0.005);
-    made.sites.target_N(i) = rest;
-    made.sites.group.push_back(fold);
-    made.samples.push_back({made.sites.points.col(i), 2.0, 2.0 + rest, 1e-3, 0.0, fold});
+  constexpr Eigen::Index kRows = 1000;
+  LeftOutRows rows;
+  rows.points.resize(2, kRows);
+  rows.force_N.resize(kRows);
+  rows.depth_m = Eigen::VectorXd::Constant(kRows, 1e-3);
+  rows.row_scale = Eigen::VectorXd::Constant(kRows, 1.0 / 0.1);
+  rows.trend_N = Eigen::MatrixXd::Constant(kRows, kFolds, 2.0);
+  rows.no_force.assign(kRows, 0);
+  for (Eigen::Index i = 0; i < kRows; ++i) {
+    const int fold = static_cast<int>(i * kFolds / kRows);
+    for (Eigen::Index k = 0; k < 2; ++k) rows.points(k, i) = between(numbers, -1.0, 1.0);
+    rows.force_N(i) =
+        2.0 + shared * std::sin(3.0 * rows.points(0, i)) + own * std::cos(2.0 * fold) + between(numbers, -0.005, 0.005);
+    rows.fold.push_back(fold);
   }
-  return made;
+  return rows;
 }
 
-StrengthChoice choose(const Case& made) {
-  StrengthInput input{made.sites, made.samples, kFolds, KernelKind::cubic, JndLine{}};
+StrengthChoice choose(const LeftOutRows& rows) {
+  StrengthInput input{rows, kFolds, KernelKind::cubic, JndLine{}};
   input.correction_limit_N = 1.0;
   input.least_radius = 0.1;
   return choose_strength(input);
 }
 
 TEST(CorrectionStrength, WhatEveryStrokeHasIsCorrected) {
-  const StrengthChoice choice = choose(make_case(0.3, 0.0));
+  const StrengthChoice choice = choose(make_rows(0.3, 0.0));
   EXPECT_GE(choice.strength, 0.75);
   // What is left is the noise of 5 mN, of a JND of 190 mN, and the smoothing.
   EXPECT_LT(choice.error_over_jnd, 0.1 * choice.trend_error_over_jnd);
 }
 
 TEST(CorrectionStrength, WhatOnlyOneStrokeHasIsNot) {
-  const StrengthChoice choice = choose(make_case(0.0, 0.3));
+  const StrengthChoice choice = choose(make_rows(0.0, 0.3));
   EXPECT_EQ(choice.strength, 0.0);
   EXPECT_EQ(choice.error_over_jnd, choice.trend_error_over_jnd);
 }
 
-// Every sample has sites of other strokes right beside it, so a reach of 0.1 does as well as
+// Every row has rows of other strokes right beside it, so a reach of 0.1 does as well as
 // a wider one but for chance.
 TEST(CorrectionStrength, ReachesNoFartherThanStrokesLeftOutReward) {
-  const StrengthChoice choice = choose(make_case(0.3, 0.1));
+  const StrengthChoice choice = choose(make_rows(0.3, 0.1));
   EXPECT_GT(choice.strength, 0.0);
   EXPECT_EQ(choice.inner_radius, 0.1);
 }
 
 TEST(CorrectionStrength, NeverWorseThanNoneOnWhatIsLeftOut) {
   for (const double own : {0.05, 0.1, 0.2}) {
-    const StrengthChoice choice = choose(make_case(0.1, own));
+    const StrengthChoice choice = choose(make_rows(0.1, own));
     EXPECT_LE(choice.error_over_jnd, choice.trend_error_over_jnd) << own;
   }
 }
 
-TEST(CorrectionStrength, NothingToLeaveOutMeansNone) {
-  Case made = make_case(0.3, 0.0);
-  made.samples.clear();
-  EXPECT_EQ(choose(made).strength, 0.0);
-}
+TEST(CorrectionStrength, NothingToLeaveOutMeansNone) { EXPECT_EQ(choose({}).strength, 0.0); }
 
 TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   test::Numbers numbers(5);
@@ -89,17 +81,18 @@ TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   for (int i = 0; i < 8000; ++i) {
     const double force_N = between(numbers, 0.0, 5.0);
     // A triangular error that grows with the force.
-    const double error_N = (0.01 + 0.02 * force_N) * std::abs(between(numbers, -1.0, 1.0) + between(numbers, -1.0, 1.0));
-    (i % 2 == 0 ? past : future).push_back({0, error_N, force_N, 0.05});
+    const double error_N =
+        (0.01 + 0.02 * force_N) * std::abs(between(numbers, -1.0, 1.0) + between(numbers, -1.0, 1.0));
+    (i % 2 == 0 ? past : future).push_back({error_N, force_N, 0.05});
   }
-  const auto bound = calibrate_bound(past, 0.1, JndLine{}, 5.0, 1.0);
+  const auto bound = calibrate_bound(past, 0.1, JndLine{}, 5.0);
   ASSERT_TRUE(bound.has_value());
   int held = 0;
   for (const LeftOutPrediction& one : future) held += one.error_N <= bound->at(one.predicted_N, 0.0) ? 1 : 0;
   // 97 % of 4000, give or take three standard deviations of each half.
   EXPECT_NEAR(held / 4000.0, 0.97, 0.012);
   EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";
-  EXPECT_FALSE(calibrate_bound({}, 0.1, JndLine{}, 5.0, 1.0).has_value());
+  EXPECT_FALSE(calibrate_bound({}, 0.1, JndLine{}, 5.0).has_value());
 }
 
 }  // namespace

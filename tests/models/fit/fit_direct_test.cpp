@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/projected_kernel.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

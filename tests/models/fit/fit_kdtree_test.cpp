@@ -16,9 +16,7 @@ namespace {
 
 using test::smooth_sites;
 
-Eigen::VectorXd jnd_of(const Sites& sites) {
-  return (0.065 + 0.0633 * sites.target_N.array().abs()).matrix();
-}
+Eigen::VectorXd jnd_of(const Sites& sites) { return (0.065 + 0.0633 * sites.target_N.array().abs()).matrix(); }
 
 // Section 4.2.2 to the letter: a full least squares fit after every split.
 Eigen::MatrixXd plain_centres(const Sites& sites, const Eigen::VectorXd& jnd_N, KernelKind kernel, int count) {
@@ -65,7 +63,8 @@ TEST(FitKdTree, DegenerateDataHaveADefinedOutcome) {
       const auto fitted = fit_kdtree(sites, jnd_of(sites), {.centres = centres});
       ASSERT_TRUE(fitted.ok());
       EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
-      EXPECT_LE(fitted->report.centres_used, std::min(centres, static_cast<Eigen::Index>(distinct_sites(sites).size())));
+      EXPECT_LE(fitted->report.centres_used,
+                std::min(centres, static_cast<Eigen::Index>(distinct_sites(sites).size())));
     }
   const Sites duplicates = test::degenerate_sites()[2];
   const auto cut = fit_kdtree(duplicates, jnd_of(duplicates), {.centres = 1000});

@@ -31,7 +31,8 @@ TEST(Methods, EveryRowIsWhole) {
 TEST(Methods, ABaseTakesItsTimeToo) {
   MethodRequest request;
   request.method = &kVoxelMethod;
-  EXPECT_EQ(expected_seconds(request), kVoxelMethod.expected_seconds(request) + kDirectMethod.expected_seconds(request));
+  EXPECT_EQ(expected_seconds(request),
+            kVoxelMethod.expected_seconds(request) + kDirectMethod.expected_seconds(request));
 }
 
 TEST(Methods, AreListedByWhatTheyTake) {

@@ -20,7 +20,8 @@ using test::smooth_sites;
 double difference(const RbfFunction& a, const RbfFunction& b, const Sites& sites) {
   double worst = 0.0;
   for (Eigen::Index i = 0; i < sites.count(); ++i)
-    worst = std::max(worst, std::abs(rbf_value(a, sites.points.col(i).data()) - rbf_value(b, sites.points.col(i).data())));
+    worst =
+        std::max(worst, std::abs(rbf_value(a, sites.points.col(i).data()) - rbf_value(b, sites.points.col(i).data())));
   return worst;
 }
 
@@ -36,7 +37,8 @@ Sites penalised_sites() {
 // below any threshold.
 constexpr double kRounding_N = 1e-10;
 
-void expect_direct(const NestedWeights& nested, Eigen::Index count, const Result<FittedRbf>& direct, const Sites& sites) {
+void expect_direct(const NestedWeights& nested, Eigen::Index count, const Result<FittedRbf>& direct,
+                   const Sites& sites) {
   const auto fitted = nested.solve(count);
   ASSERT_TRUE(fitted.ok() && direct.ok());
   EXPECT_EQ(fitted->function.centres, direct->function.centres) << count;
@@ -85,8 +87,7 @@ TEST(NestedFit, GivesEveryDirectKdTreeFit) {
 
 TEST(NestedFit, CountsBeyondTheFitAreItsOwn) {
   const Sites sites = penalised_sites();
-  const auto nested =
-      NestedWeights::fold(sites, KernelKind::cubic, CentreSequence::growing(sites.points.leftCols(10)));
+  const auto nested = NestedWeights::fold(sites, KernelKind::cubic, CentreSequence::growing(sites.points.leftCols(10)));
   ASSERT_TRUE(nested.ok());
   EXPECT_EQ(nested->solve(11)->report.centres_used, 10);
   EXPECT_EQ(nested->solve(-1)->report.centres_used, 0);
@@ -110,7 +111,8 @@ TEST(NestedFit, DegenerateSitesGiveFiniteFunctions) {
 TEST(NestedFit, GivesTheModelOfTheDirectFit) {
   RigSettings settings;
   settings.seconds = 8.0;
-  const PreparedTraining prepared = test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block"));
+  const PreparedTraining prepared =
+      test::prepare({test::rig_recording(settings)}, test::scene_request("silicone_block"));
   for (const Method* method : {&kRandomMethod, &kKdTreeMethod, &kGreedyMethod}) {
     MethodRequest request;
     request.method = method;

@@ -24,8 +24,8 @@ Result<MethodFit> fit_trend_alone(Weighting weighting, Reduction reduction) {
 
 TEST(TrendMethod, IsTheTrendEverywhereAndHasNoCentres) {
   // With the paper's recipe the correction of other methods replaces the trend.
-  for (const auto& [weighting, reduction] : {std::pair{Weighting::jnd, Reduction::coverage},
-                                             std::pair{Weighting::relative, Reduction::force}}) {
+  for (const auto& [weighting, reduction] :
+       {std::pair{Weighting::jnd, Reduction::coverage}, std::pair{Weighting::relative, Reduction::force}}) {
     const auto fit = fit_trend_alone(weighting, reduction);
     ASSERT_TRUE(fit.ok()) << fit.error().message;
     const ModelData& data = fit->data;

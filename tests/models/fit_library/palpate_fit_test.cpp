@@ -12,21 +12,21 @@ namespace {
 
 TEST(FitLibrary, FitsAndReplaysAsTheProgramDoes) {
   const test::TemporaryFolder folder;
-  ASSERT_EQ(test::run_palpate({"synth", "--material", "silicone", "--seed", "4", "--seconds", "6", "--out",
-                               folder.file("rig.csv")})
+  ASSERT_EQ(test::run_palpate(
+                {"synth", "--material", "silicone", "--seed", "4", "--seconds", "6", "--out", folder.file("rig.csv")})
                 .exit_code,
             0);
   const auto run = test::run_program({PALPATE_CPP_PROGRAM, folder.file("rig.csv"), folder.path()});
   ASSERT_EQ(run.exit_code, 0) << run.err;
 
   const std::string recording = folder.file("imported.csv");
-  const auto fit = test::run_palpate({"fit", "--recording", recording, "--method", "random", "--centres", "40",
-                                      "--out", folder.file("program.json")});
+  const auto fit = test::run_palpate(
+      {"fit", "--recording", recording, "--method", "random", "--centres", "40", "--out", folder.file("program.json")});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_EQ(test::read_text(folder.file("program.json")), test::read_text(folder.file("fitted.json")));
 
-  const auto replay = test::run_palpate({"replay", "--recording", recording, "--model", folder.file("fitted.json"),
-                                         "--out", folder.file("forces.csv")});
+  const auto replay = test::run_palpate(
+      {"replay", "--recording", recording, "--model", folder.file("fitted.json"), "--out", folder.file("forces.csv")});
   ASSERT_EQ(replay.exit_code, 0) << replay.err;
   std::istringstream printed(run.out);
   std::ifstream forces(folder.file("forces.csv"));

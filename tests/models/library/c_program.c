@@ -9,13 +9,13 @@
 
 static int failures = 0;
 
-static void expect(int holds, const char *what) {
+static void expect(int holds, const char* what) {
   if (holds) return;
   fprintf(stderr, "does not hold: %s\n", what);
   ++failures;
 }
 
-static void check_handles(const char *no_model) {
+static void check_handles(const char* no_model) {
   char error[200] = "untouched";
   char tiny[4];
   expect(palpate_abi_version() == PALPATE_ABI_VERSION, "the ABI version is the header's");
@@ -43,10 +43,10 @@ static void check_handles(const char *no_model) {
   expect(palpate_limiter_flags(NULL) == 0, "no limiter: no flags");
 }
 
-static void check_samples(const palpate_model *model) {
+static void check_samples(const palpate_model* model) {
   char error[200];
   palpate_sensor sensor;
-  palpate_stream *stream;
+  palpate_stream* stream;
   memset(&sensor, 0, sizeof sensor);
   expect(palpate_stream_new(model, NAN, error, sizeof error) == NULL, "a step of NaN: NULL");
   expect(palpate_stream_new(model, -1e-6, error, sizeof error) == NULL, "a negative step: NULL");
@@ -69,11 +69,11 @@ static void check_samples(const palpate_model *model) {
   palpate_stream_free(stream);
 }
 
-static void print_forces(const palpate_model *model, const char *recording) {
+static void print_forces(const palpate_model* model, const char* recording) {
   char error[200];
   double time_s, position_m;
   palpate_sensor sensor;
-  palpate_stream *stream;
+  palpate_stream* stream;
   expect(palpate_sensor_of_recording(recording, &sensor, error, sizeof error) == 0, error);
   stream = palpate_stream_new_with_sensor(model, &sensor, error, sizeof error);
   while (scanf("%lf %lf", &time_s, &position_m) == 2)
@@ -81,9 +81,9 @@ static void print_forces(const palpate_model *model, const char *recording) {
   palpate_stream_free(stream);
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   char error[200];
-  palpate_model *model;
+  palpate_model* model;
   if (argc != 4) return 2;
   check_handles(argv[3]);
   model = palpate_model_load(argv[1], error, sizeof error);

@@ -63,17 +63,18 @@ void compare(const Recording& recording, const ModelHandle& handle, palpate_stre
   std::size_t row = 0;
   for (const ModelData& data : test::example_models()) {
     if (data.name != path_model) continue;
-    const auto summary = replay(recording, {std::make_shared<FittedModel>(data)},
-                                [&](const RecordingRow& r, const TickSnapshot& snapshot, const HapticsTick&) {
-      const double force_N = palpate_stream_force_with_motion(stream, r.time_s, r.position_m, r.velocity_m_per_s,
-                                                              r.acceleration_m_per_s2);
-      ASSERT_EQ(force_N, snapshot.force_N[0]) << data.name << " row " << row;
-      ASSERT_EQ(palpate_stream_out_of_domain(stream), static_cast<int>(snapshot.out_of_domain_mask & 1U));
-      const double bound_N = palpate_stream_predicted_error(stream);
-      const double expected_N = snapshot.predicted_error_N[0];
-      ASSERT_TRUE(bound_N == expected_N || (std::isnan(bound_N) && std::isnan(expected_N))) << data.name;
-      ++row;
-    });
+    const auto summary =
+        replay(recording, {std::make_shared<FittedModel>(data)},
+               [&](const RecordingRow& r, const TickSnapshot& snapshot, const HapticsTick&) {
+                 const double force_N = palpate_stream_force_with_motion(stream, r.time_s, r.position_m,
+                                                                         r.velocity_m_per_s, r.acceleration_m_per_s2);
+                 ASSERT_EQ(force_N, snapshot.force_N[0]) << data.name << " row " << row;
+                 ASSERT_EQ(palpate_stream_out_of_domain(stream), static_cast<int>(snapshot.out_of_domain_mask & 1U));
+                 const double bound_N = palpate_stream_predicted_error(stream);
+                 const double expected_N = snapshot.predicted_error_N[0];
+                 ASSERT_TRUE(bound_N == expected_N || (std::isnan(bound_N) && std::isnan(expected_N))) << data.name;
+                 ++row;
+               });
     EXPECT_TRUE(summary.ok());
   }
   EXPECT_EQ(row, recording.rows.size());
@@ -241,11 +242,11 @@ TEST_F(LibraryC, ACProgramGivesReplaysForces) {
   std::size_t rows = 0;
   const auto summary = replay(recording, {std::make_shared<FittedModel>(data)},
                               [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
-    std::string line;
-    ASSERT_TRUE(std::getline(forces, line));
-    EXPECT_EQ(std::strtod(line.c_str(), nullptr), snapshot.force_N[0]);
-    ++rows;
-  });
+                                std::string line;
+                                ASSERT_TRUE(std::getline(forces, line));
+                                EXPECT_EQ(std::strtod(line.c_str(), nullptr), snapshot.force_N[0]);
+                                ++rows;
+                              });
   EXPECT_TRUE(summary.ok());
   EXPECT_EQ(rows, recording.rows.size());
 }
@@ -254,9 +255,9 @@ TEST_F(LibraryC, PythonReplaysARecordingBitForBit) {
   if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc, and with it what Python may load";
   const std::string recording = save(with_channels(test::example_recording(3000, 1000.0, 30e-6)));
   std::vector<std::string> arguments = {"replay", "--recording", recording, "--out", folder_.file("forces.csv")};
-  std::vector<std::string> command = {"/usr/bin/env", "python3",
-                                      PALPATE_SOURCE_DIR "/tests/models/library/replay_by_ctypes.py",
-                                      PALPATE_SHARED_LIBRARY, recording, folder_.file("forces.csv")};
+  std::vector<std::string> command = {
+      "/usr/bin/env",         "python3", PALPATE_SOURCE_DIR "/tests/models/library/replay_by_ctypes.py",
+      PALPATE_SHARED_LIBRARY, recording, folder_.file("forces.csv")};
   const std::vector<ModelData> models = test::example_models();
   for (std::size_t i = 0; i < models.size() && i < 16; ++i) {
     const std::string path = save(models[i]);

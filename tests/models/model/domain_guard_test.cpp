@@ -93,9 +93,7 @@ TEST(DomainGuard, ChangesNoFasterThanItsSlopeBound) {
   }
 }
 
-TEST(DomainGuard, IdenticalSitesMakeOnePoint) {
-  EXPECT_EQ(make_cover(Eigen::MatrixXd::Ones(4, 300)).points.cols(), 1);
-}
+TEST(DomainGuard, IdenticalSitesMakeOnePoint) { EXPECT_EQ(make_cover(Eigen::MatrixXd::Ones(4, 300)).points.cols(), 1); }
 
 }  // namespace
 }  // namespace palpate

@@ -35,9 +35,10 @@ TEST(FittedModel, EveryFaultIsNamed) {
       {[](ModelData& d) { d.features[2].drive.reference_depth_m = -1.0; },
        "features.drive.reference_depth_m: found -1.000000, expected a positive number"},
       {[](ModelData& d) { d.features[3].drive.coefficient_N[1] = kNan; },
-       "features.drive: found a non-finite number, expected finite numbers"},
-      {[](ModelData& d) { d.offset.resize(3); },
-       "normalisation.offset: found 3 values, expected 4, one per feature"},
+       "features.drive: found a number that is no force, expected at most 1e9 N"},
+      {[](ModelData& d) { d.features[2].drive.coefficient_N[1] = 1e300; },
+       "features.drive: found a number that is no force, expected at most 1e9 N"},
+      {[](ModelData& d) { d.offset.resize(3); }, "normalisation.offset: found 3 values, expected 4, one per feature"},
       {[](ModelData& d) { d.scale(1) = 0.0; }, "normalisation.scale: found 0 or less, expected positive numbers"},
       {[](ModelData& d) { d.lower(0) = kInfinity; },
        "domain.lower: found a non-finite number, expected finite numbers"},
@@ -65,8 +66,28 @@ TEST(FittedModel, EveryFaultIsNamed) {
        "centres: found 3 values each, expected 4"},
   };
   for (const Case& one : cases) EXPECT_EQ(message_after(one.spoil), one.message);
-  EXPECT_EQ(message_after([](ModelData& d) { test::change_grid(d, [](VoxelGrid& g) { g.values_N.pop_back(); }); }, "voxel"),
-            "grid.values_N: found 359 values, expected 360");
+  EXPECT_EQ(
+      message_after([](ModelData& d) { test::change_grid(d, [](VoxelGrid& g) { g.values_N.pop_back(); }); }, "voxel"),
+      "grid.values_N: found 359 values, expected 360");
+}
+
+// Such a model would jump between no force and the largest one.
+TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
+  void (*const spoils[])(ModelData&) = {
+      [](ModelData& d) { d.trend.elastic_N[3] = 1e300; },
+      [](ModelData& d) { d.trend.viscosity_Ns_per_m[0] = -1e300; },
+      [](ModelData& d) { d.trend.elastic_N[0] = 1e5; },
+      [](ModelData& d) { d.scale(0) = 1e300; },
+      [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.weights *= 1e12; }); },
+      [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.tail(0) = 1e300; }); },
+  };
+  for (const auto spoil : spoils) {
+    const std::string message = message_after(spoil);
+    EXPECT_NE(message.find("largest_force_N"), std::string::npos) << message;
+  }
+  EXPECT_EQ(message_after([](ModelData& d) { d.trend.elastic_N[0] = 1e5; }),
+            "trend: found 7.03e+04 N at domain.points[0], expected at most 306.5 N, a hundred times the sum of "
+            "largest_force_N, correction_limit_N and the JND");
 }
 
 // The equation in the header, term by term.
@@ -82,8 +103,8 @@ TEST(FittedModel, IsItsEquation) {
       const RbfFunction* rbf = rbf_of(data.correction);
       const VoxelGrid* grid = grid_of(data.correction);
       const double h_N = rbf ? RbfEvaluator(*rbf).evaluate(u.data()) : grid ? grid->evaluate(u.data()) : 0.0;
-      const double correction_N = std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N,
-                                             data.correction_limit_N);
+      const double correction_N =
+          std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N, data.correction_limit_N);
       const double expected_N =
           std::clamp(trend_N + guard.trust(u.data()) * correction_N, 0.0, 1.2 * data.largest_force_N);
       const ForceEstimate estimate = model.evaluate(x.data());

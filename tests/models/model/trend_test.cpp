@@ -43,38 +43,6 @@ TEST(Trend, BranchesAddTheirForceAndLowPassesNothing) {
   EXPECT_NEAR(trend.at(x, test::maxwell_features()), trend.at(x, test::paper_features()) + 0.7, 1e-15);
 }
 
-// The work that a softening trend takes over a closed cycle of depth and memory, with
-// `heal` the share of the memory beyond the depth that fades in a step.
-double softening_work(const Trend& trend, double heal) {
-  const std::vector<FeatureSpec> specs{FeatureSpec{}, {FeatureKind::fading_peak, 1.0}};
-  const auto depth_at = [](int i) {
-    const double angle = 2e-4 * 3.14159265358979 * i;
-    return 2.5e-3 - 2e-3 * std::cos(angle) + 0.4e-3 * std::sin(5.0 * angle);
-  };
-  double peak_m = 0.0;
-  double work = 0.0;
-  for (int cycle = 0; cycle < 3; ++cycle) {
-    work = 0.0;
-    for (int i = 0; i < 10000; ++i) {
-      const double x[] = {depth_at(i), peak_m = std::max(depth_at(i), peak_m - heal * (peak_m - depth_at(i)))};
-      const double y[] = {depth_at(i + 1), std::max(depth_at(i + 1), peak_m)};
-      work += 0.5 * (trend.at(x, specs) + trend.at(y, specs)) * (depth_at(i + 1) - depth_at(i));
-    }
-  }
-  return work;
-}
-
-TEST(Trend, SofteningNeverGivesBackMoreThanItTook) {
-  Trend trend = example_trend();
-  for (std::size_t j = 0; j < trend.softening.size(); ++j) trend.softening[j] = {5e-3, {0.4, 0.3, 0.2, 0.0}};
-  EXPECT_NEAR(softening_work(trend, 0.0), 0.0, 1e-9) << "a memory that never fades is a spring";
-  for (const double heal : {1e-4, 1e-3, 1e-2}) EXPECT_GT(softening_work(trend, heal), 0.0) << heal;
-  const std::vector<FeatureSpec> specs{FeatureSpec{}, {FeatureKind::fading_peak, 1.0}};
-  const double fresh[] = {3e-3, 3e-3};
-  const double pressed[] = {3e-3, 5e-3};
-  EXPECT_LT(trend.at(pressed, specs), trend.at(fresh, specs));
-}
-
 TEST(Trend, ContinuesAlongItsTangentBeyondTheReferenceDepth) {
   const Trend trend = example_trend();
   const double edge = at(trend, 5e-3, 0.0);

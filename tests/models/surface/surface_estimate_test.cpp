@@ -83,8 +83,9 @@ TEST(SurfaceEstimate, InventsNothing) {
 
 // A surface that still recovers meets the tool late: only the touch at rest counts.
 TEST(SurfaceEstimate, OnlyTouchesAtRestCount) {
-  EXPECT_EQ(estimate_surface(spring_presses(3, 0.5)).touches, 1);
-  EXPECT_EQ(estimate_surface(spring_presses(3, kRestBeforeTouch_s)).touches, 3);
+  // One touch alone says nothing of a drift.
+  EXPECT_TRUE(std::isinf(estimate_surface(spring_presses(3, 0.5)).offset_drift_error_m));
+  EXPECT_TRUE(std::isfinite(estimate_surface(spring_presses(3, kRestBeforeTouch_s)).offset_drift_error_m));
 }
 
 TEST(SurfaceEstimate, MeasuresASurfaceThatMoves) {
@@ -102,6 +103,16 @@ TEST(SurfaceEstimate, MeasuresADriftingForceZero) {
   EXPECT_NEAR(estimate_surface(recording).force_zero_drift_N, 0.02, 0.005);
 }
 
+// What an accelerated tool weighs is no force of the material.
+TEST(SurfaceEstimate, TellsInertiaFromContact) {
+  Recording recording = rig("silicone", 2);
+  for (RecordingRow& row : recording.rows) row.force_N += 0.06 * row.acceleration_m_per_s2;
+  const SurfaceEstimate estimate = estimate_surface(recording);
+  EXPECT_NEAR(estimate.tool_mass_kg, 0.06, 0.01);
+  EXPECT_NEAR(estimate.raw_offset_m, 0.0, 0.1e-3);
+  EXPECT_EQ(estimate.force_zero_N, 0.0);
+}
+
 TEST(SurfaceEstimate, SaysSoWhereThereIsNoAirAndNoForce) {
   Recording no_force = spring_presses(1, 0.5);
   for (RecordingRow& row : no_force.rows) row.force_N = 0.0;
@@ -114,7 +125,8 @@ TEST(SurfaceEstimate, SaysSoWhereThereIsNoAirAndNoForce) {
   const SurfaceEstimate held = estimate_surface(no_air);
   EXPECT_EQ(held.force_zero_N, 0.0);
   EXPECT_TRUE(std::isinf(held.force_zero_error_N));
-  EXPECT_EQ(held.free_air_share, 0.0);
+  EXPECT_FALSE(held.free_air);
+  EXPECT_FALSE(held.told());
 }
 
 }  // namespace

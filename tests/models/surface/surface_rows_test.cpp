@@ -14,9 +14,7 @@ std::vector<SurfaceRow> kept_of(GrowingStride rows, int count, double period_s) 
   return rows.rows();
 }
 
-TEST(GrowingStride, KeepsEveryRowThatItHasRoomFor) {
-  EXPECT_EQ(kept_of(GrowingStride(100), 99, 1e-3).size(), 99u);
-}
+TEST(GrowingStride, KeepsEveryRowThatItHasRoomFor) { EXPECT_EQ(kept_of(GrowingStride(100), 99, 1e-3).size(), 99u); }
 
 TEST(GrowingStride, GoesOverTheWholeInLongerSteps) {
   const auto kept = kept_of(GrowingStride(100), 1000, 1e-3);

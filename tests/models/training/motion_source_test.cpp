@@ -58,7 +58,8 @@ TEST(MotionSource, TakesMotionThatIsKnown) {
 // each recording, in stretches without a gap.
 TEST(MotionSource, ASampleGoesThroughEveryRecordingInStretches) {
   constexpr std::size_t kMost = 8000;
-  MotionSource source({in_memory(test::example_recording(60000, 1000.0, 30e-6)), in_memory(test::example_recording(30000, 1000.0, 0.0))});
+  MotionSource source({in_memory(test::example_recording(60000, 1000.0, 30e-6)),
+                       in_memory(test::example_recording(30000, 1000.0, 0.0))});
   source.correct({{1e-3, 0.5}, {0.0, 0.0}});
   const auto all = rows_of(source);
   auto sample = source.sample(kMost, {}, 0.0);

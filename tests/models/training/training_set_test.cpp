@@ -134,8 +134,7 @@ TEST(TrainingSet, ForceReductionKeepsThePapersSamples) {
 
 TEST(TrainingSet, ForceReductionOfNoiseStaysBelowItsCap) {
   test::Numbers noise(2);
-  const Recording recording =
-      recording_of(60000, [&](int) { return std::pair{3e-3, 5.0 + 2.0 * noise.next()}; });
+  const Recording recording = recording_of(60000, [&](int) { return std::pair{3e-3, 5.0 + 2.0 * noise.next()}; });
   const TrainingSet set = set_of(recording, test::position_features(), Reduction::force);
   EXPECT_LE(set.sites.size(), kMaximumSites);
   EXPECT_GT(set.reduction_force_N, 0.05);

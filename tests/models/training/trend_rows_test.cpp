@@ -28,8 +28,9 @@ Step step_at(int i) {
 }
 
 TEST(TrendRows, ColumnsAreTheTrendsTerms) {
-  TrendRows rows(kDepth_m, kThinning_m_per_s, {0.17, 1.27});
-  ASSERT_EQ(rows.columns(), kElasticCoefficients + 2 * kViscosityCoefficients + 2 * kBranchTerms);
+  TrendRows rows({kDepth_m, kThinning_m_per_s, {0.17, 1.27}, {}});
+  const std::vector<DriveCurve> elastic = spline_basis(kDepth_m);
+  ASSERT_EQ(rows.columns(), kSplineTerms + 2 * kViscosityCoefficients + 2 * kBranchTerms);
   FeatureFilter first(branch_basis(0.17, kDepth_m));
   FeatureFilter second(branch_basis(1.27, kDepth_m));
   rows.begin_recording();
@@ -44,19 +45,18 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
     const double* row = rows.row(contact - 1);
     const double u = motion.position_m / kDepth_m;
     const double v = motion.velocity_m_per_s;
-    for (std::size_t k = 0; k < kElasticCoefficients; ++k) {
-      ASSERT_DOUBLE_EQ(row[k], u * polynomial(bernstein_integral<5>(k), u));
-    }
+    for (std::size_t k = 0; k < kSplineTerms; ++k) ASSERT_EQ(row[k], elastic[k].at(motion.position_m));
+    row += kSplineTerms;
     const double basis[] = {(1 - u) * (1 - u), 2 * u * (1 - u), u * u};
     for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
-      ASSERT_NEAR(row[6 + k], v * basis[k], 1e-15);
-      ASSERT_NEAR(row[9 + k], v / (1 + std::abs(v) / kThinning_m_per_s) * basis[k], 1e-15);
+      ASSERT_NEAR(row[k], v * basis[k], 1e-15);
+      ASSERT_NEAR(row[3 + k], v / (1 + std::abs(v) / kThinning_m_per_s) * basis[k], 1e-15);
     }
     for (std::size_t k = 0; k < kBranchTerms; ++k) {
-      ASSERT_EQ(row[12 + k], a.values[k]);
-      ASSERT_EQ(row[15 + k], b.values[k]);
+      ASSERT_EQ(row[6 + k], a.values[k]);
+      ASSERT_EQ(row[9 + k], b.values[k]);
     }
-    ASSERT_EQ(rows.stroke(contact - 1), 7);
+    ASSERT_EQ(rows.fold(contact - 1), 7);
   }
   EXPECT_GT(contact, 1000u);
 }
@@ -98,19 +98,20 @@ TEST(TrendRows, ALadderIsItsBranches) {
       const double depth_m = std::max(0.0, motion.position_m);
       ladder.update(sample.time_s, depth_m, depth_m);
       const FeatureVector& vector = filter.update(sample, motion);
-      for (std::size_t k = 0; k < kBranchTerms; ++k) ASSERT_DOUBLE_EQ(ladder.values()[kBranchTerms + k], vector.values[k]);
+      for (std::size_t k = 0; k < kBranchTerms; ++k)
+        ASSERT_DOUBLE_EQ(ladder.values()[kBranchTerms + k], vector.values[k]);
     }
   }
 }
 
 TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
-  TrendRows rows(kDepth_m, 0.0, {});
-  EXPECT_EQ(rows.columns(), kElasticCoefficients);
+  TrendRows rows({kDepth_m, 0.0, {}, {}});
+  EXPECT_EQ(rows.columns(), kSplineTerms);
   EXPECT_EQ(rows.viscous_columns(), 0u);
 }
 
 TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
-  TrendRows rows(1.0, 0.0, {});
+  TrendRows rows({1.0, 0.0, {}, {}});
   rows.begin_recording();
   const int count = 450000;
   for (int i = 0; i < count; ++i) {
@@ -121,7 +122,7 @@ TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {
   ASSERT_EQ(rows.count(), 56250u);
   for (std::size_t i = 0; i < rows.count(); ++i) {
     ASSERT_EQ(rows.force_N(i), 8.0 * static_cast<double>(i));
-    ASSERT_EQ(rows.stroke(i), 8 * static_cast<int>(i));
+    ASSERT_EQ(rows.fold(i), 8 * static_cast<int>(i));
   }
 }
 

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <unistd.h>
 
 #include "models/model/file/model_json.h"
 #include "tests/support/example_model.h"
@@ -48,18 +48,19 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   spectrum.slowing = 1.7;
   spectrum.parts[1].drive.has_knots = true;
   spectrum.parts[1].drive.knot_N = {0.1, -0.2, 1.0 / 7.0, 0.0, 0.5, 0.25, 1.0};
+  FeatureSpec creep;
+  creep.kind = FeatureKind::creep;
+  creep.part_count = 1;
+  creep.parts[0] = {0.1, 5e-3, drive};
   FeatureSpec lag{FeatureKind::surface_lag};
   lag.drive = spectrum.parts[1].drive;
-  ModelData data = example_model("greedy", KernelKind::cubic,
-                                 {FeatureSpec{}, spectrum, stops, {FeatureKind::fading_peak, 6.0}, lag}, 11);
-  data.trend.softening[1] = drive;
+  ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep, lag}, 11);
   data.trend.has_elastic_knots = true;
   data.trend.elastic_knot_N = lag.drive.knot_N;
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
   data.sensor = PositionSensor{30e-6, 1e-6};
   const ModelData back = read_back(data);
   EXPECT_EQ(back.features, data.features);
-  EXPECT_EQ(back.trend.softening, data.trend.softening);
   ASSERT_TRUE(back.error_bound.has_value() && back.sensor.has_value());
   EXPECT_EQ(back.sensor->encoder_step_m, 30e-6);
   EXPECT_EQ(back.sensor->position_noise_m, 1e-6);
@@ -132,15 +133,24 @@ TEST(ModelIo, EveryFieldComesBack) {
 
 TEST(ModelIo, AwkwardNumbersRoundTripBitForBit) {
   ModelData data = example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
-  const std::vector<double> awkward = {-0.0, 0.1, 1.0 / 3.0, 5e-324, -2.2250738585072014e-308,
-                                       1.7976931348623157e308, 9007199254740993.0, 1e22, 123456789012345678.0,
-                                       -1e-7, 3.0, std::nextafter(1.0, 2.0)};
-  test::change_rbf(data, [&](RbfFunction& function) {
-    for (std::size_t i = 0; i < awkward.size(); ++i) function.weights(static_cast<Eigen::Index>(i)) = awkward[i];
-  });
+  const std::vector<double> awkward = {-0.0,
+                                       0.1,
+                                       1.0 / 3.0,
+                                       5e-324,
+                                       -2.2250738585072014e-308,
+                                       1.7976931348623157e308,
+                                       9007199254740993.0,
+                                       1e22,
+                                       123456789012345678.0,
+                                       -1e-7,
+                                       3.0,
+                                       std::nextafter(1.0, 2.0)};
+  // A field that may hold any number.
+  for (const double offset_m : awkward) data.provenance.surfaces.push_back({"press-1", offset_m, 0.0, 0.0});
   const ModelData back = read_back(data);
+  ASSERT_EQ(back.provenance.surfaces.size(), awkward.size());
   for (std::size_t i = 0; i < awkward.size(); ++i) {
-    EXPECT_EQ(bits(rbf_of(back.correction)->weights(static_cast<Eigen::Index>(i))), bits(awkward[i])) << awkward[i];
+    EXPECT_EQ(bits(back.provenance.surfaces[i].offset_m), bits(awkward[i])) << awkward[i];
   }
 }
 
@@ -152,7 +162,7 @@ TEST(ModelIo, RandomBitPatternsRoundTrip) {
       do {
         state = state * 6364136223846793005ULL + 1442695040888963407ULL;
         value = std::bit_cast<double>(state ^ (state >> 29));
-      } while (!std::isfinite(value));
+      } while (!(std::abs(value) < 1.0));  // within the limits of the file
     }
   });
   const ModelData back = read_back(data);

@@ -71,160 +71,173 @@ void expect_all(const std::string& text, const std::vector<Broken>& table) {
 }
 
 TEST(ModelReader, RefusesWhatIsNoModelOfThisVersion) {
-  expect_all(small_text(), {
-      {"\"palpate-model\"", "\"palpate\"",
-       "m.json:2:13: format: found \"palpate\", expected \"palpate-model\"; name a file that palpate fit "
-       "wrote"},
-      {"\"format\"", "\"Format\"",
-       "m.json:1:1: found no \"format\", expected \"palpate-model\"; name a file that palpate fit wrote"},
-      {"\"version\": 1", "\"version\": 2",
-       "m.json:3:14: version: found 2, expected 1; fit the model again with this program, or read it with "
-       "the one that wrote it"},
-      {"\"version\": 1", "\"version\": \"1\"",
-       "m.json:3:14: version: found \"1\", expected 1; fit the model again with this program, or read it "
-       "with the one that wrote it"},
-      {"  \"version\": 1,\n", "",
-       "m.json:1:1: version: found no such field, expected 1; fit the model again"},
-  });
+  expect_all(
+      small_text(),
+      {
+          {"\"palpate-model\"", "\"palpate\"",
+           "m.json:2:13: format: found \"palpate\", expected \"palpate-model\"; name a file that palpate fit "
+           "wrote"},
+          {"\"format\"", "\"Format\"",
+           "m.json:1:1: found no \"format\", expected \"palpate-model\"; name a file that palpate fit wrote"},
+          {"\"version\": 1", "\"version\": 2",
+           "m.json:3:14: version: found 2, expected 1; fit the model again with this program, or read it with "
+           "the one that wrote it"},
+          {"\"version\": 1", "\"version\": \"1\"",
+           "m.json:3:14: version: found \"1\", expected 1; fit the model again with this program, or read it "
+           "with the one that wrote it"},
+          {"  \"version\": 1,\n", "", "m.json:1:1: version: found no such field, expected 1; fit the model again"},
+      });
 }
 
 TEST(ModelReader, RefusesWrongNamesAndFeatures) {
-  expect_all(small_text(), {
-      {"\"small\"", "\"\"",
-       "m.json:4:11: name: found an empty text, expected 1 to 100 bytes without control characters, "
-       "commas and quotes; fit the model again"},
-      {"\"small\"", "\"a,b\"",
-       "m.json:4:11: name: found a control character, comma or quote, expected 1 to 100 bytes without "
-       "control characters, commas and quotes; fit the model again"},
-      {"\"small\"", "7",
-       "m.json:4:11: name: found 7, expected a text; fit the model again"},
-      {"\"greedy\"", "\"\"",
-       "m.json:5:13: method: found an empty text, expected 1 to 100 bytes without control characters, "
-       "commas and quotes; fit the model again"},
-      {"\"kind\": \"velocity\"", "\"kind\": \"speed\"",
-       "m.json:8:14: features[1].kind: found \"speed\", expected one of depth, velocity, "
-       "lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, fading_peak, surface_lag; fit "
-       "the model again"},
-      {"{\"kind\": \"velocity\"}", "7",
-       "m.json:8:5: features[1]: found 7, expected an object with \"kind\"; fit the model again"},
-      {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": 0",
-       "m.json:9:53: features[2].relaxation_time_s: found 0, expected a number above 0; fit the model "
-       "again"},
-      {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": \"0.1\"",
-       "m.json:9:53: features[2].relaxation_time_s: found \"0.1\", expected a number above 0; fit the "
-       "model again"},
-      {"[0.4, 0.3, 0.2, 0.1]", "[0.4, 0.3, 0.2]",
-       "m.json:9:113: features[2].drive.coefficient_N: found a list of 3, expected 4 coefficients; fit "
-       "the model again"},
-      {"{\"kind\": \"depth\"},", "",
-       "m.json:12:15: normalisation.offset: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:13:14: normalisation.scale: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:41:14: domain.lower: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:42:14: domain.upper: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:46:5: domain.points[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
-       "m.json:52:5: centres[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again"},
-  });
+  expect_all(
+      small_text(),
+      {
+          {"\"small\"", "\"\"",
+           "m.json:4:11: name: found an empty text, expected 1 to 100 bytes without control characters, "
+           "commas and quotes; fit the model again"},
+          {"\"small\"", "\"a,b\"",
+           "m.json:4:11: name: found a control character, comma or quote, expected 1 to 100 bytes without "
+           "control characters, commas and quotes; fit the model again"},
+          {"\"small\"", "7", "m.json:4:11: name: found 7, expected a text; fit the model again"},
+          {"\"greedy\"", "\"\"",
+           "m.json:5:13: method: found an empty text, expected 1 to 100 bytes without control characters, "
+           "commas and quotes; fit the model again"},
+          {"\"kind\": \"velocity\"", "\"kind\": \"speed\"",
+           "m.json:8:14: features[1].kind: found \"speed\", expected one of depth, velocity, "
+           "lowpass_velocity, maxwell_branch, maxwell_spectrum, stops, creep, surface_lag; fit "
+           "the model again"},
+          {"{\"kind\": \"velocity\"}", "7",
+           "m.json:8:5: features[1]: found 7, expected an object with \"kind\"; fit the model again"},
+          {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": 0",
+           "m.json:9:53: features[2].relaxation_time_s: found 0, expected a number above 0; fit the model "
+           "again"},
+          {"\"relaxation_time_s\": 0.1", "\"relaxation_time_s\": \"0.1\"",
+           "m.json:9:53: features[2].relaxation_time_s: found \"0.1\", expected a number above 0; fit the "
+           "model again"},
+          {"[0.4, 0.3, 0.2, 0.1]", "[0.4, 0.3, 0.2]",
+           "m.json:9:113: features[2].drive.coefficient_N: found a list of 3, expected 4 coefficients; fit "
+           "the model again"},
+          {"{\"kind\": \"depth\"},", "",
+           "m.json:12:15: normalisation.offset: found a list of 3, expected 2 numbers, one per feature; fit the model "
+           "again\n"
+           "m.json:13:14: normalisation.scale: found a list of 3, expected 2 numbers, one per feature; fit the model "
+           "again\n"
+           "m.json:41:14: domain.lower: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+           "m.json:42:14: domain.upper: found a list of 3, expected 2 numbers, one per feature; fit the model again\n"
+           "m.json:46:5: domain.points[0]: found a list of 3, expected 2 numbers, one per feature; fit the model "
+           "again\n"
+           "m.json:52:5: centres[0]: found a list of 3, expected 2 numbers, one per feature; fit the model again"},
+      });
 }
 
 TEST(ModelReader, RefusesWrongNumbersAndSizes) {
-  expect_all(small_text(), {
-      {"\"scale\": [0.003, 0.05, 1]", "\"scale\": [0.003, 0, 1]",
-       "m.json: normalisation.scale: found 0 or less, expected positive numbers; fit the model again"},
-      {"\"scale\": [0.003, 0.05, 1]", "\"scale\": [0.003, 0.05]",
-       "m.json:13:14: normalisation.scale: found a list of 2, expected 3 numbers, one per feature; fit "
-       "the model again"},
-      {"\"scale\": [0.003, 0.05, 1]", "\"scale\": [0.003, null, 1]",
-       "m.json:13:22: normalisation.scale[1]: found null, expected a number; fit the model again"},
-      {"\"scale\": [0.003, 0.05, 1]", "\"scale\": 1",
-       "m.json:13:14: normalisation.scale: found 1, expected 3 numbers, one per feature; fit the model "
-       "again"},
-      {"\"offset_N\": 0.065", "\"offset_N\": 0",
-       "m.json:26:23: jnd.offset_N: found 0, expected a number above 0; fit the model again"},
-      {"\"jnd\": {", "\"jnd\": 3, \"was\": {",
-       "m.json:26:10: jnd: found 3, expected an object with \"offset_N\"; fit the model again"},
-      {"\"corrects_trend\": true", "\"corrects_trend\": 1",
-       "m.json:23:21: corrects_trend: found 1, expected true or false; fit the model again"},
-      {"\"largest_force_N\": 2.5", "\"largest_force_N\": -2.5",
-       "m.json:25:22: largest_force_N: found -2.5, expected a number, 0 or more; fit the model again"},
-      {"\"inner_radius\": 0.3", "\"inner_radius\": 3",
-       "m.json: domain radii: found 3.000000 and 0.909091, expected 0 <= inner < outer; fit the model "
-       "again"},
-      {"\"seed\": 18446744073709551615", "\"seed\": -1",
-       "m.json:33:13: provenance.seed: found -1, expected a whole number, 0 or more; fit the model again"},
-      {"\"press-2\"", "2",
-       "m.json:28:31: provenance.recordings[1]: found 2, expected a text; fit the model again"},
-      {"\"standard_error_s\": 0.01", "\"standard_error\": 0.01",
-       "m.json:37:26: provenance.relaxation_times[0].standard_error_s: found no such field, expected a "
-       "number, 0 or more; fit the model again"},
-      {"[0.25, 0.25, 0.25]", "",
-       "m.json:45:15: domain.points: found an empty list, expected a list of at least one point; fit the "
-       "model again"},
-      {"\"linear\"", "\"gauss\"",
-       "m.json:49:13: kernel: found \"gauss\", expected one of cubic, linear, thin-plate, quintic; fit "
-       "the model again"},
-      {"\"tail\": [1.5]", "\"tail\": [1.5, 2]",
-       "m.json:50:11: tail: found a list of 2, expected 1 coefficients; fit the model again"},
-      {"[0.5, 0.5, 0.5],", "[0.5, 0.5],",
-       "m.json:52:5: centres[0]: found a list of 2, expected 3 numbers, one per feature; fit the model "
-       "again"},
-      {"[0.5, 0.5, 0.5],", "[0.5, \"x\", 0.5],",
-       "m.json:52:11: centres[0][1]: found \"x\", expected a number; fit the model again"},
-      {"[0.5, 0.5, 0.5],", "",
-       "m.json:55:14: weights: found a list of 2, expected 1 numbers, one per centre; fit the model again"},
-      {"0.125,", "",
-       "m.json:55:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
-      {"\"centres\"", "\"centers\"",
-       "m.json:1:1: found none of \"centres\", \"grid\", \"trend_alone\", expected one of them; fit the model again"},
-      {"\"centres\"", "\"grid\": {}, \"centres\"",
-       "m.json:1:1: found both \"centres\" and \"grid\", expected one of them; fit the model again"},
-  });
+  expect_all(
+      small_text(),
+      {
+          {"\"scale\": [0.003, 0.05, 1]", "\"scale\": [0.003, 0, 1]",
+           "m.json: normalisation.scale: found 0 or less, expected positive numbers; fit the model again"},
+          {"\"scale\": [0.003, 0.05, 1]", "\"scale\": [0.003, 0.05]",
+           "m.json:13:14: normalisation.scale: found a list of 2, expected 3 numbers, one per feature; fit "
+           "the model again"},
+          {"\"scale\": [0.003, 0.05, 1]", "\"scale\": [0.003, null, 1]",
+           "m.json:13:22: normalisation.scale[1]: found null, expected a number; fit the model again"},
+          {"\"scale\": [0.003, 0.05, 1]", "\"scale\": 1",
+           "m.json:13:14: normalisation.scale: found 1, expected 3 numbers, one per feature; fit the model "
+           "again"},
+          {"\"offset_N\": 0.065", "\"offset_N\": 0",
+           "m.json:26:23: jnd.offset_N: found 0, expected a number above 0; fit the model again"},
+          {"\"jnd\": {", "\"jnd\": 3, \"was\": {",
+           "m.json:26:10: jnd: found 3, expected an object with \"offset_N\"; fit the model again"},
+          {"\"corrects_trend\": true", "\"corrects_trend\": 1",
+           "m.json:23:21: corrects_trend: found 1, expected true or false; fit the model again"},
+          {"\"largest_force_N\": 2.5", "\"largest_force_N\": -2.5",
+           "m.json:25:22: largest_force_N: found -2.5, expected a number, 0 or more; fit the model again"},
+          {"\"inner_radius\": 0.3", "\"inner_radius\": 3",
+           "m.json: domain radii: found 3.000000 and 0.909091, expected 0 <= inner < outer; fit the model "
+           "again"},
+          {"\"seed\": 18446744073709551615", "\"seed\": -1",
+           "m.json:33:13: provenance.seed: found -1, expected a whole number, 0 or more; fit the model again"},
+          {"\"press-2\"", "2", "m.json:28:31: provenance.recordings[1]: found 2, expected a text; fit the model again"},
+          {"\"standard_error_s\": 0.01", "\"standard_error\": 0.01",
+           "m.json:37:26: provenance.relaxation_times[0].standard_error_s: found no such field, expected a "
+           "number, 0 or more; fit the model again"},
+          {"[0.25, 0.25, 0.25]", "",
+           "m.json:45:15: domain.points: found an empty list, expected a list of at least one point; fit the "
+           "model again"},
+          {"\"linear\"", "\"gauss\"",
+           "m.json:49:13: kernel: found \"gauss\", expected one of cubic, linear, thin-plate, quintic; fit "
+           "the model again"},
+          {"\"tail\": [1.5]", "\"tail\": [1.5, 2]",
+           "m.json:50:11: tail: found a list of 2, expected 1 coefficients; fit the model again"},
+          {"[0.5, 0.5, 0.5],", "[0.5, 0.5],",
+           "m.json:52:5: centres[0]: found a list of 2, expected 3 numbers, one per feature; fit the model "
+           "again"},
+          {"[0.5, 0.5, 0.5],", "[0.5, \"x\", 0.5],",
+           "m.json:52:11: centres[0][1]: found \"x\", expected a number; fit the model again"},
+          {"[0.5, 0.5, 0.5],", "",
+           "m.json:55:14: weights: found a list of 2, expected 1 numbers, one per centre; fit the model again"},
+          {"0.125,", "",
+           "m.json:55:14: weights: found a list of 1, expected 2 numbers, one per centre; fit the model again"},
+          {"\"centres\"", "\"centers\"",
+           "m.json:1:1: found none of \"centres\", \"grid\", \"trend_alone\", expected one of them; fit the model "
+           "again"},
+          {"\"centres\"", "\"grid\": {}, \"centres\"",
+           "m.json:1:1: found both \"centres\" and \"grid\", expected one of them; fit the model again"},
+      });
 }
 
 TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
-  expect_all(small_text(), {
-      {"\"tail\"", "\"tails\": 3,\n\"tail\"",
-       "m.json:50:12: tails: found an unknown field, expected one of format, version, name, method, features, "
-       "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, jnd, provenance, domain, kernel, "
-       "tail, centres, weights; fit the model again"},
-      {"{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"time\": 1}",
-       "m.json:7:31: features[0].time: found an unknown field, expected one of kind, surface_position_m; fit the model again"},
-  });
+  expect_all(
+      small_text(),
+      {
+          {"\"tail\"", "\"tails\": 3,\n\"tail\"",
+           "m.json:50:12: tails: found an unknown field, expected one of format, version, name, method, features, "
+           "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, jnd, provenance, domain, "
+           "kernel, "
+           "tail, centres, weights; fit the model again"},
+          {"{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"time\": 1}",
+           "m.json:7:31: features[0].time: found an unknown field, expected one of kind, surface_position_m; fit the "
+           "model again"},
+      });
 }
 
 TEST(ModelReader, RefusesWrongGrids) {
-  expect_all(small_grid_text(), {
-      {"[[-1, 0, 1]]", "[[-1, 0, 0]]",
-       "m.json:48:23: grid.nodes[0][2]: found 0, expected at least 2 numbers, each above the last; fit "
-       "the model again"},
-      {"[[-1, 0, 1]]", "[[-1]]",
-       "m.json:48:15: grid.nodes[0]: found a list of 1, expected at least 2 numbers, each above the last; "
-       "fit the model again"},
-      {"[[-1, 0, 1]]", "[]",
-       "m.json:48:14: grid.nodes: found a list of 0 axes, expected 1, one per feature; fit the model again"},
-      {"[[-1, 0, 1]]", "[[-1, 1]]",
-       "m.json:49:17: grid.values_N: found a list of 3, expected as many as the grid has nodes; fit the "
-       "model again"},
-      {"1.5, 2.5, 3.5", "1.5, 2.5, {}",
-       "m.json:50:15: grid.values_N[2]: found an object, expected a number; fit the model again"},
-  });
+  expect_all(small_grid_text(),
+             {
+                 {"[[-1, 0, 1]]", "[[-1, 0, 0]]",
+                  "m.json:48:23: grid.nodes[0][2]: found 0, expected at least 2 numbers, each above the last; fit "
+                  "the model again"},
+                 {"[[-1, 0, 1]]", "[[-1]]",
+                  "m.json:48:15: grid.nodes[0]: found a list of 1, expected at least 2 numbers, each above the last; "
+                  "fit the model again"},
+                 {"[[-1, 0, 1]]", "[]",
+                  "m.json:48:14: grid.nodes: found a list of 0 axes, expected 1, one per feature; fit the model again"},
+                 {"[[-1, 0, 1]]", "[[-1, 1]]",
+                  "m.json:49:17: grid.values_N: found a list of 3, expected as many as the grid has nodes; fit the "
+                  "model again"},
+                 {"1.5, 2.5, 3.5", "1.5, 2.5, {}",
+                  "m.json:50:15: grid.values_N[2]: found an object, expected a number; fit the model again"},
+             });
 }
 
 TEST(ModelReader, RefusesTextThatIsNotJson) {
-  expect_all(small_text(), {
-      {"\"largest_force_N\": 2.5", "\"largest_force_N\": 1e999",
-       "m.json:25:22: found 1e999, expected a finite number; fit the model again"},
-      {"\"largest_force_N\": 2.5", "\"largest_force_N\": -1e400",
-       "m.json:25:22: found -1e400, expected a finite number; fit the model again"},
-      {"\"largest_force_N\": 2.5", "\"largest_force_N\": NaN",
-       "m.json:25:22: syntax error while parsing value - invalid literal; last read: "
-       "'\"largest_force_N\": N'; the file is damaged: copy it again or fit the model again"},
-      {"\"largest_force_N\": 2.5", "\"largest_force_N\": 2,5",
-       "m.json:25:24: syntax error while parsing object key - unexpected number literal; expected string "
-       "literal; the file is damaged: copy it again or fit the model again"},
-      {"\"small\"", "\"sm\xff\"",
-       "m.json:4:14: syntax error while parsing value - invalid string: ill-formed UTF-8 byte; last read: "
-       "'\"sm\\xff'; the file is damaged: copy it again or fit the model again"},
-  });
+  expect_all(small_text(),
+             {
+                 {"\"largest_force_N\": 2.5", "\"largest_force_N\": 1e999",
+                  "m.json:25:22: found 1e999, expected a finite number; fit the model again"},
+                 {"\"largest_force_N\": 2.5", "\"largest_force_N\": -1e400",
+                  "m.json:25:22: found -1e400, expected a finite number; fit the model again"},
+                 {"\"largest_force_N\": 2.5", "\"largest_force_N\": NaN",
+                  "m.json:25:22: syntax error while parsing value - invalid literal; last read: "
+                  "'\"largest_force_N\": N'; the file is damaged: copy it again or fit the model again"},
+                 {"\"largest_force_N\": 2.5", "\"largest_force_N\": 2,5",
+                  "m.json:25:24: syntax error while parsing object key - unexpected number literal; expected string "
+                  "literal; the file is damaged: copy it again or fit the model again"},
+                 {"\"small\"", "\"sm\xff\"",
+                  "m.json:4:14: syntax error while parsing value - invalid string: ill-formed UTF-8 byte; last read: "
+                  "'\"sm\\xff'; the file is damaged: copy it again or fit the model again"},
+             });
   const std::string text = small_text();
   EXPECT_EQ(complaint(""),
             "m.json:1:1: syntax error while parsing value - unexpected end of input; expected '[', '{', "
@@ -278,8 +291,7 @@ TEST(ModelReader, RefusesAGridThatOverflows) {
   text = text.substr(0, text.find("\"grid\"")) + "\"grid\": {\"nodes\": [" + axis + "," + axis + "," + axis + "," +
          axis + "],\n\"values_N\": []}}";
   const std::string message = complaint(text);
-  EXPECT_NE(message.find("grid.values_N: found a list of 0, expected as many as the grid has nodes"),
-            std::string::npos)
+  EXPECT_NE(message.find("grid.values_N: found a list of 0, expected as many as the grid has nodes"), std::string::npos)
       << message.substr(0, 200);
 }
 

@@ -70,8 +70,7 @@ TEST_P(RbfEvaluatorOnTarget, KernelsKeepTheirRelativeAccuracyFromTinyToHugeDista
   f.weights.setConstant(1.0 / 16.0);
   f.tail.setZero();
   const RbfEvaluator evaluator(f);
-  for (double r = 1.1e-18; r < 1e50; r *= 3.7)
-    EXPECT_NEAR(evaluator.evaluate(&r) / (r * r * r), 1.0, 6 * 0x1p-52) << r;
+  for (double r = 1.1e-18; r < 1e50; r *= 3.7) EXPECT_NEAR(evaluator.evaluate(&r) / (r * r * r), 1.0, 6 * 0x1p-52) << r;
   for (const double r : {0.0, 1e-90, 1e-25, 0.9e-18}) EXPECT_NEAR(evaluator.evaluate(&r), 1e-54, 1e-66) << r;
 }
 
@@ -90,8 +89,7 @@ TEST_P(RbfEvaluatorOnTarget, RootFromAnEstimateIsGoodToThreeUlp) {
 
 TEST_P(RbfEvaluatorOnTarget, IsExactlyTheTailAtACoincidentCentreOfACubic) {
   RbfFunction f = random_function(KernelKind::cubic, 4, 1, 3);
-  EXPECT_DOUBLE_EQ(RbfEvaluator(f).evaluate(f.centres.data()),
-                   tail_value(f.tail.data(), 1, 4, f.centres.data()));
+  EXPECT_DOUBLE_EQ(RbfEvaluator(f).evaluate(f.centres.data()), tail_value(f.tail.data(), 1, 4, f.centres.data()));
 }
 
 TEST_P(RbfEvaluatorOnTarget, DenormalInputsCountAsZero) {

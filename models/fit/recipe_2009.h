@@ -1,0 +1,14 @@
+// The recipe of Hoever & Harders (2009), to compare with: 50 mN reduction, rows scaled by
+// 1/f, depth, velocity and low-pass velocities with two relaxation times that are fitted to
+// these recordings, as the paper fits its two to the transients of its own.
+// Thread guarantee: pure function.
+#pragma once
+
+#include "models/fit/fit.h"
+
+namespace palpate {
+
+// `request`: a scene's. Its features without a relaxation time stay as they are.
+TrainingRequest recipe_2009_request(TrainingRequest request);
+
+}  // namespace palpate

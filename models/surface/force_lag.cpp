@@ -1,0 +1,76 @@
+#include "models/surface/force_lag.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/surface/common_fit.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kMostLag_s = 0.05;
+constexpr double kCoarse_s = 0.005;
+constexpr double kFine_s = 0.2e-3;
+constexpr double kWidest_s = 0.002;  // a lag that is told worse is not corrected
+constexpr std::size_t kLagRows = 4000;
+constexpr double kLagRowSpacing_s = 0.005;
+constexpr double kLongestStep_s = 0.02;  // between rows: no lag is told finer than some tenths of it
+
+// Strokes at different speeds tell a lag from memory; one press alone does not.
+constexpr int kLeastStrokes = 3;
+
+// How often the tool goes in past the middle of its way.
+int strokes_of(const std::vector<SurfaceRow>& rows, double middle_m) {
+  int strokes = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i - 1].motion.position_m <= middle_m && rows[i].motion.position_m > middle_m) ++strokes;
+  }
+  return strokes;
+}
+
+// The first rows, not closer together than is of use.
+std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
+  std::vector<SurfaceRow> kept;
+  for (const SurfaceRow& row : rows) {
+    if (kept.size() == kLagRows) break;
+    if (kept.empty() || row.sample.time_s >= kept.back().sample.time_s + kLagRowSpacing_s) kept.push_back(row);
+  }
+  return kept;
+}
+
+}  // namespace
+
+Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N) {
+  const std::vector<SurfaceRow> some = first_rows(rows);
+  Located none;
+  none.standard_error = std::numeric_limits<double>::infinity();
+  if (some.size() < 100) return none;
+  const double step_s = (some.back().sample.time_s - some.front().sample.time_s) / static_cast<double>(some.size() - 1);
+  if (step_s > kLongestStep_s) return none;
+  const auto [low, high] = std::minmax_element(some.begin(), some.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
+    return a.motion.position_m < b.motion.position_m;
+  });
+  if (!(high->motion.position_m > low->motion.position_m)) return none;
+  if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
+  const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
+  return locate([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
+                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kWidest_s, true});
+}
+
+std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {
+  std::vector<SurfaceRow> moved;
+  std::size_t at = 0;
+  for (const SurfaceRow& row : rows) {
+    const double wanted_s = row.sample.time_s + lag_s;
+    while (at + 1 < rows.size() && rows[at + 1].sample.time_s < wanted_s) ++at;
+    if (wanted_s < rows.front().sample.time_s || at + 1 >= rows.size()) continue;
+    const SurfaceRow& a = rows[at];
+    const SurfaceRow& b = rows[at + 1];
+    const double share = (wanted_s - a.sample.time_s) / (b.sample.time_s - a.sample.time_s);
+    moved.push_back(row);
+    moved.back().force_N = a.force_N + share * (b.force_N - a.force_N);
+  }
+  return moved;
+}
+
+}  // namespace palpate

@@ -1,0 +1,119 @@
+#include "models/training/relaxation_times.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "models/training/acceptance.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kRows = 4000;
+// Three columns of half a ladder of five decades: more differ too little to matter.
+constexpr std::size_t kMostTimes = 3;
+
+// Elastic response, viscosity and the branches of the chosen times.
+ColumnList columns_of(const TrendRows& rows, const std::vector<std::size_t>& chosen) {
+  ColumnList columns;
+  for (std::size_t i = 0; i < rows.first_branch(); ++i) columns.push_back(static_cast<Eigen::Index>(i));
+  for (const std::size_t time : chosen) {
+    for (std::size_t k = 0; k < kBranchTerms; ++k) {
+      columns.push_back(static_cast<Eigen::Index>(rows.first_branch() + time * kBranchTerms + k));
+    }
+  }
+  return columns;
+}
+
+struct Choice {
+  std::vector<std::size_t> times;  // of the ladder, ascending
+  LeftOutTrend error;
+};
+
+// The best set with one time more: of the last one's times each may move by a rung.
+Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, const Choice& last) {
+  Choice best;
+  const std::size_t ladder = rows.relaxation_times_s().size();
+  const auto attempt = [&](std::vector<std::size_t> times) {
+    std::sort(times.begin(), times.end());
+    if (std::adjacent_find(times.begin(), times.end()) != times.end() || times.back() >= ladder) return;
+    Choice one{std::move(times), {}};
+    one.error = regression.left_out(columns_of(rows, one.times), &last.error);
+    if (best.times.empty() || one.error.rms() < best.error.rms()) best = std::move(one);
+  };
+  for (std::size_t added = 0; added < ladder; ++added) {
+    std::vector<std::size_t> times = last.times;
+    times.push_back(added);
+    attempt(times);
+  }
+  for (bool moved = !last.times.empty(); moved;) {
+    const std::vector<std::size_t> from = best.times;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      for (const int step : {-1, 1}) {
+        if (step < 0 && from[i] == 0) continue;
+        std::vector<std::size_t> times = from;
+        times[i] = step < 0 ? times[i] - 1 : times[i] + 1;
+        attempt(times);
+      }
+    }
+    moved = best.times != from;
+  }
+  return best;
+}
+
+}  // namespace
+
+Result<std::vector<double>> identify_relaxation(MotionSource& source, const FoldDealer& dealer,
+                                                const TrendProblem& problem, bool velocity, std::size_t count,
+                                                const FitControl& control, double fraction) {
+  const auto scales = measure_times(source, control, fraction);
+  if (!scales) return scales.error();
+  FeatureList list = dictionary(scales->sample_s, scales->longest_recording_s, problem.reference_depth_m);
+  list.velocity = velocity;
+  list.stop_thresholds_m.clear();
+  list.creep_times_s.clear();
+  const auto rows = gather_rows(source, dealer, list, problem, kRows, 0.0, control, fraction);
+  if (!rows) return rows.error();
+  const auto& ladder_s = rows->relaxation_times_s();
+  if (ladder_s.empty()) {
+    return Error{"the recordings are too short to tell a relaxation time; record longer, or pass --relaxation scene"};
+  }
+  const TrendRegression regression(*rows, dealer.folds(), problem.weighting, problem.jnd, problem.force_noise_floor_N);
+  Choice best = with_one_more(regression, *rows, {{}, regression.left_out(columns_of(*rows, {}))});
+  while (best.times.size() < std::min(count > 0 ? count : kMostTimes, ladder_s.size())) {
+    if (!control.may_continue(fraction)) return interrupted();
+    Choice more = with_one_more(regression, *rows, best);
+    if (count == 0 && !is_worth_it(more.error.fold_error, best.error.fold_error)) break;
+    best = std::move(more);
+  }
+  std::vector<double> times_s;
+  for (const std::size_t time : best.times) times_s.push_back(ladder_s[time]);
+  return times_s;
+}
+
+Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction) {
+  double start_s = 0.0;
+  double last_s = 0.0;
+  double duration_s = 0.0;
+  std::size_t steps = 0;
+  bool run_up = false;
+  TimeScales scales;
+  const Status status = source.for_each(
+      [&](const MotionRow& row) {
+        if (row.first) {
+          start_s = row.sample.time_s;
+        } else if (!run_up && !row.run_up) {
+          duration_s += row.sample.time_s - last_s;
+          ++steps;
+        }
+        run_up = row.run_up;
+        last_s = row.sample.time_s;
+        scales.longest_recording_s = std::max(scales.longest_recording_s, last_s - start_s);
+        return true;
+      },
+      control, fraction);
+  if (!status) return status.error();
+  scales.sample_s = duration_s / static_cast<double>(std::max<std::size_t>(steps, 1));
+  return scales;
+}
+
+}  // namespace palpate

@@ -1,0 +1,209 @@
+#include "models/training/trend_dictionary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "models/model/bernstein.h"
+
+namespace palpate {
+namespace {
+
+// Neighbours differ by 1.8 times, and two of them follow any time between: the data blur more.
+constexpr double kTimesPerDecade = 4.0;
+// A millisecond is the tick; what takes longer than 100 s no exploration shows.
+constexpr double kShortest_s = 1e-3;
+constexpr double kLongest_s = 100.0;
+constexpr std::size_t kBands = 3;
+// Skin and rubber let a fingertip or a probe creep by some tenths of a millimetre before they slip.
+constexpr std::array kThresholds_m{0.05e-3, 0.1e-3, 0.2e-3, 0.4e-3, 0.8e-3};
+constexpr double kThresholdDepth_m = 4e-3;
+constexpr double kCreepShortest_s = 1e-3;
+constexpr double kCreepLongest_s = 100.0;
+// Faster than the recording by this factor the velocity stops counting.
+constexpr double kVelocityMargin = 1.5;
+
+std::vector<double> ladder(double shortest_s, double longest_s, double per_decade) {
+  std::vector<double> times_s;
+  // The last rung is not lost to rounding.
+  const double end_s = longest_s * (1.0 + 1e-9);
+  for (int i = 0;; ++i) {
+    const double time_s = shortest_s * std::pow(10.0, i / per_decade);
+    if (!(time_s <= end_s)) return times_s;
+    times_s.push_back(time_s);
+  }
+}
+
+std::string range_text(const char* words, const std::vector<double>& values, double unit, const char* unit_name) {
+  char text[96];
+  if (values.size() == 1) {
+    std::snprintf(text, sizeof text, "%s %.3g %s", words, unit * values.front(), unit_name);
+  } else {
+    std::snprintf(text, sizeof text, "%s %.3g-%.3g %s", words, unit * values.front(), unit * values.back(), unit_name);
+  }
+  return text;
+}
+
+ColumnList columns_from(std::size_t first, std::size_t count) {
+  ColumnList columns;
+  for (std::size_t i = 0; i < count; ++i) columns.push_back(static_cast<Eigen::Index>(first + i));
+  return columns;
+}
+
+Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
+  Trend trend;
+  trend.reference_depth_m = rows.reference_depth_m();
+  const DriveCurve spline = combined_spline(x.data(), rows.reference_depth_m());
+  std::copy(spline.coefficient_N.begin(), spline.coefficient_N.end(), trend.elastic_N.begin());
+  trend.has_elastic_knots = true;
+  trend.elastic_knot_N = spline.knot_N;
+  auto column = static_cast<Eigen::Index>(kSplineTerms);
+  if (rows.viscous_columns() > 0) {
+    trend.thinning_velocity_m_per_s = rows.thinning_velocity_m_per_s();
+    for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
+      for (std::size_t k = 0; k < kViscosityCoefficients; ++k, ++column) {
+        const auto power = bernstein<kViscosityCoefficients - 1>(k);
+        for (std::size_t j = 0; j < power.size(); ++j) (*viscosity)[j] += x(column) * power[j];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < rows.count(); ++i) {
+    trend.velocity_limit_m_per_s =
+        std::max(trend.velocity_limit_m_per_s, kVelocityMargin * std::abs(rows.velocity_m_per_s(i)));
+  }
+  return trend;
+}
+
+// The constant of each part: a relaxation time, a threshold or a time of creep.
+FeaturePart part_of(FeatureKind kind, double constant, const double* weights, double depth_m) {
+  if (kind == FeatureKind::stops) return {0.0, constant, combined_friction(weights, depth_m)};
+  if (kind == FeatureKind::creep) return {constant, depth_m, combined_friction(weights, depth_m)};
+  return {constant, 0.0, combined_drive(weights, depth_m)};
+}
+
+// One feature of the parts that carry something; none when nothing does.
+FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>& constants, const Eigen::VectorXd& x,
+                          const TrendRows& rows, bool all) {
+  static_assert(kBranchTerms == kBristleTerms);
+  FeatureSpec spec;
+  spec.kind = group.kind;
+  for (std::size_t p = 0; p < constants.size(); ++p) {
+    const double* weights = x.data() + group.columns[p * kBranchTerms];
+    const bool carries = std::any_of(weights, weights + kBranchTerms, [](double weight) { return weight > 0.0; });
+    if (!carries && !all) continue;
+    spec.parts[spec.part_count++] = part_of(group.kind, constants[p], weights, rows.reference_depth_m());
+  }
+  if (group.kind != FeatureKind::maxwell_spectrum) return spec;
+  spec.slowing = rows.terms().slowing;
+  if (spec.part_count != 1) return spec;
+  // A branch alone is the older kind.
+  FeatureSpec branch{FeatureKind::maxwell_branch, spec.parts[0].relaxation_time_s, spec.parts[0].drive};
+  branch.slowing = spec.slowing;
+  return branch;
+}
+
+}  // namespace
+
+FeatureList dictionary(double sample_s, double longest_s, double depth_m) {
+  FeatureList list;
+  list.velocity = true;
+  const std::vector<double> times_s =
+      ladder(std::max(kShortest_s, 2.0 * sample_s), std::min(kLongest_s, longest_s / 3.0), kTimesPerDecade);
+  for (std::size_t band = 0; band < kBands; ++band) {
+    const auto from = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * band / kBands);
+    const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
+    if (from != to) list.relaxation_times_s.emplace_back(from, to);
+  }
+  const double shrink = std::min(1.0, depth_m / kThresholdDepth_m);
+  for (const double threshold_m : kThresholds_m) list.stop_thresholds_m.push_back(shrink * threshold_m);
+  list.creep_times_s = ladder(kCreepShortest_s, kCreepLongest_s, 1.0);
+  return list;
+}
+
+std::vector<double> all_times(const FeatureList& list) {
+  std::vector<double> times_s;
+  for (const auto& group : list.relaxation_times_s) times_s.insert(times_s.end(), group.begin(), group.end());
+  return times_s;
+}
+
+TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s) {
+  return {reference_depth_m,  list.velocity ? rms_velocity_m_per_s : 0.0,
+          all_times(list),    list.stop_thresholds_m,
+          list.creep_times_s, list.slowing,
+          list.surface};
+}
+
+std::vector<FeatureColumns> feature_columns(const FeatureList& list, const TrendRows& rows) {
+  std::vector<FeatureColumns> groups;
+  if (list.velocity) {
+    groups.push_back({FeatureKind::velocity, "velocity", columns_from(kSplineTerms, rows.viscous_columns())});
+  }
+  std::size_t first = rows.first_branch();
+  const auto add = [&](FeatureKind kind, std::string name, std::size_t parts) {
+    groups.push_back({kind, std::move(name), columns_from(first, kBranchTerms * parts)});
+    first += kBranchTerms * parts;
+  };
+  for (const auto& times_s : list.relaxation_times_s) {
+    add(FeatureKind::maxwell_spectrum, range_text("relaxation", times_s, 1.0, "s"), times_s.size());
+  }
+  if (const auto& thresholds_m = list.stop_thresholds_m; !thresholds_m.empty()) {
+    add(FeatureKind::stops, range_text("stops", thresholds_m, 1e3, "mm"), thresholds_m.size());
+  }
+  if (!list.creep_times_s.empty()) {
+    add(FeatureKind::creep, range_text("creep", list.creep_times_s, 1.0, "s"), list.creep_times_s.size());
+  }
+  return groups;
+}
+
+FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
+  FittedTrend fitted{trend_from(rows, x), {FeatureSpec{}}, {}};
+  if (!list.surface.empty()) {
+    FeatureSpec lag{FeatureKind::surface_lag};
+    lag.drive = combined_spline(x.data(), rows.reference_depth_m());
+    fitted.features.push_back(lag);
+  }
+  std::vector<ColumnList> sums;  // of the features that are sums of columns
+  std::size_t band = 0;
+  for (const FeatureColumns& group : feature_columns(list, rows)) {
+    const bool relaxes = group.kind == FeatureKind::maxwell_spectrum;
+    const std::vector<double>& constants = relaxes                            ? list.relaxation_times_s[band++]
+                                           : group.kind == FeatureKind::stops ? list.stop_thresholds_m
+                                                                              : list.creep_times_s;
+    const bool carries =
+        std::any_of(group.columns.begin(), group.columns.end(), [&](Eigen::Index j) { return x(j) > 0.0; });
+    if (!carries && !all && group.kind != FeatureKind::velocity) continue;
+    if (group.kind == FeatureKind::velocity) {
+      fitted.features.push_back({FeatureKind::velocity});
+    } else {
+      fitted.features.push_back(parts_feature(group, constants, x, rows, all));
+      sums.push_back(group.columns);
+    }
+  }
+  fitted.row_features.resize(static_cast<Eigen::Index>(fitted.features.size()),
+                             static_cast<Eigen::Index>(rows.count()));
+  for (std::size_t i = 0; i < rows.count(); ++i) {
+    const Eigen::Map<const Eigen::VectorXd> row(rows.row(i), x.size());
+    std::size_t sum = 0;
+    for (std::size_t f = 0; f < fitted.features.size(); ++f) {
+      double& value = fitted.row_features(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i));
+      switch (fitted.features[f].kind) {
+        case FeatureKind::depth:
+          value = rows.depth_m(i);
+          break;
+        case FeatureKind::velocity:
+          value = rows.velocity_m_per_s(i);
+          break;
+        case FeatureKind::surface_lag:
+          value = rows.lag_m(i);
+          break;
+        default:
+          value = row(sums[sum]).dot(x(sums[sum]));
+          ++sum;
+      }
+    }
+  }
+  return fitted;
+}
+
+}  // namespace palpate

@@ -1,0 +1,30 @@
+#include "models/fit/recipe_2009.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+TEST(Recipe2009, FitsTwoTimesToTheRecording) {
+  const TrainingRequest request = recipe_2009_request(test::default_request("silicone_block"));
+  EXPECT_EQ(request.reduction, Reduction::force);
+  EXPECT_EQ(request.weighting, Weighting::relative);
+  RigSettings settings = test::train_settings("gel");  // 0.05, 0.3, 2 s: not the times of the scene
+  settings.seconds = 15.0;
+  const PreparedTraining prepared = test::prepare({test::rig_recording(settings)}, request);
+  const std::vector<RelaxationTime>& times = prepared.common.provenance.relaxation_times;
+  ASSERT_EQ(times.size(), 2u);
+  EXPECT_LT(times[0].time_s, times[1].time_s);
+  std::size_t low_pass = 0;
+  for (const FeatureSpec& spec : prepared.common.features) low_pass += spec.kind == FeatureKind::lowpass_velocity;
+  EXPECT_EQ(low_pass, 2u);
+}
+
+TEST(Recipe2009, OfPositionAloneHasNoTimes) {
+  EXPECT_EQ(recipe_2009_request(test::position_request()).relaxation, Relaxation::scene);
+}
+
+}  // namespace
+}  // namespace palpate

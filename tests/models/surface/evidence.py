@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""What palpate says of surface, force zero and lag, against what is known.
+
+Usage: evidence.py PALPATE [FOLDER...]
+
+Virtual recordings get a known shift, lag, zero, tool mass, adhesion or no free air;
+recordings in the FOLDERs get a known shift or lag on top of what they have. Prints one
+row for each: found, true, error, and whether it is right. "not told" is right where the
+recording cannot tell, harmless where it could, and never wrong. Ends with 1 when
+something was told and false.
+"""
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+PALPATE = sys.argv[1]
+FOLDERS = sys.argv[2:]
+WORK = tempfile.mkdtemp()
+STIFF_MM, SOFT_MM, LAG_MS, ZERO_N = 0.1, 0.3, 2.0, 0.01
+counts = {"right": 0, "not told": 0, "rightly not told": 0, "WRONG": 0}
+
+
+def run(*arguments):
+    done = subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True)
+    try:
+        return json.loads(done.stdout)
+    except ValueError:
+        return {"error": done.stderr.strip()}
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        lines = [line.strip() for line in file if not line.startswith("#")]
+    names = lines[0].split(",")
+    rows = [dict(zip(names, map(float, line.split(",")))) for line in lines[1:] if line]
+    return rows
+
+
+def write(name, rows):
+    path = os.path.join(WORK, name + ".csv")
+    names = list(rows[0])
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(",".join(names) + "\n")
+        for row in rows:
+            file.write(",".join(repr(row[n]) for n in names) + "\n")
+    return path
+
+
+def row(case, what, found, true, tolerance, unit):
+    """`found`: None where it was not told; `true`: None where it cannot be told."""
+    if found is None:
+        verdict = "rightly not told" if true is None else "not told"
+    elif true is None:
+        verdict = "WRONG" if abs(found) > tolerance else "right"
+    else:
+        verdict = "right" if abs(found - true) <= tolerance else "WRONG"
+    counts[verdict] += 1
+    say = lambda x: "-" if x is None else f"{x:+.3f}"
+    error = "-" if None in (found, true) else f"{found - true:+.3f}"
+    print(f"{case:44} {what:10} {say(found):>9} {say(true):>9} {error:>8} {unit:3} {verdict}", flush=True)
+
+
+def checked(path):
+    found = run("check", path, "--json")
+    if "error" in found:
+        return None
+    one = found["recordings"][0]
+    codes = {finding["code"]: finding["value"] for finding in one["findings"]}
+    return one, codes
+
+
+def row_check(case, path, true_mm, tolerance_mm=SOFT_MM, zero_N=0.0, lag_ms=0.0):
+    one, codes = checked(path)
+    told = one.get("surface_told", True)
+    row(case, "surface", 1e3 * one["surface_offset_m"] if told else None, true_mm, tolerance_mm, "mm")
+    row(case, "zero", one["force_zero_N"] if told else None, zero_N, ZERO_N, "N")
+    # No finding is "0", and right where the true lag is small enough to be the material's.
+    lag = 1e3 * codes["lag"] if "lag" in codes else (0.0 if abs(lag_ms) <= LAG_MS else None)
+    row(case, "lag", lag, lag_ms, LAG_MS, "ms")
+
+
+def row_pair(case, paths, names, true_mm, tolerance_mm):
+    """How the second lies to the first, by a fit of both."""
+    model = os.path.join(WORK, "m.json")
+    found = run("fit", "--recording", *paths, "--method", "random", "--features", "scene", "--out", model, "--force",
+                "--json")
+    if "error" in found:
+        print(f"{case:44} {found['error'][:80]}")
+        return
+    by_name = {one["name"].rsplit(".csv", 1)[0].split("/")[-1]: one for one in found["recordings"]}
+    first, second = (by_name[name] for name in names)
+    told = second.get("told", True) and first.get("told", True)
+    shift = 1e3 * (second["surface_offset_m"] - first["surface_offset_m"])
+    if not told and abs(shift) > 1e-6:
+        row(case + " (not told, moved)", "shift", shift, true_mm, 0.0, "mm")
+    else:
+        row(case, "shift", shift if told else None, true_mm, tolerance_mm, "mm")
+
+
+def changed(rows, **by):
+    rows = [dict(r) for r in rows]
+    for r in rows:
+        r["position_m"] += by.get("shift_mm", 0.0) * 1e-3
+        r["force_N"] += by.get("zero_N", 0.0) + by.get("mass_kg", 0.0) * r.get("acceleration_m_per_s2", 0.0)
+    if by.get("lag_ms"):
+        late_s = 1e-3 * by["lag_ms"]
+        times = [r["time_s"] for r in rows]
+        forces = [r["force_N"] for r in rows]
+        at = 0
+        for r in rows:
+            wanted = r["time_s"] - late_s
+            while at + 1 < len(times) - 1 and times[at + 1] <= wanted:
+                at += 1
+            while at > 0 and times[at] > wanted:
+                at -= 1
+            share = min(1.0, max(0.0, (wanted - times[at]) / (times[at + 1] - times[at])))
+            r["force_N"] = forces[at] + share * (forces[at + 1] - forces[at])
+    return rows
+
+
+def synth(material, seed, seconds=14):
+    path = os.path.join(WORK, f"{material}{seed}.csv")
+    if not os.path.exists(path):
+        subprocess.run([PALPATE, "synth", "--material", material, "--seed", str(seed), "--seconds", str(seconds + seed),
+                        "--out", path], check=True, capture_output=True)
+    return read(path)
+
+
+def block(seed, low_mm, high_mm, adhesion_N=0.0, rate_Hz=500.0, seconds=20.0):
+    """A nonlinear spring and two Maxwell branches, pressed between two depths."""
+    rng = random.Random(seed)
+    rows, q, last = [], [0.0, 0.0], None
+    taus, stiffness = (0.15, 1.2), (120.0, 80.0)
+    phase, speed, touched = 0.0, 1.0, False
+    for i in range(int(rate_Hz * seconds)):
+        if i % int(2 * rate_Hz) == 0:
+            speed = rng.uniform(0.3, 1.5)
+        phase += speed * 2 * math.pi / rate_Hz * 0.7
+        position = 1e-3 * (low_mm + (high_mm - low_mm) * 0.5 * (1 - math.cos(phase)))
+        depth = max(0.0, position)
+        force = 250.0 * depth + 4e4 * depth * depth
+        for k, tau in enumerate(taus):
+            step = depth - (last if last is not None else depth)
+            q[k] = q[k] * math.exp(-1.0 / (rate_Hz * tau)) + step
+            force += stiffness[k] * q[k]
+        last = depth
+        force = max(0.0, force)
+        if position > 0:
+            touched = True
+        elif position < -1.5e-3:
+            touched = False
+        if touched and adhesion_N and position < last_position:
+            force -= adhesion_N * min(1.0, max(0.0, (position + 1.5e-3) / 1.5e-3)) * math.exp(-depth / 1e-3)
+        last_position = position
+        rows.append({"time_s": i / rate_Hz, "position_m": position, "force_N": force + rng.gauss(0.0, 0.005)})
+    return rows
+
+
+def virtual():
+    for material in ("silicone", "foam", "maxwell", "tissue", "gel", "stiff"):
+        near = STIFF_MM if material == "stiff" else SOFT_MM
+        base, other = synth(material, 1), synth(material, 2)
+        first = write("first", base)
+        for shift in (0.0, 0.2, -0.2, 3.0, -15.0):
+            row_check(f"{material} shifted {shift:+g} mm", write("shifted", changed(base, shift_mm=shift)), shift, near)
+        for shift in (0.0, 0.2, -0.5, 2.0, -6.0, 15.0):
+            second = write("second", changed(other, shift_mm=shift))
+            row_pair(f"{material} pair {shift:+g} mm", [first, second], ("first", "second"), shift, near)
+        for lag in (-10.0, 4.0, 8.0, 15.0, 30.0):
+            row_check(f"{material} lag {lag:+g} ms", write("late", changed(base, lag_ms=lag)), 0.0, near, lag_ms=lag)
+        row_check(f"{material} zero +0.3 N", write("zero", changed(base, zero_N=0.3)), 0.0, near, 0.3)
+        row_check(f"{material} tool 60 g", write("heavy", changed(base, mass_kg=0.06)), 0.0, near)
+    for seed, low, high in ((1, 3.0, 8.0), (2, 1.0, 4.0), (3, 2.0, 6.0)):
+        row_check(f"no free air, {low:g} to {high:g} mm", write("pressed", block(seed, low, high)), None, 0.0, None)
+    row_pair("no free air, both to 3-8 mm", [write("a", block(4, 3, 8)), write("b", block(5, 3, 8, seconds=15.0))],
+             ("a", "b"), 0.0, 0.1)
+    row_pair("no free air, second moved 4 mm",
+             [write("a", block(4, 3, 8)), write("b", changed(block(5, 3, 8, seconds=15.0), shift_mm=4.0))], ("a", "b"),
+             4.0, SOFT_MM)
+    for adhesion in (0.25, 0.6):
+        row_check(f"adhesion {adhesion:g} N", write("adhesive", block(6, -3, 6, adhesion)), 0.0, SOFT_MM)
+
+
+def real():
+    for folder in FOLDERS:
+        for root, _, files in sorted(os.walk(folder)):
+            names = sorted(f for f in files if f.endswith(".csv"))
+            for name in names:
+                path = os.path.join(root, name)
+                answer = checked(path)
+                _, codes = answer
+                case = f"{os.path.basename(root)}/{name[:-4]}"
+                row(case, "lag", 1e3 * codes.get("lag", 0.0), None, 0.0, "ms")
+                for code in ("force_sign", "position_sign"):
+                    row(case, code[:10], 1.0 if code in codes else None, None, 0.0, "")
+            if len(names) < 2:
+                continue
+            # The same recording twice, shifted: whatever the rig is, the shift is known.
+            rows = read(os.path.join(root, names[-1]))
+            for shift in (0.4, -2.0, 6.0):
+                paths = [write("first", rows), write("second", changed(rows[:-1], shift_mm=shift))]
+                row_pair(f"{os.path.basename(root)}/{names[-1][:-4]} twice {shift:+g}", paths, ("first", "second"),
+                         shift, SOFT_MM)
+
+
+print(f"{'case':44} {'what':10} {'found':>9} {'true':>9} {'error':>8}")
+virtual()
+real()
+print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+sys.exit(1 if counts["WRONG"] else 0)

@@ -1,0 +1,41 @@
+// A late force is told from viscosity, which is early, and from nothing.
+#include "models/surface/force_lag.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "engine/tick/sensor_identification.h"
+#include "scenes/material/material.h"
+#include "scenes/material/rig.h"
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+Located lag_of(const std::string& material, double late_s) {
+  RigSettings settings = test::train_settings(material);
+  settings.seconds = 15.0;
+  const Recording recording = *test::rig_recording(settings);
+  const double noise_N = identify_force_noise_N(recording.rows.data(), recording.rows.size());
+  return find_force_lag(without_lag(all_rows(recording), -late_s), noise_N);
+}
+
+// Two milliseconds, or not told.
+TEST(ForceLag, FindsALateForce) {
+  for (const auto& [material, late_s] :
+       {std::pair{"silicone", 8e-3}, std::pair{"foam", 30e-3}, std::pair{"stiff", -10e-3}}) {
+    const Located found = lag_of(material, late_s);
+    EXPECT_TRUE(found.told) << material;
+    EXPECT_NEAR(found.at, late_s, 2e-3) << material;
+  }
+}
+
+TEST(ForceLag, InventsNone) {
+  for (const Material& material : materials()) {
+    EXPECT_EQ(lag_of(std::string(material.name), 0.0).at, 0.0) << material.name;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

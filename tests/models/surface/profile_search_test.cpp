@@ -1,0 +1,64 @@
+// The one search: told where blocks agree, and never at an edge or between two places.
+#include "models/surface/profile_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+const SearchRange kRange{-10.0, 10.0, 0.5, 1e-3, 1.0};
+
+// Ten blocks, each a parabola around `at` with a little of its own.
+BlockCosts bowl(double x, double at, double floor) {
+  BlockCosts costs;
+  for (int b = 0; b < 10; ++b) costs.push_back(floor + (x - at - 0.02 * (b - 4.5)) * (x - at - 0.02 * (b - 4.5)));
+  return costs;
+}
+
+TEST(ProfileSearch, FindsThePlaceThatAllBlocksAgreeOn) {
+  const Located found = locate([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
+  EXPECT_TRUE(found.told);
+  EXPECT_NEAR(found.at, 7.3, 0.01);
+  EXPECT_LT(found.standard_error, 0.2);
+}
+
+TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
+  const Located found = locate([](double x) { return bowl(x, 0.05, 1.0); }, kRange);
+  EXPECT_TRUE(found.told);
+  EXPECT_EQ(found.at, 0.0);
+}
+
+// Recordings that do not overlap as recorded fit any way.
+TEST(ProfileSearch, ZeroOutsideOfTheRangeSaysNothing) {
+  const auto apart = [](double x) { return x == 0.0 ? BlockCosts(10, 0.0) : bowl(x, 5.0, 0.01); };
+  const Located found = locate(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
+  EXPECT_TRUE(found.told);
+  EXPECT_NEAR(found.at, 5.0, 0.01);
+}
+
+TEST(ProfileSearch, AnOptimumAtTheEdgeIsNotTold) {
+  const Located found = locate([](double x) { return bowl(x, 14.0, 0.01); }, kRange);
+  EXPECT_FALSE(found.told);
+  EXPECT_EQ(found.at, 0.0);
+}
+
+TEST(ProfileSearch, TwoPlacesAsGoodAreNotTold) {
+  const auto two = [](double x) { return bowl(std::abs(x), 5.0, 0.01); };
+  const Located found = locate(two, kRange);
+  EXPECT_FALSE(found.told);
+  EXPECT_TRUE(found.not_zero);
+}
+
+TEST(ProfileSearch, WhatOneBlockAloneSaysIsNotTold) {
+  const auto lone = [](double x) {
+    BlockCosts costs(10, 1.0);
+    costs[3] += (x - 5.0) * (x - 5.0);
+    return costs;
+  };
+  EXPECT_FALSE(locate(lone, kRange).told);
+}
+
+}  // namespace
+}  // namespace palpate
