@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "engine/base/fit_control.h"
-#include "scenes/report/page/page.h"
-#include "scenes/report/data/plan.h"
 
 namespace palpate {
 
@@ -17,7 +15,6 @@ struct ReportRequest {
   std::vector<std::string> test;   // none: k-fold over `train`
   std::string scene = "silicone_block";
   bool quick = false;
-  ReportRecipe recipe;
   std::string out;
   bool force = false;
   std::string command_line;
@@ -25,11 +22,11 @@ struct ReportRequest {
 };
 
 struct ReportSummary {
-  std::vector<std::string> findings;
+  std::string answer;              // the sentence of the page, plain
   std::vector<std::string> files;  // of the folder, sorted
 };
 
-// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp,set,csv} into
+// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into
 // `request.out`, which appears only when all is there. Errors: gnuplot is missing; the
 // folder exists without `force`; those of the recordings and fits; interrupted.
 Result<ReportSummary> make_report(const ReportRequest& request, const FitControl& control = {});

@@ -46,7 +46,8 @@ TEST(CheckVerb, EndsWithOneForARecordingThatFitsNothing) {
 
 TEST(CheckVerb, FindsTheSameRecordingTwice) {
   const test::TemporaryFolder folder;
-  const auto run = run_palpate({"check", folder.with_file("a.csv", pressed(1.0)), folder.with_file("b.csv", pressed(1.0))});
+  const auto run =
+      run_palpate({"check", folder.with_file("a.csv", pressed(1.0)), folder.with_file("b.csv", pressed(1.0))});
   EXPECT_NE(run.out.find("repeated"), std::string::npos) << run.out;
 }
 

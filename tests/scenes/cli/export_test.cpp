@@ -35,8 +35,8 @@ class ExportVerb : public ::testing::Test {
   std::string exported(const Recording& train, const std::vector<std::string>& fit_options,
                        const std::vector<std::string>& export_options = {}) {
     EXPECT_TRUE(write_recording(folder_.file("train.csv"), train, {}, true).ok());
-    std::vector<std::string> fit = {"fit", "--recording", folder_.file("train.csv"), "--out", folder_.file("m.json"),
-                                    "--force"};
+    std::vector<std::string> fit = {"fit",   "--recording",          folder_.file("train.csv"),
+                                    "--out", folder_.file("m.json"), "--force"};
     fit.insert(fit.end(), fit_options.begin(), fit_options.end());
     const auto fitted = run_palpate(fit);
     EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
@@ -63,11 +63,12 @@ class ExportVerb : public ::testing::Test {
     EXPECT_TRUE(write_recording(folder_.file("test.csv"), test_recording, {}, true).ok());
     const Recording read = test::must(read_recording(folder_.file("test.csv")));
     double largest = 0.0;
-    const auto summary = replay(read, {test::must(load_model(folder_.file("m.json")))},
-                                [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-      const Real force_N = compiled.force(static_cast<Real>(row.time_s), static_cast<Real>(row.position_m));
-      largest = std::max(largest, distance(static_cast<double>(force_N), snapshot.force_N[0]));
-    });
+    const auto summary =
+        replay(read, {test::must(load_model(folder_.file("m.json")))},
+               [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+                 const Real force_N = compiled.force(static_cast<Real>(row.time_s), static_cast<Real>(row.position_m));
+                 largest = std::max(largest, distance(static_cast<double>(force_N), snapshot.force_N[0]));
+               });
     EXPECT_GT(test::must(summary).contact_samples, 500U);
     return largest;
   }
@@ -92,9 +93,9 @@ TEST_F(ExportVerb, EveryMethodGivesReplaysForcesOfAnotherRecording) {
   }
 }
 
-TEST_F(ExportVerb, AMaterialThatSoftensIsExportedWithItsMemory) {
+TEST_F(ExportVerb, AMaterialThatCreepsIsExportedWithItsMemory) {
   const std::string text = exported(recording("softening", 15.0, 1), {"--method", "greedy"});
-  EXPECT_TRUE(has_feature(FeatureKind::fading_peak));
+  EXPECT_TRUE(has_feature(FeatureKind::creep));
   EXPECT_LT(worst_N(recording("softening", 8.0, 2), text), 1e-9);
 }
 

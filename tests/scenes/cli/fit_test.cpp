@@ -26,9 +26,7 @@ using Arguments = std::vector<std::string>;
 
 class FitVerb : public ::testing::Test {
  protected:
-  void SetUp() override {
-    ASSERT_TRUE(write_recording(recording(), example_recording(1000, 250.0), {}, false).ok());
-  }
+  void SetUp() override { ASSERT_TRUE(write_recording(recording(), example_recording(1000, 250.0), {}, false).ok()); }
 
   std::string recording() const { return folder_.file("press.csv"); }
   std::string out() const { return folder_.file("model.json"); }
@@ -127,11 +125,20 @@ TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
 }
 
 TEST_F(FitVerb, EveryOptionHasAUse) {
-  const Arguments options[] = {{"--kernel", "linear"},      {"--kernel", "thin-plate"},  {"--kernel", "quintic"},
-                               {"--weighting", "relative"}, {"--weighting", "none"},     {"--reduction", "force"},
-                               {"--reduction", "none"},     {"--relaxation", "auto"},    {"--relaxation", "0.1,0.5"},
-                               {"--candidates", "all"},     {"--scene", "elastic_block"}, {"--centres", "100000"},
-                               {"--seed", "7"},             {"--reduction", "force", "--weighting", "relative"}};
+  const Arguments options[] = {{"--kernel", "linear"},
+                               {"--kernel", "thin-plate"},
+                               {"--kernel", "quintic"},
+                               {"--weighting", "relative"},
+                               {"--weighting", "none"},
+                               {"--reduction", "force"},
+                               {"--reduction", "none"},
+                               {"--relaxation", "auto"},
+                               {"--relaxation", "0.1,0.5"},
+                               {"--candidates", "all"},
+                               {"--scene", "elastic_block"},
+                               {"--centres", "2000"},
+                               {"--seed", "7"},
+                               {"--reduction", "force", "--weighting", "relative"}};
   for (Arguments option : options) {
     SCOPED_TRACE(option[0] + " " + option[1]);
     option.push_back("--force");
@@ -147,15 +154,15 @@ TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
   for (RecordingRow& row : other.rows) row.force_N *= 1.001;
   const std::string second = recording() + ".second.csv";
   ASSERT_TRUE(write_recording(second, other, {}, false).ok());
-  const ProgramRun run = run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out",
-                                      out(), "--json"});
+  const ProgramRun run =
+      run_palpate({"fit", "--recording", recording(), second, "--method", "random", "--out", out(), "--json"});
   expect_model(run);
   EXPECT_EQ(nlohmann::json::parse(run.out).at("samples"), 5000);
 }
 
 TEST_F(FitVerb, TheSameRecordingTwiceIsTold) {
-  const ProgramRun run = run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out",
-                                      out(), "--json"});
+  const ProgramRun run =
+      run_palpate({"fit", "--recording", recording(), recording(), "--method", "random", "--out", out(), "--json"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.err, "warning: " + recording() + ": repeated: it has the same rows as " + recording() +
                          "; name every recording once: a repeated one counts twice, and errors on it say nothing\n");
@@ -167,7 +174,12 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
   expect_refused(fit({"--weighting", "x"}), 2, "jnd,relative,none");
   expect_refused(fit({"--reduction", "x"}), 2, "coverage,force,none");
   expect_refused(fit({"--solver", "x"}), 2, "cholesky,tsvd");
-  expect_refused(fit({"--centres", "0"}), 2, "100000");
+  expect_refused(fit({"--centres", "0"}), 2, "2000");
+  expect_refused(fit({"--centres", "100000"}), 2, "2000");
+  for (const char* features : {"auto", "depth"}) {
+    expect_refused(fit({"--features", features, "--relaxation", "0.1,1"}), 2,
+                   std::string("--features asks for \"") + features + "\"; leave one of the two out");
+  }
   expect_refused(fit({"--candidates", "some"}), 2, "expected a whole number of at least 1, or all");
   for (const char* times : {"0.1,", "0", "nan", "soon", "1,2,3,4,5,6,7"}) {
     expect_refused(fit({"--relaxation", times}), 2, "expected scene, auto, or one to six times");
@@ -180,7 +192,8 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
 
 TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
   expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
-  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1, "the grid has 1 sizes, the scene has 4 features");
+  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1,
+                 "the grid has 1 sizes, the scene has 4 features");
   expect_refused(fit({"--grid", "1000x1000x1000x1000", "--features", "scene"}, "voxel"), 1, "at most 1e7");
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
@@ -241,8 +254,8 @@ TEST_F(FitVerb, InterruptedItLeavesNoFile) {
   ASSERT_TRUE(write_recording(recording(), example_recording(400000, 1000.0, 30e-6), {}, true).ok());
   const TemporaryFolder elsewhere;
   const std::string real = std::filesystem::canonical(recording());
-  const pid_t child = start_fit({"fit", "--recording", recording(), "--method", "direct", "--out", out()}, real,
-                                elsewhere.file("err"));
+  const pid_t child =
+      start_fit({"fit", "--recording", recording(), "--method", "direct", "--out", out()}, real, elsewhere.file("err"));
   ASSERT_GT(child, 0);
   ASSERT_EQ(kill(child, SIGINT), 0);
   int status = 0;

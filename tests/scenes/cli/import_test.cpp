@@ -16,7 +16,8 @@ TEST(ImportVerb, WritesARecordingAndSaysWhatWasGuessed) {
   const test::TemporaryFolder folder;
   const auto run = run_palpate({"import", kFiles + "08_excel_de.csv", "--out", folder.file("rec.csv")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("semicolon between fields, decimal comma, UTF-8, header in line 1, numbers from line 2"), std::string::npos);
+  EXPECT_NE(run.out.find("semicolon between fields, decimal comma, UTF-8, header in line 1, numbers from line 2"),
+            std::string::npos);
   EXPECT_NE(run.out.find("position   column 2 \"Weg [mm]\" in mm (guessed)"), std::string::npos);
   const auto recording = read_recording(folder.file("rec.csv"));
   ASSERT_TRUE(recording.ok()) << recording.error().message;
@@ -32,6 +33,22 @@ TEST(ImportVerb, WritesOverNothingWithoutForceAndLeavesNothingAfterAnError) {
   EXPECT_EQ(test::read_text(kept), "mine\n");
   EXPECT_EQ(run_palpate({"import", kFiles + "20_bare.txt", "--out", folder.file("new.csv")}).exit_code, 1);
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"kept.csv"});
+}
+
+TEST(ImportVerb, FlipsPositionForceOrBoth) {
+  const test::TemporaryFolder folder;
+  const auto first_row = [&](const std::string& flip) {
+    const std::string out = folder.file(flip + ".csv");
+    const auto run = run_palpate({"import", kFiles + "02_matlab.csv", "--out", out, "--flip", flip});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return read_recording(out)->rows[5];
+  };
+  const RecordingRow position = first_row("position"), force = first_row("force"), both = first_row("both");
+  EXPECT_EQ(position.position_m, -force.position_m);
+  EXPECT_EQ(position.force_N, -force.force_N);
+  EXPECT_EQ(both.position_m, position.position_m);
+  EXPECT_EQ(both.force_N, force.force_N);
+  EXPECT_NE(both.force_N, 0.0);
 }
 
 TEST(ImportVerb, WrongUsageEndsWithTwo) {

@@ -9,9 +9,7 @@ namespace {
 using test::run_palpate;
 using test::run_program;
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // Exactly one line that starts with "error: ".
 bool is_one_error_line(const std::string& text) {
@@ -30,8 +28,7 @@ TEST(Main, HelpAndVersionGoToStandardOutput) {
 }
 
 TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{}, {"dance"}, {"--dance"}, {""}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{}, {"dance"}, {"--dance"}, {""}}) {
     const auto run = run_palpate(arguments);
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(run.out, "");
@@ -44,8 +41,7 @@ TEST(Main, WrongUsageIsOneLineThatNamesTheVerbs) {
 TEST(Main, UnknownOptionPointsToTheVerbsHelp) {
   const auto run = run_palpate({"scenes", "--dance"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(run.err,
-            "error: The following argument was not expected: --dance (palpate scenes --help explains)\n");
+  EXPECT_EQ(run.err, "error: The following argument was not expected: --dance (palpate scenes --help explains)\n");
 }
 
 TEST(Main, ScenesListsEveryScene) {

@@ -73,9 +73,7 @@ TEST(Progress, SecondInterruptEndsTheProgram) {
   EXPECT_EQ(end_after_interrupts(2, true), SIGINT);
 }
 
-TEST(Progress, InterruptsEndTheProgramAgainAfterTheLine) {
-  EXPECT_EQ(end_after_interrupts(1, false), SIGINT);
-}
+TEST(Progress, InterruptsEndTheProgramAgainAfterTheLine) { EXPECT_EQ(end_after_interrupts(1, false), SIGINT); }
 
 }  // namespace
 }  // namespace palpate::cli

@@ -9,7 +9,6 @@
 #include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
 #include "scenes/cli/forces_file.h"
-#include "scenes/scene/model_timing.h"
 #include "tests/support/example_model.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -62,20 +61,24 @@ TEST_F(ReplayVerb, JsonHasTheContractsFields) {
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   EXPECT_EQ(ran.err, "");
   const Json object = Json::parse(ran.out);
-  EXPECT_EQ(keys(object), (std::vector<std::string>{"recording", "samples", "contact_samples", "surface_offset_m", "models"}));
+  EXPECT_EQ(keys(object),
+            (std::vector<std::string>{"recording", "samples", "contact_samples", "surface_offset_m", "models"}));
   EXPECT_EQ(object["recording"], recording_);
   EXPECT_EQ(object["samples"], 3000);
   const std::uint64_t contact = object["contact_samples"];
   ASSERT_EQ(object["models"].size(), models_.size());
   for (const Json& model : object["models"]) {
-    EXPECT_EQ(keys(model), (std::vector<std::string>{"name", "method", "centres", "rms_error_N", "max_error_N",
-                                                     "within_jnd", "p99_error_over_jnd", "max_error_over_jnd",
-                                                     "out_of_domain_samples", "evaluation_ns", "surface_moved", "predicted_error", "bins"}));
+    EXPECT_EQ(keys(model),
+              (std::vector<std::string>{"name", "method", "centres", "rms_error_N", "max_error_N", "within_jnd",
+                                        "p99_error_over_jnd", "max_error_over_jnd", "out_of_domain_samples",
+                                        "evaluation_ns", "tick_ns", "surface_moved", "surface_offset_m", "surface_told",
+                                        "predicted_error", "bins"}));
     EXPECT_EQ(keys(model["surface_moved"]), (std::vector<std::string>{"rms_error_N", "max_error_N", "within_jnd",
                                                                       "p99_error_over_jnd", "max_error_over_jnd"}));
     EXPECT_EQ(keys(model["evaluation_ns"]), (std::vector<std::string>{"median", "p99"}));
     EXPECT_GT(model["evaluation_ns"]["median"], 0.0);
     EXPECT_GE(model["evaluation_ns"]["p99"], model["evaluation_ns"]["median"]);
+    EXPECT_GT(model["tick_ns"]["median"], 0.0);
     EXPECT_GE(model["max_error_N"], model["rms_error_N"]);
     std::uint64_t counted = 0;
     for (const Json& bin : model["bins"]) {
@@ -147,7 +150,7 @@ TEST_F(ReplayVerb, TableHasOneRowPerModelUnderItsUnits) {
   for (std::string line; std::getline(lines, line);) rows.push_back(line);
   ASSERT_GE(rows.size(), 4u) << ran.out;  // and a note where the surface decides
   EXPECT_NE(rows[0].find("3000 samples"), std::string::npos);
-  for (const char* title : {"MODEL", "RMS mN", "WITHIN JND %", "MEDIAN ns"}) {
+  for (const char* title : {"MODEL", "RMS mN", "WITHIN JND %", "TICK ns"}) {
     EXPECT_NE(rows[1].find(title), std::string::npos) << title;
   }
   EXPECT_EQ(rows[1].size(), rows[2].size());
@@ -224,8 +227,9 @@ TEST_F(ReplayVerb, SaysWhatCannotBeDone) {
                          ": found no such file, expected a model file; check the path, or make one with palpate fit\n");
   ran = run({recording_});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err, "error: " + recording_ +
-                         " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording\n");
+  EXPECT_EQ(ran.err,
+            "error: " + recording_ +
+                " is a recording, expected a model file (JSON, made by palpate fit); give it with --recording\n");
   EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
   ran = run(std::vector<std::string>(17, models_[0]));
   EXPECT_EQ(ran.exit_code, 1);
@@ -267,32 +271,14 @@ TEST_F(ReplayVerb, NeverWritesOverWhatItReads) {
   const std::string before = test::read_text(recording_);
   const auto ran = run({models_[0]}, {"--out", recording_, "--force"});
   EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err, "error: " + recording_ +
-                         " is the file to read from, expected another one for --out; name a new file\n");
+  EXPECT_EQ(ran.err,
+            "error: " + recording_ + " is the file to read from, expected another one for --out; name a new file\n");
   EXPECT_EQ(test::read_text(recording_), before);
 }
 
 TEST(DistinctNames, CountUpPastNamesThatAreTaken) {
   EXPECT_EQ(cli::distinct_names({"a", "a-2", "a", "b", "a"}),
             (std::vector<std::string>{"a", "a-2", "a-3", "b", "a-4"}));
-}
-
-// Runs stay whole and evenly spread, whatever the length of the stream.
-TEST(FeatureSample, IsBoundedAndSpreadOverTheWholeStream) {
-  FeatureSample sample;
-  const std::size_t total = FeatureSample::kBlock * FeatureSample::kMaximumBlocks * 5 + 13;
-  for (std::size_t i = 0; i < total; ++i) {
-    FeatureVector features;
-    features.values[0] = static_cast<double>(i);
-    sample.add(features);
-  }
-  EXPECT_LE(sample.size(), FeatureSample::kBlock * FeatureSample::kMaximumBlocks);
-  EXPECT_GT(sample[sample.size() - 1][0], 0.9 * static_cast<double>(total));
-  for (std::size_t i = 0; i < sample.size(); ++i) {
-    const double expected = static_cast<double>(i / FeatureSample::kBlock * FeatureSample::kBlock * 8 +
-                                                i % FeatureSample::kBlock);
-    ASSERT_EQ(sample[i][0], expected);
-  }
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "scenes/scene/scene.h"
 #include "scenes/scene/jnd_file.h"
+#include "scenes/scene/scene.h"
 #include "scenes/study/study_file.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -20,7 +20,8 @@ using test::run_palpate;
 std::string path_with_fake_gnuplot(const test::TemporaryFolder& folder) {
   std::filesystem::create_directory(folder.file("bin"));
   const std::string fake = folder.with_file(
-      "bin/gnuplot", "#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'/\\1/p\" \"$2\" | while read -r f; do echo drawn >\"$f\"; done\n");
+      "bin/gnuplot",
+      "#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'/\\1/p\" \"$2\" | while read -r f; do echo drawn >\"$f\"; done\n");
   std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
   return "PATH=" + folder.file("bin") + ":" + std::getenv("PATH");
 }
@@ -29,13 +30,14 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   const test::TemporaryFolder folder;
   const std::string path = path_with_fake_gnuplot(folder);
   const std::string out = folder.file("study");
-  const std::vector<std::string> simulate = {"study",   "simulate",    "--subjects", "3",  "--seed",
-                                             "2",       "--resamples", "50",         "--out", out};
+  const std::vector<std::string> simulate = {"study", "simulate",    "--subjects", "3",     "--seed",
+                                             "2",     "--resamples", "50",         "--out", out};
   const auto run = run_palpate(simulate, {path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_NE(run.out.find("conservative "), std::string::npos) << run.out;
-  for (const char* name : {"S01.csv", "S03.csv", "results.csv", "jnd.json", "figure3.gp", "figure3a.svg", "figure3b.png"}) {
+  for (const char* name :
+       {"S01.csv", "S03.csv", "results.csv", "jnd.json", "figure3.gp", "figure3.svg", "figure3.png"}) {
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   }
   EXPECT_EQ(read_study(out + "/S02.csv")->records.size(), 328u);
@@ -44,8 +46,9 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   EXPECT_EQ(again.err, "error: " + out + "/S01.csv exists; pass --force to replace it\n");
 
   // The same files again: the same result.
-  const auto analysed = run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--resamples",
-                                     "50", "--out", folder.file("again")}, {path});
+  const auto analysed = run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv",
+                                     "--resamples", "50", "--out", folder.file("again")},
+                                    {path});
   ASSERT_EQ(analysed.exit_code, 0) << analysed.err;
   EXPECT_EQ(analysed.out, run.out);
   EXPECT_EQ(test::read_text(folder.file("again/jnd.json")), test::read_text(out + "/jnd.json"));
@@ -64,37 +67,35 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
 TEST(Study, SaysWhatToDoWithoutGnuplot) {
   const test::TemporaryFolder folder;
   const std::string out = folder.file("study");
-  const auto run = run_palpate({"study", "simulate", "--subjects", "1", "--procedure", "adaptive", "--resamples", "50", "--out", out},
+  const auto run = run_palpate({"study", "simulate", "--subjects", "3", "--resamples", "50", "--out", out},
                                {"PATH=" + folder.path()});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_EQ(run.err, "error: found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)\n");
+  EXPECT_EQ(
+      run.err,
+      "error: found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)\n");
   EXPECT_TRUE(std::filesystem::exists(out + "/figure3.gp"));
   EXPECT_TRUE(std::filesystem::exists(out + "/results.csv"));
   EXPECT_TRUE(std::filesystem::exists(out + "/jnd.json"));
-}
-
-TEST(Study, RecoveryPrintsBothProcedures) {
-  const auto run = run_palpate({"study", "recovery", "--subjects", "2"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 9);
-  EXPECT_NE(run.out.find("adaptive"), std::string::npos);
 }
 
 TEST(Study, StrokesAreToldApartByASimulatedHand) {
   const test::TemporaryFolder folder;
   const std::string foam = folder.file("foam.csv"), out = folder.file("out");
   ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "20", "--out", foam}).exit_code, 0);
-  const auto run = run_palpate({"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
+  const auto run =
+      run_palpate({"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_NE(run.out.find("comparison   greedy-100\nstroke       foam, "), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("Predicted above the JND"), std::string::npos) << "a model of silicone against foam: " << run.out;
+  EXPECT_NE(run.out.find("Predicted above the JND"), std::string::npos)
+      << "a model of silicone against foam: " << run.out;
   EXPECT_NE(run.out.find("one JND: consistent."), std::string::npos) << run.out;
   const auto data = read_study(out + "/S02.csv");
   ASSERT_TRUE(data.ok()) << data.error().message;
   EXPECT_EQ(data->records.size(), 104u);
 
-  const auto again = run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", "--out", folder.file("again")});
+  const auto again =
+      run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", "--out", folder.file("again")});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(again.out, run.out);
   EXPECT_EQ(test::read_text(folder.file("again/results.csv")), test::read_text(out + "/results.csv"));
@@ -104,17 +105,19 @@ TEST(Study, StrokesOfTheSceneNeedNoFile) {
   const test::TemporaryFolder folder;
   const auto run = run_palpate({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("reference    recorded force\ncomparison   greedy-100\nstroke       silicone_2, "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("reference    recorded force\ncomparison   greedy-100\nstroke       silicone_2, "),
+            std::string::npos)
+      << run.out;
   EXPECT_NE(run.out.find("Predicted below the JND"), std::string::npos) << run.out;
 }
 
 TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);
-  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--procedure", "staircase"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"study", "recovery"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "analyse", "--out", "x"}).exit_code, 2);
-  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--model", "greedy"}).exit_code, 2) << "needs --discriminate";
-  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--discriminate", "--procedure", "adaptive"}).exit_code, 2);
+  EXPECT_EQ(run_palpate({"study", "simulate", "--out", "x", "--model", "greedy"}).exit_code, 2)
+      << "needs --discriminate";
   const auto missing = run_palpate({"study", "analyse", "/none/S01.csv", "--out", "/none/out"});
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_EQ(missing.err, "error: cannot read the study file /none/S01.csv; does it exist?\n");

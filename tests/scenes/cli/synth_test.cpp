@@ -24,8 +24,8 @@ TEST(Synth, ListsTheMaterialsWithTheirRelaxationTimes) {
 TEST(Synth, WritesTheRecordingOfTheLibrary) {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("gel.csv");
-  const auto run = run_palpate({"synth", "--material", "gel", "--seed", "3", "--seconds", "2",
-                                "--rate", "500", "--out", path});
+  const auto run =
+      run_palpate({"synth", "--material", "gel", "--seed", "3", "--seconds", "2", "--rate", "500", "--out", path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(run.err, "");
@@ -52,8 +52,7 @@ TEST(Synth, WritesTheRecordingOfTheLibrary) {
 TEST(Synth, SameCommandSameBytes) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.csv", "b.csv"}) {
-    ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "3", "--out",
-                           folder.file(name)})
+    ASSERT_EQ(run_palpate({"synth", "--material", "foam", "--seed", "2", "--seconds", "3", "--out", folder.file(name)})
                   .exit_code,
               0);
   }
@@ -64,8 +63,7 @@ TEST(Synth, SameCommandSameBytes) {
 TEST(Synth, WritesOverNothingWithoutForce) {
   const test::TemporaryFolder folder;
   const std::string path = folder.with_file("kept.csv", "mine\n");
-  const std::vector<std::string> command = {"synth", "--material", "stiff", "--seconds", "1",
-                                            "--out", path};
+  const std::vector<std::string> command = {"synth", "--material", "stiff", "--seconds", "1", "--out", path};
   const auto refused = run_palpate(command);
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
@@ -105,7 +103,9 @@ TEST(Synth, WrongUsageEndsWithTwoAndLeavesNoFile) {
   }
   EXPECT_TRUE(folder.entries().empty());
   const auto unknown = run_palpate({"synth", "--material", "jelly", "--out", out});
-  EXPECT_NE(unknown.err.find("known: silicone, tissue, softening, layered, friction, sponge, maxwell, foam, elastic, stiff, gel"), std::string::npos);
+  EXPECT_NE(unknown.err.find(
+                "known: silicone, tissue, softening, layered, friction, sponge, maxwell, foam, elastic, stiff, gel"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ TEST(ExhibitWords, FillInNumbersAndShowWhatIsMissing) {
   ASSERT_TRUE(words.ok());
   EXPECT_EQ((*words)("was", "1", "soft"), "Block 1: soft");
   EXPECT_EQ((*words)("nothing"), "nothing");
-  EXPECT_EQ(ExhibitWords::parse("a = b\nno sign\n", "x.txt").error().message, "x.txt:2: found \"no sign\", expected key = text");
+  EXPECT_EQ(ExhibitWords::parse("a = b\nno sign\n", "x.txt").error().message,
+            "x.txt:2: found \"no sign\", expected key = text");
   EXPECT_EQ(ExhibitWords::parse("a = b\na = c", "x.txt").error().message,
             "x.txt:2: found \"a\" a second time, expected each key once");
 }

@@ -54,7 +54,8 @@ TEST(FaultLog, ForgetsMissedDeadlinesSomeTimeAfter) {
   EXPECT_NEAR(log.missed_of_late(), 0.15, 1e-3) << "of the last ten seconds";
   for (int i = 1; i <= 40'000; ++i) log.update(snapshot(1e-3 * i, 0, 1500));
   EXPECT_LT(log.missed_of_late(), 0.003);
-  for (int i = 1; i <= 100'000; ++i) log.update(snapshot(40.0 + 1e-3 * i, 0, 1500 + static_cast<std::uint64_t>(i) / 19));
+  for (int i = 1; i <= 100'000; ++i)
+    log.update(snapshot(40.0 + 1e-3 * i, 0, 1500 + static_cast<std::uint64_t>(i) / 19));
   EXPECT_NEAR(log.missed_of_late(), 0.05, 2e-3) << "one in twenty, all the time";
 }
 
@@ -79,8 +80,7 @@ TEST(FaultLog, KeepsAlarmsUntilTheyAreAcknowledged) {
   EXPECT_EQ(log.alarms(newest), expected) << "the device first; a slewed force is no alarm";
   log.update_age(0.2, 10.0);
   log.update_age(0.0, 10.1);
-  EXPECT_EQ(log.alarms(snapshot(20.0, 0)),
-            std::vector<std::string>{"the haptics loop stood still for more than 50 ms"})
+  EXPECT_EQ(log.alarms(snapshot(20.0, 0)), std::vector<std::string>{"the haptics loop stood still for more than 50 ms"})
       << "the loop itself cannot latch that";
   log.acknowledge();
   EXPECT_TRUE(log.alarms(snapshot(20.0, 0)).empty());

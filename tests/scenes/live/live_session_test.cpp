@@ -100,9 +100,8 @@ TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
   // Models join in the middle of a round: from the next one on they have seen all of it.
   ASSERT_TRUE(frames_until(*session, [&] { return session->newest().tick.model_count == 2; }));
   double last_s = session->newest().tick.time_s;
-  ASSERT_TRUE(frames_until(*session, [&] {
-    return session->newest().tick.time_s < std::exchange(last_s, session->newest().tick.time_s);
-  }));
+  ASSERT_TRUE(frames_until(
+      *session, [&] { return session->newest().tick.time_s < std::exchange(last_s, session->newest().tick.time_s); }));
   int compared = 0;
   for (int i = 0; i < 120; ++i) {
     session->update();

@@ -57,7 +57,8 @@ TEST(RecordingOffer, AnotherTableBecomesOneInTheFolder) {
 
 TEST(RecordingOffer, WhatIsWrongIsSaidOfWhatItWantsToBe) {
   const test::TemporaryFolder folder;
-  const auto broken = offer_recording(write(folder, "a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
+  const auto broken =
+      offer_recording(write(folder, "a.csv", "# mine\ntime_s,position_m,force_N\n0,0,x\n"), folder.path());
   ASSERT_FALSE(broken.ok());
   EXPECT_NE(broken.error().message.find("a.csv:3"), std::string::npos) << broken.error().message;
   const auto two = offer_recording(

@@ -79,9 +79,8 @@ class SessionDevice : public ::testing::Test {
     target_ = static_cast<int>(std::lround((position_m - kRestPosition_m) * kCounts_per_m));
   }
   const Notice* notice_with(const std::string& words) const {
-    const auto found = std::find_if(notices_.begin(), notices_.end(), [&](const Notice& notice) {
-      return notice.text.find(words) != std::string::npos;
-    });
+    const auto found = std::find_if(notices_.begin(), notices_.end(),
+                                    [&](const Notice& notice) { return notice.text.find(words) != std::string::npos; });
     return found == notices_.end() ? nullptr : &*found;
   }
 

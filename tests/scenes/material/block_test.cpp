@@ -102,7 +102,8 @@ TEST(Block, NeverGivesMoreEnergyThanItGot) {
       const double dt = 1e-4;
       Work work;
       for (int i = 1; i <= 100000; ++i) {
-        work.add(motion.position_m(i * dt), block->step(motion.position_m(i * dt), motion.velocity_m_per_s(i * dt), dt));
+        work.add(motion.position_m(i * dt),
+                 block->step(motion.position_m(i * dt), motion.velocity_m_per_s(i * dt), dt));
         // Trapezoid error: h^2/12 F'' dx is below 1e-5 of the energy that
         // went through.
         ASSERT_GE(work.net_J, -1e-5 * work.put_in_J) << material.name << " seed " << seed << " row " << i;

@@ -84,8 +84,7 @@ TEST(Hand, HalvingTheStepHardlyChangesTheMotion) {
     advance(coarse, coarse_block);
     for (int half = 0; half < 2; ++half) {
       fine.move(0.5 * kStep_s);
-      fine.feel(fine_block.step(fine.position_m(), fine.velocity_m_per_s(), 0.5 * kStep_s),
-                0.5 * kStep_s);
+      fine.feel(fine_block.step(fine.position_m(), fine.velocity_m_per_s(), 0.5 * kStep_s), 0.5 * kStep_s);
     }
     worst_m = std::max(worst_m, std::abs(coarse.position_m() - fine.position_m()));
   }

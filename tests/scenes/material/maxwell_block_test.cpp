@@ -21,9 +21,7 @@ TEST(MaxwellBlock, StatesItsRelaxationTimes) {
   EXPECT_EQ(MaxwellBlock(kElastic).relaxation_times_text(), "none");
 }
 
-TEST(MaxwellBlock, StiffIsThreeKilonewtonsPerMetre) {
-  EXPECT_DOUBLE_EQ(kStiff.elastic_force_N(1e-3), 3.0);
-}
+TEST(MaxwellBlock, StiffIsThreeKilonewtonsPerMetre) { EXPECT_DOUBLE_EQ(kStiff.elastic_force_N(1e-3), 3.0); }
 
 TEST(MaxwellBlock, StepHoldRelaxesAsTheSumOfExponentials) {
   for (const MaxwellParameters* material : kAll) {

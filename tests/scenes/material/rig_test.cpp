@@ -9,8 +9,7 @@
 namespace palpate {
 namespace {
 
-RigRecording made(const std::string& material, std::uint64_t seed, double seconds = 0.0,
-                  double rate_Hz = 1000.0) {
+RigRecording made(const std::string& material, std::uint64_t seed, double seconds = 0.0, double rate_Hz = 1000.0) {
   RigSettings settings;
   settings.material = material;
   settings.seed = seed;
@@ -85,8 +84,8 @@ TEST(Rig, EveryCompilerGivesTheSameRecording) {
   const auto hash_of = [](const std::string& material) {
     std::uint64_t hash = 14695981039346656037u;  // FNV-1a over whole words
     for (const RecordingRow& row : made(material, 1, 5.0).recording.rows) {
-      for (const double steps : {row.position_m / 30e-6, row.force_N * 4096.0 / 20.0,
-                                 row.acceleration_m_per_s2 * 4096.0 / 80.0}) {
+      for (const double steps :
+           {row.position_m / 30e-6, row.force_N * 4096.0 / 20.0, row.acceleration_m_per_s2 * 4096.0 / 80.0}) {
         hash = (hash ^ static_cast<std::uint64_t>(std::llround(steps) + 100000)) * 1099511628211u;
       }
     }
@@ -132,8 +131,7 @@ TEST(Rig, TruthIsConsistent) {
   const RigRecording rig = made("silicone", 1, 10.0, 20000.0);
   for (std::size_t i = 1; i + 1 < rig.truth.size(); ++i) {
     const RigTruth& truth = rig.truth[i];
-    const double slope =
-        (rig.truth[i + 1].position_m - rig.truth[i - 1].position_m) * 0.5 / kRigStep_s;
+    const double slope = (rig.truth[i + 1].position_m - rig.truth[i - 1].position_m) * 0.5 / kRigStep_s;
     // Positive velocity goes in; see Hand for the tolerance.
     ASSERT_NEAR(truth.velocity_m_per_s, slope, 1e-4);
     ASSERT_GE(truth.force_N, 0.0);
@@ -189,8 +187,7 @@ TEST(Rig, AccelerometerHasWhiteNoiseAndASlowBias) {
   }
   // Differences of neighbours hold twice the white variance and no bias;
   // standard error 0.2 %.
-  const Spread steps =
-      spread(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
+  const Spread steps = spread(count - 1, [&](std::size_t i) { return error(i + 1) - error(i); });
   EXPECT_NEAR(steps.deviation / std::sqrt(2.0), 0.07, 0.001);
   // Over 200 s the bias has some ten independent values of 0.1: its mean and
   // spread are known to a factor of two.
@@ -277,34 +274,28 @@ TEST(Rig, RefusesNonsense) {
     return result.ok() ? std::string("accepted") : result.error().message;
   };
   EXPECT_EQ(message([](RigSettings& s) { s.material = "Silicone"; }),
-            "unknown material 'Silicone'; known: silicone, tissue, softening, layered, friction, sponge, maxwell, foam, elastic, stiff, gel");
+            "unknown material 'Silicone'; known: silicone, tissue, softening, layered, friction, sponge, maxwell, "
+            "foam, elastic, stiff, gel");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 9.9; }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 20001.0; }), "the rate must be 10 to 20000 Hz");
-  EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = std::nan(""); }),
-            "the rate must be 10 to 20000 Hz");
+  EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = std::nan(""); }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.sensors.surface_offset_m = std::nan(""); }),
             "the surface offset and the force zero must be numbers");
   EXPECT_EQ(message([](RigSettings& s) { s.sensors.force_filter_time_s = -1.0; }),
             "the force filter's time must be a number from 0 up");
   EXPECT_EQ(message([](RigSettings& s) { s.sensors.jitter_share = 1.0; }),
             "the jitter must be a share from 0 to below 1");
-  EXPECT_EQ(message([](RigSettings& s) { s.seconds = -1.0; }),
-            "the seconds must be a number above 0");
-  EXPECT_EQ(message([](RigSettings& s) { s.seconds = std::nan(""); }),
-            "the seconds must be a number above 0");
-  EXPECT_EQ(message([](RigSettings& s) { s.seconds = 0.005; }),
-            "seconds times rate must give at least 10 rows");
-  EXPECT_EQ(message([](RigSettings& s) { s.seconds = 1e9; }),
-            "seconds times rate must give at most 50 million rows");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = -1.0; }), "the seconds must be a number above 0");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = std::nan(""); }), "the seconds must be a number above 0");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = 0.005; }), "seconds times rate must give at least 10 rows");
+  EXPECT_EQ(message([](RigSettings& s) { s.seconds = 1e9; }), "seconds times rate must give at most 50 million rows");
 }
 
 TEST(Rig, DescribesHowTheRecordingWasMade) {
   const RigSettings settings;
-  const std::vector<std::string> lines =
-      describe_recording(settings, find_material("silicone").value(), 41499);
+  const std::vector<std::string> lines = describe_recording(settings, find_material("silicone").value(), 41499);
   ASSERT_EQ(lines.size(), 4u);
-  EXPECT_EQ(lines[0],
-            "virtual recording by palpate synth: material silicone, seed 1, 41499 rows at 1000 Hz");
+  EXPECT_EQ(lines[0], "virtual recording by palpate synth: material silicone, seed 1, 41499 rows at 1000 Hz");
   EXPECT_EQ(lines[1], "true relaxation times: continuous, 0.001 s to 30 s");
 }
 

@@ -67,9 +67,9 @@ TEST(SofteningBlock, HealingMakesNoEnergy) {
   for (int repeat = 0; repeat < 10; ++repeat) {
     move(8e-3 - 2e-4 * repeat, 0.3);
     move(0.0, 0.3);
-    move(7.9e-3 - 2e-4 * repeat, 0.3);  // in while it is soft,
+    move(7.9e-3 - 2e-4 * repeat, 0.3);                                       // in while it is soft,
     for (int i = 0; i < 20000; ++i) last_N = block.step(last_m, 0.0, 1e-3);  // heals,
-    move(0.0, 0.01);  // and out while it is not
+    move(0.0, 0.01);                                                         // and out while it is not
     ASSERT_GT(net_J, 0.0) << repeat;
   }
 }

@@ -13,7 +13,8 @@ TEST(SpongeBlock, SlowPressIsTheSkeleton) {
   SpongeBlock block;
   for (int i = 1; i <= 1000; ++i) block.step(1e-5 * i, 1e-6, 10.0);
   const double strain = 1e-2 / SpongeBlock::kHeight_m;
-  const double skeleton_N = kArea_m2 * SpongeBlock::kSkeleton_Pa * strain / (1.0 - strain / SpongeBlock::kClosed_strain);
+  const double skeleton_N =
+      kArea_m2 * SpongeBlock::kSkeleton_Pa * strain / (1.0 - strain / SpongeBlock::kClosed_strain);
   EXPECT_NEAR(block.force_N() / skeleton_N, 1.0, 2e-3) << "what a diffusion of a second leaves in 10,000";
 }
 
@@ -25,7 +26,8 @@ double drained_share(double t, double diffusivity_m2_per_s) {
     // McMahon's expansion, good to 1e-4 from the first zero on.
     const double b = (n - 0.25) * 3.14159265358979324;
     const double j = b + 1.0 / (8.0 * b) - 124.0 / (3.0 * std::pow(8.0 * b, 3));
-    sum += 4.0 / (j * j) * std::exp(-j * j * diffusivity_m2_per_s * t / (SpongeBlock::kRadius_m * SpongeBlock::kRadius_m));
+    sum +=
+        4.0 / (j * j) * std::exp(-j * j * diffusivity_m2_per_s * t / (SpongeBlock::kRadius_m * SpongeBlock::kRadius_m));
   }
   return sum;
 }
@@ -42,7 +44,8 @@ TEST(SpongeBlock, StepDrainsAsTheBesselSeriesSlowerWhenDeep) {
       block.step(depth_m, 0.0, 1e-3);
       // Twelve rings are coarse until the front is wider than one: 1 % from there.
       if (diffusivity * tick * 1e-3 < 0.015 * SpongeBlock::kRadius_m * SpongeBlock::kRadius_m) continue;
-      ASSERT_NEAR((block.force_N() - block.relaxed_force_N(depth_m)) / at_once_N, drained_share(tick * 1e-3, diffusivity), 0.01)
+      ASSERT_NEAR((block.force_N() - block.relaxed_force_N(depth_m)) / at_once_N,
+                  drained_share(tick * 1e-3, diffusivity), 0.01)
           << tick;
     }
   }

@@ -12,7 +12,8 @@ std::string complaint(const std::string& text) {
 
 TEST(JndFile, ReadsBackWhatWasWritten) {
   const JndLines lines{{0.0712345678901, 0.1234567890123}, {0.1 / 3.0, 0.1234567890123}};
-  const std::string text = jnd_file_text(lines, {{0.3, 0.09, 0.01, "study"}, {2.5, 0.225, 0.0, "a paper"}}, 0.75, {"S01", "S02"});
+  const std::string text =
+      jnd_file_text(lines, {{0.3, 0.09, 0.01, "study"}, {2.5, 0.225, 0.0, "a paper"}}, 0.75, {"S01", "S02"});
   const auto line = parse_jnd_file(text, "jnd.json");
   ASSERT_TRUE(line.ok()) << line.error().message;
   EXPECT_EQ(line->offset_N, 0.1 / 3.0);
@@ -26,8 +27,10 @@ TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
   const std::string start = "{\"format\": \"palpate-jnd\",\n\"version\": 1,\n";
   EXPECT_EQ(complaint(start + "\"offset_N\": 0.1, \"weber_fraction\": 0}"), "accepted");
   EXPECT_EQ(complaint("[]"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
-  EXPECT_EQ(complaint("{\"format\": 3}"), "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
-  EXPECT_EQ(complaint("{\"format\": \"palpate-jnd\",\n\"version\": 2}"), "jnd.json:2:12: version: found 2, expected the version 1" + advice);
+  EXPECT_EQ(complaint("{\"format\": 3}"),
+            "jnd.json:1:1: found no \"format\": \"palpate-jnd\", expected a JND file" + advice);
+  EXPECT_EQ(complaint("{\"format\": \"palpate-jnd\",\n\"version\": 2}"),
+            "jnd.json:2:12: version: found 2, expected the version 1" + advice);
   EXPECT_EQ(complaint(start + "\"weber_fraction\": 0}"),
             "jnd.json:1:1: offset_N: found no such field, expected a number above 0 up to 100" + advice);
   EXPECT_EQ(complaint(start + "\"offset_N\": 0, \"weber_fraction\": 0}"),

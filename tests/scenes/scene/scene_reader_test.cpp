@@ -77,8 +77,9 @@ TEST(SceneReader, RefusesAJndFileThatIsNone) {
             "x.json:10:15: jnd_file: cannot read the JND file none.json; does it exist?");
   EXPECT_EQ(complaint_after("\"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0}", "\"jnd_file\": 3"),
             "x.json:10:15: jnd_file: found 3, expected a text that is not empty");
-  EXPECT_EQ(complaint_after("  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", ""),
-            "x.json:1:1: jnd: found no such field, expected an object with offset_N and weber_fraction, or a \"jnd_file\"");
+  EXPECT_EQ(
+      complaint_after("  \"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0},\n", ""),
+      "x.json:1:1: jnd: found no such field, expected an object with offset_N and weber_fraction, or a \"jnd_file\"");
 }
 
 TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
@@ -95,11 +96,13 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
   EXPECT_EQ(complaint_after("\"depth\"", "\"dept\""),
             "x.json:7:14: features[0].kind: found \"dept\", expected one of depth, velocity, lowpass_velocity\n"
             "x.json:6:15: features: found no feature of kind \"depth\", expected one: no force without it");
-  EXPECT_EQ(complaint_after("0.5", "-1"), "x.json:8:55: features[1].relaxation_time_s: found -1, expected a number above 0 up to 100");
+  EXPECT_EQ(complaint_after("0.5", "-1"),
+            "x.json:8:55: features[1].relaxation_time_s: found -1, expected a number above 0 up to 100");
   EXPECT_EQ(complaint_after(", \"relaxation_time_s\": 0.5", ""),
             "x.json:8:5: features[1].relaxation_time_s: found no such field, expected a number above 0 up to 100");
-  EXPECT_EQ(complaint_after("{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"relaxation_time_s\": 1}"),
-            "x.json:7:44: features[0].relaxation_time_s: found a relaxation time, expected none for the kind \"depth\"");
+  EXPECT_EQ(
+      complaint_after("{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"relaxation_time_s\": 1}"),
+      "x.json:7:44: features[0].relaxation_time_s: found a relaxation time, expected none for the kind \"depth\"");
   EXPECT_EQ(complaint_after("{\"kind\": \"depth\"},", "{\"kind\": \"depth\"}, {\"kind\": \"depth\"},"),
             "x.json:7:24: features[1]: found the same feature twice, expected each once");
   EXPECT_EQ(complaint_after("\"offset_N\": 0.1", "\"offset_mN\": 100"),
@@ -109,8 +112,9 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
             "x.json:10:46: jnd.weber_fraction: found 7, expected a number from 0 up to 1");
   EXPECT_EQ(complaint_after("#56B4E9", "red"),
             "x.json:12:24: colours.block: found \"red\", expected a colour such as \"#56B4E9\"");
-  EXPECT_EQ(complaint_after("\"greedy\"", "\"best\""),
-            "x.json:13:22: default_models[0]: found \"best\", expected one of trend, direct, voxel, random, kdtree, greedy");
+  EXPECT_EQ(
+      complaint_after("\"greedy\"", "\"best\""),
+      "x.json:13:22: default_models[0]: found \"best\", expected one of trend, direct, voxel, random, kdtree, greedy");
 }
 
 TEST(SceneReader, LimitsTheNumberOfFeatures) {
@@ -122,8 +126,7 @@ TEST(SceneReader, LimitsTheNumberOfFeatures) {
   document["features"].push_back({{"kind", "velocity"}});
   const auto nine = parse_scene(document.dump(), "x.json");
   ASSERT_FALSE(nine.ok());
-  EXPECT_NE(nine.error().message.find("found a list of 9, expected a list of 1 to 8 features"),
-            std::string::npos);
+  EXPECT_NE(nine.error().message.find("found a list of 9, expected a list of 1 to 8 features"), std::string::npos);
   document["features"] = Json::array();
   EXPECT_FALSE(parse_scene(document.dump(), "x.json").ok());
 }
@@ -141,8 +144,7 @@ TEST(SceneReader, RefusesWhatIsNotJson) {
 TEST(SceneReader, RefusesEveryFieldOfAWrongTypeOrMissing) {
   const Json good = Json::parse(kGood);
   for (const auto& [key, ignored] : good.items()) {
-    for (const Json& wrong :
-         {Json(-5), Json(true), Json::array(), Json::array({1}), Json::object(), Json("")}) {
+    for (const Json& wrong : {Json(-5), Json(true), Json::array(), Json::array({1}), Json::object(), Json("")}) {
       Json bad = good;
       bad[key] = wrong;
       EXPECT_FALSE(parse_scene(bad.dump(), "x.json").ok()) << key << " as " << wrong;

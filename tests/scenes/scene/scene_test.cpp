@@ -35,8 +35,7 @@ TEST(Scene, SiliconeHasThePapersFeatures) {
 TEST(Scene, OthersModelOnlyWhatTheyNeed) {
   EXPECT_EQ(describe_features(*load_scene("elastic_block")), "depth");
   EXPECT_EQ(describe_features(*load_scene("stiff_block")), "depth, velocity");
-  EXPECT_EQ(describe_features(*load_scene("foam_block")),
-            "depth, velocity, relaxation 0.08 s, relaxation 0.9 s");
+  EXPECT_EQ(describe_features(*load_scene("foam_block")), "depth, velocity, relaxation 0.08 s, relaxation 0.9 s");
   EXPECT_FALSE(load_scene("skin")->material.has_value());
   EXPECT_FALSE(load_scene("jnd_study")->material.has_value());
 }

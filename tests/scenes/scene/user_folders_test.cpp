@@ -20,7 +20,8 @@ class UserFolders : public ::testing::Test {
     }
   }
   void TearDown() override {
-    for (const auto& [name, value] : before_) value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
+    for (const auto& [name, value] : before_)
+      value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
   }
   test::TemporaryFolder folder_;
   std::vector<std::pair<std::string, std::string>> before_;

@@ -68,12 +68,14 @@ TEST(Discrimination, SaysWhetherThePredictionHeld) {
   strokes.mean_over_jnd = 0.2;
   strokes.max_over_jnd = 0.71;
   const auto verdict = [&](std::size_t correct) { return discrimination_verdict({"S01", 100, correct, 0}, strokes); };
-  EXPECT_EQ(verdict(52),
-            "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing (p 0.38); 75 % would be "
-            "one JND: consistent.");
-  EXPECT_EQ(verdict(70),
-            "Predicted below the JND (at most 0.71 of it). 70 % right [60 to 78], more than by guessing (p 3.9e-05); 75 % "
-            "would be one JND: too few answers to tell, the interval holds 75 %.");
+  EXPECT_EQ(
+      verdict(52),
+      "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing (p 0.38); 75 % would be "
+      "one JND: consistent.");
+  EXPECT_EQ(
+      verdict(70),
+      "Predicted below the JND (at most 0.71 of it). 70 % right [60 to 78], more than by guessing (p 3.9e-05); 75 % "
+      "would be one JND: too few answers to tell, the interval holds 75 %.");
   EXPECT_EQ(verdict(97).substr(verdict(97).find("75 % would")), "75 % would be one JND: not consistent.");
   strokes.max_over_jnd = 3.0;
   EXPECT_EQ(verdict(52).substr(0, 70), "Above the JND for a moment only (at most 3.00 of it, on average 0.20).");
@@ -102,9 +104,10 @@ TEST(Discrimination, AnalysesFilesOfTheSameStrokesAlone) {
   EXPECT_EQ(analyse_discrimination({one, one}).error().message,
             "found two files of subject S01, expected one; leave one of them out");
   two.header.strokes = example_strokes(0.8);
-  EXPECT_EQ(analyse_discrimination({one, two}).error().message,
-            "found other strokes in the file of subject S02, expected \"recorded force\" and \"greedy-100\" in silicone 2 "
-            "as in the first; analyse them apart");
+  EXPECT_EQ(
+      analyse_discrimination({one, two}).error().message,
+      "found other strokes in the file of subject S02, expected \"recorded force\" and \"greedy-100\" in silicone 2 "
+      "as in the first; analyse them apart");
   two.header = {"S02", ProcedureKind::constant, {}};
   EXPECT_EQ(analyse_discrimination({one, two}).error().message,
             "found the procedure constant in the file of subject S02, expected discriminate as in the others; analyse "

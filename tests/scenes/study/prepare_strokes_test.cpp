@@ -79,9 +79,10 @@ TEST(PrepareStrokes, LeavesOutWhatAStudyMayNotPresent) {
   }
   const auto none = strokes_of(presses({-0.01}, 0.0), spring(100.0), spring(80.0), jnd);
   ASSERT_FALSE(none.ok());
-  EXPECT_EQ(none.error().message,
-            "found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in spring, expected one "
-            "that a still hand can be given; name another recording");
+  EXPECT_EQ(
+      none.error().message,
+      "found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in spring, expected one "
+      "that a still hand can be given; name another recording");
 }
 
 TEST(PrepareStrokes, CanBePresentedAsTheyAre) {
@@ -102,7 +103,8 @@ TEST(PrepareStrokes, RefusesWhatCannotBeCompared) {
   ASSERT_TRUE(silicone.ok() && study.ok());
   EXPECT_EQ(prepare_strokes({*silicone, {"greedy", "random", "direct"}, ""}).error().message,
             "found 3 models, expected one, to tell from the recorded force, or two; leave some out");
-  EXPECT_NE(prepare_strokes({*silicone, {"best"}, ""}).error().message.find("found no model \"best\""), std::string::npos);
+  EXPECT_NE(prepare_strokes({*silicone, {"best"}, ""}).error().message.find("found no model \"best\""),
+            std::string::npos);
   EXPECT_NE(prepare_strokes({*study, {}, ""}).error().message.find("has no virtual material"), std::string::npos);
   EXPECT_FALSE(prepare_strokes({*silicone, {}, "/none/rec.csv"}).ok());
 }

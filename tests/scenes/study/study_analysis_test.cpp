@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scenes/scene/jnd_file.h"
@@ -96,11 +97,13 @@ TEST(StudyAnalysis, JudgesByWhatWasRendered) {
 
 TEST(StudyAnalysis, RefusesWhatCannotBeAnalysed) {
   const StudyData data = average_subject("S01", {0.3, 0.2, 0.15, 0.13}, 1);
-  EXPECT_EQ(analyse_study({}, kQuick, false, may_continue).error().message, "found no study file, expected one or more");
+  EXPECT_EQ(analyse_study({}, kQuick, false, may_continue).error().message,
+            "found no study file, expected one or more");
   EXPECT_EQ(analyse_study({data, data}, kQuick, false, may_continue).error().message,
             "found two files of subject S01, expected one; leave one of them out");
-  EXPECT_EQ(analyse_study({{{"S02", ProcedureKind::constant, {}}, "", {}, 0}}, kQuick, false, may_continue).error().message,
-            "found no usable answer of subject S02; leave the file out");
+  EXPECT_EQ(
+      analyse_study({{{"S02", ProcedureKind::constant, {}}, "", {}, 0}}, kQuick, false, may_continue).error().message,
+      "found no usable answer of subject S02; leave the file out");
   StudyData other = data;
   other.records[3].trial.reference_N = 0.7;
   EXPECT_EQ(analyse_study({other}, kQuick, false, may_continue).error().message,
@@ -108,17 +111,44 @@ TEST(StudyAnalysis, RefusesWhatCannotBeAnalysed) {
   EXPECT_EQ(analyse_study({data}, kQuick, false, [](double) { return false; }).error().message, "interrupted");
 }
 
-TEST(StudyAnalysis, TakesFilesThatEndEarly) {
-  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::adaptive}) {
-    const StudyHeader header{"S01", kind, test::kQuickTiming};
-    auto records = run_simulated_session(header, {}, 1);
+// Twenty-four simulated subjects of known JNDs and other biases and lapses. The bounds are
+// what chance allows: of 24 intervals of 95 %, 19 or more hold the truth, of all 96, 85.
+TEST(StudyAnalysis, IntervalsHoldTheTruthOfKnownSubjects) {
+  std::array<int, kReferenceForces_N.size()> held{};
+  std::array<std::vector<double>, kReferenceForces_N.size()> ratios;
+  RandomStream random(1, 41);
+  for (int i = 0; i < 24; ++i) {
+    const SubjectTraits traits{{random.uniform(0.03, 0.065), random.uniform(0.05, 0.12)},
+                               random.uniform(-0.5, 0.5),
+                               random.uniform(0.0, 0.03)};
+    const StudyHeader header{"R" + std::to_string(i), ProcedureKind::constant, test::kQuickTiming};
+    const auto records = run_simulated_session(header, traits, random.next());
     ASSERT_TRUE(records.ok());
-    for (const std::size_t kept : {9u, 12u, 60u}) {
-      const StudyData cut{header, "", {records->begin(), records->begin() + static_cast<std::ptrdiff_t>(kept)}, 0};
-      const auto analysis = analyse_study({cut}, kQuick, false, may_continue);
-      ASSERT_TRUE(analysis.ok()) << analysis.error().message;
-      EXPECT_GE(analysis->pooled.size(), 1u);
+    const SubjectJnd found = analyse_subject({header, "", *records, 0}, {});
+    for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
+      const double truth_N = traits.jnd.at(kReferenceForces_N[r]);
+      const Estimate& jnd_N = found.references[r].jnd_N;
+      held[r] += jnd_N.low <= truth_N && truth_N <= jnd_N.high ? 1 : 0;
+      ratios[r].push_back(jnd_N.value / truth_N);
     }
+  }
+  for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
+    EXPECT_GE(held[r], 19) << kReferenceForces_N[r];
+    std::nth_element(ratios[r].begin(), ratios[r].begin() + 12, ratios[r].end());
+    EXPECT_NEAR(ratios[r][12], 1.0, 0.2) << kReferenceForces_N[r];
+  }
+  EXPECT_GE(held[0] + held[1] + held[2] + held[3], 85);
+}
+
+TEST(StudyAnalysis, TakesFilesThatEndEarly) {
+  const StudyHeader header{"S01", ProcedureKind::constant, test::kQuickTiming};
+  auto records = run_simulated_session(header, {}, 1);
+  ASSERT_TRUE(records.ok());
+  for (const std::size_t kept : {9u, 12u, 60u}) {
+    const StudyData cut{header, "", {records->begin(), records->begin() + static_cast<std::ptrdiff_t>(kept)}, 0};
+    const auto analysis = analyse_study({cut}, kQuick, false, may_continue);
+    ASSERT_TRUE(analysis.ok()) << analysis.error().message;
+    EXPECT_GE(analysis->pooled.size(), 1u);
   }
 }
 

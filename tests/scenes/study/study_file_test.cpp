@@ -108,14 +108,16 @@ TEST(StudyFile, OtherStudiesAndOtherFilesAreRefusedAndKept) {
   const TemporaryFolder folder;
   const std::string path = folder.file("S01.csv");
   ASSERT_TRUE(opened(path)->consent("", "").ok());
-  const auto other = StudyFile::open(path, {"S01", ProcedureKind::adaptive, test::kQuickTiming});
+  const auto other = StudyFile::open(path, {"S02", ProcedureKind::constant, test::kQuickTiming});
   ASSERT_FALSE(other.ok());
   EXPECT_EQ(other.error().message,
-            path + ": found a study of subject S01, procedure constant, expected subject S01, procedure adaptive "
-                   "and the same timing; take another folder or subject code");
+            path +
+                ": found a study of subject S01, procedure constant, expected subject S02, procedure constant "
+                "and the same timing; take another folder or subject code");
   const std::string notes = folder.with_file("notes.csv", "time_s,position_m\n");
-  EXPECT_EQ(StudyFile::open(notes, kHeader).error().message,
-            notes + ":1:1: found \"time_s,position_m\", expected the first line of a study file, \"# palpate-study 1\"");
+  EXPECT_EQ(
+      StudyFile::open(notes, kHeader).error().message,
+      notes + ":1:1: found \"time_s,position_m\", expected the first line of a study file, \"# palpate-study 1\"");
   EXPECT_EQ(read_text(notes), "time_s,position_m\n");
   const auto missing = opened(folder.file("none/S01.csv"));
   EXPECT_EQ(missing->consent("", "").error().message,
@@ -222,9 +224,10 @@ TEST(StudyFile, OtherStrokesAreRefused) {
   const auto other = StudyFile::open(path, test::discrimination_header(0.9));
   ASSERT_FALSE(other.ok());
   EXPECT_EQ(other.error().message,
-            path + ": found strokes of \"recorded force\" and \"greedy-100\" in silicone 2, expected those of this "
-                   "session, \"recorded force\" and \"greedy-100\" in silicone 2, with the same forces; take another "
-                   "folder or subject code");
+            path +
+                ": found strokes of \"recorded force\" and \"greedy-100\" in silicone 2, expected those of this "
+                "session, \"recorded force\" and \"greedy-100\" in silicone 2, with the same forces; take another "
+                "folder or subject code");
 }
 
 }  // namespace

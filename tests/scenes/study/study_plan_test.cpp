@@ -52,19 +52,11 @@ TEST(StudyPlan, EachSubjectHasAnOrderOfItsOwnThatStays) {
   EXPECT_NE(plan_training_trials("S01"), plan_training_trials("S02"));
 }
 
-TEST(StudyPlan, AdaptiveSlotsAreAQuarterAndBalanced) {
-  const std::vector<AdaptiveSlot> slots = plan_adaptive_slots("S01");
-  ASSERT_EQ(slots.size(), 80u);
-  for (const double reference_N : kReferenceForces_N) {
-    const auto count = [&](auto&& which) {
-      return std::count_if(slots.begin(), slots.end(), [&](const AdaptiveSlot& slot) {
-        return slot.reference_N == reference_N && which(slot);
-      });
-    };
-    EXPECT_EQ(count([](const AdaptiveSlot&) { return true; }), 20);
-    EXPECT_EQ(count([](const AdaptiveSlot& slot) { return slot.comparison_larger; }), 10);
-    EXPECT_EQ(count([](const AdaptiveSlot& slot) { return slot.comparison_first; }), 10);
-  }
+TEST(StudyPlan, ProceduresHaveNames) {
+  EXPECT_EQ(*find_procedure("constant"), ProcedureKind::constant);
+  EXPECT_EQ(*find_procedure(procedure_name(ProcedureKind::discriminate)), ProcedureKind::discriminate);
+  EXPECT_EQ(find_procedure("staircase").error().message,
+            "found the procedure \"staircase\", expected constant or discriminate");
 }
 
 TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
@@ -73,7 +65,8 @@ TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
     ASSERT_EQ(trials.size(), kDiscriminationTrials);
     for (std::size_t from = 0; from < trials.size(); from += kDiscriminationBlock) {
       const auto block = trials.begin() + static_cast<std::ptrdiff_t>(from);
-      EXPECT_EQ(std::count_if(block, block + kDiscriminationBlock, [](const StudyTrial& trial) { return trial.comparison_first; }),
+      EXPECT_EQ(std::count_if(block, block + kDiscriminationBlock,
+                              [](const StudyTrial& trial) { return trial.comparison_first; }),
                 static_cast<std::ptrdiff_t>(kDiscriminationBlock / 2));
     }
     EXPECT_EQ(trials[7].reference_N, 1.2);

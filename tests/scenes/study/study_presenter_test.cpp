@@ -111,8 +111,7 @@ TEST(StudyPresenter, ATickAllocatesAndLocksNothing) {
 
 TEST(StudyPresenter, RefusesTimingsThatLastTooLongOrKick) {
   EXPECT_TRUE(check_study_timing({}).ok());
-  EXPECT_EQ(check_study_timing({400, 10, 900, 500}).error().message,
-            "found a ramp of 10 ms, expected 60 to 5000 ms");
+  EXPECT_EQ(check_study_timing({400, 10, 900, 500}).error().message, "found a ramp of 10 ms, expected 60 to 5000 ms");
   EXPECT_EQ(check_study_timing({400, 100, 4801, 500}).error().message,
             "found a hold of 4801 ms, expected 1 ms or more, and 5000 ms at most together with both ramps");
   EXPECT_FALSE(check_study_timing({400, 100, 0, 500}).ok());
@@ -140,7 +139,9 @@ TEST(StudyPresenter, PlaysStrokesBehindAReminderExactToTheTick) {
       const std::size_t begin = lead_in + k * (interval + pause);
       if (i < begin || i >= begin + interval) continue;
       const std::size_t at = i - begin;
-      expected_N = share(at) * (k == 0 ? 0.5 * strokes->reference_N[at] : k == 1 ? strokes->comparison_N[at] : strokes->reference_N[at]);
+      expected_N = share(at) * (k == 0   ? 0.5 * strokes->reference_N[at]
+                                : k == 1 ? strokes->comparison_N[at]
+                                         : strokes->reference_N[at]);
     }
     ASSERT_NEAR(forces[i], expected_N, 1e-12);
   }
@@ -155,10 +156,12 @@ TEST(StudyPresenter, PlaysStrokesBehindAReminderExactToTheTick) {
 
 TEST(StudyPresenter, TellsHowFarWhatWasRenderedWasFromTheStroke) {
   StudyPresenter presenter(test::kQuickTiming, test::example_strokes(1.0));
-  presenter.present({{1.0, StimulusKind::reference}, {1.0, StimulusKind::reference}, true, {1.0, StimulusKind::reference}});
+  presenter.present(
+      {{1.0, StimulusKind::reference}, {1.0, StimulusKind::reference}, true, {1.0, StimulusKind::reference}});
   run(presenter, 600, 0.9);
   double largest_N = 0.0;
-  for (std::uint32_t i = 0; i < 140; ++i) largest_N = std::max(largest_N, interval_share(test::kQuickTiming, i) * (1.0 + 0.01 * i));
+  for (std::uint32_t i = 0; i < 140; ++i)
+    largest_N = std::max(largest_N, interval_share(test::kQuickTiming, i) * (1.0 + 0.01 * i));
   EXPECT_NEAR(presenter.newest().worst_N, 0.1 * largest_N, 1e-9);
 }
 
@@ -178,7 +181,8 @@ TEST(StudyPresenter, LimitsStrokesAndEndsThem) {
 TEST(StudyPresenter, ATickOfAStrokeAllocatesAndLocksNothing) {
   if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
   StudyPresenter presenter(test::kQuickTiming, test::example_strokes(0.9));
-  presenter.present({{1.0, StimulusKind::reference}, {1.0, StimulusKind::comparison}, true, {1.0, StimulusKind::reference}});
+  presenter.present(
+      {{1.0, StimulusKind::reference}, {1.0, StimulusKind::comparison}, true, {1.0, StimulusKind::reference}});
   test::RtGuard guard;
   double rendered_N = 0.0;
   for (int i = 0; i < 1000; ++i) rendered_N = presenter.tick(rendered_N);

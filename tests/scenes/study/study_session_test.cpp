@@ -13,7 +13,8 @@ using test::truly_larger;
 
 StudyHeader header(ProcedureKind procedure = ProcedureKind::constant) { return {"S01", procedure, kQuickTiming}; }
 
-std::unique_ptr<StudySession> begun(const StudyHeader& with, std::unique_ptr<StudyStore> store, std::uint64_t rest = 0) {
+std::unique_ptr<StudySession> begun(const StudyHeader& with, std::unique_ptr<StudyStore> store,
+                                    std::uint64_t rest = 0) {
   auto session = StudySession::create(with, std::move(store), rest);
   EXPECT_TRUE(session.ok()) << session.error().message;
   (*session)->accept_consent("today");
@@ -49,25 +50,23 @@ TEST(StudySession, NothingIsPresentedBeforeTheConsent) {
 }
 
 TEST(StudySession, RunsFromConsentToTheEnd) {
-  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::adaptive}) {
-    const auto session = begun(header(kind), std::make_unique<MemoryStore>());
-    EXPECT_EQ(session->state(), StudyState::ready);
-    EXPECT_TRUE(session->view().training);
-    const std::size_t trials = kind == ProcedureKind::constant ? 320 : 80;
-    EXPECT_EQ(answer_trials(*session, 1000, truly_larger), 8 + trials);
-    EXPECT_EQ(session->state(), StudyState::done);
-    EXPECT_EQ(session->view().answered, trials);
-    const std::vector<StudyRecord>& records = session->store().records();
-    ASSERT_EQ(records.size(), 8 + trials);
-    for (const StudyRecord& record : records) {
-      EXPECT_TRUE(record.found_larger());
-      EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
-      EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
-      EXPECT_FALSE(record.limited);
-    }
-    session->proceed();
-    EXPECT_EQ(session->state(), StudyState::done);
+  const auto session = begun(header(), std::make_unique<MemoryStore>());
+  EXPECT_EQ(session->state(), StudyState::ready);
+  EXPECT_TRUE(session->view().training);
+  const std::size_t trials = 320;
+  EXPECT_EQ(answer_trials(*session, 1000, truly_larger), 8 + trials);
+  EXPECT_EQ(session->state(), StudyState::done);
+  EXPECT_EQ(session->view().answered, trials);
+  const std::vector<StudyRecord>& records = session->store().records();
+  ASSERT_EQ(records.size(), 8 + trials);
+  for (const StudyRecord& record : records) {
+    EXPECT_TRUE(record.found_larger());
+    EXPECT_EQ(record.first_rendered_N, record.trial.first_N());
+    EXPECT_EQ(record.second_rendered_N, record.trial.second_N());
+    EXPECT_FALSE(record.limited);
   }
+  session->proceed();
+  EXPECT_EQ(session->state(), StudyState::done);
 }
 
 TEST(StudySession, TheTrainingTellsRightFromWrong) {
@@ -92,7 +91,8 @@ TEST(StudySession, ShowsWhichForceIsPresentedAndCountsTheResponse) {
   for (int i = 0; session->state() == StudyState::presenting && i < 1000; ++i) {
     session->tick(0.0);
     session->update();
-    if (intervals.empty() || session->view().interval != intervals.back()) intervals.push_back(session->view().interval);
+    if (intervals.empty() || session->view().interval != intervals.back())
+      intervals.push_back(session->view().interval);
   }
   EXPECT_EQ(intervals, (std::vector<int>{0, 1, 0, 2, 0}));
   for (int i = 0; i < 730; ++i) session->tick(0.0);
@@ -163,21 +163,19 @@ TEST(StudySession, AbortWorksInEveryState) {
 }
 
 TEST(StudySession, GoesOnWhereAnEarlierOneEnded) {
-  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::adaptive}) {
-    const auto whole = begun(header(kind), std::make_unique<MemoryStore>());
-    answer_trials(*whole, 1000, truly_larger);
-    for (const std::size_t until : {0u, 5u, 8u, 30u}) {
-      const auto first = begun(header(kind), std::make_unique<MemoryStore>());
-      answer_trials(*first, until, truly_larger);
-      auto store = std::make_unique<MemoryStore>();
-      ASSERT_TRUE(store->consent("", "").ok());
-      for (const StudyRecord& record : first->store().records()) ASSERT_TRUE(store->append(record).ok());
-      auto second = StudySession::create(header(kind), std::move(store), 0);
-      ASSERT_TRUE(second.ok()) << second.error().message;
-      EXPECT_EQ((*second)->state(), StudyState::ready) << "consent is asked once";
-      answer_trials(**second, 1000, truly_larger);
-      EXPECT_EQ((*second)->store().records(), whole->store().records());
-    }
+  const auto whole = begun(header(), std::make_unique<MemoryStore>());
+  answer_trials(*whole, 1000, truly_larger);
+  for (const std::size_t until : {0u, 5u, 8u, 30u}) {
+    const auto first = begun(header(), std::make_unique<MemoryStore>());
+    answer_trials(*first, until, truly_larger);
+    auto store = std::make_unique<MemoryStore>();
+    ASSERT_TRUE(store->consent("", "").ok());
+    for (const StudyRecord& record : first->store().records()) ASSERT_TRUE(store->append(record).ok());
+    auto second = StudySession::create(header(), std::move(store), 0);
+    ASSERT_TRUE(second.ok()) << second.error().message;
+    EXPECT_EQ((*second)->state(), StudyState::ready) << "consent is asked once";
+    answer_trials(**second, 1000, truly_larger);
+    EXPECT_EQ((*second)->store().records(), whole->store().records());
   }
 }
 
@@ -196,7 +194,8 @@ TEST(StudySession, RefusesAnswersThatThePlanDidNotAskFor) {
 
 TEST(StudySession, RefusesNamesAndTimings) {
   EXPECT_FALSE(StudySession::create({"Anna", ProcedureKind::constant, {}}, std::make_unique<MemoryStore>()).ok());
-  EXPECT_FALSE(StudySession::create({"S01", ProcedureKind::constant, {0, 0, 0, 0}}, std::make_unique<MemoryStore>()).ok());
+  EXPECT_FALSE(
+      StudySession::create({"S01", ProcedureKind::constant, {0, 0, 0, 0}}, std::make_unique<MemoryStore>()).ok());
 }
 
 TEST(StudySession, StrokesGoFromConsentToTheEnd) {

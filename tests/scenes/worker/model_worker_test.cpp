@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include <chrono>
 #include <thread>
@@ -35,14 +36,16 @@ TEST(ModelWorker, FitsWhatPalpateFitDoesTheQuickestFirst) {
   EXPECT_EQ(made[0].job_id, 5u);
   EXPECT_EQ(made[1].job_id, 3u);
   EXPECT_EQ(made[2].job_id, 7u);
-  const PreparedTraining prepared =
-      test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::scene_request("elastic_block"));
+  const auto recording = test::rig_recording(test::train_settings("elastic"));
+  const PreparedTraining prepared = test::prepare({recording}, test::default_request("elastic_block"));
+  const PreparedTraining position = test::prepare({recording}, test::scene_request("elastic_block"));
   const std::vector<test::ModelPtr> expected{test::fit(prepared, &kRandomMethod), test::fit(prepared, &kKdTreeMethod),
-                                             test::fit(prepared, &kGreedyMethod)};
+                                             test::fit(position, &kGreedyMethod)};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     ASSERT_NE(made[i].model, nullptr) << made[i].problem;
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
-      ASSERT_EQ(made[i].model->evaluate(&depth_m).force_N, expected[i]->evaluate(&depth_m).force_N) << i;
+      const std::array<double, kMaxFeatures> held{depth_m};  // at rest
+      ASSERT_EQ(made[i].model->evaluate(held.data()).force_N, expected[i]->evaluate(held.data()).force_N) << i;
     }
   }
 }
@@ -55,7 +58,7 @@ TEST(ModelWorker, AnotherNumberOfCentresIsWhatPalpateFitGives) {
   plan.method = &kKdTreeMethod;
   ASSERT_TRUE(worker.start().ok());
   const PreparedTraining prepared =
-      test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::scene_request("elastic_block"));
+      test::prepare({test::rig_recording(test::train_settings("elastic"))}, test::default_request("elastic_block"));
   for (const int centres : {10, 12, 3}) {
     plan.centres = centres;
     worker.add_job(0, plan);
@@ -67,7 +70,8 @@ TEST(ModelWorker, AnotherNumberOfCentresIsWhatPalpateFitGives) {
     const FittedModel expected(test::must(fit_method(prepared, request)).data);
     EXPECT_EQ(made[0].model->name(), expected.name());
     for (double depth_m = 0.0; depth_m < 0.02; depth_m += 1e-4) {
-      ASSERT_NEAR(made[0].model->evaluate(&depth_m).force_N, expected.evaluate(&depth_m).force_N, kRounding_N);
+      const std::array<double, kMaxFeatures> held{depth_m};
+      ASSERT_NEAR(made[0].model->evaluate(held.data()).force_N, expected.evaluate(held.data()).force_N, kRounding_N);
     }
   }
 }

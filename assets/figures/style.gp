@@ -1,0 +1,23 @@
+# What all figures share: colours, type, tics. Stands at the beginning of every script that
+# scenes/plot writes. Expects `width` and `height`, pixels of the SVG.
+set encoding utf8
+set micro
+ink = 0x222222
+muted = 0x6e6e6e
+band = 0xe3e3e3
+paper = 0xfefefe
+# The commands that begin a drawing as SVG and as PNG of twice the size.
+svg = sprintf('set terminal svg size %d,%d noenhanced font "sans-serif,14" background "#fefefe" rounded', width, height)
+png = sprintf('set terminal pngcairo size %d,%d noenhanced font "DejaVu Sans,12" fontscale 1.7 linewidth 2 pointscale 2 background "#ffffff" rounded', 2 * width, 2 * height)
+set key off
+set samples 2
+set border 3 linecolor rgb ink linewidth 1
+set tics nomirror textcolor rgb ink scale 0.6,0.3
+set title textcolor rgb ink offset 0,-0.6
+set xlabel textcolor rgb ink offset 0,0.4
+set ylabel textcolor rgb ink offset 0.6,0
+set grid xtics ytics linetype 1 linecolor rgb "#d8d8d8" linewidth 1
+set grid back
+set errorbars 0
+set lmargin 11
+set rmargin 3

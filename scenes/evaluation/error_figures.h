@@ -1,0 +1,93 @@
+// A model's errors so far, in memory that does not grow with time; and the one binning by
+// force that every figure and file uses.
+//
+//   Bins are kBinWidth_jnd just noticeable differences wide, whatever the forces are: with
+//   JND(F) = o + w F the number of JNDs between 0 and F is
+//     u(F) = integral_0^F dF / JND = log(1 + w F / o) / w,   F / o where w is 0,
+//   and bin k holds the forces with k <= u / kBinWidth_jnd < k + 1. That makes 3 bins up to
+//   0.3 N, 15 up to 6 N and 63 up to 3 kN with the paper's line.
+// Thread guarantee: value type; slow side (allocates).
+// Source: figures 4 to 7 of Hoever & Harders (2009) for errors against force.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/tick/jnd.h"
+
+namespace palpate {
+
+inline constexpr double kBinWidth_jnd = 2.0;
+// At most so many bins, for a line that is flat: the last one takes the rest.
+inline constexpr std::size_t kMaximumForceBins = 2000;
+
+// Errors of the samples with force_from_N <= measured force < force_to_N.
+// A bin without samples has 0 for every error.
+struct ForceBin {
+  double force_from_N = 0.0;
+  double force_to_N = 0.0;
+  std::uint64_t count = 0;
+  double mean_force_N = 0.0;
+  double mean_abs_error_N = 0.0;
+  double std_abs_error_N = 0.0;  // population standard deviation
+  double max_abs_error_N = 0.0;
+  // Error over the JND, taken sample by sample.
+  double mean_error_over_jnd = 0.0;
+  double std_error_over_jnd = 0.0;
+  double max_error_over_jnd = 0.0;
+  double jnd_N = 0.0;  // at the middle of the bin
+};
+
+// The bin of a force; forces below 0 (sensor noise) are in the first.
+std::size_t force_bin(double force_N, const JndLine& jnd) noexcept;
+// Where bin `index` begins, N.
+double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept;
+
+class ErrorFigures {
+ public:
+  // One sample in contact, both forces finite; always with the same `jnd`.
+  void add(double model_N, double reference_N, bool out_of_domain, const JndLine& jnd);
+  // What `other` has seen, as if seen here as well.
+  void add(const ErrorFigures& other);
+
+  std::uint64_t samples() const noexcept { return samples_; }
+  std::uint64_t samples_within_jnd() const noexcept { return within_; }
+  // The rest is 0 without samples.
+  double within_jnd() const noexcept;  // share of the samples with an error up to one JND
+  double rms_error_N() const noexcept;
+  double max_error_N() const noexcept { return max_error_N_; }
+  double mean_error_over_jnd() const noexcept;
+  double max_error_over_jnd() const noexcept { return max_ratio_; }
+  std::uint64_t out_of_domain_samples() const noexcept { return out_of_domain_; }
+  // From 0 to the largest reference force.
+  std::vector<ForceBin> bins(const JndLine& jnd) const;
+
+ private:
+  // Mean and sum of squares around it: no cancellation, whatever the count.
+  // Source: Welford (1962); Chan, Golub & LeVeque (1983) for two of them together.
+  struct Moments {
+    double mean = 0.0;
+    double squares = 0.0;
+    double largest = 0.0;
+    void add(double value, double count);
+    void add(const Moments& other, double count, double other_count);
+  };
+  struct Bin {
+    std::uint64_t count = 0;
+    double force_N = 0.0;  // mean
+    Moments error_N;
+    Moments ratio;
+  };
+
+  std::uint64_t samples_ = 0;
+  std::uint64_t within_ = 0;
+  std::uint64_t out_of_domain_ = 0;
+  double squares_N2_ = 0.0;
+  double max_error_N_ = 0.0;
+  double ratios_ = 0.0;  // sum
+  double max_ratio_ = 0.0;
+  std::vector<Bin> bins_;  // at most kMaximumForceBins
+};
+
+}  // namespace palpate

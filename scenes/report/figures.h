@@ -1,0 +1,27 @@
+// The report's figures as plots (scenes/plot/plot.h) with captions.
+//
+// Thread guarantee: pure functions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/plot/plot.h"
+#include "scenes/report/report_data.h"
+
+namespace palpate {
+
+struct Figure {
+  Plot plot;
+  std::string caption;  // plain text
+};
+
+Figure speed_figure(const ReportData& data);
+Figure worst_figure(const ReportData& data);
+// Figures 3 to 8 of Hoever & Harders (2009), as small multiples.
+Figure paper_figure(const ReportData& data);
+
+// Its method's, in the window as well.
+Hue model_colour(const PlannedModel& plan);
+
+}  // namespace palpate

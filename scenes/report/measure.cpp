@@ -1,0 +1,342 @@
+#include "scenes/report/measure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "models/fit/recipe_2009.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/ranking.h"
+#include "scenes/scene/training.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kLeftOutOf = 3;             // of several recordings every third is left out
+constexpr std::size_t kSmallestRecording = 1000;  // rows; less is not divided
+constexpr double kKeptShare = 0.6;                // of a single recording
+constexpr double kPrepareSeconds = 1.0;           // about, of a recipe
+constexpr double kEvaluateSeconds = 0.1;          // a model
+
+// One progress for a job of many unequal parts, in expected seconds.
+class Progress {
+ public:
+  Progress(FitControl whole, double total) : whole_(std::move(whole)), total_(total) {}
+
+  // The control of the next part, valid until the next call.
+  FitControl next(double seconds) {
+    done_ += part_;
+    part_ = seconds;
+    return FitControl{
+        [this](double fraction) { return whole_.may_continue(std::min(1.0, (done_ + part_ * fraction) / total_)); }};
+  }
+
+ private:
+  FitControl whole_;
+  double total_;
+  double done_ = 0.0;
+  double part_ = 0.0;
+};
+
+// The same recording with its surface and force zero where a fit to all of the training found them.
+std::vector<SharedRecording> at_own_surfaces(const std::vector<SharedRecording>& training,
+                                             const std::vector<RecordingSurface>& surfaces) {
+  std::vector<SharedRecording> moved;
+  for (const SharedRecording& recording : training) {
+    const auto at = std::find_if(surfaces.begin(), surfaces.end(),
+                                 [&](const RecordingSurface& one) { return one.name == recording->name; });
+    moved.push_back(at == surfaces.end() ? recording
+                                         : std::make_shared<const Recording>(
+                                               with_correction(*recording, {at->offset_m, at->force_zero_N})));
+  }
+  return moved;
+}
+
+struct Preparations {
+  PreparedTraining paper;
+  PreparedTraining palpate;
+  const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
+};
+
+struct Fitted {
+  std::shared_ptr<const FittedModel> model;
+  double seconds = 0.0;
+};
+
+int evaluation_cost(const ModelResult& result) {
+  if (!result.model) return 0;
+  const bool grid = result.plan.request.method->can_take(kTakesGrid);
+  return grid ? 1 << std::min<std::size_t>(result.model->features().size(), 16) : result.size;
+}
+
+class Measurement {
+ public:
+  Measurement(const RecordingSet& recordings, const Scene& scene, ReportData& data, const FitControl& control)
+      : recordings_(recordings),
+        scene_(scene),
+        data_(data),
+        progress_(control, expected_total()),
+        recorded_(data.models.size(), ModelErrors(scene.jnd)),
+        moved_(data.models.size(), ModelErrors(scene.jnd)) {}
+
+  Status run() {
+    for (const Fold& fold : recordings_.folds) {
+      if (const Status status = run_fold(fold); !status) return status;
+    }
+    for (std::size_t i = 0; i < data_.models.size(); ++i) {
+      data_.models[i].errors = recorded_[i].evidence();
+      data_.models[i].moved = moved_[i].summary();
+    }
+    data_.floor = noise_floor(tested_, scene_.jnd);
+    // With k folds every training stroke was left out once already.
+    if (!recordings_.cross_validated) {
+      if (const Status status = test_left_out(); !status) return status;
+    }
+    choose();
+    find_worst();
+    return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
+  }
+
+ private:
+  double expected_total() const {
+    double total = 2.0 * kPrepareSeconds;
+    for (const ModelResult& one : data_.models) {
+      if (one.plan.recipe != Recipe::nothing) total += one.plan.request.method->expected_seconds(one.plan.request);
+    }
+    return static_cast<double>(recordings_.folds.size() + 1) *
+           (total + kEvaluateSeconds * static_cast<double>(data_.models.size()));
+  }
+
+  Result<PreparedTraining> prepare_one(const std::vector<SharedRecording>& training, const TrainingRequest& request) {
+    std::vector<MotionSource::Input> inputs;
+    for (const SharedRecording& recording : training) inputs.push_back({"", recording});
+    MotionSource source(std::move(inputs));
+    return prepare_training(source, request, progress_.next(kPrepareSeconds));
+  }
+
+  Result<Preparations> prepare(const std::vector<SharedRecording>& training, Surface surface) {
+    TrainingRequest request = training_request(scene_);
+    request.surface = surface;
+    auto paper = prepare_one(training, recipe_2009_request(request));
+    if (!paper) return paper.error();
+    auto palpate = prepare_one(training, request);
+    if (!palpate) return palpate.error();
+    return Preparations{std::move(*paper), std::move(*palpate)};
+  }
+
+  // Those of the planned models that are wanted; null where one is not, and for no force.
+  Result<std::vector<Fitted>> fit(const Preparations& prepared, const std::vector<bool>& wanted) {
+    std::vector<Fitted> fitted(data_.models.size());
+    std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      const PlannedModel& plan = data_.models[i].plan;
+      if (!wanted[i] || plan.recipe == Recipe::nothing) continue;
+      const auto base = bases.find({plan.recipe, plan.request.method->base});
+      const auto start = std::chrono::steady_clock::now();
+      MethodRequest request = plan.request;
+      // The recordings may support other features than the scene has.
+      if (!request.grid.empty())
+        request.grid.resize(prepared.of(plan.recipe).common.features.size(), request.grid.back());
+      auto one = fit_method(prepared.of(plan.recipe), request,
+                            progress_.next(plan.request.method->expected_seconds(plan.request)),
+                            base == bases.end() ? nullptr : &base->second.first);
+      if (!one && one.error().message == interrupted().message) return one.error();
+      if (!one) return Error{plan.name + ": " + one.error().message};
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+      const double seconds = elapsed.count() + (base == bases.end() ? 0.0 : base->second.second);
+      bases.try_emplace({plan.recipe, plan.request.method}, *one, seconds);
+      fitted[i] = {std::make_shared<const FittedModel>(std::move(one->data)), seconds};
+    }
+    return fitted;
+  }
+
+  Status run_fold(const Fold& fold) {
+    std::vector<SharedRecording> training;
+    for (const std::size_t index : fold.train) training.push_back(recordings_.all[index]);
+    auto prepared = prepare(training, recordings_.at_own_surface ? Surface::recorded : Surface::automatic);
+    if (!prepared) return prepared.error();
+    if (data_.worth.empty()) remember(*prepared, training);
+    const auto fitted = fit(*prepared, std::vector<bool>(data_.models.size(), true));
+    if (!fitted) return fitted.error();
+    for (std::size_t i = 1; i < fitted->size(); ++i) {
+      ModelResult& result = data_.models[i];
+      result.fit_seconds += (*fitted)[i].seconds / static_cast<double>(recordings_.folds.size());
+      result.model = (*fitted)[i].model;
+      result.size = result.model->centre_count();
+      const Method& method = *result.plan.request.method;
+      // What was made, not what was asked for: no more centres than there are sites.
+      if (method.can_take(kTakesCentres) && result.size < result.plan.request.centres)
+        result.plan.name = (result.plan.recipe == Recipe::paper ? "2009-" : "") + std::string(method.name) + "-" +
+                           std::to_string(result.size);
+    }
+    for (const std::size_t index : fold.test) {
+      if (const Status status = evaluate_test(*recordings_.all[index]); !status) return status;
+    }
+    return {};
+  }
+
+  void remember(const Preparations& prepared, const std::vector<SharedRecording>& training) {
+    const Provenance& provenance = prepared.palpate.common.provenance;
+    data_.surfaces = provenance.surfaces;
+    data_.worth = prepared.palpate.worth;
+    if (prepared.palpate.strength) data_.correction_strength = prepared.palpate.strength->strength;
+    for (const RelaxationTime& one : prepared.paper.common.provenance.relaxation_times)
+      data_.times_2009_s.push_back(one.time_s);
+    registered_ = at_own_surfaces(training, provenance.surfaces);
+  }
+
+  Status evaluate_test(const Recording& recording) {
+    std::vector<EvaluatedModel> models;
+    EvaluationRequest request;
+    for (const ModelResult& one : data_.models) {
+      if (!one.model) continue;
+      models.push_back({one.model, scene_.jnd});
+      if (one.plan.main && one.plan.recipe == Recipe::palpate) request.surface_models.push_back(one.model);
+    }
+    request.control = progress_.next(kEvaluateSeconds * static_cast<double>(models.size()));
+    const auto result = evaluate(rows_of(recording), models, request);
+    if (!result) return result.error();
+    recorded_[0].append(result->no_force);
+    moved_[0].append(result->no_force);
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      recorded_[i + 1].append(result->models[i].as_recorded);
+      moved_[i + 1].append(result->models[i].surface_moved);
+      data_.models[i + 1].predicted = result->models[i].predicted;
+      data_.models[i + 1].time = time_model(models[i].model, result->sensor, result->timing);
+    }
+    data_.surface_offset_m.push_back(result->models.front().surface.at);
+    tested_.push_back(&recording);
+    return {};
+  }
+
+  Status test_left_out() {
+    const LeftOut part = leave_out(registered_);
+    if (part.tested.empty()) return {};
+    // Too little to learn from: nothing can be said.
+    const auto prepared = prepare(part.train, Surface::recorded);
+    if (!prepared) return {};
+    std::vector<bool> wanted;
+    for (const ModelResult& one : data_.models) wanted.push_back(one.plan.main);
+    const auto fitted = fit(*prepared, wanted);
+    if (!fitted) return fitted.error().message == interrupted().message ? Status{fitted.error()} : Status{};
+    std::vector<EvaluatedModel> models;
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < fitted->size(); ++i) {
+      if (!(*fitted)[i].model) continue;
+      models.push_back({(*fitted)[i].model, scene_.jnd});
+      which.push_back(i);
+    }
+    std::vector<ModelErrors> pooled(models.size(), ModelErrors(scene_.jnd));
+    EvaluationRequest request;
+    request.move_surface = false;
+    request.counted_s = part.counted_s;
+    for (const SharedRecording& recording : part.tested) {
+      const auto result = evaluate(rows_of(*recording), models, request);
+      if (!result) return result.error();
+      for (std::size_t k = 0; k < models.size(); ++k) pooled[k].append(result->models[k].as_recorded);
+    }
+    for (std::size_t k = 0; k < models.size(); ++k) data_.models[which[k]].left_out = pooled[k].evidence();
+    data_.choice.chosen_on = part.words;
+    return {};
+  }
+
+  // Among the main models, on what was left out; on the test where nothing could be.
+  void choose() {
+    std::vector<Candidate> candidates;
+    std::vector<std::size_t> which;
+    const bool left_out = std::any_of(data_.models.begin(), data_.models.end(),
+                                      [](const ModelResult& one) { return one.left_out.samples > 0; });
+    for (std::size_t i = 1; i < data_.models.size(); ++i) {
+      const ModelResult& one = data_.models[i];
+      const Evidence& evidence = left_out ? one.left_out : one.errors;
+      if (!one.plan.main || evidence.samples == 0) continue;
+      candidates.push_back({&evidence, evaluation_cost(one)});
+      which.push_back(i);
+    }
+    if (!left_out) data_.choice.chosen_on = "the test itself, since nothing could be left out of the training";
+    const Ranking ranking = rank(candidates);
+    data_.choice.chosen = which[ranking.chosen];
+    for (const std::size_t tied : ranking.tied) data_.choice.tied.push_back(which[tied]);
+  }
+
+  // Of the chosen model, beside the best others: the one of 2009 and the one with the smallest error.
+  void find_worst() {
+    std::vector<std::size_t> shown{data_.choice.chosen};
+    std::size_t best = data_.choice.chosen;
+    std::size_t paper = 0;
+    for (std::size_t i = 1; i < data_.models.size(); ++i) {
+      if (!data_.models[i].plan.main) continue;
+      if (data_.models[i].plan.recipe == Recipe::paper) paper = i;
+      if (data_.models[i].errors.p99_error_over_jnd < data_.models[best].errors.p99_error_over_jnd) best = i;
+    }
+    for (const std::size_t more : {paper, best}) {
+      if (more > 0 && std::find(shown.begin(), shown.end(), more) == shown.end()) shown.push_back(more);
+    }
+    std::vector<ModelPointer> models;
+    std::vector<std::string> names;
+    for (const std::size_t i : shown) {
+      models.push_back(data_.models[i].model);
+      names.push_back(data_.models[i].plan.name);
+    }
+    for (const std::size_t index : recordings_.folds.back().test) {
+      WorstStretch stretch = worst_stretch(*recordings_.all[index], models, scene_.jnd);
+      if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
+    }
+    data_.worst.models = std::move(names);
+  }
+
+  const RecordingSet& recordings_;
+  const Scene& scene_;
+  ReportData& data_;
+  Progress progress_;
+  std::vector<ModelErrors> recorded_;
+  std::vector<ModelErrors> moved_;
+  std::vector<const Recording*> tested_;
+  std::vector<SharedRecording> registered_;  // the training, every surface at 0
+};
+
+}  // namespace
+
+LeftOut leave_out(const std::vector<SharedRecording>& training) {
+  LeftOut part;
+  if (training.size() > 1) {
+    for (std::size_t i = 0; i < training.size(); ++i) {
+      (i % kLeftOutOf == 1 ? part.tested : part.train).push_back(training[i]);
+    }
+    part.words = std::to_string(part.tested.size()) + " of the " + std::to_string(training.size()) +
+                 " training recordings, left out of these fits";
+    return part;
+  }
+  const Recording& recording = *training.front();
+  const std::size_t rows = recording.rows.size();
+  if (rows < kSmallestRecording) return part;
+  const std::size_t cut =
+      row_in_air(recording, static_cast<std::size_t>(kKeptShare * static_cast<double>(rows)), rows / 10);
+  part.train.push_back(rows_of(recording, 0, cut, recording.name));
+  part.tested.push_back(training.front());
+  part.counted_s.low = recording.rows[cut].time_s;
+  part.words = "a block at the end of the training recording, " + std::to_string(100 - 100 * cut / rows) +
+               " % of it, left out of these fits";
+  return part;
+}
+
+Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control) {
+  ReportData data;
+  data.scene = scene.name;
+  data.jnd = scene.jnd;
+  data.quick = quick;
+  data.virtual_recordings = recordings.virtual_recordings;
+  data.folds = recordings.cross_validated ? static_cast<int>(recordings.folds.size()) : 0;
+  data.recordings = recordings.facts;
+  for (PlannedModel& plan : make_plan(quick, scene.features.size())) {
+    ModelResult result;
+    result.plan = std::move(plan);
+    data.models.push_back(std::move(result));
+  }
+  if (const Status status = Measurement(recordings, scene, data, control).run(); !status) return status.error();
+  return data;
+}
+
+}  // namespace palpate

@@ -1,0 +1,37 @@
+// The report's page, tables and report.json from its data.
+//
+// Thread guarantee: pure functions; make_page reads the template in the assets.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "scenes/report/figures.h"
+#include "scenes/report/report_data.h"
+#include "scenes/report/table.h"
+
+namespace palpate {
+
+struct ReportOrigin {
+  std::string command_line;
+  std::string version;
+  std::string compiler;
+  std::string machine;
+  double seconds = 0.0;  // that the report took
+};
+
+// The answer, with every number in <span data-model="..." data-figure="...">, so that
+// tests/scenes/report/check_report.py can recompute it from FORCES.csv.
+std::string answer_html(const ReportData& data);
+
+// Everything measured; those with times differ from run to run.
+std::vector<Table> make_tables(const ReportData& data);
+
+// `svgs`: by the name of the plot. Errors: the template is missing, or asks for what is not there.
+Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Figure>& figures,
+                              const std::map<std::string, std::string>& svgs);
+
+}  // namespace palpate

@@ -1,0 +1,64 @@
+#include "scenes/report/plan.h"
+
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr int kMainCentres = 100;  // the paper's
+const std::vector<int> kFullCentres{10, 20, 50, 200, 500};
+const std::vector<int> kPaperCentres{10, 20, 50, 200};
+const std::vector<int> kQuickCentres{10, 30};
+// Depth and every other feature: coarser and finer than the grid that a fit takes by itself.
+const std::vector<std::pair<int, int>> kGrids{{7, 4}, {13, 6}, {19, 8}};
+constexpr std::size_t kMostGridFeatures = 5;  // beyond, minutes
+
+PlannedModel planned(Recipe of, const Method& method, int centres) {
+  PlannedModel model;
+  model.recipe = of;
+  model.request.method = &method;
+  model.request.centres = centres;
+  model.main = centres == kMainCentres;
+  model.name = (of == Recipe::paper ? "2009-" : "") + std::string(method.name);
+  if (method.can_take(kTakesCentres)) model.name += "-" + std::to_string(centres);
+  return model;
+}
+
+// A direct fit takes longer than everything else of a quick report.
+bool is_slow(const Method& method) { return method.can_take(kTakesSolver) || method.base != nullptr; }
+
+}  // namespace
+
+std::vector<PlannedModel> make_plan(bool quick, std::size_t features) {
+  std::vector<PlannedModel> plan{planned(Recipe::nothing, kTrendMethod, kMainCentres),
+                                 planned(Recipe::trend, kTrendMethod, kMainCentres)};
+  plan[0].name = "no force";
+  for (const Recipe of : {Recipe::paper, Recipe::palpate}) {
+    for (const Method* method : methods()) {
+      const bool grid_of_2009 = of == Recipe::paper && method->can_take(kTakesGrid);
+      if (method == &kTrendMethod || (quick && is_slow(*method)) || grid_of_2009) continue;
+      plan.push_back(planned(of, *method, kMainCentres));
+    }
+  }
+  for (const Recipe of : {Recipe::paper, Recipe::palpate}) {
+    for (const Method* method : methods()) {
+      if (!method->can_take(kTakesCentres)) continue;
+      for (const int centres : quick ? kQuickCentres : of == Recipe::paper ? kPaperCentres : kFullCentres) {
+        plan.push_back(planned(of, *method, centres));
+      }
+    }
+  }
+  for (const Method* method : methods()) {
+    if (quick || !method->can_take(kTakesGrid) || features > kMostGridFeatures) continue;
+    for (const auto& [depth, other] : kGrids) {
+      PlannedModel grid = planned(Recipe::palpate, *method, 0);
+      grid.request.grid.assign(features, other);
+      grid.request.grid[0] = depth;
+      grid.name += "-" + std::to_string(depth) + "x" + std::to_string(other);
+      plan.push_back(std::move(grid));
+    }
+  }
+  return plan;
+}
+
+}  // namespace palpate

@@ -1,0 +1,199 @@
+#include "scenes/report/recordings.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "engine/tick/sensor_identification.h"
+#include "models/surface/surface_estimate.h"
+#include "scenes/material/rig.h"
+#include "scenes/report/leakage.h"
+
+namespace palpate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTrainSeconds = 41.499;
+constexpr double kTestSeconds = 45.272;
+// A part of a recording that is cut for folds is worth testing on from here.
+constexpr std::size_t kSmallestPart = 200;
+
+Result<SharedRecording> virtual_silicone(std::uint64_t seed, double seconds,
+                                         const std::function<bool(double)>& progress) {
+  RigSettings settings;
+  settings.seed = seed;
+  settings.seconds = seconds;
+  auto recording = record_sensors(settings, progress);
+  if (!recording) return recording.error();
+  recording->name = "silicone_" + std::to_string(seed);
+  return std::make_shared<const Recording>(std::move(*recording));
+}
+
+Status refuse_doubles(const std::vector<std::string>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code missing;
+      if (fs::equivalent(paths[i], paths[j], missing)) {
+        return Error{paths[i] +
+                     " is given twice, expected every recording once: errors on what was trained on say "
+                     "nothing; leave one out"};
+      }
+    }
+  }
+  return {};
+}
+
+RecordingFacts facts_of(const Recording& recording, const std::string& role) {
+  RecordingFacts facts;
+  facts.content_hash = hash_text(content_hash(recording));
+  facts.role = role;
+  facts.name = recording.name;
+  facts.samples = recording.rows.size();
+  facts.seconds = recording.rows.back().time_s - recording.rows.front().time_s;
+  facts.rate_Hz = static_cast<double>(recording.rows.size() - 1) / facts.seconds;
+  for (const RecordingRow& row : recording.rows) {
+    if (row.position_m <= 0.0) continue;
+    ++facts.contact_samples;
+    facts.deepest_m = std::max(facts.deepest_m, row.position_m);
+    facts.largest_force_N = std::max(facts.largest_force_N, row.force_N);
+  }
+  facts.force_noise_N =
+      identify_force_noise_N(recording.rows.data(), std::min(recording.rows.size(), kSensorIdentificationRows));
+  facts.accelerometer = recording.columns.acceleration;
+  return facts;
+}
+
+void make_folds(RecordingSet& set) {
+  const std::size_t folds = std::min(kMostFolds, set.all.size());
+  set.folds.resize(folds);
+  for (std::size_t i = 0; i < set.all.size(); ++i) {
+    for (std::size_t f = 0; f < folds; ++f) (i % folds == f ? set.folds[f].test : set.folds[f].train).push_back(i);
+  }
+}
+
+Status add_files(RecordingSet& set, const std::vector<std::string>& paths) {
+  std::vector<std::pair<std::uint64_t, SharedRecording>> added;
+  for (const std::string& path : paths) {
+    auto recording = read_recording(path);
+    if (!recording) return recording.error();
+    auto shared = std::make_shared<const Recording>(std::move(*recording));
+    added.emplace_back(content_hash(*shared), shared);
+  }
+  std::sort(added.begin(), added.end(), [](const auto& a, const auto& b) {
+    return a.second->name != b.second->name ? a.second->name < b.second->name : a.first < b.first;
+  });
+  for (const auto& [hash, recording] : added) set.all.push_back(recording);
+  return {};
+}
+
+Status check_leakage(const RecordingSet& set, std::size_t trained) {
+  std::vector<const Recording*> train;
+  std::vector<const Recording*> test;
+  for (std::size_t i = 0; i < set.all.size(); ++i) (i < trained ? train : test).push_back(set.all[i].get());
+  return refuse_leakage(train, test);
+}
+
+Status check_contact(const RecordingSet& set) {
+  for (const RecordingFacts& facts : set.facts) {
+    if (facts.role == "train" || facts.contact_samples > 0) continue;
+    return Error{facts.name +
+                 ": no sample is in contact (position_m > 0), expected a press to test on; check the "
+                 "sign and zero of position_m"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Recording with_correction(const Recording& recording, const RowCorrection& correction) {
+  Recording moved = recording;
+  for (RecordingRow& row : moved.rows) {
+    row.position_m -= correction.offset_m;
+    row.force_N -= correction.force_zero_N;
+  }
+  return moved;
+}
+
+std::size_t row_in_air(const Recording& recording, std::size_t from, std::size_t most) {
+  const std::size_t end = std::min(recording.rows.size(), from + most);
+  for (std::size_t i = from; i < end; ++i) {
+    if (recording.rows[i].position_m <= 0.0) return i;
+  }
+  return from;
+}
+
+SharedRecording rows_of(const Recording& recording, std::size_t begin, std::size_t end, const std::string& name) {
+  const auto first = recording.rows.begin();
+  return std::make_shared<const Recording>(Recording{
+      name, recording.columns, {first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end)}});
+}
+
+Result<std::vector<SharedRecording>> cut_into_parts(const Recording& whole) {
+  const std::size_t part = whole.rows.size() / kMostFolds;
+  if (part < kSmallestPart) {
+    return Error{whole.name + ": found " + std::to_string(whole.rows.size()) +
+                 " rows and no test recording, expected "
+                 "at least " +
+                 std::to_string(kMostFolds * kSmallestPart) + " to cut into parts; give another recording with --test"};
+  }
+  std::vector<SharedRecording> parts;
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k <= kMostFolds; ++k) {
+    const std::size_t end = k == kMostFolds ? whole.rows.size() : row_in_air(whole, k * part, part / 2);
+    parts.push_back(rows_of(whole, begin, end, whole.name + " part " + std::to_string(k)));
+    begin = end;
+  }
+  return parts;
+}
+
+Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
+                                     const std::function<bool(double share)>& progress) {
+  if (train.empty() && !test.empty()) {
+    return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
+  }
+  std::vector<std::string> every = train;
+  every.insert(every.end(), test.begin(), test.end());
+  if (const Status status = refuse_doubles(every); !status) return status.error();
+
+  RecordingSet set;
+  set.virtual_recordings = train.empty();
+  std::size_t trained = train.size();
+  if (set.virtual_recordings) {
+    trained = 1;
+    for (const auto& [seed, seconds] : {std::pair{1, kTrainSeconds}, std::pair{2, kTestSeconds}}) {
+      const double first = seed == 1 ? 0.0 : 0.5;
+      auto recording = virtual_silicone(static_cast<std::uint64_t>(seed), seconds,
+                                        [&](double share) { return !progress || progress(first + 0.5 * share); });
+      if (!recording) return recording.error();
+      set.all.push_back(*recording);
+    }
+  } else {
+    if (const Status status = add_files(set, train); !status) return status.error();
+    if (const Status status = add_files(set, test); !status) return status.error();
+  }
+  if (const Status status = check_leakage(set, trained); !status) return status.error();
+  if (trained == set.all.size()) {
+    set.cross_validated = true;
+    if (set.all.size() == 1) {
+      const SurfaceEstimate surface = estimate_surface(*set.all.front());
+      auto parts = cut_into_parts(with_correction(*set.all.front(), {surface.offset_m, surface.force_zero_N}));
+      if (!parts) return parts.error();
+      set.all = std::move(*parts);
+      set.at_own_surface = true;
+    }
+    make_folds(set);
+  } else {
+    set.folds.resize(1);
+    for (std::size_t i = 0; i < set.all.size(); ++i) {
+      (i < trained ? set.folds[0].train : set.folds[0].test).push_back(i);
+    }
+  }
+  for (std::size_t i = 0; i < set.all.size(); ++i) {
+    set.facts.push_back(facts_of(*set.all[i], set.cross_validated ? "both" : i < trained ? "train" : "test"));
+  }
+  if (const Status status = check_contact(set); !status) return status.error();
+  return set;
+}
+
+}  // namespace palpate

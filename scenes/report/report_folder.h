@@ -1,0 +1,43 @@
+// A folder that is either whole under its final name or not there at all.
+//
+// Thread guarantee: slow side (does I/O).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/base/result.h"
+
+namespace palpate {
+
+// Files collect in a hidden folder beside `path`; `commit` renames it. Destroyed
+// without commit, or ended by a signal that is owned (signals.h), it leaves nothing. What
+// other ends left, the next one in that place removes.
+class ReportFolder {
+ public:
+  // Errors: `path` exists and `overwrite` is false, or is not a folder; the folder
+  // above is missing or not writable; `path` exists and is no earlier report (has
+  // files but no report.json): it is never removed.
+  static Result<ReportFolder> create(const std::string& path, bool overwrite);
+
+  ReportFolder(ReportFolder&& other) noexcept;
+  ReportFolder& operator=(ReportFolder&&) = delete;
+  ~ReportFolder();
+
+  // The whole of a file; its folder, one level deep, is made when missing.
+  Status write(const std::string& name, std::string_view text) const;
+  Result<std::string> read(const std::string& name) const;
+  std::string path_of(const std::string& name) const { return temporary_ + "/" + name; }
+
+  // Under the final name now; an earlier report there is gone.
+  Status commit();
+
+ private:
+  ReportFolder() = default;
+  std::string path_;
+  std::string temporary_;  // empty: nothing to remove
+  int lock_ = -1;          // of the hidden folder
+  int registry_slot_ = -1;
+};
+
+}  // namespace palpate

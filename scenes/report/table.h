@@ -1,0 +1,70 @@
+// A table of the report: one description for the CSV file, the page and
+// report.json, so that the three can never disagree.
+//
+// Thread guarantee: value types and pure functions.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/text.h"
+
+namespace palpate {
+
+// How the page shows a column; the CSV and report.json always hold the SI value
+// in full.
+struct TableColumn {
+  std::string key;     // CSV header and JSON key, unit at its end: "rms_error_N"
+  std::string title;   // on the page, with the unit in which it is shown: "RMS [mN]"; empty: not shown
+  double scale = 1.0;  // shown = stored x scale
+  int decimals = kThreeDigits;
+  bool has_interval = false;  // the next two columns are its lower and upper end, shown under it
+
+  static constexpr int kThreeDigits = -1;  // three significant digits
+};
+
+// Text, a count, or a number; a number that is not finite is "no figure": an empty
+// cell, null in JSON, a dash on the page.
+struct TableCell {
+  enum class Kind { text, count, number };
+
+  TableCell(std::string value) : kind(Kind::text), text(std::move(value)) {}
+  TableCell(std::uint64_t value) : kind(Kind::count), count(value) {}
+  TableCell(double value) : kind(Kind::number), number(value) {}
+
+  Kind kind;
+  std::string text;
+  std::uint64_t count = 0;
+  double number = 0.0;
+};
+
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+// Scales of columns.
+inline constexpr double kInPercent = 100.0;
+inline constexpr double kInMilli = 1e3;
+
+struct Table {
+  std::string name;        // of the CSV file, without its ending
+  std::string caption;     // on the page: what to conclude; empty: not on the page
+  bool has_times = false;  // holds measured times: differs from run to run
+  std::vector<TableColumn> columns;
+  std::vector<std::vector<TableCell>> rows;  // as many cells as columns
+};
+
+// Header and rows; numbers read back as the same doubles, text with a comma, a
+// quote or a line end is quoted (RFC 4180).
+std::string table_csv(const Table& table);
+
+// A list of objects, one a row.
+nlohmann::ordered_json table_json(const Table& table);
+
+// <div><table>...</table></div>, everything from outside escaped; numbers to the
+// right.
+std::string table_html(const Table& table);
+
+}  // namespace palpate

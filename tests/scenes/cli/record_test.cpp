@@ -1,0 +1,154 @@
+// palpate record as a user runs it, and what its guide says.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "engine/recording/recording.h"
+#include "scenes/cli/record_guide.h"
+#include "tests/support/bridge_session.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+using test::run_palpate;
+
+const std::string kBridge =
+    "bridge:exec:python3 " + std::string(PALPATE_SOURCE_DIR) + "/assets/examples/bridge/bridge.py";
+
+// A recording at its own pace: a device that measures force and starts at once.
+std::string replayed(const test::TemporaryFolder& folder) {
+  const std::string path = folder.file("replayed.csv");
+  EXPECT_EQ(run_palpate({"synth", "--material", "foam", "--seconds", "20", "--rate", "2000", "--out", path}).exit_code,
+            0);
+  return "replay:" + path;
+}
+
+TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("press.csv");
+  const auto run = run_palpate({"record", "--device", kBridge, "--seconds", "3", "--out", path});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out.rfind("recorded ", 0), 0u) << run.out;
+  EXPECT_NE(run.out.find("a perfect model would be"), std::string::npos) << run.out;
+  const auto recording = read_recording(path);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_GT(recording->rows.size(), 500u);
+  for (const RecordingRow& row : recording->rows) {
+    ASSERT_NEAR(row.force_N, 400.0 * std::max(0.0, row.position_m), 2e-6) << "the spring of the example";
+  }
+  const auto again = run_palpate({"record", "--device", kBridge, "--seconds", "1", "--out", path});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_NE(again.err.find("exists"), std::string::npos) << again.err;
+}
+
+TEST(Record, KeepsMotionAloneOfADeviceThatMeasuresNoForce) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("motion.csv");
+  const auto run = run_palpate({"record", "--device", "hand", "--seconds", "1.5", "--out", path});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("has time and motion alone"), std::string::npos) << run.out;
+  EXPECT_NE(test::read_text(path).find("\ntime_s,position_m,velocity_m_per_s"), std::string::npos);
+  const auto guided = run_palpate({"record", "--device", "hand", "--guide", "--out", folder.file("guided.csv")});
+  EXPECT_EQ(guided.exit_code, 1);
+  EXPECT_EQ(guided.err, "error: --guide: hand measures no force, and without it nobody knows where the surface is\n");
+}
+
+TEST(Record, CtrlCEndsItWell) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("press.csv");
+  test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
+  ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120)) << "after its first 1000 rows";
+  EXPECT_EQ(program.end(SIGINT), 0);
+  EXPECT_TRUE(read_recording(path).ok());
+}
+
+TEST(Record, KilledItLeavesWholeRows) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("press.csv");
+  test::ChildProcess program({PALPATE_BINARY, "record", "--device", replayed(folder), "--out", path});
+  ASSERT_TRUE(test::wait_for([&] { return std::filesystem::exists(path); }, 120));
+  EXPECT_EQ(program.end(SIGKILL), 128 + SIGKILL);
+  const auto recording = read_recording(path);
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_GE(recording->rows.size(), 1000u);
+}
+
+TEST(Record, SaysWhatIsWrongWithADevice) {
+  const test::TemporaryFolder folder;
+  const auto run = run_palpate({"record", "--device", "bridge:exec:false", "--out", folder.file("a.csv")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "error: bridge:exec:false: the program ended with exit code 1; run it by itself to see why\n");
+  EXPECT_EQ(run_palpate({"record", "--device", "hand"}).exit_code, 2) << "no --out";
+  EXPECT_EQ(run_palpate({"record", "--device", "hand", "--seconds", "0", "--out", "a.csv"}).exit_code, 2);
+}
+
+TEST(DevicesTest, ADeviceShowsThatItsWatchdogStopsIt) {
+  const auto run = run_palpate({"devices", "--test", kBridge});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("watchdog    stopped"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("heartbeat   stopped"), std::string::npos) << run.out;
+  EXPECT_EQ(run_palpate({"devices", "--test", "hand"}).exit_code, 2);
+}
+
+TEST(DevicesTest, RefusesADeviceThatNeverSaysThatItStopped) {
+  const test::TemporaryFolder folder;
+  const std::string peer = std::string(PALPATE_SOURCE_DIR) + "/tests/devices/bridge/peer.py";
+  // Told by bit 2 that its watchdog stops it: this one does not say it.
+  folder.with_file("mute.py", test::read_text(peer).insert(0, "").replace(
+                                  test::read_text(peer).find("(2 if heard_s and silent else 0)"), 32, "0"));
+  const auto run = run_palpate(
+      {"devices", "--test", "bridge:exec:python3 " + folder.file("mute.py") + " none 1 " + folder.file("log")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("did not show within 100 ms that its watchdog stopped it after the last frame"),
+            std::string::npos)
+      << run.err;
+}
+
+// Everything was visited.
+RecordingMeasures explored() {
+  RecordingMeasures measures;
+  measures.highest_position_m = 0.004;
+  for (auto& quarter : measures.seconds) quarter = {1.0, 1.0, 1.0};
+  measures.longest_hold_s = 3.0;
+  measures.small_strokes = 20;
+  return measures;
+}
+
+TEST(RecordGuide, AsksForWhatIsMissingFromTheSlowToTheFast) {
+  EXPECT_EQ(cli::guide_advice(explored(), 1.27), "");
+  RecordingMeasures measures = explored();
+  measures.small_strokes = 3;
+  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("small strokes", 0), 0u);
+  measures.longest_hold_s = 0.5;
+  EXPECT_EQ(cli::guide_advice(measures, 1.27), "press, and hold still for 2.5 s");
+  measures.seconds[3][2] = 0.0;
+  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("fast presses", 0), 0u);
+  measures.seconds[2][0] = 0.01;
+  EXPECT_EQ(cli::guide_advice(measures, 1.27).rfind("slow presses", 0), 0u);
+}
+
+TEST(RecordGuide, MarksTheCellsThatCheckCounts) {
+  RecordingMeasures measures = explored();
+  measures.seconds[0][1] = 0.5 * kLeastCell_s;
+  const auto lines = cli::guide_cells(measures, 0.0);
+  ASSERT_EQ(lines.size(), 1 + kDepthQuarters);
+  EXPECT_EQ(lines[1], "  0.00 to 1.00   1.0 s          -              1.0 s          ");
+  EXPECT_EQ(lines[4].rfind("  3.00 to 4.00   1.0 s", 0), 0u);
+}
+
+TEST(RecordGuide, SaysWhatIsNewAndNothingTwice) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("press.csv");
+  cli::RecordGuide guide(path, {});
+  EXPECT_EQ(guide.update(0.0), std::vector<std::string>{"next: touch the block, then press it slowly"});
+  EXPECT_TRUE(guide.update(1.0).empty());
+  ASSERT_EQ(run_palpate({"synth", "--material", "silicone", "--seconds", "10", "--out", path}).exit_code, 0);
+  EXPECT_EQ(guide.update(1e6).size(), 2 + kDepthQuarters);
+  EXPECT_TRUE(guide.update(2e6).empty());
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,97 @@
+#include "scenes/evaluation/error_figures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kRounding = 1e-12;  // a few roundings of doubles
+
+TEST(ForceBins, AreTwoJndWideWhateverTheForce) {
+  for (const JndLine jnd : {JndLine{}, JndLine{0.5, 0.0}, JndLine{1e-3, 0.2}}) {
+    for (const double force_N : {0.01, 0.3, 6.0, 30.0, 3000.0}) {
+      const std::size_t bin = force_bin(force_N, jnd);
+      if (bin + 1 == kMaximumForceBins) continue;  // takes the rest
+      const double from_N = force_bin_begin_N(bin, jnd);
+      const double to_N = force_bin_begin_N(bin + 1, jnd);
+      EXPECT_LE(from_N, force_N * (1.0 + kRounding));
+      EXPECT_GT(to_N, force_N * (1.0 - kRounding));
+      // The integral of dF / JND over the bin, by the midpoint rule with 1000 steps.
+      double jnds = 0.0;
+      const double step_N = (to_N - from_N) / 1000.0;
+      for (int i = 0; i < 1000; ++i) jnds += step_N / jnd.at(from_N + (i + 0.5) * step_N);
+      EXPECT_NEAR(jnds, kBinWidth_jnd, 1e-4);
+    }
+  }
+  EXPECT_EQ(force_bin(0.3, {}), 2u) << "the third of three";
+  EXPECT_EQ(force_bin(6.0, {}), 15u);
+  EXPECT_EQ(force_bin(3000.0, {}), 63u);
+  EXPECT_EQ(force_bin(-0.02, {}), 0u) << "sensor noise";
+}
+
+TEST(ErrorFigures, NothingGivesZeros) {
+  const ErrorFigures figures;
+  EXPECT_EQ(figures.samples(), 0u);
+  EXPECT_EQ(figures.within_jnd(), 0.0);
+  EXPECT_EQ(figures.rms_error_N(), 0.0);
+  EXPECT_EQ(figures.mean_error_over_jnd(), 0.0);
+  EXPECT_TRUE(figures.bins({}).empty());
+}
+
+TEST(ErrorFigures, AddUp) {
+  const JndLine jnd{0.5, 0.0};
+  ErrorFigures figures;
+  for (int i = 1; i <= 1000; ++i) figures.add(1.2 + 1e-3 * i, 1.2, i <= 10, jnd);
+  EXPECT_EQ(figures.samples(), 1000u);
+  EXPECT_NEAR(figures.within_jnd(), 0.5, 1e-3) << "an error of exactly one JND may round either way";
+  EXPECT_NEAR(figures.rms_error_N(), std::sqrt(1001.0 * 2001.0 / 6.0) * 1e-3, 1e-9);
+  EXPECT_NEAR(figures.max_error_N(), 1.0, kRounding);
+  EXPECT_NEAR(figures.max_error_over_jnd(), 2.0, kRounding);
+  EXPECT_NEAR(figures.mean_error_over_jnd(), 1.001, 1e-9);
+  EXPECT_EQ(figures.out_of_domain_samples(), 10u);
+  const std::vector<ForceBin> bins = figures.bins(jnd);  // 1 N each
+  ASSERT_EQ(bins.size(), 2u);
+  EXPECT_EQ(bins[0].count, 0u);
+  EXPECT_EQ(bins[1].count, 1000u);
+  EXPECT_NEAR(bins[1].mean_force_N, 1.2, kRounding);
+  EXPECT_NEAR(bins[1].mean_abs_error_N, 0.5005, 1e-9);
+  EXPECT_NEAR(bins[1].std_abs_error_N, std::sqrt((1e6 - 1.0) / 12.0) * 1e-3, 1e-9);
+  EXPECT_NEAR(bins[1].std_error_over_jnd, 2.0 * bins[1].std_abs_error_N, 1e-9);
+  EXPECT_NEAR(bins[1].jnd_N, 0.5, kRounding);
+}
+
+TEST(ErrorFigures, OfTwoPartsAreThoseOfTheWhole) {
+  const JndLine jnd;
+  ErrorFigures whole, first, second;
+  for (int i = 0; i < 600; ++i) {
+    const double measured_N = 0.01 * (i % 300);
+    const double model_N = measured_N + 0.05 * std::sin(0.37 * i);
+    whole.add(model_N, measured_N, i % 7 == 0, jnd);
+    (i < 200 ? first : second).add(model_N, measured_N, i % 7 == 0, jnd);
+  }
+  first.add(second);
+  EXPECT_EQ(first.samples(), whole.samples());
+  EXPECT_EQ(first.within_jnd(), whole.within_jnd());
+  EXPECT_EQ(first.out_of_domain_samples(), whole.out_of_domain_samples());
+  EXPECT_NEAR(first.rms_error_N(), whole.rms_error_N(), kRounding);
+  const auto bins = first.bins(jnd);
+  const auto expected = whole.bins(jnd);
+  ASSERT_EQ(bins.size(), expected.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    EXPECT_EQ(bins[i].count, expected[i].count);
+    EXPECT_NEAR(bins[i].mean_force_N, expected[i].mean_force_N, kRounding);
+    EXPECT_NEAR(bins[i].mean_abs_error_N, expected[i].mean_abs_error_N, kRounding);
+    EXPECT_NEAR(bins[i].std_error_over_jnd, expected[i].std_error_over_jnd, kRounding);
+  }
+}
+
+TEST(ErrorFigures, HaveNoMoreBinsThanTheMost) {
+  ErrorFigures figures;
+  figures.add(0.0, 1e9, false, {0.01, 0.0});
+  EXPECT_EQ(figures.bins({0.01, 0.0}).size(), kMaximumForceBins);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,83 @@
+#include "scenes/evaluation/evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+std::vector<EvaluatedModel> example_list() {
+  std::vector<EvaluatedModel> models;
+  for (const ModelData& data : test::example_models()) {
+    models.push_back({std::make_shared<const FittedModel>(data), data.jnd});
+  }
+  return models;
+}
+
+TEST(Evaluate, TakesMoreModelsThanOneTick) {
+  std::vector<EvaluatedModel> models = example_list();
+  while (models.size() < 20) models.push_back(models.front());
+  const Recording recording = test::example_recording(500, 1000.0);
+  int rows = 0;
+  EvaluationRequest request;
+  request.also = [&](const RecordingRow&, const TickSnapshot& snapshot, const HapticsTick&) {
+    ++rows;
+    EXPECT_EQ(snapshot.model_count, 16u);
+  };
+  const auto result = evaluate(rows_of(recording), models, request);
+  ASSERT_TRUE(result.ok());
+  ASSERT_EQ(result->models.size(), 20u);
+  EXPECT_EQ(result->samples, 500u);
+  EXPECT_EQ(rows, 500);
+  const ErrorSummary first = result->models[0].as_recorded.summary();
+  const ErrorSummary last = result->models[19].as_recorded.summary();
+  EXPECT_EQ(first.samples, result->contact_samples);
+  EXPECT_EQ(first.rms_error_N, last.rms_error_N) << "the same model";
+  EXPECT_EQ(first.rms_error_N == result->models[0].surface_moved.summary().rms_error_N,
+            result->models[0].surface.at == 0.0);
+}
+
+TEST(Evaluate, AFileGivesWhatTheRecordingGives) {
+  const Recording recording = test::example_recording(800, 1000.0);
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_recording(folder.file("r.csv"), recording, {}, false).ok());
+  const auto memory = evaluate(rows_of(recording), example_list());
+  const auto file = evaluate(rows_of_file(folder.file("r.csv")), example_list());
+  ASSERT_TRUE(memory.ok() && file.ok());
+  EXPECT_EQ(file->models[2].as_recorded.summary().rms_error_N, memory->models[2].as_recorded.summary().rms_error_N);
+  EXPECT_EQ(file->models[2].surface.at, memory->models[2].surface.at);
+  EXPECT_FALSE(evaluate(rows_of_file(folder.file("none.csv")), example_list()).ok());
+}
+
+TEST(Evaluate, WhatIsNotCountedIsReplayedAllTheSame) {
+  const Recording recording = test::example_recording(800, 1000.0);
+  const double middle_s = recording.rows[400].time_s;
+  EvaluationRequest late;
+  late.counted_s = {middle_s, 1e300};
+  EvaluationRequest early;
+  early.counted_s = {-1e300, middle_s};
+  const auto whole = evaluate(rows_of(recording), example_list());
+  auto part = evaluate(rows_of(recording), example_list(), early);
+  const auto rest = evaluate(rows_of(recording), example_list(), late);
+  ASSERT_TRUE(whole.ok() && part.ok() && rest.ok());
+  ModelErrors& joined = part->models[0].as_recorded;
+  joined.append(rest->models[0].as_recorded);
+  EXPECT_EQ(joined.summary().samples, whole->contact_samples);
+  EXPECT_NEAR(joined.summary().rms_error_N, whole->models[0].as_recorded.summary().rms_error_N, 1e-12);
+}
+
+TEST(Evaluate, NoForceErrsByTheWholeForce) {
+  const Recording recording = test::example_recording(300, 1000.0);
+  const auto result = evaluate(rows_of(recording), example_list());
+  ASSERT_TRUE(result.ok());
+  double largest_N = 0.0;
+  for (const RecordingRow& row : recording.rows) {
+    if (row.position_m > 0.0) largest_N = std::max(largest_N, std::abs(row.force_N));
+  }
+  EXPECT_EQ(result->no_force.summary().max_error_N, largest_N);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,133 @@
+#include "scenes/live/exhibit_game.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace palpate {
+namespace {
+
+using State = ExhibitGame::State;
+const std::vector<ExhibitModel> kAll = {
+    {0, "greedy", false}, {1, "greedy", true}, {2, "position", false}, {3, "direct", false}};
+const JndLine kJnd{0.1, 0.0};
+
+// A stroke of `seconds` at 2 N, the second force so much larger, in JNDs.
+void press(ExhibitGame& game, double from_s, double seconds, double over_jnd) {
+  for (int i = 0; i < static_cast<int>(1e3 * seconds); ++i)
+    game.add({from_s + 1e-3 * i, 2.0, 2.0 + 0.1 * over_jnd, true, false}, kJnd);
+}
+
+TEST(ExhibitGame, GoesFromObviousToImpossible) {
+  const auto rounds = ExhibitGame::rounds_of(kAll, true, false);
+  ASSERT_EQ(rounds.size(), 3u);
+  EXPECT_EQ(rounds[0].second.slot, 2u) << "depth only";
+  EXPECT_EQ(rounds[1].second.slot, 1u) << "the paper's recipe";
+  EXPECT_EQ(rounds[2].second.slot, 0u) << "the best";
+  for (const ExhibitRound& round : rounds) EXPECT_FALSE(round.first) << "the reference";
+}
+
+TEST(ExhibitGame, WithoutAReferenceModelsAreComparedWithTheBest) {
+  const auto rounds = ExhibitGame::rounds_of({{4, "voxel", false}, {5, "voxel", false}}, false, false);
+  ASSERT_EQ(rounds.size(), 1u);
+  EXPECT_EQ(rounds[0].first->slot, 4u);
+  EXPECT_EQ(rounds[0].second.slot, 5u);
+  EXPECT_TRUE(ExhibitGame::rounds_of({{4, "voxel", false}}, false, false).empty());
+  EXPECT_TRUE(ExhibitGame::rounds_of({}, true, false).empty());
+  EXPECT_FALSE(ExhibitGame(1).begin({}, true, false));
+}
+
+TEST(ExhibitGame, IsPlayedFromGuessToScore) {
+  ExhibitGame game(1);
+  ASSERT_TRUE(game.begin(kAll, true, false, 2.0));
+  double time_s = 100.0;
+  for (const double over_jnd : {3.0, 1.5, 0.3}) {
+    EXPECT_EQ(game.state(), State::guess);
+    press(game, time_s, 0.1, over_jnd);
+    EXPECT_EQ(game.trace().seconds(), 0.0) << "nothing counts before the guess";
+    game.guess(true);
+    EXPECT_EQ(game.state(), State::press);
+    for (int i = 0; i < 5000; ++i) game.add({time_s += 1e-3, 0.0, 0.0, false, false}, kJnd);
+    EXPECT_EQ(game.seconds_left(), 2.0) << "time begins with the first contact";
+    press(game, time_s, 2.1, over_jnd);
+    time_s += 2.1;
+    ASSERT_EQ(game.state(), State::reveal);
+    EXPECT_NEAR(game.round().largest_over_jnd, over_jnd, 1e-9);
+    EXPECT_EQ(game.round().right(), over_jnd > 1.0);
+    game.go_on();
+  }
+  EXPECT_EQ(game.state(), State::score);
+  EXPECT_EQ(game.right(), 2u);
+  game.reset();
+  EXPECT_EQ(game.state(), State::attract);
+}
+
+TEST(ExhibitGame, FeltRoundsAreBlindAndOneIsACatchTrial) {
+  std::set<std::size_t> caught_at;
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    ExhibitGame game(seed);
+    ASSERT_TRUE(game.begin(kAll, true, true));
+    ASSERT_EQ(game.rounds().size(), 3u);
+    int catches = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ExhibitRound& round = game.rounds()[i];
+      ASSERT_TRUE(round.first);
+      EXPECT_TRUE(round.first->slot == 0 || round.second.slot == 0) << "the best is one of them";
+      if (!round.is_catch()) continue;
+      ++catches;
+      caught_at.insert(i);
+    }
+    EXPECT_EQ(catches, 1);
+  }
+  EXPECT_EQ(caught_at.size(), 3u) << "in any place";
+}
+
+TEST(ExhibitGame, AnAnswerNeedsBothToBePressed) {
+  ExhibitGame game(1);
+  ASSERT_TRUE(game.begin(kAll, true, true));
+  EXPECT_EQ(game.state(), State::press) << "no guess before a hand has felt anything";
+  game.guess(true);
+  press(game, 1.0, 1.0, 2.0);
+  game.answer(true);
+  EXPECT_EQ(game.state(), State::press);
+  game.choose(3);
+  EXPECT_EQ(game.chosen(), 1);
+  game.choose(2);
+  EXPECT_EQ(game.rendered().slot, game.round().second.slot);
+  game.answer(true);
+  EXPECT_EQ(game.state(), State::press) << "chosen is not pressed";
+  press(game, 3.0, 30.0, 2.0);
+  ASSERT_EQ(game.state(), State::press) << "a hand takes its time";
+  game.answer(true);
+  ASSERT_EQ(game.state(), State::reveal);
+  EXPECT_TRUE(game.round().noticed());
+  EXPECT_TRUE(game.round().right());
+}
+
+TEST(ExhibitTrace, CountsWhatLastsAndWhatWasTrainedFor) {
+  ExhibitTrace trace;
+  for (int i = 0; i < 2000; ++i) {
+    const bool spike = i == 700;
+    const bool away = i >= 1000 && i < 1100;
+    trace.add({5.0 + 1e-3 * i, 1.0, 1.05 + (spike ? 1.0 : 0.0) + (away ? 3.0 : 0.0), true, away}, 0.1);
+  }
+  EXPECT_NEAR(trace.largest_over_jnd(), 0.5 + 10.0 / 50.0, 0.01) << "one tick of 50 ms moves no hand";
+  EXPECT_EQ(trace.largest_at(), 28u);
+  EXPECT_TRUE(std::isnan(trace.felt(41))) << "where nothing was recorded the curve has a gap";
+  EXPECT_NEAR(trace.felt(60), 0.5, 1e-9);
+  EXPECT_NEAR(trace.seconds(), 1.999, 1e-9);
+  trace.clear();
+  EXPECT_TRUE(trace.columns().empty());
+  EXPECT_EQ(trace.largest_over_jnd(), 0.0);
+}
+
+TEST(ExhibitTrace, KeepsTheFirstMinute) {
+  ExhibitTrace trace;
+  for (int i = 0; i < 70000; ++i) trace.add({1e-3 * i, 1.0, 1.0 + (i > 61000 ? 1.0 : 0.0), true, false}, 0.1);
+  EXPECT_EQ(trace.columns().size(), 2400u);
+  EXPECT_EQ(trace.largest_over_jnd(), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,104 @@
+#include "scenes/plot/plot.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/base/whole_file.h"
+#include "scenes/plot/draw.h"
+#include "scenes/plot/gnuplot.h"
+#include "scenes/plot/inline_svg.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+// Errors of two methods up to `largest_N`, as the report has them.
+Plot errors_up_to(double largest_N) {
+  Plot plot;
+  plot.name = "errors";
+  plot.columns = 2;
+  for (const bool over_jnd : {false, true}) {
+    Panel panel;
+    panel.title = "maximum";
+    panel.x.title = "Measured force [N]";
+    panel.y = {over_jnd ? "Error [JND]" : "Error", over_jnd ? "" : "N", true};
+    for (const char* name : {"greedy", "random"}) {
+      Series series{name, 0xD55E00, Mark::curve, {}};
+      for (int i = 1; i <= 10; ++i)
+        series.rows.push_back({largest_N * i / 10.0, (over_jnd ? 0.1 : 0.02 * largest_N) * i});
+      panel.series.push_back(std::move(series));
+    }
+    if (over_jnd) panel.levels.push_back({1.0, "1 JND"});
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+// At any force every method keeps its name, both axes their titles, and no tic has more than
+// a few digits.
+TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
+  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
+  for (const auto& [largest_N, tic] : {std::pair{0.3, "10 mN"}, std::pair{30.0, "1 N"}, std::pair{3000.0, "100 N"}}) {
+    const test::TemporaryFolder folder;
+    const Status drawn = draw_plots(folder.path(), {errors_up_to(largest_N)});
+    ASSERT_TRUE(drawn.ok()) << drawn.error().message;
+    const std::string svg = *read_whole_file(folder.file("errors.svg"));
+    for (const char* text : {"greedy", "random", "Measured force [N]", "Error", "Error [JND]", "1 JND"}) {
+      EXPECT_NE(svg.find(text), std::string::npos) << text << " at " << largest_N;
+    }
+    EXPECT_EQ(count_of(svg, "greedy"), 1u) << "once for all panels";
+    EXPECT_NE(svg.find(tic), std::string::npos) << largest_N;
+    EXPECT_EQ(svg.find("00000"), std::string::npos) << largest_N;
+    EXPECT_TRUE(read_whole_file(folder.file("errors.png")).has_value());
+  }
+}
+
+TEST(Plot, ScriptHoldsItsOwnData) {
+  const auto script = plot_script(errors_up_to(30.0));
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  EXPECT_NE(script->find("$panel0_0 << END\n3 0.6 NaN NaN\n"), std::string::npos) << *script;
+  EXPECT_EQ(script->find(".csv"), std::string::npos);
+}
+
+TEST(Plot, NamesAreTextAndNoCommands) {
+  Plot plot = errors_up_to(1.0);
+  plot.panels[0].title = "a\"; system('touch hit') #`x`\\";
+  const auto script = plot_script(plot);
+  ASSERT_TRUE(script.ok());
+  EXPECT_NE(script->find("set title \"a'; system('touch hit') #'x''\""), std::string::npos);
+}
+
+TEST(Plot, AGapBreaksTheLine) {
+  Plot plot = errors_up_to(1.0);
+  plot.panels[0].series[0].rows[4].y = kNoValue;
+  const auto script = plot_script(plot);
+  ASSERT_TRUE(script.ok());
+  EXPECT_NE(script->find("\n\n0.6 "), std::string::npos);
+}
+
+TEST(DrawPlot, WritesOneFileWholeOrNothing) {
+  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(draw_plot(errors_up_to(3.0), folder.file("a.jpg"), false).error().message,
+            "found --plot " + folder.file("a.jpg") + ", expected a file that ends in .svg or .png");
+  ASSERT_TRUE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok());
+  EXPECT_EQ(folder.entries(), (std::vector<std::string>{"a.svg"}));
+  EXPECT_FALSE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok()) << "it exists";
+}
+
+TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {
+  const std::string svg =
+      "<?xml version=\"1.0\"?>\n<svg width=\"9\" viewBox=\"0 0 9 9\">\n<title>x</title><desc>y</desc>\n"
+      "<path id='p' stroke='rgb( 34,  34,  34)' fill=\"#fefefe\"/><use xlink:href='#p'/></svg>";
+  EXPECT_EQ(inline_svg(svg, "n", "a < b"),
+            "<svg viewBox=\"0 0 9 9\" role=\"img\" aria-label=\"a &lt; b\">\n\n"
+            "<path id='n-p' stroke='var(--ink)' fill=\"var(--paper)\"/><use href='#n-p'/></svg>");
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,75 @@
+#include "scenes/report/leakage.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/base/random_stream.h"
+#include "tests/support/example_model.h"
+
+namespace palpate {
+namespace {
+
+// The example's motion with a sensor noise of its own.
+Recording noisy(const std::string& name, std::uint64_t seed, std::size_t rows = 2000) {
+  Recording recording = test::example_recording(rows, 1000.0);
+  recording.name = name;
+  RandomStream random(seed, 0);
+  for (RecordingRow& row : recording.rows) row.force_N += 0.005 * random.normal();
+  return recording;
+}
+
+TEST(Leakage, TheSameMotionWithItsOwnNoiseIsNoLeak) {
+  const Recording train = noisy("train", 1);
+  const Recording test = noisy("test", 2);
+  EXPECT_EQ(shared_stretch(train, test).rows, 0u);
+  EXPECT_TRUE(refuse_leakage({&train}, {&test}).ok());
+  EXPECT_NE(content_hash(train), content_hash(test));
+}
+
+TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
+  const Recording train = noisy("train", 1);
+  Recording copy = train;
+  copy.name = "copy";
+  for (RecordingRow& row : copy.rows) row.time_s += 100.0;
+  const Status status = refuse_leakage({&train}, {&copy});
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().message, "copy has the same content as train (" + hash_text(content_hash(train)) +
+                                        "), expected every recording once: errors on what was trained on say nothing; "
+                                        "leave one out");
+}
+
+TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
+  const Recording train = noisy("train", 1);
+  Recording test = noisy("test", 2);
+  // 2 kLeakRows - 1 would be found too; fewer need not be.
+  for (std::size_t i = 0; i < 2 * kLeakRows; ++i) test.rows[777 + i].force_N = train.rows[331 + i].force_N;
+  const SharedStretch stretch = shared_stretch(train, test);
+  EXPECT_EQ(stretch.rows, 2 * kLeakRows);
+  EXPECT_EQ(stretch.first_row, 777u);
+  EXPECT_EQ(stretch.trained_row, 331u);
+  const Status status = refuse_leakage({&train}, {&test});
+  ASSERT_FALSE(status);
+  EXPECT_EQ(
+      status.error().message.rfind("test: the forces of 100 rows from 0.777 s on are those of train from 0.331 s", 0),
+      0u)
+      << status.error().message;
+}
+
+TEST(Leakage, AShiftOfThePositionsHidesNothing) {
+  const Recording train = noisy("train", 1);
+  Recording shifted = train;
+  shifted.name = "shifted";
+  for (RecordingRow& row : shifted.rows) row.position_m += 0.0003;
+  EXPECT_EQ(shared_stretch(train, shifted).rows, train.rows.size());
+}
+
+TEST(Leakage, SilenceIsNoContent) {
+  Recording train = noisy("train", 1);
+  Recording test = noisy("test", 2);
+  for (Recording* recording : {&train, &test}) {
+    for (std::size_t i = 0; i < 500; ++i) recording->rows[i].force_N = 0.0;
+  }
+  EXPECT_EQ(shared_stretch(train, test).rows, 0u);
+}
+
+}  // namespace
+}  // namespace palpate

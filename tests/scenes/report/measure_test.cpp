@@ -1,0 +1,58 @@
+#include "scenes/report/measure.h"
+
+#include <gtest/gtest.h>
+
+#include "scenes/report/plan.h"
+#include "tests/support/example_model.h"
+
+namespace palpate {
+namespace {
+
+SharedRecording example(const std::string& name, std::size_t rows) {
+  Recording recording = test::example_recording(rows, 1000.0);
+  recording.name = name;
+  return std::make_shared<const Recording>(std::move(recording));
+}
+
+TEST(LeaveOut, OfOneRecordingABlockAtItsEnd) {
+  const LeftOut part = leave_out({example("a", 5000)});
+  ASSERT_EQ(part.train.size(), 1u);
+  ASSERT_EQ(part.tested.size(), 1u);
+  EXPECT_EQ(part.tested[0]->rows.size(), 5000u) << "what came before is replayed too";
+  EXPECT_EQ(part.counted_s.low, part.train[0]->rows.back().time_s + 1e-3);
+  EXPECT_EQ(part.words.rfind("a block at the end of the training recording, ", 0), 0u);
+}
+
+TEST(LeaveOut, OfSeveralEveryThird) {
+  const LeftOut part =
+      leave_out({example("a", 50), example("b", 50), example("c", 50), example("d", 50), example("e", 50)});
+  EXPECT_EQ(part.train.size(), 3u);
+  ASSERT_EQ(part.tested.size(), 2u);
+  EXPECT_EQ(part.tested[0]->name, "b");
+  EXPECT_EQ(part.tested[1]->name, "e");
+}
+
+TEST(LeaveOut, OfAShortOneNothing) { EXPECT_TRUE(leave_out({example("a", 500)}).tested.empty()); }
+
+TEST(Plan, BeginsWithNoForceAndHasBothRecipesInEverySize) {
+  for (const bool quick : {true, false}) {
+    const std::vector<PlannedModel> plan = make_plan(quick, 4);
+    EXPECT_EQ(plan[0].recipe, Recipe::nothing);
+    EXPECT_EQ(plan[1].name, "trend");
+    std::size_t paper = 0;
+    std::size_t slow = 0;
+    for (const PlannedModel& model : plan) {
+      paper += model.recipe == Recipe::paper ? 1 : 0;
+      slow += model.request.method == find_method("direct") ? 1 : 0;
+      const Method* base = model.request.method->base;
+      if (base == nullptr || model.recipe == Recipe::paper) continue;
+      EXPECT_TRUE(
+          std::any_of(plan.begin(), plan.end(), [&](const PlannedModel& one) { return one.request.method == base; }));
+    }
+    EXPECT_GE(paper, 9u);
+    EXPECT_EQ(slow, quick ? 0u : 2u);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

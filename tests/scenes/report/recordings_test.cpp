@@ -1,0 +1,131 @@
+#include "scenes/report/recordings.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <set>
+
+#include "engine/base/random_stream.h"
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+class ReportRecordings : public ::testing::Test {
+ protected:
+  std::string recording(const std::string& name, std::size_t rows = 1000) const {
+    const std::string path = folder_.file(name + ".csv");
+    // Every name has a noise of its own: a copy would be refused.
+    Recording recording = test::example_recording(rows, 1000.0);
+    RandomStream random(std::hash<std::string>{}(name), 0);
+    for (RecordingRow& row : recording.rows) row.force_N += 0.005 * random.normal();
+    EXPECT_TRUE(write_recording(path, recording, {}, false).ok());
+    return path;
+  }
+  static Result<RecordingSet> load(const std::vector<std::string>& train, const std::vector<std::string>& test) {
+    return load_recordings(train, test);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ReportRecordings, TrainAndTestStayApart) {
+  const auto set = load({recording("a"), recording("b")}, {recording("c")});
+  ASSERT_TRUE(set.ok()) << set.error().message;
+  EXPECT_FALSE(set->cross_validated);
+  ASSERT_EQ(set->folds.size(), 1u);
+  EXPECT_EQ(set->folds[0].train, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(set->folds[0].test, (std::vector<std::size_t>{2}));
+  EXPECT_EQ(set->facts[2].role, "test");
+  EXPECT_EQ(set->facts[2].name, "c");
+  EXPECT_EQ(set->facts[2].samples, 1000u);
+  EXPECT_NEAR(set->facts[2].rate_Hz, 1000.0, 1e-6);
+}
+
+TEST_F(ReportRecordings, WithoutATestEveryRecordingIsTestedOnceByTheOthers) {
+  std::vector<std::string> paths;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g"}) paths.push_back(recording(name));
+  const auto set = load(paths, {});
+  ASSERT_TRUE(set.ok()) << set.error().message;
+  EXPECT_TRUE(set->cross_validated);
+  ASSERT_EQ(set->folds.size(), kMostFolds);
+  std::multiset<std::size_t> tested;
+  for (const Fold& fold : set->folds) {
+    EXPECT_EQ(fold.train.size() + fold.test.size(), paths.size());
+    tested.insert(fold.test.begin(), fold.test.end());
+    for (const std::size_t index : fold.test) {
+      EXPECT_EQ(std::count(fold.train.begin(), fold.train.end(), index), 0);
+    }
+  }
+  EXPECT_EQ(tested, (std::multiset<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
+}
+
+TEST_F(ReportRecordings, ASingleOneIsCutAndLosesNoRow) {
+  const auto set = load({recording("a", 3000)}, {});
+  ASSERT_TRUE(set.ok()) << set.error().message;
+  ASSERT_EQ(set->all.size(), kMostFolds);
+  std::size_t rows = 0;
+  double last_s = -1.0;
+  for (const SharedRecording& part : set->all) {
+    rows += part->rows.size();
+    EXPECT_GT(part->rows.front().time_s, last_s);
+    last_s = part->rows.back().time_s;
+  }
+  EXPECT_EQ(rows, 3000u);
+  EXPECT_EQ(set->facts[0].name, "a part 1");
+}
+
+TEST_F(ReportRecordings, TheirOrderDoesNotMatter) {
+  const std::string a = recording("a");
+  const std::string b = recording("b");
+  const std::string c = recording("c");
+  const auto one = load({a, b}, {c});
+  const auto other = load({b, a}, {c});
+  ASSERT_TRUE(one.ok() && other.ok());
+  for (std::size_t i = 0; i < one->facts.size(); ++i) {
+    EXPECT_EQ(one->facts[i].name, other->facts[i].name);
+    EXPECT_EQ(one->facts[i].content_hash, other->facts[i].content_hash);
+  }
+}
+
+TEST_F(ReportRecordings, WhatWasTrainedOnIsNoTest) {
+  const std::string a = recording("a");
+  const Recording copied = *read_recording(a);
+  const std::string copy = folder_.file("copy.csv");
+  ASSERT_TRUE(write_recording(copy, copied, {}, false).ok());
+  const auto set = load({a}, {copy});
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.error().message.rfind("copy has the same content as a (", 0), 0u) << set.error().message;
+}
+
+TEST_F(ReportRecordings, SaysWhatCannotBeDone) {
+  const std::string a = recording("a");
+  auto set = load({}, {a});
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.error().message,
+            "found --test without --train, expected recordings to train on as well; give them with --train");
+  set = load({a}, {folder_.path() + "/./a.csv"});
+  ASSERT_FALSE(set.ok());
+  EXPECT_NE(set.error().message.find("is given twice"), std::string::npos) << set.error().message;
+  set = load({recording("short", 100)}, {});
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.error().message,
+            "short: found 100 rows and no test recording, expected at least 1000 to cut into "
+            "parts; give another recording with --test");
+  set = load({a}, {folder_.file("none.csv")});
+  ASSERT_FALSE(set.ok());
+  EXPECT_NE(set.error().message.find("none.csv"), std::string::npos);
+  Recording air = test::example_recording(100, 1000.0);
+  for (RecordingRow& row : air.rows) row.position_m = -1e-3 - 1e-6 * row.time_s;
+  ASSERT_TRUE(write_recording(folder_.file("air.csv"), air, {}, false).ok());
+  set = load({a}, {folder_.file("air.csv")});
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.error().message,
+            "air: no sample is in contact (position_m > 0), expected a press to test on; check "
+            "the sign and zero of position_m");
+}
+
+}  // namespace
+}  // namespace palpate

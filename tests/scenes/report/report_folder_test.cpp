@@ -1,0 +1,123 @@
+#include "scenes/report/report_folder.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "engine/base/signals.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+TEST(ReportFolder, AppearsWholeOnCommit) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.file("report");
+  auto report = ReportFolder::create(out + "/", false);
+  ASSERT_TRUE(report.ok()) << report.error().message;
+  ASSERT_TRUE(report->write("report.json", "{}").ok());
+  ASSERT_TRUE(report->write("tables/a.csv", "x\n").ok());
+  EXPECT_FALSE(std::filesystem::exists(out));
+  ASSERT_TRUE(report->commit().ok());
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"report"});
+  EXPECT_EQ(test::read_text(out + "/tables/a.csv"), "x\n");
+}
+
+TEST(ReportFolder, LeavesNothingWithoutCommit) {
+  const test::TemporaryFolder folder;
+  {
+    auto report = ReportFolder::create(folder.file("report"), false);
+    ASSERT_TRUE(report.ok());
+    ASSERT_TRUE(report->write("figures/a.svg", "x").ok());
+  }
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(ReportFolder, ASecondSignalLeavesNothing) {
+  const test::TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGINT, SIG_DFL);
+    const StopListener listener;
+    const auto report = ReportFolder::create(folder.file("report"), false);
+    if (!report.ok() || !report->write("figures/a.svg", "x").ok()) _exit(3);
+    raise(SIGINT);
+    raise(SIGINT);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << status;
+  EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(ReportFolder, RemovesWhatAKilledRunLeftAndNothingElse) {
+  const test::TemporaryFolder folder;
+  const auto alive = ReportFolder::create(folder.file("alive"), false);
+  ASSERT_TRUE(alive.ok());
+  std::filesystem::create_directory(folder.file(".palpate-report-abcdef.old"));
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto report = ReportFolder::create(folder.file("report"), false);
+    if (!report.ok() || !report->write("figures/a.svg", "x").ok()) _exit(3);
+    raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
+  EXPECT_EQ(folder.entries().size(), 3u);
+  auto report = ReportFolder::create(folder.file("report"), false);
+  ASSERT_TRUE(report.ok() && report->commit().ok());
+  EXPECT_EQ(folder.entries().size(), 3u) << "one still being filled, an earlier report, the new one";
+  EXPECT_TRUE(alive->write("report.json", "{}").ok());
+}
+
+TEST(ReportFolder, ReplacesAnEarlierReportOnlyWhenForced) {
+  const test::TemporaryFolder folder;
+  const std::string out = folder.file("report");
+  std::filesystem::create_directory(out);
+  folder.with_file("report/report.json", "old");
+  folder.with_file("report/old.csv", "old");
+  const auto refused = ReportFolder::create(out, false);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, out + " exists; pass --force to replace it");
+  {
+    auto dropped = ReportFolder::create(out, true);
+    ASSERT_TRUE(dropped.ok());
+    ASSERT_TRUE(dropped->write("report.json", "new").ok());
+  }
+  EXPECT_EQ(test::read_text(out + "/report.json"), "old") << "not committed";
+  auto report = ReportFolder::create(out, true);
+  ASSERT_TRUE(report.ok());
+  ASSERT_TRUE(report->write("report.json", "new").ok());
+  ASSERT_TRUE(report->commit().ok());
+  EXPECT_EQ(test::read_text(out + "/report.json"), "new");
+  EXPECT_FALSE(std::filesystem::exists(out + "/old.csv"));
+  EXPECT_EQ(folder.entries(), std::vector<std::string>{"report"});
+}
+
+TEST(ReportFolder, NeverTakesTheWayOfSomethingElse) {
+  const test::TemporaryFolder folder;
+  const std::string home = folder.file("home");
+  std::filesystem::create_directory(home);
+  folder.with_file("home/thesis.txt", "mine");
+  const auto message = [](const std::string& path) {
+    const auto refused = ReportFolder::create(path, true);
+    return refused.ok() ? "" : refused.error().message;
+  };
+  EXPECT_EQ(message(home), home +
+                               " holds files but no report.json, expected an earlier report to replace; name "
+                               "another folder");
+  const std::string file = folder.with_file("file", "mine");
+  EXPECT_EQ(message(file), "cannot write " + file + ": it is not a folder; name a new one for --out");
+  EXPECT_EQ(message(folder.file("none/report")), "cannot write " + folder.file("none/report") + ": the folder " +
+                                                     folder.file("none") + " does not exist; create it first");
+  EXPECT_NE(message(""), "");
+  EXPECT_NE(message(".."), "");
+  EXPECT_EQ(test::read_text(folder.file("home/thesis.txt")), "mine");
+}
+
+}  // namespace
+}  // namespace palpate
