@@ -62,10 +62,14 @@ Status DemoApp::set_up(const DemoRequest& request) {
   // Without a display nothing else needs to start.
   if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
-  wanted.position_only = wanted.position_only || request.kiosk;  // something that can be told apart
+  if (request.kiosk) {  // models from obvious to impossible to tell
+    wanted.position_only = true;
+    if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
+  }
   if (const auto folder = data_folder()) wanted.data_folder = *folder;
   use_settings(request);
-  if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = settings_.line_up;
+  if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
+    wanted.line_up = settings_.line_up;
   request_ = wanted;
   first_device_ = wanted.device;
   auto session = LiveSession::open(wanted);
@@ -83,12 +87,11 @@ Status DemoApp::set_up(const DemoRequest& request) {
   blocks_ = std::move(*blocks);
   blocks_->camera().turn(settings_.camera);
   if (view_.kiosk) {
-    if (Status status = set_up_exhibit(); !status) return status;
+    if (Status status = set_up_exhibit(request.exhibit); !status) return status;
   }
   commands_ = make_commands();
   listen();
-  if (find_font().empty())
-    notify("no font found; install fonts-dejavu-core", true);
+  if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
   if (!request.recording.empty()) offer(request.recording);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
@@ -144,9 +147,7 @@ void DemoApp::drop_files(const std::vector<std::string>& paths) {
   }
 }
 
-SceneArea DemoApp::scene_area() const {
-  return lay_out(ImGui::GetIO().DisplaySize).scene;
-}
+SceneArea DemoApp::scene_area() const { return lay_out(ImGui::GetIO().DisplaySize).scene; }
 
 void DemoApp::frame() {
   glfwPollEvents();
@@ -200,13 +201,13 @@ void DemoApp::draw() {
   draw_blocks();
   clear_panel();
   const SceneArea area = scene_area();
-  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
+  const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
+  const SceneArea& panel = layout.panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {&commands_,
-                 [this](const std::string& scene) { switch_to(scene, first_device_); },
+                {&commands_, [this](const std::string& scene) { switch_to(scene, first_device_); },
                  [this](const std::string& path) { switch_to(request_.scene, "replay:" + path); }});
   if (view_.kiosk) {
-    open_day_.draw(*session_, view_, style_, panel.at, panel.size);
+    exhibit_.draw(*session_, *blocks_, style_, layout);
   } else {
     panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
@@ -254,10 +255,10 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     const bool exaggerated = view_.exaggerated && !view_.kiosk && std::isfinite(reference_N);
     const double shown_N = exaggerated ? reference_N + kExaggeration * (model.force_N - reference_N) : model.force_N;
     pose.force_N = static_cast<float>(std::max(0.0, shown_N));
-    pose.arrow = slot_colour(models, slot, view_.theme);
+    pose.arrow = view_.kiosk ? method_colour(model.method, view_.theme) : slot_colour(models, slot, view_.theme);
     pose.chosen = slot == models.selected;
-    if (view_.hidden_choice > 0) pose.arrow = palette(view_.theme).text;
-    pose.shows_error = view_.hidden_choice == 0;
+    if (view_.blind) pose.arrow = palette(view_.theme).text;
+    pose.shows_error = !view_.blind;
     poses.push_back(pose);
   }
   // Before the first model is ready: a block nobody has a model of yet.

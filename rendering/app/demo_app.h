@@ -12,15 +12,15 @@
 
 #include "engine/base/result.h"
 #include "rendering/app/settings.h"
+#include "rendering/app/window.h"
 #include "rendering/panels/curve_files.h"
-#include "rendering/picture/block_view.h"
-#include "rendering/panels/open_day.h"
+#include "rendering/panels/exhibit.h"
 #include "rendering/panels/panel.h"
 #include "rendering/panels/scene_overlay.h"
+#include "rendering/panels/view_state.h"
+#include "rendering/picture/block_view.h"
 #include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
-#include "rendering/panels/view_state.h"
-#include "rendering/app/window.h"
 #include "scenes/live/live_session.h"
 #include "scenes/live/recording_offer.h"
 
@@ -30,6 +30,7 @@ struct DemoRequest {
   SessionRequest session;
   WindowRequest window;
   bool kiosk = false;
+  ExhibitTimes exhibit;       // of a kiosk
   std::string settings_file;  // empty: nothing is remembered
   std::string recording;      // offered to be fitted or replayed; empty: none
 };
@@ -51,7 +52,7 @@ class DemoApp {
 
   LiveSession& session() noexcept { return *session_; }
   ViewState& view() noexcept { return view_; }
-  const OpenDay& exhibit() const noexcept { return open_day_; }
+  const Exhibit& exhibit() const noexcept { return exhibit_; }
   const BlockView& blocks() const noexcept { return *blocks_; }
   const FrameFigures& frames() const noexcept { return frames_; }
   const std::vector<Toast>& toasts() const noexcept { return toasts_; }
@@ -100,7 +101,7 @@ class DemoApp {
   SceneArea scene_area() const;
   void use_settings(const DemoRequest& request);
   void save_settings();
-  Status set_up_exhibit();
+  Status set_up_exhibit(const ExhibitTimes& times);
   void write_to_log(const std::string& text) const;
   void notify(std::string text, bool problem);
   void record();
@@ -125,22 +126,22 @@ class DemoApp {
   UiStyle style_;
   Panel panel_;
   SceneOverlay overlay_;
-  OpenDay open_day_{1};
+  Exhibit exhibit_{1};
   ViewState view_;
   Settings settings_;
   std::string settings_file_;
   SessionRequest request_;
-  std::string first_device_;  // as the program was asked for it
-  std::optional<SessionRequest> next_;  // what to go on with after this frame
+  std::string first_device_;                      // as the program was asked for it
+  std::optional<SessionRequest> next_;            // what to go on with after this frame
   std::future<Result<RecordingOffer>> arriving_;  // a file that is read
-  std::string recording_;  // the file that is being recorded; empty: none
+  std::string recording_;                         // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
   std::vector<KeyPress> keys_;  // since the last frame
   std::vector<int> down_;       // keys that are held
   double frame_began_s_ = 0.0;
-  double frame_s_ = 0.0;  // since the frame before, at most a tenth of a second
+  double frame_s_ = 0.0;       // since the frame before, at most a tenth of a second
   double last_frame_s_ = 0.0;  // its end
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
@@ -149,9 +150,9 @@ class DemoApp {
   Backdrop drawn_panel_;
   double panel_drawn_s_ = 0.0;
   ImVec2 panel_drawn_in_{0.0F, 0.0F};  // a window of this size
-  bool stirred_ = true;  // somebody did something since the panel was drawn
+  bool stirred_ = true;                // somebody did something since the panel was drawn
   bool orbiting_ = false;
-  bool leaving_ = false;  // a kiosk's only way out
+  bool leaving_ = false;  // an exhibit's only way out
 };
 
 }  // namespace palpate

@@ -20,7 +20,6 @@ namespace palpate {
 
 void DemoApp::use_settings(const DemoRequest& request) {
   settings_file_ = request.settings_file;
-  if (view_.kiosk) view_.block_count = 1;
   if (settings_file_.empty() || view_.kiosk) return;
   auto settings = read_settings(settings_file_);
   if (!settings) {
@@ -116,7 +115,8 @@ void DemoApp::next_line_up() {
     return;
   }
   const std::vector<LineUp>& all = line_ups();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
   const LineUp& next = at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1);
   session_->use_line_up(next.name);
   request_.line_up = next.name;
@@ -149,10 +149,12 @@ void DemoApp::record() {
 }
 
 CurveSource DemoApp::curve_source() const {
-  CurveSource source{session_->scene().title, session_->device_name(), session_->reference_words(), view_.time.zero_s, {}};
+  CurveSource source{
+      session_->scene().title, session_->device_name(), session_->reference_words(), view_.time.zero_s, {}};
   for (std::size_t i = 0; i < session_->models().size(); ++i) {
     if (session_->models().view(i).state == SlotState::ready)
-      source.models.push_back({i, session_->models().view(i).name, slot_colour(models_view(*session_), i, Theme::light)});
+      source.models.push_back(
+          {i, session_->models().view(i).name, slot_colour(models_view(*session_), i, Theme::light)});
   }
   return source;
 }
@@ -169,17 +171,19 @@ void DemoApp::save_curves() {
   const double from_s = to_s - view_.time.shown_s;
   const CurveSource source = curve_source();
   Status status = write_file_atomically(path + ".svg", curve_svg(panel_.columns(), source, from_s, to_s), false);
-  if (status) status = write_file_atomically(path + ".csv", curve_csv(session_->comparison().history(), source, from_s, to_s), false);
+  if (status)
+    status =
+        write_file_atomically(path + ".csv", curve_csv(session_->comparison().history(), source, from_s, to_s), false);
   notify(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
 }
 
-Status DemoApp::set_up_exhibit() {
+Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
   auto languages = read_exhibit_words(*assets + "/exhibit");
   if (!languages) return languages.error();
   const auto folder = data_folder();
-  open_day_.set_up(std::move(*languages), folder ? *folder + "/exhibit-tally.txt" : "");
+  exhibit_.set_up(std::move(*languages), folder ? *folder + local_time_text("/exhibit-%Y%m%d.txt") : "", times);
   return {};
 }
 

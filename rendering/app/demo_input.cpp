@@ -26,6 +26,7 @@ constexpr float kClick_px = 4.0F;
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
   stirred_ = true;
   std::erase(down_, key);
+  if (view_.kiosk && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
   if (action == GLFW_RELEASE) return;
   down_.push_back(key);
   keys_.push_back({key, modifiers, action == GLFW_REPEAT});
@@ -40,7 +41,7 @@ void DemoApp::handle_keys() {
   run_held();
   for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);
   // The next visitor finds it as new.
-  if (view_.kiosk && open_day_.update(*session_, view_)) blocks_->camera().go_home();
+  if (view_.kiosk && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
 void DemoApp::run_held() {
@@ -57,15 +58,16 @@ void DemoApp::handle_key(const KeyPress& press) {
   if (view_.kiosk) {
     const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
     if (chord && press.key == GLFW_KEY_Q) close();
-    if (!control && !press.again) open_day_.press_key(press.key, *session_, view_);
+    if (chord && press.key == GLFW_KEY_T) exhibit_.show_host(!exhibit_.shows_host());
+    if (!control && !press.again) exhibit_.press_key(press.key, *session_);
     return;
   }
   for (const WindowCommand& command : commands_) {
     const auto key = std::find(command.keys.begin(), command.keys.end(), press.key);
     if (key == command.keys.end() || command.control != control) continue;
     if (command.replay && session_->replay() == nullptr) continue;
-    const bool wanted = command.when == WindowCommand::When::repeated ||
-                        (command.when == WindowCommand::When::pressed && !press.again);
+    const bool wanted =
+        command.when == WindowCommand::When::repeated || (command.when == WindowCommand::When::pressed && !press.again);
     if (wanted) command.run(static_cast<std::size_t>(key - command.keys.begin()));
   }
 }
@@ -80,6 +82,8 @@ void DemoApp::handle_mouse() {
     blocks_->camera().orbit(-kOrbit_rad_per_px * io.MouseDelta.x, kOrbit_rad_per_px * io.MouseDelta.y);
     return;
   }
+  // A finger that leaves the screen lets go.
+  if (view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(*session_);
   if (!over_scene) return;
   if (wheel_ != 0.0F) {
     if (io.KeyCtrl) {
@@ -90,22 +94,22 @@ void DemoApp::handle_mouse() {
   }
   if (!view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
-    if (const auto slot = overlay_.slot_at(*session_, *blocks_, view_, area, io.MousePos))
-      session_->select(*slot);
+    if (const auto slot = overlay_.slot_at(*session_, *blocks_, view_, area, io.MousePos)) session_->select(*slot);
   }
-  if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F) move_tool_to_mouse();
+  const bool touched = view_.kiosk && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
+  if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched) move_tool_to_mouse();
 }
 
 void DemoApp::move_tool_to_mouse() {
   ToolInput* tool = session_->mouse();
-  if (tool == nullptr) return;
+  if (tool == nullptr || view_.tool_is_held) return;
   const SceneArea area = scene_area();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const glm::vec2 size(area.size.x, area.size.y);
   const std::vector<std::size_t> slots = shown_slots(*session_, view_.block_count);
   const std::size_t count = std::max<std::size_t>(slots.size(), 1);
   const auto over = overlay_.slot_at(*session_, *blocks_, view_, area, mouse);
-  if (!over && !slots.empty()) return;
+  if (!over && !slots.empty() && !view_.kiosk) return;  // a visitor need not aim
   const auto at = std::find(slots.begin(), slots.end(), over.value_or(0));
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);

@@ -33,6 +33,7 @@ struct Arguments {
   std::string screenshot;
   std::string stats;
   bool force = false;
+  bool bridge_remote = false;
   bool discriminates = false;
   std::string recording;  // to discriminate; empty: virtual
   std::vector<std::string> files;
@@ -47,12 +48,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
   app.add_option("--scene", session.scene, "Scene, see `palpate scenes`; jnd_study measures a hand")
       ->capture_default_str();
-  app.add_option("--device", session.device, "auto, mouse, hid, hand or replay:REC.csv")
+  app.add_option("--device", session.device, "auto, mouse, hid, hand, replay:REC.csv or bridge:TARGET")
       ->capture_default_str();
+  app.add_flag("--bridge-remote", arguments.bridge_remote, "bridge:tcp: may name another computer");
   app.add_option("--model", session.models,
                  "Models: files, or methods (palpate fit --list-methods names them) [the scene's]")
       ->type_name("FILE_OR_METHOD");
-  app.add_option("files", arguments.files, "Models, or a recording or another program's table to fit or to replay")->type_name("FILE");
+  app.add_option("files", arguments.files, "Models, or a recording or another program's table to fit or to replay")
+      ->type_name("FILE");
   app.add_option_function<std::string>(
          "--discriminate",
          [&arguments](const std::string& recording) {
@@ -64,13 +67,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("[REC.csv]")
       ->expected(0, 1);
   app.add_option("--seconds", arguments.seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
-  app.add_option("--screenshot", arguments.screenshot,
-                 "Save the window as it is at the end [after 12 s], then end")
+  app.add_option("--screenshot", arguments.screenshot, "Save the window as it is at the end [after 12 s], then end")
       ->type_name("PNG");
   app.add_option("--stats", arguments.stats, "Write how the loop, the picture and the models did, at the end")
       ->type_name("JSON");
   app.add_flag("--fullscreen", arguments.demo.window.fullscreen, "Fill the screen");
-  app.add_flag("--kiosk", arguments.demo.kiosk, "Open day: full screen, big text, Ctrl+Shift+Q ends it");
+  app.add_flag("--kiosk", arguments.demo.kiosk,
+               "An exhibit: full screen, a game; Ctrl+Shift+T is the host's, Ctrl+Shift+Q ends it");
   app.add_flag("--force", arguments.force, "Replace existing files");
 }
 
@@ -127,6 +130,9 @@ Status run_study(const Arguments& arguments) {
 
 Status run_demo(Arguments& arguments) {
   if (Status status = check_outputs(arguments); !status) return status;
+  // As palpate record takes it.
+  std::string& device = arguments.demo.session.device;
+  if (arguments.bridge_remote && device.rfind("bridge:tcp:", 0) == 0) device.insert(7, "remote-");
   if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
@@ -141,13 +147,11 @@ Status run_demo(Arguments& arguments) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()),
-                               arguments.force);
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()), arguments.force);
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it",
-               "palpate-demo");
+  CLI::App app("Palpate: feel a recorded block, and see which model a hand could tell from it", "palpate-demo");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
   Arguments arguments;
   add_options(app, arguments);

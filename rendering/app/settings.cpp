@@ -29,7 +29,8 @@ Result<Settings> read_settings(const std::string& path) {
   if (json.value("theme", Json()) == "dark") settings.theme = Theme::dark;
   const auto blocks = field<std::size_t>(json, "blocks", settings.block_count, 1, 4);
   settings.block_count = blocks == 3 ? 4 : blocks;
-  if (json.contains("difference") && json["difference"].is_boolean()) settings.difference = json["difference"].get<bool>();
+  if (json.contains("difference") && json["difference"].is_boolean())
+    settings.difference = json["difference"].get<bool>();
   settings.text_size = field(json, "text_size", 1.0F, kSmallestText, kLargestText);
   if (json.contains("line_up") && json["line_up"].is_string()) settings.line_up = json["line_up"].get<std::string>();
   settings.camera.yaw_rad = field(json, "camera_yaw_rad", 0.0F, -6.3F, 6.3F);

@@ -30,9 +30,7 @@ Json graphics_json(const FrameFigures& frames) {
   return {{"frames", frames.frames},
           {"fps", frames.seconds > 0.0 ? static_cast<double>(frames.frames) / frames.seconds : 0.0},
           {"frame_ms",
-           {{"p50", kMsPerUs * times.p50_us},
-            {"p99", kMsPerUs * times.p99_us},
-            {"max", kMsPerUs * times.max_us}}}};
+           {{"p50", kMsPerUs * times.p50_us}, {"p99", kMsPerUs * times.p99_us}, {"max", kMsPerUs * times.max_us}}}};
 }
 
 // Figures over no sample are null: there is no number that would be true.

@@ -20,13 +20,12 @@ constexpr const char* kRehearsal =
     "No force device: nobody can feel anything. This is a rehearsal; its answers are marked so and left out of the "
     "analysis.";
 
-constexpr float kColumnShare = 0.62F;  // of the window's width
+constexpr float kColumnShare = 0.62F;     // of the window's width
 constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
-constexpr Theme kTheme = Theme::dark;  // nothing glares in a dim room
+constexpr Theme kTheme = Theme::dark;     // nothing glares in a dim room
 
-constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBackground |
-                        ImGuiWindowFlags_NoNav;
+constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                        ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
 
 // Between what belongs together and what comes next.
 void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
@@ -62,7 +61,6 @@ void StudyApp::begin(const std::string& code) {
   request.device = request_.device;
   request.realtime = request_.realtime;
   request.header.subject = code;
-  request.header.procedure = procedure_;
   request.path = "study-" + code + ".csv";
   if (request_.strokes != nullptr) {
     request.header.procedure = ProcedureKind::discriminate;
@@ -104,9 +102,6 @@ void StudyApp::handle_keys() {
 void StudyApp::handle_entry_key(int key) {
   if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_);
   if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
-  if (key == GLFW_KEY_TAB) {
-    procedure_ = procedure_ == ProcedureKind::constant ? ProcedureKind::adaptive : ProcedureKind::constant;
-  }
 }
 
 void StudyApp::handle_key(int key) {
@@ -184,12 +179,11 @@ void StudyApp::draw_entry() {
   ImGui::TextWrapped("%s The code stands for the person; no name is kept.",
                      request_.strokes != nullptr
                          ? "Three pushes, one after the other: which of the last two was like the first? 100 trials."
-                         : "Two pushes, one after the other: which was larger?");
+                         : "Two pushes, one after the other: which was larger? 320 trials.");
   gap();
   ImGui::PushFont(style_.fonts().heading);
   draw_code();
   ImGui::PopFont();
-  if (request_.strokes == nullptr) draw_procedures();
   gap();
   ImGui::PushFont(style_.fonts().heading);
   button("Begin (Enter)", GLFW_KEY_ENTER);
@@ -212,16 +206,6 @@ void StudyApp::draw_code() {
   ImGui::TextUnformatted("subject code, such as S01");
 }
 
-void StudyApp::draw_procedures() {
-  gap();
-  const auto choice = [&](const char* label, ProcedureKind kind) {
-    if (ImGui::RadioButton(label, procedure_ == kind)) procedure_ = kind;
-  };
-  choice("constant stimuli, as in the paper: 320 trials", ProcedureKind::constant);
-  choice("adaptive (QUEST+): 80 trials", ProcedureKind::adaptive);
-  ImGui::TextDisabled("Tab changes the procedure");
-}
-
 void StudyApp::draw_session() {
   const StudyView view = study_->session().view();
   if (view.trials > 0 && view.state != StudyState::consent) {
@@ -232,7 +216,8 @@ void StudyApp::draw_session() {
   ImGui::Spacing();
   ImGui::PushFont(style_.fonts().heading);
   ImGui::TextWrapped("%s", view.message.c_str());
-  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0 && !view.reminder) {
+  if (view.has_feedback && view.training && view.state == StudyState::presenting && view.interval == 0 &&
+      !view.reminder) {
     ImGui::TextDisabled(view.was_correct ? "The last answer was right." : "The last answer was wrong.");
   }
   gap();
@@ -241,8 +226,7 @@ void StudyApp::draw_session() {
   if (view.state == StudyState::done) draw_result();
   ImGui::PopFont();
   gap();
-  if (const std::string words = study_->device_words(); !words.empty())
-    ImGui::TextWrapped("%s", words.c_str());
+  if (const std::string words = study_->device_words(); !words.empty()) ImGui::TextWrapped("%s", words.c_str());
   if (study_->newest().device.zeroing == Zeroing::needed) button("Zero here (Z)", GLFW_KEY_Z);
   if (!study_->device_pushes()) draw_trouble(kRehearsal);
 }
@@ -254,8 +238,8 @@ void StudyApp::draw_result() {
   const Discrimination result =
       discrimination_of(session.header().subject, session.store().records(), *request_.strokes);
   ImGui::Spacing();
-  ImGui::TextWrapped("%s against %s, %s", request_.strokes->comparison.c_str(),
-                     request_.strokes->reference.c_str(), request_.strokes->recording.c_str());
+  ImGui::TextWrapped("%s against %s, %s", request_.strokes->comparison.c_str(), request_.strokes->reference.c_str(),
+                     request_.strokes->recording.c_str());
   ImGui::TextWrapped("%s", discrimination_verdict(result, *request_.strokes).c_str());
 }
 
@@ -269,8 +253,7 @@ void StudyApp::draw_intervals(const StudyView& view) {
   for (int interval = first; interval <= 2; ++interval) {
     const float x = at.x + 1.3F * side * static_cast<float>(interval - first);
     const bool on = interval == 0 ? view.reminder : view.interval == interval;
-    list.AddRectFilled({x, at.y}, {x + side, at.y + side},
-                       ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
+    list.AddRectFilled({x, at.y}, {x + side, at.y + side}, ink(on ? kReferenceColour : style_.colours().raised), 10.0F);
     const char text[2] = {interval == 0 ? 'R' : static_cast<char>('0' + interval), '\0'};
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text);
     list.AddText(font, height_of(font), {x + 0.5F * (side - size.x), at.y + 0.5F * (side - size.y)},
@@ -290,8 +273,7 @@ void StudyApp::draw_choices(const StudyView& view) {
       break;
     case StudyState::rest:
       if (view.rest_ticks_left > 0) {
-        ImGui::TextDisabled("%llu s left",
-                            static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
+        ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
       } else {
         button("Go on (Enter)", GLFW_KEY_ENTER);
       }

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "rendering/app/window.h"
 #include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
-#include "rendering/app/window.h"
 #include "scenes/study/live_study.h"
 
 namespace palpate {
@@ -52,7 +52,6 @@ class StudyApp {
   void draw();
   void draw_entry();
   void draw_code();
-  void draw_procedures();
   void draw_session();
   void draw_choices(const StudyView& view);
   void draw_intervals(const StudyView& view);
@@ -76,7 +75,6 @@ class StudyApp {
   };
   std::vector<Typed> typed_;
   std::string code_;
-  ProcedureKind procedure_ = ProcedureKind::constant;
   std::string problem_;
   bool can_be_felt_ = false;  // the device renders force
 };

@@ -34,8 +34,7 @@ bool set(const char* name) {
 }
 
 Error no_display() {
-  const std::string display =
-      set("DISPLAY") ? "DISPLAY=" + std::string(std::getenv("DISPLAY")) : "DISPLAY is not set";
+  const std::string display = set("DISPLAY") ? "DISPLAY=" + std::string(std::getenv("DISPLAY")) : "DISPLAY is not set";
   return Error{"no display (" + display + ": " + last_problem() +
                "), expected an X11 or Wayland session; run it on a desktop, under xvfb-run, or use `palpate` "
                "without a window"};
@@ -58,9 +57,8 @@ Result<std::unique_ptr<Window>> Window::open(const WindowRequest& request) {
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   GLFWmonitor* monitor = request.fullscreen ? glfwGetPrimaryMonitor() : nullptr;
   const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
-  GLFWwindow* handle =
-      glfwCreateWindow(mode != nullptr ? mode->width : request.width,
-                       mode != nullptr ? mode->height : request.height, "Palpate", monitor, nullptr);
+  GLFWwindow* handle = glfwCreateWindow(mode != nullptr ? mode->width : request.width,
+                                        mode != nullptr ? mode->height : request.height, "Palpate", monitor, nullptr);
   if (handle == nullptr) {
     const Error error{"no window with OpenGL 3.3 (" + last_problem() +
                       "); update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw without one"};
@@ -135,8 +133,7 @@ bool Window::fullscreen() const noexcept { return glfwGetWindowMonitor(window_) 
 void Window::set_fullscreen(bool wanted) {
   if (wanted == fullscreen()) return;
   if (!wanted) {
-    glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3],
-                         GLFW_DONT_CARE);
+    glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
     return;
   }
   glfwGetWindowPos(window_, &windowed_[0], &windowed_[1]);

@@ -38,7 +38,9 @@ std::string escaped(const std::string& text) {
 }
 
 std::string hex(const Rgb& colour) {
-  const auto part = [](float value) { return static_cast<unsigned>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))); };
+  const auto part = [](float value) {
+    return static_cast<unsigned>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  };
   return print("#%02X%02X%02X", part(colour.r), part(colour.g), part(colour.b));
 }
 
@@ -58,8 +60,9 @@ std::string axes(const Frame& frame, const std::string& title) {
   std::string svg;
   const double y_step = tick_step(frame.y.to - frame.y.from, 6);
   for (double y = std::ceil(frame.y.from / y_step) * y_step; y <= frame.y.to + 1e-9; y += y_step) {
-    svg += print("<path d='M%.1f %.1fH%.1f' stroke='#DDD'/><text x='%.1f' y='%.1f' text-anchor='end'>%g</text>\n", kLeft_px,
-                 frame.y_px(y), kWidth_px - kRight_px, kLeft_px - 6.0, frame.y_px(y) + 4.0, std::abs(y) < 1e-9 ? 0.0 : y);
+    svg += print("<path d='M%.1f %.1fH%.1f' stroke='#DDD'/><text x='%.1f' y='%.1f' text-anchor='end'>%g</text>\n",
+                 kLeft_px, frame.y_px(y), kWidth_px - kRight_px, kLeft_px - 6.0, frame.y_px(y) + 4.0,
+                 std::abs(y) < 1e-9 ? 0.0 : y);
   }
   const double x_step = tick_step(frame.x.to - frame.x.from, 10);
   for (double x = std::ceil(frame.x.from / x_step) * x_step; x <= frame.x.to + 1e-9; x += x_step) {
@@ -67,13 +70,14 @@ std::string axes(const Frame& frame, const std::string& title) {
                  frame.x_px(x), frame.top_px, frame.top_px + frame.height_px, frame.x_px(x),
                  frame.top_px + frame.height_px + 16.0, std::abs(x) < 1e-9 ? 0.0 : x);
   }
-  return svg + print("<text x='%.1f' y='%.1f' font-weight='bold'>", kLeft_px, frame.top_px - 8.0) + escaped(title) + "</text>\n";
+  return svg + print("<text x='%.1f' y='%.1f' font-weight='bold'>", kLeft_px, frame.top_px - 8.0) + escaped(title) +
+         "</text>\n";
 }
 
 using Value = std::function<float(const CurveColumn&)>;
 
-std::string curve(const Frame& frame, const CurveColumns& columns, double zero_s, const std::string& colour, double width,
-                  const Value& value) {
+std::string curve(const Frame& frame, const CurveColumns& columns, double zero_s, const std::string& colour,
+                  double width, const Value& value) {
   std::string path;
   bool open = false;
   for (const CurveColumn& column : columns.columns()) {
@@ -87,7 +91,8 @@ std::string curve(const Frame& frame, const CurveColumns& columns, double zero_s
     path += print("%c%.1f %.1f", open ? 'L' : 'M', frame.x_px(x), frame.y_px(y));
     open = true;
   }
-  return std::string("<path d='") + path + "' fill='none' stroke='" + colour + print("' stroke-width='%.1f'/>\n", width);
+  return std::string("<path d='") + path + "' fill='none' stroke='" + colour +
+         print("' stroke-width='%.1f'/>\n", width);
 }
 
 std::string band(const Frame& frame, const CurveColumns& columns, double zero_s) {
@@ -102,7 +107,8 @@ std::string band(const Frame& frame, const CurveColumns& columns, double zero_s)
 }
 
 float extreme(const CurveColumn& column, std::size_t slot) {
-  return -column.low_over_jnd[slot] > column.high_over_jnd[slot] ? column.low_over_jnd[slot] : column.high_over_jnd[slot];
+  return -column.low_over_jnd[slot] > column.high_over_jnd[slot] ? column.low_over_jnd[slot]
+                                                                 : column.high_over_jnd[slot];
 }
 
 std::string names(const Frame& frame, const CurveColumns& columns, const std::vector<CurveModel>& models) {
@@ -129,10 +135,13 @@ std::string curve_svg(const CurveColumns& columns, const CurveSource& source, do
   const double highest_N = round_up(std::max(1.0, static_cast<double>(columns.highest_force_N())));
   const Frame force{50.0, 230.0, time, {0.0, highest_N}};
   const Frame difference{340.0, 200.0, time, {-kFigure_jnd, kFigure_jnd}};
-  std::string svg = print("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f 580' width='%.0f' height='580' "
-                          "font-family='DejaVu Sans, sans-serif' font-size='12' fill='#222'>\n", kWidth_px, kWidth_px) +
-                    std::string("<rect width='100%' height='100%' fill='white'/>\n<text x='60' y='20'>") + escaped(source.scene) + ", " +
-                    escaped(source.device) + "; green: " + escaped(source.reference) + "</text>\n";
+  std::string svg = print(
+                        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %.0f 580' width='%.0f' height='580' "
+                        "font-family='DejaVu Sans, sans-serif' font-size='12' fill='#222'>\n",
+                        kWidth_px, kWidth_px) +
+                    std::string("<rect width='100%' height='100%' fill='white'/>\n<text x='60' y='20'>") +
+                    escaped(source.scene) + ", " + escaped(source.device) + "; green: " + escaped(source.reference) +
+                    "</text>\n";
   svg += axes(force, "Force, N, with one JND to either side") + band(force, columns, source.zero_s);
   const std::string green = hex(kReferenceColour);
   svg += curve(force, columns, source.zero_s, green, 2.4,
@@ -142,7 +151,8 @@ std::string curve_svg(const CurveColumns& columns, const CurveSource& source, do
   svg += axes(difference, "Difference, JND: inside the band a hand cannot tell (seconds below)");
   for (const CurveModel& model : source.models) {
     const std::size_t slot = model.slot;
-    svg += curve(force, columns, source.zero_s, hex(model.colour), 1.4, [slot](const CurveColumn& c) { return c.high_N[slot]; });
+    svg += curve(force, columns, source.zero_s, hex(model.colour), 1.4,
+                 [slot](const CurveColumn& c) { return c.high_N[slot]; });
     svg += curve(difference, columns, source.zero_s, hex(model.colour), 1.4,
                  [slot](const CurveColumn& c) { return extreme(c, slot); });
   }
@@ -150,15 +160,17 @@ std::string curve_svg(const CurveColumns& columns, const CurveSource& source, do
 }
 
 std::string curve_csv(const ForceHistory& history, const CurveSource& source, double from_s, double to_s) {
-  const auto number = [](float value) { return std::isnan(value) ? std::string() : print("%.6g", static_cast<double>(value)); };
+  const auto number = [](float value) {
+    return std::isnan(value) ? std::string() : print("%.6g", static_cast<double>(value));
+  };
   std::string csv = std::string("# ") + source.scene + ", " + source.device + "; reference_N: " + source.reference +
                     "\ntime_s,depth_m,reference_N,rendered_N";
   for (const CurveModel& model : source.models) csv.append(",").append(model.name).append("_N");
   csv += "\n";
   for (std::size_t i = history.first_at(from_s); i < history.size() && history[i].loop_time_s <= to_s; ++i) {
     const HistoryPoint& point = history[i];
-    csv += print("%.6f,", point.loop_time_s - source.zero_s) + number(point.depth_m) + "," + number(point.reference_N) + "," +
-           number(point.rendered_N);
+    csv += print("%.6f,", point.loop_time_s - source.zero_s) + number(point.depth_m) + "," + number(point.reference_N) +
+           "," + number(point.rendered_N);
     for (const CurveModel& model : source.models) csv.append(",").append(number(point.force_N[model.slot]));
     csv += "\n";
   }

@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kSceneShare = 0.6F;   // of the width
+constexpr float kSceneShare = 0.6F;    // of the width
 constexpr float kSceneHeight = 0.45F;  // of the height, above the panel
 constexpr float kTall = 1.1F;          // width over height below which the panel lies below
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rendering/panels/overlay_parts.h"
 #include "engine/base/text.h"
+#include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
@@ -33,39 +33,40 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
   const auto half = 0.5F * static_cast<float>(blocks.geometry().length_m);
   const auto height = static_cast<float>(blocks.geometry().height_m);
   // Before the block's front side, on the table's edge of it.
-  const glm::vec2 front = blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half},
-                                           {area.size.x, area.size.y});
+  const glm::vec2 front =
+      blocks.on_screen(index, count, {0.35F * half, -1.02F * height, 1.0F * half}, {area.size.x, area.size.y});
   const float x = std::clamp(front.x - 0.5F * size.x, 4.0F, area.size.x - size.x - 4.0F);
   const float y = std::clamp(front.y + 0.25F * size.y, 4.0F, area.size.y - lift - 1.2F * size.y);
   return {area.at.x + x, area.at.y + y};
 }
 
 std::string label_text(const LiveSession& session, std::size_t slot) {
-  if (slot == kReferenceBlock)
-    return session.comparison().reference() == ReferenceKind::truth ? "the true material" : "as recorded";
+  if (slot == kReferenceBlock) {
+    if (session.comparison().reference() == ReferenceKind::truth) return "the true material";
+    return session.replay() != nullptr ? "as recorded" : "the real block";
+  }
   return std::to_string(models_view(session).number_of(slot)) + "  " + session.models().view(slot).name;
 }
 
 }  // namespace
 
-void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
-                 const UiStyle& style, const SceneArea& area, float lift) {
+void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view, const UiStyle& style,
+                 const SceneArea& area, float lift) {
   const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
   ImFont* font = style.fonts().heading;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const bool secret = view.hidden_choice > 0;
-    const std::string text =
-        secret ? view.hidden_name : label_text(session, slots[i]);
+    const std::string text = label_text(session, slots[i]);
     const ImVec2 size = text_size(font, text);
     const ImVec2 at = label_place(blocks, i, slots.size(), area, size, lift);
     const bool chosen = slots[i] == session.models().selected();
-    const Rgb colour = secret ? style.colours().text : (slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme()));
+    const Rgb colour =
+        slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme());
     const float pad = 0.25F * height_of(font);
     ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
-                         {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
-                         ink(style.colours().panel, 0.88F), 6.0F);
+                                                  {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
+                                                  ink(style.colours().panel, 0.88F), 6.0F);
     ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
-                         {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
+                                                  {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
     text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
     if (slots.size() < 2 || !chosen) continue;
     const std::string active = "active model";
@@ -93,19 +94,18 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   text_at(big, {corner.x, y}, ink(shown.error_over_jnd > 1.0 ? kAboveJndColour : p.text), shown.number);
   const float beside = corner.x + size.x + 0.7F * line;
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), shown.what);
-  text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet),
-          shown.below);
+  text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet), shown.below);
   const float width = 11.0F * line;
   const float top = y + size.y + 0.35F * line;
   const float high = 0.55F * line;
   for (int i = 0; i < 40; ++i) {
     const float from = static_cast<float>(i) / 40.0F;
     ImGui::GetBackgroundDrawList()->AddRectFilled({corner.x + from * width, top},
-                         {corner.x + (from + 0.025F) * width + 0.5F, top + high},
-                         ink(error_colour(static_cast<double>(from))));
+                                                  {corner.x + (from + 0.025F) * width + 0.5F, top + high},
+                                                  ink(error_colour(static_cast<double>(from))));
   }
   ImGui::GetBackgroundDrawList()->AddRectFilled({corner.x + width + 3.0F, top}, {corner.x + 1.3F * width, top + high},
-                       ink(kAboveJndColour));
+                                                ink(kAboveJndColour));
   text_at(body, {corner.x, top + high + 1.0F}, ink(p.quiet), "0");
   text_at(body, {corner.x + width - 0.3F * line, top + high + 1.0F}, ink(p.quiet), "1");
   text_at(body, {corner.x + width + 1.0F * line, top + high + 1.0F}, ink(p.quiet), "error / JND");

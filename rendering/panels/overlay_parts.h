@@ -25,8 +25,8 @@ inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::str
 }
 
 // Over the blocks, and above what lies at the lower edge, so high.
-void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view,
-                 const UiStyle& style, const SceneArea& area, float lift);
+void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view, const UiStyle& style,
+                 const SceneArea& area, float lift);
 // From the lower edge up to the big number's top, which stands so far above that edge.
 float big_number_height(const UiStyle& style, float lift);
 // The error of the active model as one number, in words, and the scale that its

@@ -44,8 +44,7 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
   for (const Toast& toast : toasts) {
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, wrap, toast.text.c_str());
     const float x = area.at.x + 0.5F * (area.size.x - size.x);
-    list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised),
-                       6.0F);
+    list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised), 6.0F);
     list.AddRectFilled({x - pad, y - pad}, {x - 0.6F * pad, y + size.y + pad},
                        ink(toast.problem ? style.colours().fault : kReferenceColour), 3.0F);
     list.AddText(font, height_of(font), {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
@@ -79,8 +78,7 @@ void draw_device_words(LiveSession& session, bool offered, const UiStyle& style,
   ImGui::PushFont(style.fonts().heading);
   ImGui::TextWrapped("%s", words.c_str());
   ImGui::PopFont();
-  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)"))
-    session.start_zeroing();
+  if (session.newest().device.zeroing == Zeroing::needed && ImGui::Button("Zero here (Z)")) session.start_zeroing();
   ImGui::End();
 }
 
@@ -100,7 +98,8 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float high = (static_cast<float>(lines.size()) + 3.0F) * ImGui::GetTextLineHeightWithSpacing();
   const std::size_t columns = high > all.y ? 2 : 1;
-  const float room = (all.x - 4.0F * ImGui::GetFontSize()) / static_cast<float>(columns) - keys - 2.0F * ImGui::GetFontSize();
+  const float room =
+      (all.x - 4.0F * ImGui::GetFontSize()) / static_cast<float>(columns) - keys - 2.0F * ImGui::GetFontSize();
   const std::size_t rows = (lines.size() + columns - 1) / columns;
   if (ImGui::BeginTable("keys", 2 * static_cast<int>(columns), ImGuiTableFlags_NoSavedSettings)) {
     for (std::size_t column = 0; column < columns; ++column) {
@@ -147,7 +146,8 @@ void draw_offered_recording(LiveSession& session, ViewState& view, const Overlay
   ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
   if (!offered.problem.empty()) {
     ImGui::TextUnformatted(offered.problem.c_str());
-    ImGui::TextDisabled("What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
+    ImGui::TextDisabled(
+        "What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
   } else {
     ImGui::TextUnformatted(std::filesystem::path(offered.path).filename().c_str());
     for (const std::string& line : offered.words) ImGui::TextDisabled("%s", line.c_str());

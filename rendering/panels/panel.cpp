@@ -14,15 +14,22 @@ namespace palpate {
 namespace {
 
 constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                        ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
+                              ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                              ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
 
 void apply(const TableAction& action, LiveSession& session) {
   switch (action.kind) {
-    case TableAction::Kind::none: break;
-    case TableAction::Kind::select: session.select(action.slot); break;
-    case TableAction::Kind::rename: session.rename(action.slot, action.name); break;
-    case TableAction::Kind::remove: session.remove(action.slot); break;
+    case TableAction::Kind::none:
+      break;
+    case TableAction::Kind::select:
+      session.select(action.slot);
+      break;
+    case TableAction::Kind::rename:
+      session.rename(action.slot, action.name);
+      break;
+    case TableAction::Kind::remove:
+      session.remove(action.slot);
+      break;
   }
 }
 
@@ -45,7 +52,8 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
   if (view.requested_centres > 0 && (ImGui::IsMouseDown(ImGuiMouseButton_Left) || models.active()->refitting))
     centres = view.requested_centres;
   ImGui::SetNextItemWidth(-9.0F * ImGui::GetFontSize());
-  if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+  if (ImGui::SliderInt("##centres", &centres, 1, kMostCentres, "%d",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     view.requested_centres = centres;
     for (const std::size_t slot : models.listed()) {
       if (slot == models.selected || view.centres_together) session.refit(slot, centres);
@@ -72,8 +80,8 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   // What has a fixed size first; the plots share the rest.
   const float health_height = line * static_cast<float>(health_lines(health, view));
   const float rows = static_cast<float>(std::clamp<std::size_t>(errors.models.listed().size(), 2, 8)) + 1.0F;
-  const float table =
-      rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) + 0.28F * ImGui::GetFontSize() + 3.0F;
+  const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) +
+                      0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;
   const SlotView* active = errors.models.active();
   const bool has_centres = active != nullptr && active->takes_centres;

@@ -14,8 +14,8 @@ namespace palpate {
 class Panel {
  public:
   // Into a window at (x, y).
-  void draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
-            const ImVec2& at, const ImVec2& size);
+  void draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames, const ImVec2& at,
+            const ImVec2& size);
   const CurveColumns& columns() const noexcept { return curves_.columns(); }
 
  private:

@@ -73,8 +73,7 @@ void draw_error_bins(const ErrorsView& errors, const UiStyle& style, float heigh
     if (!models.slots.empty()) draw_slot(plot, models, models.selected, errors.jnd, style);
     plot.caption(
         " JND", 0.0F,
-        std::clamp((plot.y_px(errors.jnd.offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F,
-                   0.0F, 0.9F),
+        std::clamp((plot.y_px(errors.jnd.offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F, 0.0F, 0.9F),
         ink(style.colours().quiet));
   }
   tip("Error against force since the last reset (C), in steps of 0.5 N.\nDots: mean + standard deviation. "

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/text.h"
 #include "engine/live/pacer.h"
 #include "rendering/panels/curve_drawing.h"
-#include "engine/base/text.h"
 #include "rendering/panels/panel_force.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/panels/time_plot.h"
@@ -41,32 +41,31 @@ struct ForceCurves::Scene {
   const UiStyle& style;
   double end_s = 0.0;
 
-  Rgb colour(std::size_t slot) const {
-    return view.hidden_choice > 0 ? style.colours().text : slot_colour(force.models, slot, style.theme());
-  }
+  Rgb colour(std::size_t slot) const { return slot_colour(force.models, slot, style.theme()); }
   // Nothing to compare with: what the active model predicts of its own error.
   bool predicts() const { return std::isnan(force.reference_N) && force.models.active() != nullptr; }
   template <typename Low, typename High>
   void paint_prediction(const CurvePainter& paint_on, Low low, High high) const {
     if (predicts()) paint_on.band(ink(colour(force.models.selected), kPredictedAlpha), low, high);
   }
-  bool names() const { return !view.kiosk && ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
+  bool names() const { return ImGui::GetContentRegionAvail().x > 24.0F * ImGui::GetFontSize(); }
   // Of models that are not the active one; what is dark is hard enough to see on black.
   float faint() const { return style.theme() == Theme::dark ? 0.95F : 0.75F; }
   // The models in the order of drawing: the active one on top.
   template <typename Draw>
   void for_each_slot(Draw draw) const {
     const ModelsView& models = force.models;
-    for (std::size_t i = 0; i < models.slots.size() && !view.kiosk; ++i) {
+    for (std::size_t i = 0; i < models.slots.size(); ++i) {
       if (i != models.selected && models.slots[i]->state == SlotState::ready) draw(i);
-    }
-    for (const std::size_t i : view.revealed) {
-      if (i < models.slots.size() && i != models.selected) draw(i);
     }
     if (models.active() != nullptr) draw(models.selected);
   }
   PlotAxes axes(const Range& y, const char* unit, bool x_numbers) const {
-    return {{end_s - view.time.shown_s - view.time.zero_s, end_s - view.time.zero_s}, y, "s", unit, x_numbers,
+    return {{end_s - view.time.shown_s - view.time.zero_s, end_s - view.time.zero_s},
+            y,
+            "s",
+            unit,
+            x_numbers,
             names() ? kLabelRoom : 0.6F};
   }
 };
@@ -85,32 +84,17 @@ void ForceCurves::draw(const ForceView& force, ViewState& view, const UiStyle& s
   if (!hovered_) view.time.hover_s = std::nan("");
 }
 
-void ForceCurves::draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style,
-                                    float height) {
-  const Scene scene = begin(force, view, style);
-  // On an axis of forces a band of a tenth of a newton is a line.
-  if (std::isnan(force.reference_N)) {
-    draw_force(scene, height);
-  } else {
-    draw_difference(scene, height);
-  }
-  view.time.hover_s = std::nan("");
-}
-
 ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, const UiStyle& style) {
   hovered_ = false;
   const Scene scene{force, view, style, view.time.end_s(steady_now_s())};
-  const auto columns =
-      static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
+  const auto columns = static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
   curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
                  columns);
   const double highest_N = 1.05 * static_cast<double>(curves_.highest_force_N());
-  // A visitor sees what was pressed, as large as it can be.
-  view.force_scale_N = view.kiosk ? round_up(std::max(0.5, highest_N))
-                                  : eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, highest_N}));
+  view.force_scale_N = eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, highest_N}));
   // Beyond 8 JND the line would only hide what is near 1.
-  view.error_scale = eased_scale(
-      view.error_scale, std::clamp(1.2 * static_cast<double>(curves_.highest_felt_over_jnd()), 1.5, 8.0));
+  view.error_scale =
+      eased_scale(view.error_scale, std::clamp(1.2 * static_cast<double>(curves_.highest_felt_over_jnd()), 1.5, 8.0));
   return scene;
 }
 
@@ -118,7 +102,7 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
   const CurveTime& time = scene.view.time;
   // What stands still is read where it stands.
   const CurveColumn* last = time.paused ? curves_.last() : nullptr;
-  const double reference_N = !time.paused ? scene.force.reference_N
+  const double reference_N = !time.paused                         ? scene.force.reference_N
                              : last != nullptr && last->reference ? static_cast<double>(last->reference_N)
                                                                   : std::nan("");
   section_title(scene.style, "FORCE");
@@ -139,8 +123,8 @@ void ForceCurves::draw_titles_of_force(const Scene& scene) const {
 void ForceCurves::draw_titles_of_error(const Scene& scene) const {
   const bool difference = scene.view.difference;
   section_title(scene.style, scene.predicts() ? "PREDICTED ERROR / JND"
-                             : difference    ? "DIFFERENCE / JND"
-                                             : "FELT ERROR / JND");
+                             : difference     ? "DIFFERENCE / JND"
+                                              : "FELT ERROR / JND");
   ImGui::SameLine();
   if (scene.force.models.out_of_domain()) {
     ImGui::TextColored(paint(scene.style.colours().fault), "away from the recorded data");
@@ -158,7 +142,6 @@ void ForceCurves::draw_titles_of_error(const Scene& scene) const {
 // What all have: the mouse, its readings, names at the right.
 void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
                               const char* unit) {
-  if (scene.view.kiosk) return;
   CurveTime& time = scene.view.time;
   if (handle_time_plot(plot, scene.style, *scene.force.history, time, scene.end_s)) hovered_ = true;
   std::vector<CurveLabel> labels;
@@ -166,13 +149,16 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
   const CurveColumn* under = curves_.at(time.hover_s);
   const CurveColumn* last = curves_.last();
   if (under != nullptr && under->reference)
-    readings.push_back({"reference  " + at_most_three_decimals(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
+    readings.push_back(
+        {"reference  " + at_most_three_decimals(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
   for (std::size_t i = 0; i < scene.force.models.slots.size(); ++i) {
     if (scene.force.models.slots[i]->state != SlotState::ready) continue;
     if (last != nullptr && !std::isnan(value(*last, i)))
-      labels.push_back({short_name(*scene.force.models.slots[i]), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
+      labels.push_back(
+          {short_name(*scene.force.models.slots[i]), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
     if (under != nullptr && !std::isnan(value(*under, i)))
-      readings.push_back({scene.force.models.slots[i]->name + "  " + at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
+      readings.push_back({scene.force.models.slots[i]->name + "  " +
+                              at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,
                           scene.colour(i)});
   }
   if (scene.names()) draw_labels(plot, labels);
@@ -187,11 +173,9 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
   paint_on.jnd_band(ink(p.band));
-  if (!scene.view.kiosk) {
-    scene.paint_prediction(
-        paint_on, [](const CurveColumn& c) { return c.predicted_low_N; },
-        [](const CurveColumn& c) { return c.predicted_high_N; });
-  }
+  scene.paint_prediction(
+      paint_on, [](const CurveColumn& c) { return c.predicted_low_N; },
+      [](const CurveColumn& c) { return c.predicted_high_N; });
   paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
                  [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
   scene.for_each_slot([&](std::size_t slot) {
@@ -201,8 +185,9 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
         [slot](const CurveColumn& c) { return c.low_N[slot]; },
         [slot](const CurveColumn& c) { return c.high_N[slot]; });
   });
-  if (!scene.view.kiosk) paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
-  finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.high_N[slot]; }, " N");
+  paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
+  finish_plot(
+      scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.high_N[slot]; }, " N");
 }
 
 void ForceCurves::draw_difference(const Scene& scene, float height) {
@@ -224,10 +209,13 @@ void ForceCurves::draw_difference(const Scene& scene, float height) {
         [slot](const CurveColumn& c) { return c.low_over_jnd[slot]; },
         [slot](const CurveColumn& c) { return c.high_over_jnd[slot]; });
   });
-  finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) {
-    const bool below = -c.low_over_jnd[slot] > c.high_over_jnd[slot];
-    return below ? c.low_over_jnd[slot] : c.high_over_jnd[slot];
-  }, " JND");
+  finish_plot(
+      scene, plot,
+      [](const CurveColumn& c, std::size_t slot) {
+        const bool below = -c.low_over_jnd[slot] > c.high_over_jnd[slot];
+        return below ? c.low_over_jnd[slot] : c.high_over_jnd[slot];
+      },
+      " JND");
 }
 
 void ForceCurves::draw_felt(const Scene& scene, float height) {
@@ -239,8 +227,7 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
   plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
   plot.level(1.0, ink(p.text), 1.5F * thin);
   scene.paint_prediction(
-      paint_on, [](const CurveColumn&) { return 0.0F; },
-      [](const CurveColumn& c) { return c.predicted_over_jnd; });
+      paint_on, [](const CurveColumn&) { return 0.0F; }, [](const CurveColumn& c) { return c.predicted_over_jnd; });
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
     for (const CurveColumn& column : curves_.columns()) {
@@ -253,7 +240,8 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
                    (selected ? kSelectedLine_px : kModelLine_px) * thin,
                    [slot](const CurveColumn& c) { return c.felt_over_jnd[slot]; });
   });
-  finish_plot(scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.felt_over_jnd[slot]; }, " JND");
+  finish_plot(
+      scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.felt_over_jnd[slot]; }, " JND");
 }
 
 }  // namespace palpate

@@ -14,11 +14,7 @@ namespace palpate {
 
 class ForceCurves {
  public:
-  void draw(const ForceView& force, ViewState& view, const UiStyle& style, float force_height,
-            float error_height);
-  // One plot, of the revealed models: their difference from the reference in its band;
-  // their force where there is none.
-  void draw_for_visitors(const ForceView& force, ViewState& view, const UiStyle& style, float height);
+  void draw(const ForceView& force, ViewState& view, const UiStyle& style, float force_height, float error_height);
 
   const CurveColumns& columns() const noexcept { return curves_; }
 

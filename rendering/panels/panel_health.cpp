@@ -36,8 +36,7 @@ void row(const char* name, const TimePercentiles& times) {
 void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
   ImGui::Text("%llu ticks, the last %.1f ms ago", static_cast<unsigned long long>(statistics.ticks),
               1e3 * statistics.age_s);
-  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings))
-    return;
+  if (!ImGui::BeginTable("times", 5, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_NoSavedSettings)) return;
   for (const char* heading : {"microseconds", "p50", "p99", "p99.9", "max"}) ImGui::TableSetupColumn(heading);
   ImGui::TableHeadersRow();
   row("lateness", statistics.lateness);
@@ -55,12 +54,10 @@ void draw_faults(const HealthView& health, const UiStyle& style) {
   const double now_s = health.now_s;
   const std::size_t first = faults.size() > kFaultsShown ? faults.size() - kFaultsShown : 0;
   for (std::size_t i = faults.size(); i-- > first;) {
-    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago",
-                       std::max(0.0, now_s - faults[i].loop_time_s));
+    ImGui::TextColored(paint(style.colours().fault), "%.0f s ago", std::max(0.0, now_s - faults[i].loop_time_s));
     ImGui::SameLine();
-    ImGui::TextWrapped(
-        "%s%s", faults[i].text.c_str(),
-        faults[i].count > 1 ? (" (" + std::to_string(faults[i].count) + " times)").c_str() : "");
+    ImGui::TextWrapped("%s%s", faults[i].text.c_str(),
+                       faults[i].count > 1 ? (" (" + std::to_string(faults[i].count) + " times)").c_str() : "");
   }
 }
 
@@ -68,8 +65,10 @@ void draw_faults(const HealthView& health, const UiStyle& style) {
 
 std::string device_line(const HealthView& health) {
   const DeviceHealth& device = health.device;
-  if (device.zeroing == Zeroing::not_needed && device.faults == 0) return {};
+  const bool real = device.zeroing != Zeroing::not_needed || device.interval_s > 0.0;
+  if (!real && device.faults == 0) return {};
   std::string line = health.device_name + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
+  if (device.interval_s > 0.0) line += text_of(", %.0f samples a second", 1.0 / device.interval_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
   line += text_of(", motor heat %.0f %%", 100.0 * health.heat_share);
   return line;
@@ -79,23 +78,19 @@ int health_lines(const HealthView& health, const ViewState& view) {
   const int quiet = device_line(health).empty() ? 3 : 4;
   if (!view.details) return quiet;
   const int fix = health.scheduling.fix.empty() ? 0 : 8;
-  return quiet + fix + 6 +
-         static_cast<int>(std::clamp<std::size_t>(health.faults.size(), 1, kFaultsShown));
+  return quiet + fix + 6 + static_cast<int>(std::clamp<std::size_t>(health.faults.size(), 1, kFaultsShown));
 }
 
 HealthWords health_words(const HealthView& health, double recent_fps) {
   const LoopStatistics& statistics = health.loop;
   if (statistics.ticks > 0 && statistics.age_s > kStall_s) {
-    return {
-        text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s),
-        true};
+    return {text_of("The loop stands still: last tick %.1f s ago, the tool gets no new force", statistics.age_s), true};
   }
   if (const auto words = device_fault_words(health.device.faults); !words.empty()) {
     return {"Device: " + words.front(), true};
   }
   if (const std::vector<std::string>& words = health.alarms; !words.empty()) {
-    const std::string more =
-        words.size() > 1 ? " (and " + std::to_string(words.size() - 1) + " more)" : std::string();
+    const std::string more = words.size() > 1 ? " (and " + std::to_string(words.size() - 1) + " more)" : std::string();
     return {"Earlier: " + words.front() + more, true, true};
   }
   const double missed = health.missed_of_late;
@@ -106,18 +101,14 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
   }
   if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
     // No fault: nothing that is felt is late.
-    return {
-        text_of("%.0f frames a second: the picture is slow, the force is not affected", recent_fps),
-        false};
+    return {text_of("%.0f frames a second: the picture is slow, the force is not affected", recent_fps), false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
-              ", missed " + std::to_string(statistics.missed_deadlines) +
-              text_of(", %.0f fps", recent_fps),
+              ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", recent_fps),
           false};
 }
 
-void draw_health(const HealthView& health, ViewState& view, const UiStyle& style,
-                 const FrameFigures& frames) {
+void draw_health(const HealthView& health, ViewState& view, const UiStyle& style, const FrameFigures& frames) {
   section_title(style, "LOOP");
   ImGui::SameLine();
   const HealthWords words = health_words(health, frames.recent_fps);

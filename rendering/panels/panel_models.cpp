@@ -24,8 +24,10 @@ constexpr Heading kHeadings[kColumns] = {
     {"N", "Force now, newtons", "12.34", 4},
     {"mN off", "Error now: model minus reference, millinewtons", "+1234", 1},
     {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", "12.34", 5},
-    {"% in JND", "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
-     "The same samples for all models: those inside the data of each.", "100.00", 0},
+    {"% in JND",
+     "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
+     "The same samples for all models: those inside the data of each.",
+     "100.00", 0},
     {"ns", "Time of one evaluation, nanoseconds, median of the last second in contact", "12,345", 3},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2}};
 
@@ -143,8 +145,7 @@ TableAction draw_name(const ModelsView& models, std::size_t index, TableState& t
   const SlotView& slot = *models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
-  const ImU32 colour =
-      ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
+  const ImU32 colour = ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
   // Too long for the column: without the numbers, which the last one and the tip have.
   std::string name = slot.name;
   if (ImGui::CalcTextSize(("      " + name).c_str()).x > ImGui::GetContentRegionAvail().x)
@@ -218,8 +219,8 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
     needed += width(column);
   }
   for (int drop = 1; needed > room && drop <= kColumns; ++drop) {
-    const auto gone = std::find_if(columns.begin(), columns.end(),
-                                   [&](int column) { return kHeadings[column].dropped == drop; });
+    const auto gone =
+        std::find_if(columns.begin(), columns.end(), [&](int column) { return kHeadings[column].dropped == drop; });
     if (gone == columns.end()) continue;
     needed -= width(*gone);
     columns.erase(gone);
@@ -229,7 +230,8 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
 
 TableAction draw_model_table(const ModelsView& models, TableState& table, const UiStyle& style, float height) {
   TableAction action;
-  const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH | ImGuiTableFlags_NoSavedSettings;
+  const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
+                     ImGuiTableFlags_NoSavedSettings;
   const std::vector<int> shown =
       shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
   if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return action;

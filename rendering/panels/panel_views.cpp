@@ -46,8 +46,12 @@ ModelsView models_view(const LiveSession& session) {
 }
 
 ForceView force_view(const LiveSession& session) {
-  return {models_view(session), session.jnd(), &session.comparison().history(), session.comparison().reference_N(),
-          session.reference_words(), kUsualOverStrongest * session.scene().strongest_press_N};
+  return {models_view(session),
+          session.jnd(),
+          &session.comparison().history(),
+          session.comparison().reference_N(),
+          session.reference_words(),
+          kUsualOverStrongest * session.scene().strongest_press_N};
 }
 
 ErrorsView errors_view(const LiveSession& session) { return {models_view(session), session.jnd()}; }

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "rendering/panels/overlay_parts.h"
 #include "engine/base/text.h"
+#include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
@@ -72,7 +72,8 @@ float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& comm
   return height;
 }
 
-void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift, const std::vector<WindowCommand>& commands) {
+void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift,
+                     const std::vector<WindowCommand>& commands) {
   if (session.replay() == nullptr) return;
   ReplayControl& replay = *session.replay();
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - lift}, ImGuiCond_Always, {0.0F, 1.0F});
@@ -103,7 +104,8 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift, co
   ImGui::Text("%.2f x", replay.speed());
   if (session.surface().found_m() != 0.0) {
     bool moved = session.surface().moved();
-    const std::string label = "surface " + fixed(1e3 * session.surface().found_m(), 2) + " mm from the models'; moved there";
+    const std::string label =
+        "surface " + fixed(1e3 * session.surface().found_m(), 2) + " mm from the models'; moved there";
     if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
     tip("Where the forces of the models fit the recording best; off: positions as recorded");
   }
@@ -117,7 +119,7 @@ void draw_recording(const LiveSession& session, const UiStyle& style, const Scen
   const ImVec2 size = text_size(style.fonts().body, text);
   const ImVec2 at(area.at.x + area.size.x - size.x - size.y, area.at.y + 0.9F * size.y);
   ImGui::GetBackgroundDrawList()->AddCircleFilled({at.x - 0.7F * size.y, at.y + 0.55F * size.y}, 0.35F * size.y,
-                         ink(style.colours().text));
+                                                  ink(style.colours().text));
   text_at(style.fonts().body, at, ink(style.colours().text), text);
 }
 
@@ -147,13 +149,14 @@ BigNumber big_number(const ModelsView& models, const JndLine& jnd) {
     return {fixed(100.0 * (*fitting)->progress, 0) + " %", "of the first model, " + (*fitting)->name + ":",
             "until then the true material answers alone", 0.0};
   }
-  const double error = models.compared ? active->recent_peak_error_over_jnd
+  const double error = models.compared     ? active->recent_peak_error_over_jnd
                        : models.in_contact ? active->predicted_error_N / jnd.at(active->force_N)
                                            : std::nan("");
   BigNumber big{"–", "of what a hand can notice:", "the error of the active model", error};
   if (!models.compared) big.below = "predicted for the active model (95 %)";
   // Two decimals are more than anyone can see change.
-  if (!std::isnan(error)) big.number = error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
+  if (!std::isnan(error))
+    big.number = error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
   return big;
 }
 
@@ -173,7 +176,8 @@ std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t blo
   for (std::size_t i = 0; i < models.slots.size() && slots.size() < room; ++i) {
     if (models.slots[i]->state == SlotState::ready) slots.push_back(i);
   }
-  const bool missing = models.active() != nullptr && std::find(slots.begin(), slots.end(), models.selected) == slots.end();
+  const bool missing =
+      models.active() != nullptr && std::find(slots.begin(), slots.end(), models.selected) == slots.end();
   if (missing && !slots.empty()) slots.back() = models.selected;
   if (reference) slots.push_back(kReferenceBlock);
   return slots;
@@ -186,9 +190,9 @@ std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, con
   float nearest_px = 1e9F;
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    const glm::vec2 middle = blocks.on_screen(
-        i, slots.size(), {0.0F, -0.5F * static_cast<float>(blocks.geometry().height_m), 0.0F},
-        {area.size.x, area.size.y});
+    const glm::vec2 middle =
+        blocks.on_screen(i, slots.size(), {0.0F, -0.5F * static_cast<float>(blocks.geometry().height_m), 0.0F},
+                         {area.size.x, area.size.y});
     const glm::vec2 side =
         blocks.on_screen(i, slots.size(), {0.5F * static_cast<float>(blocks.geometry().width_m), 0.0F, 0.0F},
                          {area.size.x, area.size.y});
@@ -201,16 +205,13 @@ std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, con
 }
 
 void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
-                        const SceneArea& area, const std::vector<Toast>& toasts,
-                        const OverlayActions& actions) {
+                        const SceneArea& area, const std::vector<Toast>& toasts, const OverlayActions& actions) {
   const float line = height_of(style.fonts().body);
   const float buttons = view.kiosk ? 0.0F : std::max(buttons_height_, 2.4F * line);
   const float surface = session.surface().found_m() != 0.0 ? 1.7F * line : 0.0F;
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
-  // Who only passes by needs no model's name.
-  const bool passing = view.kiosk && (session.mouse() != nullptr) && session.mouse()->hand_is_exploring();
-  if (!passing && (!view.kiosk || view.hidden_choice > 0))
-    draw_labels(session, blocks, view, style, area, view.kiosk ? 0.0F : big_number_height(style, bars));
+  // An exhibit has names of its own.
+  if (!view.kiosk) draw_labels(session, blocks, view, style, area, big_number_height(style, bars));
   if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.kiosk) draw_data_warning(session, style, area);
   if (!view.kiosk) draw_title(session, view, style, area);

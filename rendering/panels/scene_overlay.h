@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "rendering/panels/layout.h"
-#include "rendering/picture/block_view.h"
 #include "rendering/panels/panel_views.h"
-#include "rendering/ui/ui_style.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_command.h"
+#include "rendering/picture/block_view.h"
+#include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
@@ -51,12 +51,12 @@ std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t blo
 class SceneOverlay {
  public:
   // Controls call `actions`.
-  void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
-            const SceneArea& area, const std::vector<Toast>& toasts, const OverlayActions& actions);
+  void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style, const SceneArea& area,
+            const std::vector<Toast>& toasts, const OverlayActions& actions);
 
   // The slot whose block or label is at `point`.
-  std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks,
-                                     const ViewState& view, const SceneArea& area, const ImVec2& point) const;
+  std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks, const ViewState& view,
+                                     const SceneArea& area, const ImVec2& point) const;
 
  private:
   float buttons_height_ = 0.0F;  // in the last frame

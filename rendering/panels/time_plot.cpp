@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kDrag_px = 6.0F;  // less is a click
+constexpr float kDrag_px = 6.0F;     // less is a click
 constexpr double kWheelShare = 0.1;  // of what is shown, a step of the wheel
 
 double time_under_mouse(const Plot& plot, const CurveTime& time) {
@@ -70,7 +70,8 @@ void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time
   const bool left = mouse_px > 0.5F * (plot.left() + plot.right());
   const float x = left ? mouse_px - width - 3.0F * pad : mouse_px + pad;
   ImDrawList& list = *ImGui::GetForegroundDrawList();
-  list.AddRectFilled({x, plot.top()}, {x + width + 2.0F * pad, plot.top() + high}, ink(style.colours().panel, 0.92F), 4.0F);
+  list.AddRectFilled({x, plot.top()}, {x + width + 2.0F * pad, plot.top() + high}, ink(style.colours().panel, 0.92F),
+                     4.0F);
   list.AddRect({x, plot.top()}, {x + width + 2.0F * pad, plot.top() + high}, ink(style.colours().grid), 4.0F);
   float y = plot.top() + pad;
   list.AddText({x + pad, y}, ink(style.colours().text), heading);
@@ -85,7 +86,8 @@ void draw_labels(const Plot& plot, const std::vector<CurveLabel>& labels) {
   const float line = ImGui::GetTextLineHeight();
   std::vector<float> wanted;
   for (const CurveLabel& label : labels) wanted.push_back(label.y_px - 0.5F * line);
-  const std::vector<float> places = spread_labels(wanted, 0.9F * line, plot.top() - 0.5F * line, plot.bottom() - 0.5F * line);
+  const std::vector<float> places =
+      spread_labels(wanted, 0.9F * line, plot.top() - 0.5F * line, plot.bottom() - 0.5F * line);
   ImDrawList& list = plot.list();
   list.PushClipRectFullScreen();
   for (std::size_t i = 0; i < labels.size(); ++i)

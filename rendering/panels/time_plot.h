@@ -23,8 +23,7 @@ struct Reading {
   Rgb colour{0.0F};
 };
 // Beside the time under the mouse, on the plot that the mouse is over.
-void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time,
-                   const std::vector<Reading>& readings);
+void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time, const std::vector<Reading>& readings);
 
 struct CurveLabel {
   std::string text;

@@ -14,7 +14,7 @@
 
 namespace palpate {
 
-inline constexpr double kShown_s = 10.0;     // of the curves at a time, as long as nobody zooms
+inline constexpr double kShown_s = 10.0;       // of the curves at a time, as long as nobody zooms
 inline constexpr double kLeastShown_s = 0.02;  // of the curves, zoomed in
 
 inline constexpr float kSmallestText = 0.8F;  // times the usual size
@@ -22,7 +22,7 @@ inline constexpr float kLargestText = 1.6F;
 
 // The part of the time that the curves show.
 struct CurveTime {
-  double zero_s = 0.0;   // loop time at which the axes' time begins
+  double zero_s = 0.0;  // loop time at which the axes' time begins
   double shown_s = kShown_s;
   // Curves stand still, and end so long before.
   bool paused = false;
@@ -35,7 +35,11 @@ struct CurveTime {
   // The loop time at the right edge of the curves; `now_s` while they run.
   double end_s(double now_s) const noexcept { return paused ? paused_at_s - scrolled_back_s : now_s; }
   void pause(double at_s) noexcept;
-  void run() noexcept { paused = false; scrolled_back_s = 0.0; shown_s = kShown_s; }
+  void run() noexcept {
+    paused = false;
+    scrolled_back_s = 0.0;
+    shown_s = kShown_s;
+  }
   // Stops and shows what lies between two times, in either order.
   void zoom(double one_s, double other_s) noexcept;
   // While paused; not beyond `oldest_s`, the first there is.
@@ -60,22 +64,21 @@ struct OfferedFile {
 struct ViewState {
   Theme theme = Theme::light;
   bool kiosk = false;
-  float text_size = 1.0F;  // times the usual
-  int hidden_choice = 0;        // above 0: which model is active is a secret, shown as this
-  std::string hidden_name;      // what it is called then
+  float text_size = 1.0F;       // times the usual
+  bool blind = false;           // which model is active is a secret
+  bool tool_is_held = false;    // out of the block, whatever the mouse does
   std::size_t block_count = 4;  // 1, 2 or 4
   TableState table;
-  bool exaggerated = false;       // arrows show ten times the difference
-  bool centres_together = true;   // the slider moves all models that have centres
-  int requested_centres = 0;         // of the slider, as long as it is held
-  bool scene_list = false;        // scenes to choose from
+  bool exaggerated = false;      // arrows show ten times the difference
+  bool centres_together = true;  // the slider moves all models that have centres
+  int requested_centres = 0;     // of the slider, as long as it is held
+  bool scene_list = false;       // scenes to choose from
   OfferedFile offered;
   bool help = false;
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load
-  std::vector<std::size_t> revealed;  // slots whose curves a visitor sees after the answer
   CurveTime time;
-  bool difference = true;  // beside the force: the difference in its band; else what is felt of it
+  bool difference = true;      // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot
 };

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <utility>
 
 #include "scenes/scene/assets.h"
@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kBetween = 1.32F;  // blocks side by side, in widths
+constexpr float kBetween = 1.32F;        // blocks side by side, in widths
 constexpr float kStrongestArrow = 0.3F;  // of a scene's strongest press, in sizes of a block
 constexpr float kLongestArrow = 0.6F;
 constexpr float kUsualSize_m = 0.1F;
@@ -23,8 +23,7 @@ constexpr float kShortestArrow_N = 0.03F;
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
 
 Rgb rgb(const Colour& colour) {
-  return Rgb(static_cast<float>(colour.red), static_cast<float>(colour.green),
-             static_cast<float>(colour.blue)) /
+  return Rgb(static_cast<float>(colour.red), static_cast<float>(colour.green), static_cast<float>(colour.blue)) /
          255.0F;
 }
 
@@ -100,15 +99,15 @@ Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene) {
   if (!solid) return solid.error();
   auto table = Shader::load(folder, "table");
   if (!table) return table.error();
-  return std::unique_ptr<BlockView>(
-      new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table)));
+  return std::unique_ptr<BlockView>(new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table)));
 }
 
 BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table)
     : geometry_(scene.block),
       block_colour_(rgb(scene.block_colour)),
       tool_colour_(rgb(scene.tool_colour)),
-      size_m_(std::max(static_cast<float>(scene.block.width_m), 1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
+      size_m_(std::max(static_cast<float>(scene.block.width_m),
+                       1.3F * kToolLength * static_cast<float>(scene.block.tool_radius_m))),
       arrow_m_per_N_(kStrongestArrow * size_m_ / static_cast<float>(scene.strongest_press_N)),
       arrow_width_(size_m_ / kUsualSize_m),
       block_shader_(std::move(block)),
@@ -165,8 +164,8 @@ glm::vec2 BlockView::on_screen(std::size_t index, std::size_t count, const glm::
 
 float BlockView::depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const {
   constexpr float kProbe_m = 0.01F;
-  const float pixels = on_screen(index, count, {0.0F, -kProbe_m, 0.0F}, size).y -
-                       on_screen(index, count, {0.0F, 0.0F, 0.0F}, size).y;
+  const float pixels =
+      on_screen(index, count, {0.0F, -kProbe_m, 0.0F}, size).y - on_screen(index, count, {0.0F, 0.0F, 0.0F}, size).y;
   return kProbe_m / std::max(pixels, 1.0F);
 }
 
@@ -179,8 +178,7 @@ void BlockView::begin(const Shader& shader) const {
 
 void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
   if (viewport.width < 1 || viewport.height < 1) return;
-  view_projection_ =
-      camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
+  view_projection_ = camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
   shown_ = &meshes(viewport, blocks.size());
   draw_backdrop(table_state(blocks, viewport, theme));
   // Without the sides, which never move, where the backdrop has them. A dent is seen through

@@ -13,10 +13,10 @@
 #include "engine/base/result.h"
 #include "rendering/picture/backdrop.h"
 #include "rendering/picture/camera.h"
-#include "rendering/ui/colours.h"
 #include "rendering/picture/mesh.h"
 #include "rendering/picture/shader.h"
 #include "rendering/picture/smooth_target.h"
+#include "rendering/ui/colours.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
@@ -28,8 +28,8 @@ struct BlockPose {
   float error_over_jnd = 0.0F;
   float force_N = 0.0F;
   Rgb arrow{0.0F};
-  bool chosen = false;  // the active model
-  bool shows_error = true;   // the dent shows the error's colour
+  bool chosen = false;      // the active model
+  bool shows_error = true;  // the dent shows the error's colour
 };
 
 class BlockView {
@@ -48,8 +48,7 @@ class BlockView {
   glm::vec3 place(std::size_t index, std::size_t count) const;
   // A point of block `index`, relative to the middle of its top, in the
   // viewport's pixels, y down.
-  glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point,
-                      const glm::vec2& size) const;
+  glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point, const glm::vec2& size) const;
   // How far the tool moves inwards for a pixel downwards, metres.
   float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
   const BlockGeometry& geometry() const noexcept { return geometry_; }
@@ -81,8 +80,7 @@ class BlockView {
   void add_part(const glm::vec3& low_m, const glm::vec3& high_m, const Viewport& viewport,
                 std::vector<Viewport>& parts) const;
   // Where blocks are, down to `lowest_m` below their tops; where tools and arrows are.
-  void add_block_parts(std::size_t count, float lowest_m, const Viewport& viewport,
-                       std::vector<Viewport>& parts) const;
+  void add_block_parts(std::size_t count, float lowest_m, const Viewport& viewport, std::vector<Viewport>& parts) const;
   void add_tool_parts(const std::vector<BlockPose>& blocks, const Viewport& viewport,
                       std::vector<Viewport>& parts) const;
   void draw_blocks(const std::vector<BlockPose>& blocks) const;
@@ -94,9 +92,9 @@ class BlockView {
   BlockGeometry geometry_;
   Rgb block_colour_;
   Rgb tool_colour_;
-  float size_m_;          // of what the camera frames for one block
+  float size_m_;  // of what the camera frames for one block
   float arrow_m_per_N_;
-  float arrow_width_;     // times the usual
+  float arrow_width_;  // times the usual
   Shader block_shader_, solid_shader_, table_shader_;
   Meshes fine_, coarse_;
   const Meshes* shown_ = &fine_;

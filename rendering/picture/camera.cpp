@@ -57,8 +57,7 @@ void Camera::advance(float seconds) {
 
 glm::vec3 Camera::eye() const {
   const float flat = now_.distance_m * std::cos(now_.pitch_rad);
-  return {flat * std::sin(now_.yaw_rad), now_.distance_m * std::sin(now_.pitch_rad),
-          flat * std::cos(now_.yaw_rad)};
+  return {flat * std::sin(now_.yaw_rad), now_.distance_m * std::sin(now_.pitch_rad), flat * std::cos(now_.yaw_rad)};
 }
 
 glm::mat4 Camera::view_projection(float aspect) const {

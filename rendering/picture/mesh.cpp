@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <cstddef>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 namespace palpate {
 namespace {
@@ -41,7 +41,8 @@ Outline outline(const glm::vec2& half, const Steps& steps) {
     const float sign_x = corner == 0 || corner == 3 ? 1.0F : -1.0F;
     const float sign_z = corner < 2 ? 1.0F : -1.0F;
     for (int i = 0; i <= steps.corner; ++i) {
-      const float angle = kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(steps.corner));
+      const float angle =
+          kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(steps.corner));
       const glm::vec3 normal(std::cos(angle), 0.0F, std::sin(angle));
       points.push_back({glm::vec3(sign_x * core.x, 0.0F, sign_z * core.y) + kCorner_m * normal, normal});
     }
@@ -60,9 +61,7 @@ Outline outline(const glm::vec2& half, const Steps& steps) {
   return points;
 }
 
-void add_ring(Mesh& mesh, const Outline& ring) {
-  mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end());
-}
+void add_ring(Mesh& mesh, const Outline& ring) { mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end()); }
 
 // Joins the last ring with the one before it; the last lies outside or below.
 void join_rings(Mesh& mesh, std::size_t around) {
@@ -71,8 +70,7 @@ void join_rings(Mesh& mesh, std::size_t around) {
   const std::uint32_t inner = outer - points;
   for (std::uint32_t i = 0; i < points; ++i) {
     const std::uint32_t next = (i + 1) % points;
-    for (const std::uint32_t index :
-         {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
+    for (const std::uint32_t index : {inner + i, inner + next, outer + i, outer + i, inner + next, outer + next}) {
       mesh.triangles.push_back(index);
     }
   }
@@ -117,7 +115,8 @@ Mesh block_mesh(float width_m, float length_m, float height_m, float detail) {
   add_top(mesh, rim, steps.rings);
   for (int i = 1; i <= steps.fillet; ++i) {
     const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(steps.fillet);
-    add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)), 0.5F * std::numbers::pi_v<float> - angle);
+    add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)),
+                0.5F * std::numbers::pi_v<float> - angle);
   }
   add_shifted(mesh, rim, kEdge_m, (1.0F - kDarkShare) * height_m, 0.0F);
   add_shifted(mesh, rim, kEdge_m, height_m - 0.25F * kEdge_m, 0.0F);
@@ -144,8 +143,7 @@ Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides) {
     const std::uint32_t lower = upper - around;
     for (std::uint32_t i = 0; i < around; ++i) {
       const std::uint32_t next = (i + 1) % around;
-      for (const std::uint32_t index :
-           {lower + i, upper + i, lower + next, lower + next, upper + i, upper + next}) {
+      for (const std::uint32_t index : {lower + i, upper + i, lower + next, lower + next, upper + i, upper + next}) {
         mesh.triangles.push_back(index);
       }
     }
@@ -163,12 +161,11 @@ GpuMesh::GpuMesh(const Mesh& mesh) : index_count_(static_cast<int>(mesh.triangle
   glBindVertexArray(array_);
   glGenBuffers(2, buffers_);
   glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)),
-               mesh.vertices.data(), GL_STATIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)), mesh.triangles.data(),
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)), mesh.vertices.data(),
                GL_STATIC_DRAW);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
+               mesh.triangles.data(), GL_STATIC_DRAW);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
   glEnableVertexAttribArray(1);

@@ -23,8 +23,7 @@ std::string shader_log(unsigned shader) {
 
 Id compile(const std::string& path, unsigned kind) {
   std::ifstream file(path, std::ios::binary);
-  if (!file)
-    return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
+  if (!file) return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const unsigned shader = glCreateShader(kind);
   const char* source = text.c_str();

@@ -88,7 +88,8 @@ void SmoothTarget::keep(unsigned framebuffer, const Viewport& place) {
   if (!fits && !kept_.make(place.width, place.height, false)) kept_.release();
   kept_x_ = place.x;
   kept_y_ = place.y;
-  if (kept_.framebuffer != 0) copy_parts(framebuffer, place.x, place.y, kept_.framebuffer, place.x, place.y, {&place, 1});
+  if (kept_.framebuffer != 0)
+    copy_parts(framebuffer, place.x, place.y, kept_.framebuffer, place.x, place.y, {&place, 1});
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

@@ -10,12 +10,8 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 // NaN counts as nothing.
-float smaller(float so_far, float value) noexcept {
-  return value < so_far || std::isnan(so_far) ? value : so_far;
-}
-float larger(float so_far, float value) noexcept {
-  return value > so_far || std::isnan(so_far) ? value : so_far;
-}
+float smaller(float so_far, float value) noexcept { return value < so_far || std::isnan(so_far) ? value : so_far; }
+float larger(float so_far, float value) noexcept { return value > so_far || std::isnan(so_far) ? value : so_far; }
 
 const CurveColumn& empty_column() {
   static const CurveColumn empty = [] {
@@ -65,9 +61,8 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
 
 // Keeps the columns that both have; false: there are none that could be kept.
 bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::size_t count) {
-  const bool same = columns_.size() == count + 2 && slots == slots_ &&
-                    std::abs(width_s - width_s_) < 1e-9 * width_s && first >= first_ &&
-                    first - first_ < static_cast<double>(columns_.size());
+  const bool same = columns_.size() == count + 2 && slots == slots_ && std::abs(width_s - width_s_) < 1e-9 * width_s &&
+                    first >= first_ && first - first_ < static_cast<double>(columns_.size());
   if (same) {
     const auto gone = static_cast<std::ptrdiff_t>(first - first_);
     std::move(columns_.begin() + gone, columns_.end(), columns_.begin());
@@ -115,8 +110,7 @@ void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, double
   column.low_N[slot] = smaller(column.low_N[slot], force_N);
   column.high_N[slot] = larger(column.high_N[slot], force_N);
   if (std::isnan(point.reference_N)) return;
-  const double difference =
-      point.in_contact ? static_cast<double>(force_N - point.reference_N) / jnd_N : 0.0;
+  const double difference = point.in_contact ? static_cast<double>(force_N - point.reference_N) / jnd_N : 0.0;
   const auto felt = static_cast<float>(felt_[slot].add(point.loop_time_s, difference));
   column.low_over_jnd[slot] = smaller(column.low_over_jnd[slot], static_cast<float>(difference));
   column.high_over_jnd[slot] = larger(column.high_over_jnd[slot], static_cast<float>(difference));
@@ -147,7 +141,8 @@ const CurveColumn* CurveColumns::at(double time_s) const noexcept {
 }
 
 const CurveColumn* CurveColumns::last() const noexcept {
-  const auto found = std::find_if(columns_.rbegin(), columns_.rend(), [](const CurveColumn& column) { return column.any; });
+  const auto found =
+      std::find_if(columns_.rbegin(), columns_.rend(), [](const CurveColumn& column) { return column.any; });
   return found != columns_.rend() ? &*found : nullptr;
 }
 

@@ -70,9 +70,7 @@ double Plot::x_at(float px) const noexcept {
   return axes_.x.from + static_cast<double>((px - low_.x) / (high_.x - low_.x)) * (axes_.x.to - axes_.x.from);
 }
 
-bool Plot::hovered() const noexcept {
-  return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered();
-}
+bool Plot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }
 
 void Plot::draw_y_axis() const {
   const Range& y_range = axes_.y;
@@ -83,8 +81,8 @@ void Plot::draw_y_axis() const {
   for (double y = std::ceil(y_range.from / y_step - 1e-9) * y_step; y <= y_range.to + 1e-9 * y_step; y += y_step) {
     list_->AddLine({low_.x, std::round(y_px(y))}, {high_.x, std::round(y_px(y))}, ink(style_.colours().grid));
     const bool last = y + y_step > y_range.to + 1e-9 * y_step;
-    std::snprintf(text, sizeof text, "%g%s%s", std::abs(y) < 1e-9 ? 0.0 : y,
-                  last && *axes_.y_unit != '\0' ? " " : "", last ? axes_.y_unit : "");
+    std::snprintf(text, sizeof text, "%g%s%s", std::abs(y) < 1e-9 ? 0.0 : y, last && *axes_.y_unit != '\0' ? " " : "",
+                  last ? axes_.y_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     list_->AddText({low_.x - size.x - 0.3F * line, y_px(y) - 0.55F * line}, ink(style_.colours().quiet), text);
   }
@@ -109,8 +107,7 @@ void Plot::draw_x_axis() const {
 }
 
 void Plot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
-  if (points.size() > 1)
-    list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+  if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
 }
 
 void Plot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const {
@@ -124,8 +121,7 @@ void Plot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& low
     list_->PrimWriteVtx(lower[i], white, colour);
   }
   for (int i = 0; i < quads; ++i) {
-    for (const int corner : {0, 1, 2, 2, 1, 3})
-      list_->PrimWriteIdx(static_cast<ImDrawIdx>(first + 2 * i + corner));
+    for (const int corner : {0, 1, 2, 2, 1, 3}) list_->PrimWriteIdx(static_cast<ImDrawIdx>(first + 2 * i + corner));
   }
 }
 

@@ -29,8 +29,8 @@ struct PlotAxes {
   Range x, y;
   const char* x_unit = "";  // these end the last label
   const char* y_unit = "";
-  bool x_numbers = false;    // whether to label the x axis
-  float right_room = 0.6F;   // for labels beside the frame, in heights of a line
+  bool x_numbers = false;   // whether to label the x axis
+  float right_room = 0.6F;  // for labels beside the frame, in heights of a line
 };
 
 class Plot {

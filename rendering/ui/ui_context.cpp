@@ -31,8 +31,7 @@ void UiContext::begin_frame() {
   ImGui_ImplGlfw_NewFrame();
   // The mouse has left: nothing is under it any more.
   const bool held = ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
-  if (!held && glfwGetWindowAttrib(window_, GLFW_HOVERED) == 0)
-    ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
+  if (!held && glfwGetWindowAttrib(window_, GLFW_HOVERED) == 0) ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
   ImGui::NewFrame();
 }
 

@@ -122,8 +122,7 @@ void UiStyle::set_colours() {
   }
   for (const ImGuiCol what : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered})
     set(what, hovered);
-  for (const ImGuiCol what : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive})
-    set(what, pressed);
+  for (const ImGuiCol what : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive}) set(what, pressed);
   set(ImGuiCol_SliderGrab, p.quiet);
   set(ImGuiCol_SliderGrabActive, p.text);
   set(ImGuiCol_CheckMark, p.text);

@@ -22,8 +22,8 @@ inline float height_of(const ImFont* font) { return font->FontSize * font->Scale
 struct UiSize {
   float width = 1280.0F;  // in the window's units
   float height = 720.0F;
-  float content_scale = 1.0F;     // of the display: pixels for a pixel of a usual one
-  float pixels_per_unit = 1.0F;   // of the framebuffer
+  float content_scale = 1.0F;    // of the display: pixels for a pixel of a usual one
+  float pixels_per_unit = 1.0F;  // of the framebuffer
 };
 
 // Units of the window for one pixel of the 1080-line design: follows the size that the

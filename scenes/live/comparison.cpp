@@ -64,8 +64,7 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
   history_.append(point);
 }
 
-void Comparison::add_to_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot,
-                             double reference_N) {
+void Comparison::add_to_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot, double reference_N) {
   Figures& figures = figures_[slot];
   const bool counts = seen_out_of_contact_ && snapshot.samples > 0 && snapshot.tick.in_contact &&
                       (snapshot.tick.fault == TickFault::none || snapshot.tick.fault == TickFault::force_not_finite);
@@ -108,9 +107,12 @@ void Comparison::show(const LoopSnapshot& newest) {
 
 double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept {
   switch (reference_) {
-    case ReferenceKind::measured: return snapshot.measured_N;
-    case ReferenceKind::truth: return snapshot.reference_N;
-    case ReferenceKind::direct: break;
+    case ReferenceKind::measured:
+      return snapshot.measured_N;
+    case ReferenceKind::truth:
+      return snapshot.reference_N;
+    case ReferenceKind::direct:
+      break;
   }
   if (set == nullptr || !slots_.direct()) return kNoForce;
   const auto place = set->place_of(*slots_.direct());

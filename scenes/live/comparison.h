@@ -37,7 +37,7 @@ class Comparison {
   Comparison(ModelSlots& slots, const JndLine& jnd) : slots_(slots), jnd_(jnd) {}
 
   ReferenceKind reference() const noexcept { return reference_; }
-  void use_reference(ReferenceKind kind);  // forgets the errors
+  void use_reference(ReferenceKind kind);                       // forgets the errors
   double reference_N() const noexcept { return reference_N_; }  // in the newest tick; NaN: none
   // One point a tick of the last minutes.
   const ForceHistory& history() const noexcept { return history_; }
@@ -67,7 +67,7 @@ class Comparison {
   JndLine jnd_;
   ReferenceKind reference_ = ReferenceKind::direct;
   double reference_N_ = kNoForce;
-  std::vector<Figures> figures_;  // by slot
+  std::vector<Figures> figures_;      // by slot
   bool seen_out_of_contact_ = false;  // since the filters started
   double last_loop_time_s_ = 0.0;
   ForceHistory history_;

@@ -68,7 +68,8 @@ Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) 
     languages.push_back(std::move(*words));
   }
   if (languages.empty()) return Error{"found no language in " + folder + ", expected at least one .txt file"};
-  std::sort(languages.begin(), languages.end(), [](const ExhibitWords& a, const ExhibitWords& b) { return a("order") < b("order"); });
+  std::sort(languages.begin(), languages.end(),
+            [](const ExhibitWords& a, const ExhibitWords& b) { return a("order") < b("order"); });
   return languages;
 }
 
@@ -80,7 +81,8 @@ ExhibitTally read_tally(const std::string& path) {
 }
 
 Status write_tally(const std::string& path, const ExhibitTally& tally) {
-  return write_file_atomically(path, std::to_string(tally.answers) + " " + std::to_string(tally.as_expected) + "\n", true);
+  return write_file_atomically(path, std::to_string(tally.answers) + " " + std::to_string(tally.as_expected) + "\n",
+                               true);
 }
 
 }  // namespace palpate

@@ -21,9 +21,12 @@ constexpr int kMostFaultFiles = 50;
 
 WrittenForce written(ReferenceKind kind) {
   switch (kind) {
-    case ReferenceKind::measured: return WrittenForce::measured;
-    case ReferenceKind::truth: return WrittenForce::reference;
-    case ReferenceKind::direct: return WrittenForce::model;
+    case ReferenceKind::measured:
+      return WrittenForce::measured;
+    case ReferenceKind::truth:
+      return WrittenForce::reference;
+    case ReferenceKind::direct:
+      return WrittenForce::model;
   }
   return WrittenForce::model;
 }
@@ -60,14 +63,14 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
 }
 
 Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
-  if (scene_.material && replay() == nullptr) {
+  if (scene_.material && !device_->measures_force()) {
     const Result<Material> material = find_material(*scene_.material);
     if (!material) return material.error();
     truth_ = std::make_shared<TrueForce>(*material);
   }
-  comparison_.use_reference(replay() != nullptr  ? ReferenceKind::measured
-                            : truth_ != nullptr ? ReferenceKind::truth
-                                                : ReferenceKind::direct);
+  comparison_.use_reference(device_->measures_force() ? ReferenceKind::measured
+                            : truth_ != nullptr       ? ReferenceKind::truth
+                                                      : ReferenceKind::direct);
   LoopSettings settings;
   settings.rehearse_ns = kRehearse_ns;
   settings.realtime = request_.realtime;
@@ -183,9 +186,12 @@ void LiveSession::select(std::size_t slot) {
 
 bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
   switch (kind) {
-    case ReferenceKind::measured: return replay() != nullptr;
-    case ReferenceKind::truth: return truth_ != nullptr;
-    case ReferenceKind::direct: return models_.direct().has_value();
+    case ReferenceKind::measured:
+      return device_->measures_force();
+    case ReferenceKind::truth:
+      return truth_ != nullptr;
+    case ReferenceKind::direct:
+      return models_.direct().has_value();
   }
   return false;
 }
@@ -196,8 +202,10 @@ void LiveSession::use_reference(ReferenceKind kind) {
 
 std::string LiveSession::reference_words() const {
   switch (comparison_.reference()) {
-    case ReferenceKind::measured: return "force in the recording";
-    case ReferenceKind::truth: return "true force of the virtual material, " + *scene_.material;
+    case ReferenceKind::measured:
+      return replay() != nullptr ? "force in the recording" : "measured force of the real block";
+    case ReferenceKind::truth:
+      return "true force of the virtual material, " + *scene_.material;
     case ReferenceKind::direct:
       return has_reference(ReferenceKind::direct) ? "direct interpolant" : "no reference";
   }
@@ -244,9 +252,9 @@ std::vector<std::string> LiveSession::recording_comments() const {
   return {"recorded live; scene " + scene_.name + ", device " + device_->name(),
           "force_N: " + reference_words() + ", not what the device rendered",
           "a stream that starts over (end of a replay, seek) begins 30 s later than the last one ended",
-          "position_m: " + (surface_.offset_m() == 0.0 ? std::string("as the device gave it")
-                                                       : "moved to the models' surface by " +
-                                                             fixed(-1e3 * surface_.offset_m(), 3) + " mm")};
+          "position_m: " + (surface_.offset_m() == 0.0
+                                ? std::string("as the device gave it")
+                                : "moved to the models' surface by " + fixed(-1e3 * surface_.offset_m(), 3) + " mm")};
 }
 
 Status LiveSession::start_recording(const std::string& path) {

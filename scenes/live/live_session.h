@@ -35,10 +35,10 @@ struct SessionRequest {
   std::vector<std::string> models;  // methods or model files; empty: the line-up
   std::string line_up;              // of line_ups(); empty, or not of the scene's: the scene's default
   std::uint64_t seed = 1;           // of the hand, the training recording, the fits
-  bool position_only = false;  // one more slot: a model that knows the depth alone
+  bool position_only = false;       // one more slot: a model that knows the depth alone
   bool realtime = true;
   std::string data_folder;  // for files about faults; empty: where the program runs
-  HidBus* bus = nullptr;  // outlives the session; null: the machine's own
+  HidBus* bus = nullptr;    // outlives the session; null: the machine's own
 };
 
 class LiveSession {

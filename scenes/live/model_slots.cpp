@@ -19,7 +19,7 @@ constexpr std::size_t kNoSlot = static_cast<std::size_t>(-1);
 struct ModelSlots::Slot {
   SlotView view;
   SlotPlan plan;
-  int asked_centres = 0;  // of the plan, before it was changed by hand
+  int asked_centres = 0;                     // of the plan, before it was changed by hand
   std::shared_ptr<const FittedModel> model;  // null until ready
   bool hidden = false;
   bool removed = false;
@@ -133,8 +133,7 @@ bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
   }
   std::optional<std::size_t> first;
   for (const SlotPlan& plan : plans) {
-    const auto same = std::find_if(slots_.begin(), slots_.end(),
-                                   [&](const auto& slot) { return slot->is(plan); });
+    const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) { return slot->is(plan); });
     auto index = static_cast<std::size_t>(same - slots_.begin());
     if (same == slots_.end()) {
       if (!has_room("show " + plan_name(plan))) continue;
@@ -221,7 +220,8 @@ double ModelSlots::trained_depth_m() const noexcept {
     if (!slot->takes_part()) continue;
     const ModelData& data = slot->model->data();
     for (std::size_t i = 0; i < data.features.size(); ++i) {
-      if (data.features[i].kind == FeatureKind::depth) depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
+      if (data.features[i].kind == FeatureKind::depth)
+        depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
     }
   }
   return depth_m;
@@ -229,13 +229,12 @@ double ModelSlots::trained_depth_m() const noexcept {
 
 bool ModelSlots::has_room(const std::string& what) {
   if (slots_.size() + outstanding_files_ < kMaxModels) return true;
-  notices_.add("cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; start again with fewer",
-               true);
+  notices_.add(
+      "cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; start again with fewer", true);
   return false;
 }
 
-std::unique_ptr<LiveModels> ModelSlots::make_set(const SensorSpec& sensor,
-                                                 std::shared_ptr<ReferenceForce> reference) {
+std::unique_ptr<LiveModels> ModelSlots::make_set(const SensorSpec& sensor, std::shared_ptr<ReferenceForce> reference) {
   PublishedSet set;
   set.id = sets_.empty() ? 1 : sets_.back().id + 1;
   std::vector<std::shared_ptr<const ForceModel>> models;
@@ -255,16 +254,15 @@ std::unique_ptr<LiveModels> ModelSlots::make_set(const SensorSpec& sensor,
 }
 
 const PublishedSet* ModelSlots::set_of(const LoopSnapshot& snapshot) const noexcept {
-  const auto set = std::find_if(sets_.rbegin(), sets_.rend(),
-                                [&](const PublishedSet& one) { return one.id == snapshot.models_id; });
+  const auto set =
+      std::find_if(sets_.rbegin(), sets_.rend(), [&](const PublishedSet& one) { return one.id == snapshot.models_id; });
   return set != sets_.rend() ? &*set : nullptr;
 }
 
 void ModelSlots::write_selection(LoopControls& controls) const {
   if (sets_.empty()) return;
   controls.models_id = sets_.back().id;
-  controls.selected =
-      static_cast<std::uint32_t>(sets_.back().place_of(selected_).value_or(sets_.back().slots.size()));
+  controls.selected = static_cast<std::uint32_t>(sets_.back().place_of(selected_).value_or(sets_.back().slots.size()));
 }
 
 std::vector<std::shared_ptr<const ForceModel>> ModelSlots::ready_models() const {

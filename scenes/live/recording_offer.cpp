@@ -39,7 +39,8 @@ Result<RecordingOffer> offer_recording(const std::string& path, const std::strin
   if (!table) return table.error();
   RecordingOffer offer;
   offer.path = folder + "/" + std::filesystem::path(path).stem().string() + local_time_text("-%Y%m%d-%H%M%S.csv");
-  if (Status status = write_recording(offer.path, table->recording, import_origin(path, request, *table), true); !status)
+  if (Status status = write_recording(offer.path, table->recording, import_origin(path, request, *table), true);
+      !status)
     return status.error();
   offer.words.push_back(table_words(*table));
   for (std::size_t role = 0; role < kRoles; ++role)

@@ -29,9 +29,9 @@ class ReplaySurface {
   bool move(bool moved);
 
   bool moved() const noexcept { return moved_; }
-  double found_m() const noexcept { return found_.offset_m; }  // 0: none, or not yet
+  double found_m() const noexcept { return found_.at; }  // 0: none, or not yet
   // What is subtracted from the positions now.
-  double offset_m() const noexcept { return moved_ ? found_.offset_m : 0.0; }
+  double offset_m() const noexcept { return moved_ ? found_m() : 0.0; }
 
  private:
   bool apply();
@@ -40,8 +40,8 @@ class ReplaySurface {
   JndLine jnd_;
   bool moved_ = true;
   std::size_t searched_models_ = 0;  // of the last search
-  SurfaceLocation found_;
-  std::future<SurfaceLocation> search_;
+  Located found_;
+  std::future<Located> search_;
 };
 
 }  // namespace palpate

@@ -12,12 +12,16 @@ namespace {
 
 constexpr std::size_t kSamplesAtOnce = 1024;
 constexpr auto kPause = std::chrono::milliseconds(20);
+constexpr int kRoundsToDisk = 10;  // of so many pauses
 
 double force_of(const RecordedSample& sample, WrittenForce force) {
   switch (force) {
-    case WrittenForce::measured: return sample.measured_N;
-    case WrittenForce::reference: return sample.reference_N;
-    case WrittenForce::model: return sample.model_N;
+    case WrittenForce::measured:
+      return sample.measured_N;
+    case WrittenForce::reference:
+      return sample.reference_N;
+    case WrittenForce::model:
+      return sample.model_N;
   }
   return kNoForce;
 }
@@ -55,8 +59,10 @@ SessionRecorder::~SessionRecorder() {
 Status SessionRecorder::start(const RecorderRequest& request) {
   if (active_) return Error{"already recording into " + request_.path + "; stop that one first"};
   std::error_code ignored;
-  if (std::filesystem::exists(request.path, ignored)) return Error{request.path + " exists; choose another name"};
-  Result<RecordingWriter> writer = RecordingWriter::create(request.path, request.columns, request.comments, false);
+  if (!request.overwrite && std::filesystem::exists(request.path, ignored))
+    return Error{request.path + " exists; choose another name"};
+  Result<RecordingWriter> writer =
+      RecordingWriter::create(request.path, request.columns, request.comments, request.overwrite);
   if (!writer) return writer.error();
   // What an earlier recording left, so that this one finds room.
   while (loop_.read_samples(buffer_.data(), buffer_.size()) > 0) continue;
@@ -102,11 +108,18 @@ void SessionRecorder::work() {
       last = wake_.wait_for(lock, kPause, [this] { return stop_; });
     }
     drain();
+    publish();
   }
   Notice outcome = finish();
   writer_.reset();
   const std::lock_guard lock(mutex_);
   outcome_ = std::move(outcome);
+}
+
+void SessionRecorder::publish() {
+  if (++rounds_ % kRoundsToDisk != 0) return;
+  // What is refused stays refused: the end of the loop and `finish` see it.
+  [[maybe_unused]] const Status status = writer_->publish();
 }
 
 void SessionRecorder::drain() {
@@ -128,7 +141,7 @@ void SessionRecorder::write(const RecordedSample& sample) {
     ++counts_.unusable;
     return;
   }
-  const double force_N = force_of(sample, request_.force);
+  const double force_N = request_.columns.force ? force_of(sample, request_.force) : 0.0;
   if (!std::isfinite(force_N)) {
     ++counts_.without_force;
     return;

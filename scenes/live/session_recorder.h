@@ -1,8 +1,8 @@
 // Every sample of a session into a recording file, not one lost.
 //
 // The loop puts samples into a ring (engine/live/live_tick.h); a thread of the
-// recorder's own empties it every 20 ms into an AtomicFile, so that the file is
-// whole under its name or not there. Time begins at 0 and goes on where the
+// recorder's own empties it every 20 ms into a RecordingWriter; from the 1000th row on
+// the file is there under its name, whole rows at every moment. Time begins at 0 and goes on where the
 // device's goes on; where a new stream begins (a recording that is replayed
 // starts over, a seek) it goes on kStreamGap_s later, by which the filters of
 // whoever reads the file have forgotten what was before, as the loop's had.
@@ -21,9 +21,9 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording_writer.h"
-#include "engine/base/result.h"
 #include "scenes/live/notices.h"
 
 namespace palpate {
@@ -44,6 +44,7 @@ struct RecorderRequest {
   WrittenForce force = WrittenForce::reference;
   RecordingColumns columns;
   std::vector<std::string> comments;
+  bool overwrite = false;
 };
 
 inline constexpr double kStreamGap_s = 30.0;
@@ -100,6 +101,7 @@ class SessionRecorder {
   void work();
   void drain();
   void write(const RecordedSample& sample);
+  void publish();
   Notice finish();
 
   HapticsLoop& loop_;
@@ -109,13 +111,14 @@ class SessionRecorder {
   RecordingTime time_;
   Counts counts_;
   bool restart_pending_ = false;
+  int rounds_ = 0;
   std::uint64_t dropped_before_ = 0;
   std::vector<RecordedSample> buffer_;
   std::thread thread_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  bool stop_ = false;               // by mutex_
-  std::optional<Notice> outcome_;   // by mutex_
+  bool stop_ = false;              // by mutex_
+  std::optional<Notice> outcome_;  // by mutex_
   std::atomic<std::uint64_t> rows_{0};
   std::atomic<double> seconds_{0.0};
   bool active_ = false;

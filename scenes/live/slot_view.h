@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "engine/tick/error_figures.h"
+#include "scenes/evaluation/error_figures.h"
 
 namespace palpate {
 
@@ -32,7 +32,7 @@ struct SlotView {
   // Of the force, 95 % (models/model); NaN: unknown. All there is without a reference.
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
   double evaluation_ns = 0.0;  // median over about the last second in contact
-  bool refitting = false;   // with another number of centres; the old one is there until then
+  bool refitting = false;      // with another number of centres; the old one is there until then
   bool takes_centres = false;
   // Since the last reset, over samples in contact and inside the data of all models
   // that are compared: the same samples for each.

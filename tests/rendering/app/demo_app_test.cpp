@@ -31,8 +31,7 @@ TEST_F(DemoAppTest, ShowsAPictureThatIsNotEmpty) {
   std::set<std::uint32_t> scene;
   std::set<std::uint32_t> panel;
   for (std::size_t i = 0; i < pixels.size(); i += 3) {
-    const std::uint32_t colour =
-        (std::uint32_t{pixels[i]} << 16) | (std::uint32_t{pixels[i + 1]} << 8) | pixels[i + 2];
+    const std::uint32_t colour = (std::uint32_t{pixels[i]} << 16) | (std::uint32_t{pixels[i + 1]} << 8) | pixels[i + 2];
     (i / 3 % image.width < 768 ? scene : panel).insert(colour);
   }
   EXPECT_GT(scene.size(), 2000u) << "shaded blocks";

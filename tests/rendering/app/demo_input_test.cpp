@@ -33,8 +33,7 @@ TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
     const auto from_N = static_cast<double>(history[i - 1].rendered_N);
     const auto to_N = static_cast<double>(history[i].rendered_N);
     // A tick that comes late may go as far as the time that has passed, up to 10 ms.
-    const double allowed_N =
-        session.jnd().at(std::min(from_N, to_N)) * std::clamp(step_s, 0.001, 0.01) / 0.01;
+    const double allowed_N = session.jnd().at(std::min(from_N, to_N)) * std::clamp(step_s, 0.001, 0.01) / 0.01;
     worst = std::max(worst, std::abs(to_N - from_N) / allowed_N);
   }
   // The tool gives way while the force changes, and the models' own forces with it:

@@ -65,8 +65,7 @@ TEST_F(DemoMain, WrongUsageIsExitCode2) {
 TEST_F(DemoMain, RunsForItsSecondsAndWritesStatsAndPicture) {
   const std::string stats = folder_.file("stats.json");
   const std::string picture = folder_.file("window.png");
-  const ProgramRun run =
-      demo({"--seconds", "3", "--model", "random", "--stats", stats, "--screenshot", picture});
+  const ProgramRun run = demo({"--seconds", "3", "--model", "random", "--stats", stats, "--screenshot", picture});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   std::ifstream file(stats);

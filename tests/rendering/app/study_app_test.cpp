@@ -49,8 +49,7 @@ class StudyAppTest : public ::testing::Test {
   bool until(StudyState state) {
     const auto start = std::chrono::steady_clock::now();
     while (app_->study()->session().state() != state) {
-      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s)
-        return false;
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s) return false;
       app_->frame();
     }
     return true;
@@ -113,7 +112,8 @@ TEST_F(StudyAppTest, AsksForTheStrokeThatWasLikeTheReference) {
 }
 
 TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {
-  const StudyHeader header{"S01", ProcedureKind::discriminate, kStrokeTiming, test::example_strokes(0.8, kStrokeTiming)};
+  const StudyHeader header{"S01", ProcedureKind::discriminate, kStrokeTiming,
+                           test::example_strokes(0.8, kStrokeTiming)};
   const auto records = run_simulated_session(header, {}, 1);
   ASSERT_TRUE(records.ok());
   {

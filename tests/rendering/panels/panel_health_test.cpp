@@ -49,7 +49,8 @@ TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   EXPECT_EQ(later.text.rfind("Earlier: " + words, 0), 0u) << later.text;
   EXPECT_TRUE(later.problem && later.past);
   // A slow machine may make another alarm at once.
-  EXPECT_TRUE(frames_until(session, [&] { return session.alarms().empty(); }, [&] { session.reset_figures(); }));
+  EXPECT_TRUE(frames_until(
+      session, [&] { return session.alarms().empty(); }, [&] { session.reset_figures(); }));
   EXPECT_FALSE(health_words(health_view(session), 0.0).past);
   opened->reset();
   std::filesystem::current_path(before);

@@ -21,8 +21,7 @@ TEST(Camera, SeesWhatItFrames) {
     EXPECT_GT(at.y, 0.0F);
     EXPECT_LT(at.y, size.y);
   }
-  EXPECT_LT(project(view, {0.0F, 0.05F, 0.0F}, size).y, project(view, {0.0F, 0.0F, 0.0F}, size).y)
-      << "up is up";
+  EXPECT_LT(project(view, {0.0F, 0.05F, 0.0F}, size).y, project(view, {0.0F, 0.0F, 0.0F}, size).y) << "up is up";
 }
 
 TEST(Camera, NeverGoesBelowTheTableOrOverTheTop) {

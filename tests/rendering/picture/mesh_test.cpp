@@ -41,8 +41,7 @@ TEST(Mesh, TheTopIsFineWhereItIsPressed) {
   const Mesh mesh = block_mesh(0.10F, 0.10F, 0.04F);
   int near_the_middle = 0;
   for (const Vertex& vertex : mesh.vertices) {
-    if (vertex.position.y == 0.0F && std::hypot(vertex.position.x, vertex.position.z) < 0.005F)
-      ++near_the_middle;
+    if (vertex.position.y == 0.0F && std::hypot(vertex.position.x, vertex.position.z) < 0.005F) ++near_the_middle;
   }
   EXPECT_GT(near_the_middle, 500);
 }

@@ -1,0 +1,168 @@
+#include "rendering/panels/exhibit.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cmath>
+#include <utility>
+
+#include "engine/live/pacer.h"
+
+namespace palpate {
+namespace {
+
+using State = ExhibitGame::State;
+
+constexpr double kRest_m = -0.008;       // of the tool while nothing is to be pressed
+constexpr double kDeviceMoves_m = 5e-4;  // more than the noise of a handle that lies still
+
+std::vector<ExhibitModel> ready_models(const LiveSession& session) {
+  std::vector<ExhibitModel> ready;
+  for (std::size_t i = 0; i < session.models().size(); ++i) {
+    const SlotView& slot = session.models().view(i);
+    if (slot.state == SlotState::ready) ready.push_back({i, slot.method, slot.name.find("'09") != std::string::npos});
+  }
+  return ready;
+}
+
+// A force that no model makes.
+bool has_reference(const LiveSession& session) {
+  return session.has_reference(session.comparison().reference()) &&
+         session.comparison().reference() != ReferenceKind::direct;
+}
+
+ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
+  return {point.loop_time_s, static_cast<double>(round.first ? point.force_N[round.first->slot] : point.reference_N),
+          static_cast<double>(point.force_N[round.second.slot]), point.in_contact, point.out_of_domain};
+}
+
+// Once the game is complete, which needs no other models to settle; nothing: too few yet.
+std::optional<ExhibitRound> first_round(const LiveSession& session) {
+  const auto rounds = ExhibitGame::rounds_of(ready_models(session), has_reference(session), false);
+  const bool complete = rounds.size() == ExhibitGame::kMostRounds && rounds.back().second.method == "greedy";
+  if (rounds.empty() || (!complete && !session.models().all_settled())) return std::nullopt;
+  return rounds.front();
+}
+
+}  // namespace
+
+void Exhibit::set_up(std::vector<ExhibitWords> languages, const std::string& tally_path, const ExhibitTimes& times) {
+  languages_ = std::move(languages);
+  tally_path_ = tally_path;
+  times_ = times;
+  if (!tally_path.empty()) tally_ = read_tally(tally_path);
+}
+
+const ExhibitRound* Exhibit::pair() const noexcept {
+  if (game_.state() != State::attract) return &game_.round();
+  return shown_ ? &*shown_ : nullptr;
+}
+
+bool Exhibit::update(LiveSession& session, ViewState& view) {
+  note_device(session);
+  const bool here = session.newest().loop_time_s - moved_s_ < times_.stay_s;
+  const bool left = visitor_ && !here;
+  visitor_ = here;
+  if (left) forget(session, view);
+  if (game_.state() == State::attract && !shown_) shown_ = first_round(session);
+  read_ticks(session);
+  note_result();
+  // So that nothing of the last round is still pressed, and nobody presses while reading.
+  view.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
+  if (view.tool_is_held) let_go(session);
+  // A visitor who hesitates presses; the hand does not do it instead.
+  if (game_.state() == State::press && session.mouse() != nullptr) session.mouse()->nudge(0.0, steady_now_s());
+  const ExhibitRound* now = pair();
+  const bool blind = game_.state() == State::press && game_.felt();
+  view.blind = blind;
+  view.block_count = game_.state() != State::attract && game_.felt() ? 1 : 2;
+  if (now != nullptr) session.select(blind ? game_.rendered().slot : now->second.slot);
+  return left;
+}
+
+// A handle that lies still, in contact or not, is nobody, and neither is the hand that
+// presses by itself.
+void Exhibit::note_device(const LiveSession& session) {
+  const double at_m = session.newest().tick.position_m;
+  if (std::abs(at_m - device_at_m_) < kDeviceMoves_m) return;
+  device_at_m_ = at_m;
+  const ToolInput* tool = session.mouse();
+  const bool somebody = tool != nullptr ? !tool->hand_is_exploring() : session.renders_force();
+  if (somebody) moved_s_ = session.newest().loop_time_s;
+}
+
+// Every tick counts, however slow the picture is.
+void Exhibit::read_ticks(const LiveSession& session) {
+  const ForceHistory& history = session.comparison().history();
+  const ExhibitRound* now = pair();
+  std::size_t next = history.first_at(seen_s_);
+  while (next < history.size() && history[next].loop_time_s <= seen_s_) ++next;
+  for (; now != nullptr && next < history.size(); ++next) {
+    const ExhibitTick tick = tick_of(history[next], *now);
+    if (game_.state() != State::attract) {
+      game_.add(tick, session.jnd());
+      continue;
+    }
+    if (trace_.seconds() >= times_.press_s) trace_.clear();
+    trace_.add(tick, session.jnd().at(tick.first_N));
+  }
+  if (history.size() > 0) seen_s_ = history[history.size() - 1].loop_time_s;
+}
+
+void Exhibit::let_go(LiveSession& session) {
+  if (session.mouse() != nullptr) session.mouse()->set_target(kRest_m, steady_now_s());
+}
+
+void Exhibit::note_result() {
+  if (game_.state() != State::reveal) {
+    noted_ = false;
+    return;
+  }
+  if (std::exchange(noted_, true)) return;
+  ++tally_.answers;
+  if (game_.round().right()) ++tally_.as_expected;
+  // A tally that cannot be kept is no reason to stop.
+  if (!tally_path_.empty()) (void)write_tally(tally_path_, tally_);
+}
+
+void Exhibit::begin(const LiveSession& session) {
+  if (shown_) (void)game_.begin(ready_models(session), has_reference(session), session.renders_force(), times_.press_s);
+}
+
+void Exhibit::forget(LiveSession& session, ViewState& view) {
+  game_.reset();
+  shown_.reset();
+  trace_.clear();
+  language_ = 0;
+  host_ = false;
+  session.reset_figures();
+  if (session.mouse() != nullptr) session.mouse()->leave();
+  view.time.run();
+}
+
+void Exhibit::press_key(int key, const LiveSession& session) {
+  moved_s_ = session.newest().loop_time_s;
+  const bool first = key == GLFW_KEY_1 || key == GLFW_KEY_KP_1;
+  const bool second = key == GLFW_KEY_2 || key == GLFW_KEY_KP_2;
+  const bool on = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER || key == GLFW_KEY_SPACE;
+  if (key == GLFW_KEY_L) language_ = (language_ + 1) % languages_.size();
+  switch (game_.state()) {
+    case State::attract:
+    case State::score:
+      if (first || on) begin(session);
+      break;
+    case State::guess:
+      if (first || second) game_.guess(first);
+      break;
+    case State::press:
+      if (first || second) game_.choose(first ? 1 : 2);
+      if (key == words()("key_differ").front() || key == words()("key_same").front())
+        game_.answer(key == words()("key_differ").front());
+      break;
+    case State::reveal:
+      if (first || on) leave_reveal();
+      break;
+  }
+}
+
+}  // namespace palpate

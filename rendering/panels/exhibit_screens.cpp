@@ -1,0 +1,361 @@
+// The exhibit's screens.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/text.h"
+#include "rendering/panels/exhibit.h"
+#include "rendering/panels/panel_health.h"
+#include "rendering/panels/panel_parts.h"
+
+namespace palpate {
+namespace {
+
+using State = ExhibitGame::State;
+
+constexpr auto kVisitorWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                                ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
+constexpr double kMost_jnd = 4.0;  // of the axis: fixed, so that rounds compare
+constexpr double kForces_s = 3.0;  // of both forces, around the largest difference
+constexpr double kPerSecond = 1.0 / ExhibitTrace::kColumn_s;
+
+const char* kind_of(const ExhibitModel& model) {
+  return model.paper ? "paper" : model.method == "position" ? "depth" : model.method == "greedy" ? "best" : "other";
+}
+
+bool pointer_moved() {
+  const ImGuiIO& io = ImGui::GetIO();
+  return io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || io.MouseWheel != 0.0F || ImGui::IsAnyMouseDown();
+}
+
+void space(const UiStyle& style, float lines) { ImGui::Dummy({1.0F, lines * height_of(style.fonts().body)}); }
+
+}  // namespace
+
+struct Exhibit::Canvas {
+  const LiveSession& session;
+  const UiStyle& style;
+  SceneArea panel;
+  float foot = 0.0F;  // its height
+  std::string centres_of(const ExhibitModel& model) const {
+    return std::to_string(session.models().view(model.slot).centres);
+  }
+  Rgb colour_of(const ExhibitModel& model) const {
+    return method_colour(model.method, style.theme());  // one at a time: no shades
+  }
+};
+
+std::string Exhibit::name_of(bool first, const LiveSession& session) const {
+  if (!first) return words()("name_computer");
+  if (pair()->first) return words()("name_other");
+  return words()(session.comparison().reference() == ReferenceKind::measured ? "name_measured" : "name_simulated");
+}
+
+// As exact as it is read.
+std::string Exhibit::number(double value) const {
+  if (value <= 0.0) return "0";
+  std::string text = fixed(std::max(0.01, value), value < 1.0 ? 2 : 1);
+  if (const std::size_t at = text.find('.'); at != std::string::npos) text.replace(at, 1, words()("decimal"));
+  return text;
+}
+
+std::string Exhibit::verdict() const {
+  const ExhibitRound& round = game_.round();
+  if (round.is_catch()) return words()("verdict_catch");
+  return words()(round.noticed() ? "verdict_noticed" : "verdict_unnoticed", number(round.largest_over_jnd));
+}
+
+void Exhibit::say(const std::string& text) {
+  ImGui::TextWrapped("%s", text.c_str());
+  said_.push_back(text);
+}
+
+void Exhibit::say_quietly(const Canvas& canvas, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(canvas.style.colours().quiet));
+  ImGui::PushFont(canvas.style.fonts().body);
+  say(text);
+  ImGui::PopFont();
+  ImGui::PopStyleColor();
+}
+
+void Exhibit::draw(const LiveSession& session, const BlockView& blocks, const UiStyle& style,
+                   const WindowLayout& layout) {
+  if (pointer_moved()) moved_s_ = session.newest().loop_time_s;
+  buttons_.clear();
+  said_.clear();
+  const Canvas canvas{session, style, layout.panel, 2.6F * height_of(style.fonts().body)};
+  ImGui::SetNextWindowPos(layout.panel.at);
+  ImGui::SetNextWindowSize(layout.panel.size);
+  ImGui::Begin("visitor", nullptr, kVisitorWindow);
+  ImGui::PushFont(style.fonts().heading);
+  space(style, 0.5F);
+  switch (game_.state()) {
+    case State::attract:
+      draw_attract(canvas);
+      break;
+    case State::guess:
+      draw_guess(canvas);
+      break;
+    case State::press:
+      draw_press(canvas);
+      break;
+    case State::reveal:
+      draw_reveal(canvas);
+      break;
+    case State::score:
+      draw_score(canvas);
+      break;
+  }
+  ImGui::PopFont();
+  draw_foot(canvas);
+  if (host_) draw_host(canvas);
+  ImGui::End();
+  draw_names(canvas, blocks, layout.scene);
+}
+
+// High enough for a finger; in its corner the key that does the same.
+bool Exhibit::button(const Canvas& canvas, const std::string& text, const std::string& key, float width, bool down) {
+  if (down) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
+  const bool pressed = ImGui::Button(text.c_str(), {width, 2.2F * height_of(canvas.style.fonts().heading)});
+  if (down) ImGui::PopStyleColor();
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 corner = ImGui::GetItemRectMax();
+  ImFont* font = canvas.style.fonts().body;
+  const float line = height_of(font);
+  const float wide = font->CalcTextSizeA(line, 1e6F, 0.0F, key.c_str()).x;
+  ImGui::GetWindowDrawList()->AddText(font, line, {corner.x - wide - 0.4F * line, corner.y - 1.2F * line},
+                                      ink(canvas.style.colours().quiet), key.c_str());
+  buttons_[key] = {0.5F * (low.x + corner.x), 0.5F * (low.y + corner.y)};
+  return pressed;
+}
+
+void Exhibit::draw_attract(const Canvas& canvas) {
+  say(words()("attract"));
+  space(canvas.style, 0.3F);
+  say_quietly(canvas, words()("attract_more"));
+  space(canvas.style, 0.6F);
+  if (pair() == nullptr) return say_quietly(canvas, words()("learning"));
+  if (button(canvas, words()("play"), "1", -1.0F)) begin(canvas.session);
+  space(canvas.style, 0.6F);
+  draw_difference(canvas, trace_, times_.press_s);
+}
+
+void Exhibit::draw_guess(const Canvas& canvas) {
+  say_quietly(canvas, words()("round", std::to_string(game_.number()), std::to_string(game_.rounds().size())));
+  const ExhibitModel& model = game_.round().second;
+  say(words()(std::string("hint_") + kind_of(model), canvas.centres_of(model)));
+  say(words()("question_guess"));
+  space(canvas.style, 0.4F);
+  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  std::optional<bool> noticed;
+  if (button(canvas, words()("yes"), "1", half)) noticed = true;
+  ImGui::SameLine();
+  if (button(canvas, words()("no"), "2", half)) noticed = false;
+  space(canvas.style, 0.6F);
+  draw_difference(canvas, game_.trace(), times_.press_s);
+  if (noticed) game_.guess(*noticed);
+}
+
+void Exhibit::draw_press(const Canvas& canvas) {
+  say_quietly(canvas, words()("round", std::to_string(game_.number()), std::to_string(game_.rounds().size())));
+  if (!game_.felt()) {
+    say(words()("press"));
+    say_quietly(canvas, words()("press_how"));
+    space(canvas.style, 0.6F);
+    draw_difference(canvas, game_.trace(), times_.press_s);
+    return;
+  }
+  say(words()("question_feel"));
+  say_quietly(canvas, words()(game_.pressed_both() ? "answer" : "feel_both"));
+  space(canvas.style, 0.4F);
+  const float half = 0.5F * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  if (button(canvas, words()("block_1"), "1", half, game_.chosen() == 1)) game_.choose(1);
+  ImGui::SameLine();
+  if (button(canvas, words()("block_2"), "2", half, game_.chosen() == 2)) game_.choose(2);
+  if (!game_.pressed_both()) return;
+  space(canvas.style, 0.8F);
+  std::optional<bool> different;
+  if (button(canvas, words()("differ"), words()("key_differ"), -1.0F)) different = true;
+  if (button(canvas, words()("same"), words()("key_same"), -1.0F)) different = false;
+  if (different) game_.answer(*different);
+}
+
+void Exhibit::draw_reveal(const Canvas& canvas) {
+  const ExhibitRound& round = game_.round();
+  say(words()(round.right() ? "right" : "wrong"));
+  space(canvas.style, 0.2F);
+  say(verdict());
+  space(canvas.style, 0.4F);
+  if (button(canvas, words()(game_.number() < game_.rounds().size() ? "next" : "to_score"), "Enter", -1.0F)) {
+    leave_reveal();
+    return;
+  }
+  space(canvas.style, 0.6F);
+  if (game_.felt()) {  // which was which
+    draw_key(canvas, *round.first, "block_1");
+    draw_key(canvas, round.second, "block_2");
+  }
+  draw_forces(canvas);
+}
+
+void Exhibit::draw_key(const Canvas& canvas, const ExhibitModel& model, const char* block) {
+  ImGui::PushStyleColor(ImGuiCol_Text, paint(canvas.colour_of(model)));
+  say(words()(block) + ": " + words()(std::string("name_") + kind_of(model), canvas.centres_of(model)));
+  ImGui::PopStyleColor();
+}
+
+void Exhibit::draw_score(const Canvas& canvas) {
+  const std::vector<ExhibitRound>& rounds = game_.rounds();
+  say(words()("score"));
+  ImGui::PushFont(canvas.style.fonts().big);
+  say(words()("score_of", std::to_string(game_.right()), std::to_string(rounds.size())));
+  ImGui::PopFont();
+  space(canvas.style, 0.4F);
+  for (const ExhibitRound& round : rounds) draw_bar(canvas, round);
+  say_quietly(canvas, words()("bars"));
+  space(canvas.style, 0.6F);
+  const std::string used_us = number(1e-3 * canvas.session.models().view(rounds.back().second.slot).evaluation_ns);
+  say(game_.felt() ? words()("take_home_felt", used_us)
+                   : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
+  space(canvas.style, 0.6F);
+  if (button(canvas, words()("again"), "Enter", -1.0F)) begin(canvas.session);
+}
+
+// How far the two of a round differed, over what a hand notices.
+void Exhibit::draw_bar(const Canvas& canvas, const ExhibitRound& round) {
+  const std::string name = round.is_catch() ? "name_catch" : std::string("name_") + kind_of(round.second);
+  say_quietly(canvas, words()(name, canvas.centres_of(round.second)) + ": " + number(round.largest_over_jnd) + ", " +
+                          words()(round.right() ? "row_right" : "row_wrong"));
+  const float height = 0.8F * height_of(canvas.style.fonts().body);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float jnd = ImGui::GetContentRegionAvail().x / static_cast<float>(kMost_jnd);
+  const auto length = static_cast<float>(std::clamp(round.largest_over_jnd, 0.02, kMost_jnd));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, {at.x + jnd, at.y + height}, ink(canvas.style.colours().band));
+  list.AddRectFilled({at.x, at.y + 0.2F * height}, {at.x + length * jnd, at.y + 0.8F * height},
+                     ink(canvas.colour_of(round.second)));
+  ImGui::Dummy({1.0F, height});
+}
+
+// What the curve is, in words beside the axis; returns the height that is left for it.
+float Exhibit::begin_plot(const Canvas& canvas, const std::string& title) {
+  say_quietly(canvas, title);
+  ImGui::PushFont(canvas.style.fonts().body);
+  const float left = canvas.panel.at.y + canvas.panel.size.y - canvas.foot - ImGui::GetCursorScreenPos().y;
+  return std::max(left, 6.0F * height_of(canvas.style.fonts().body));
+}
+
+void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, double right_s) {
+  const Palette& p = canvas.style.colours();
+  const float height = begin_plot(canvas, words()("axis_difference"));
+  {
+    const Plot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
+                    {{0.0, right_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
+    plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
+    plot.level(0.0, ink(kReferenceColour), 4.0F * canvas.style.scale());
+    std::vector<ImVec2> points;
+    const auto flush = [&] {
+      plot.line(points, ink(canvas.colour_of(pair()->second)), 4.0F * canvas.style.scale());
+      points.clear();
+    };
+    for (std::size_t i = 0; i < trace.columns().size(); ++i) {
+      const double felt = trace.felt(i);
+      if (std::isnan(felt)) {
+        flush();
+      } else {
+        points.emplace_back(plot.x_px(static_cast<double>(i) / kPerSecond), plot.y_px(felt));
+      }
+    }
+    flush();
+    plot.caption(words()("in_band"), 0.5F, 0.98F, ink(p.text));
+    if (trace.largest_over_jnd() > 0.0)
+      plot.caption(words()("so_far", number(trace.largest_over_jnd())), 0.03F, 0.03F, ink(p.text));
+  }
+  ImGui::PopFont();
+}
+
+// Both forces where they differed most, in the band of one JND around the first.
+void Exhibit::draw_forces(const Canvas& canvas) {
+  const ExhibitRound& round = game_.round();
+  const std::vector<ExhibitTrace::Column>& columns = game_.trace().columns();
+  const double middle_s = static_cast<double>(game_.trace().largest_at()) / kPerSecond;
+  const double last_s = std::max(kForces_s, static_cast<double>(columns.size()) / kPerSecond);
+  const double from_s = std::clamp(middle_s - 0.5 * kForces_s, 0.0, last_s - kForces_s);
+  const JndLine& jnd = canvas.session.jnd();
+  double most_N = 0.5;
+  const auto first_column = static_cast<std::size_t>(from_s * kPerSecond);
+  const std::size_t end = std::min(columns.size(), first_column + static_cast<std::size_t>(kForces_s * kPerSecond) + 1);
+  for (std::size_t i = first_column; i < end; ++i)
+    most_N = std::max({most_N, columns[i].first_N + jnd.at(columns[i].first_N), columns[i].second_N});
+  const float height = begin_plot(canvas, words()("axis_force"));
+  {
+    const Plot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
+                    {{from_s, from_s + kForces_s}, {0.0, 1.05 * most_N}, "s", "N", true});
+    std::vector<ImVec2> upper, lower, first, second;
+    for (std::size_t i = first_column; i < end; ++i) {
+      if (columns[i].ticks == 0) continue;
+      const float x = plot.x_px((static_cast<double>(i) + 0.5) / kPerSecond);
+      const double band_N = jnd.at(columns[i].first_N);
+      upper.emplace_back(x, plot.y_px(columns[i].first_N + band_N));
+      lower.emplace_back(x, plot.y_px(columns[i].first_N - band_N));
+      first.emplace_back(x, plot.y_px(columns[i].first_N));
+      second.emplace_back(x, plot.y_px(columns[i].second_N));
+    }
+    const float thick = 4.0F * canvas.style.scale();
+    plot.band(upper, lower, ink(canvas.style.colours().band));
+    plot.line(first, ink(round.first ? canvas.colour_of(*round.first) : kReferenceColour), thick);
+    plot.line(second, ink(canvas.colour_of(round.second)), thick);
+  }
+  ImGui::PopFont();
+}
+
+// The next language, and how long a result still stays.
+void Exhibit::draw_foot(const Canvas& canvas) {
+  const double left_s = times_.stay_s - (canvas.session.newest().loop_time_s - moved_s_);
+  const float line = ImGui::GetFrameHeight();
+  ImGui::SetCursorScreenPos(
+      {canvas.panel.at.x + ImGui::GetStyle().WindowPadding.x, canvas.panel.at.y + canvas.panel.size.y - 1.5F * line});
+  const std::size_t next = (language_ + 1) % languages_.size();
+  if (languages_.size() > 1 && ImGui::Button((languages_[next]("language") + "  (L)").c_str())) language_ = next;
+  if (game_.state() == State::attract || left_s > times_.warn_s) return;
+  ImGui::SameLine();
+  say(words()("countdown", std::to_string(static_cast<int>(std::ceil(std::max(0.0, left_s))))));
+}
+
+// For whoever looks after the exhibit.
+void Exhibit::draw_host(const Canvas& canvas) {
+  ImGui::SetCursorScreenPos({canvas.panel.at.x + 0.4F * canvas.panel.size.x, canvas.panel.at.y + 2.0F});
+  ImGui::PushFont(canvas.style.fonts().body);
+  say(words()("tally", std::to_string(tally_.answers), std::to_string(tally_.as_expected)) + "\n" +
+      health_words(health_view(canvas.session), 0.0).text);
+  ImGui::PopFont();
+}
+
+// Which block is which, at its foot.
+void Exhibit::draw_names(const Canvas& canvas, const BlockView& blocks, const SceneArea& scene) const {
+  if (pair() == nullptr) return;
+  const bool felt = game_.state() != State::attract && game_.felt();
+  const bool reference_last = !pair()->first;
+  const std::size_t count = felt ? 1 : 2;
+  const BlockGeometry& block = blocks.geometry();
+  ImFont* font = canvas.style.fonts().heading;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool first = (i == 1) == reference_last;
+    std::string text = felt ? words()(game_.chosen() == 2 ? "block_2" : "block_1") : name_of(first, canvas.session);
+    if (felt && game_.state() != State::press) text.clear();
+    const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, 0.0F, text.c_str());
+    const glm::vec2 foot = blocks.on_screen(
+        i, count, {0.0F, -1.05F * static_cast<float>(block.height_m), 0.5F * static_cast<float>(block.length_m)},
+        {scene.size.x, scene.size.y});
+    const Rgb colour = felt    ? canvas.style.colours().text
+                       : first ? (pair()->first ? canvas.colour_of(*pair()->first) : kReferenceColour)
+                               : canvas.colour_of(pair()->second);
+    ImGui::GetBackgroundDrawList()->AddText(
+        font, height_of(font),
+        {scene.at.x + std::clamp(foot.x - 0.5F * size.x, 4.0F, scene.size.x - size.x - 4.0F),
+         scene.at.y + std::min(foot.y + 0.6F * size.y, scene.size.y - 1.3F * size.y)},
+        ink(colour), text.c_str());
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,162 @@
+#include "scenes/live/exhibit_game.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr double kLongest_s = 60.0;  // of a trace
+
+const ExhibitModel* find_model(const std::vector<ExhibitModel>& models, const std::string& method, bool paper) {
+  const auto found = std::find_if(models.begin(), models.end(), [&](const ExhibitModel& model) {
+    return model.paper == paper && (paper || model.method == method);
+  });
+  return found != models.end() ? &*found : nullptr;
+}
+
+}  // namespace
+
+void ExhibitTrace::clear() {
+  columns_.clear();
+  columns_.reserve(static_cast<std::size_t>(kLongest_s / kColumn_s));
+  began_s_ = -1.0;
+  seconds_ = largest_ = 0.0;
+  largest_at_ = 0;
+}
+
+void ExhibitTrace::add(const ExhibitTick& tick, double jnd_N) {
+  if (began_s_ < 0.0 && !tick.in_contact) return;
+  if (began_s_ < 0.0) began_s_ = tick.loop_time_s;
+  seconds_ = tick.loop_time_s - began_s_;
+  const auto at = static_cast<std::size_t>(seconds_ / kColumn_s);
+  if (seconds_ >= kLongest_s) return;
+  if (columns_.size() <= at) columns_.resize(at + 1);
+  if (tick.out_of_domain || !std::isfinite(tick.first_N) || !std::isfinite(tick.second_N)) return;
+  Column& column = columns_[at];
+  const double share = 1.0 / ++column.ticks;
+  column.first_N += share * (tick.first_N - column.first_N);
+  column.second_N += share * (tick.second_N - column.second_N);
+  const double over_jnd = tick.in_contact ? (tick.second_N - tick.first_N) / jnd_N : 0.0;
+  column.over_jnd += share * (over_jnd - column.over_jnd);
+  // The column before is whole only now.
+  if (at > 0 && std::abs(felt(at - 1)) > largest_) {
+    largest_ = std::abs(felt(at - 1));
+    largest_at_ = at - 1;
+  }
+}
+
+double ExhibitTrace::felt(std::size_t column) const noexcept {
+  const Column& now = columns_[column];
+  if (now.ticks == 0) return std::numeric_limits<double>::quiet_NaN();
+  if (column == 0 || columns_[column - 1].ticks == 0) return now.over_jnd;
+  return 0.5 * (columns_[column - 1].over_jnd + now.over_jnd);
+}
+
+std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
+                                                 bool felt) {
+  const ExhibitModel* best = find_model(ready, "greedy", false);
+  if (best == nullptr) best = find_model(ready, "direct", false);
+  if (best == nullptr && !ready.empty()) best = &ready.front();
+  const ExhibitModel* first = felt ? best : has_reference || ready.empty() ? nullptr : &ready.front();
+  std::vector<const ExhibitModel*> others{find_model(ready, "position", false), find_model(ready, "", true), best};
+  for (const ExhibitModel& model : ready) others.push_back(&model);
+  std::vector<ExhibitRound> rounds;
+  const auto is_there = [&](const ExhibitModel* model) {
+    return model == nullptr || model == first || std::any_of(rounds.begin(), rounds.end(), [&](const auto& round) {
+             return round.second.slot == model->slot;
+           });
+  };
+  for (const ExhibitModel* model : others) {
+    if (is_there(model) || rounds.size() == kMostRounds) continue;
+    rounds.push_back({first != nullptr ? std::optional<ExhibitModel>(*first) : std::nullopt, *model});
+  }
+  return rounds;
+}
+
+bool ExhibitGame::begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt, double press_s) {
+  std::vector<ExhibitRound> rounds = rounds_of(ready, has_reference, felt);
+  if (rounds.empty()) return false;
+  if (felt) {
+    rounds.resize(std::min(rounds.size(), kMostRounds - 1));
+    rounds.push_back({rounds.back().first, *rounds.back().first});
+    for (std::size_t i = rounds.size(); i > 1; --i) std::swap(rounds[i - 1], rounds[random_.index(i)]);
+    for (ExhibitRound& round : rounds) {
+      if (random_.index(2) == 1) std::swap(*round.first, round.second);
+    }
+  }
+  rounds_ = std::move(rounds);
+  felt_ = felt;
+  press_s_ = press_s;
+  index_ = 0;
+  begin_round();
+  return true;
+}
+
+void ExhibitGame::reset() {
+  state_ = State::attract;
+  rounds_.clear();
+  trace_.clear();
+}
+
+void ExhibitGame::begin_round() {
+  trace_.clear();
+  chosen_ = 1;
+  pressed_ = {};
+  state_ = felt_ ? State::press : State::guess;
+}
+
+void ExhibitGame::guess(bool noticed) {
+  if (state_ != State::guess) return;
+  rounds_[index_].answered = true;
+  rounds_[index_].said_noticed = noticed;
+  state_ = State::press;
+}
+
+void ExhibitGame::choose(int key) noexcept {
+  if (state_ == State::press && felt_ && (key == 1 || key == 2)) chosen_ = key;
+}
+
+const ExhibitModel& ExhibitGame::rendered() const noexcept {
+  const ExhibitRound& now = round();
+  return felt_ && chosen_ == 1 ? *now.first : now.second;
+}
+
+void ExhibitGame::answer(bool different) {
+  if (state_ != State::press || !felt_ || !pressed_both()) return;
+  rounds_[index_].answered = true;
+  rounds_[index_].said_noticed = different;
+  end_round();
+}
+
+void ExhibitGame::add(const ExhibitTick& tick, const JndLine& jnd) {
+  if (state_ != State::press) return;
+  // Of two models neither is the reference.
+  trace_.add(tick, jnd.at(round().first ? 0.5 * (tick.first_N + tick.second_N) : tick.first_N));
+  if (tick.in_contact) pressed_[chosen_ == 2 ? 1 : 0] = true;
+  if (!felt_ && trace_.seconds() >= press_s_) end_round();
+}
+
+void ExhibitGame::end_round() {
+  rounds_[index_].largest_over_jnd = trace_.largest_over_jnd();
+  state_ = State::reveal;
+}
+
+void ExhibitGame::go_on() {
+  if (state_ != State::reveal) return;
+  if (index_ + 1 == rounds_.size()) {
+    state_ = State::score;
+    return;
+  }
+  ++index_;
+  begin_round();
+}
+
+std::size_t ExhibitGame::right() const noexcept {
+  return static_cast<std::size_t>(
+      std::count_if(rounds_.begin(), rounds_.end(), [](const ExhibitRound& round) { return round.right(); }));
+}
+
+}  // namespace palpate

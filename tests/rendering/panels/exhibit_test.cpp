@@ -1,0 +1,297 @@
+// The exhibit as visitors use it: with a mouse, with keys, by touch, with a force device.
+#include "rendering/panels/exhibit.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/support/demo_window.h"
+#include "tests/support/fake_hid_bus.h"
+
+namespace palpate {
+namespace {
+
+// Of this process in memory, MB.
+double resident_MB() {
+  std::ifstream file("/proc/self/statm");
+  double total = 0.0, resident = 0.0;
+  file >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+class ExhibitTest : public test::DemoWindowTest {
+ protected:
+  using State = ExhibitGame::State;
+  const ExhibitGame& game() const { return app_->exhibit().game(); }
+  State state() const { return game().state(); }
+  bool shows(const std::string& button) const { return app_->exhibit().buttons().count(button) != 0; }
+  bool says(const std::string& words) const {
+    const auto& said = app_->exhibit().said();
+    return std::any_of(said.begin(), said.end(),
+                       [&](const std::string& text) { return text.find(words) != std::string::npos; });
+  }
+
+  struct Setting {
+    ExhibitTimes times{1.0, 4.0, 2.0};
+    HidBus* bus = nullptr;  // a force device
+    bool learned = false;   // the models of the exhibit, which take a while, in place of made up ones
+    int height = 720;
+  };
+  void open_exhibit(const Setting& setting) {
+    DemoRequest request;
+    request.window.height = setting.height;
+    request.window.width = setting.height * 16 / 9;
+    request.session.scene = setting.bus != nullptr ? "skin" : "silicone_block";
+    request.session.device = setting.bus != nullptr ? "hid" : "auto";
+    if (!setting.learned) request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
+    request.session.bus = setting.bus;
+    request.session.realtime = false;
+    request.kiosk = true;
+    request.exhibit = setting.times;
+    auto app = DemoApp::create(request);
+    ASSERT_TRUE(app.ok()) << app.error().message;
+    app_ = std::move(*app);
+    for (int i = 0; i < 5 && !shows("1"); ++i) (void)until([&] { return shows("1"); });
+    ASSERT_TRUE(shows("1")) << "has learned";
+  }
+
+  std::string pictures_;
+
+  // So far under the middle of a block's top, in pixels.
+  ImVec2 block(std::size_t index, float below_px) const {
+    const glm::vec2 top = app_->blocks().on_screen(index, 2, {0.0F, 0.0F, 0.0F}, {768.0F, 720.0F});
+    return {top.x, top.y + below_px};
+  }
+  void move(const ImVec2& to) {
+    glfwSetCursorPos(app_->window().handle(), static_cast<double>(to.x), static_cast<double>(to.y));
+    frames(3);
+  }
+  // A hand on a mouse goes there and clicks.
+  void click_on(const std::string& button) {
+    ASSERT_TRUE(until([&] { return shows(button); })) << button;
+    move(app_->exhibit().buttons().at(button));
+    click();
+  }
+  // A finger: the pointer is there and pressed in the same moment, and nowhere before.
+  void touch(const ImVec2& at, int held_frames = 3) {
+    GLFWwindow* window = app_->window().handle();
+    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
+    glfwSetMouseButtonCallback(window, callback);
+    glfwSetCursorPos(window, static_cast<double>(at.x), static_cast<double>(at.y));
+    callback(window, GLFW_MOUSE_BUTTON_LEFT, GLFW_PRESS, 0);
+    frames(held_frames);
+    callback(window, GLFW_MOUSE_BUTTON_LEFT, GLFW_RELEASE, 0);
+    frames(3);
+  }
+  void touch_on(const std::string& button) {
+    ASSERT_TRUE(until([&] { return shows(button); })) << button;
+    touch(app_->exhibit().buttons().at(button));
+  }
+  bool until_over(const std::function<void()>& stroke) {
+    return until([&] {
+      if (state() == State::press) stroke();
+      return state() == State::reveal;
+    });
+  }
+  void expect_released() {
+    EXPECT_TRUE(until([&] {
+      const LoopSnapshot& newest = app_->session().newest();
+      return newest.rendered_N == 0.0 && !newest.tick.in_contact;
+    })) << "nobody presses while reading";
+  }
+
+  // Of this screen, where PALPATE_PICTURES names a folder.
+  void picture(const std::string& name) {
+    frames(2);
+    const char* folder = std::getenv("PALPATE_PICTURES");
+    if (folder == nullptr) return;
+    EXPECT_TRUE(app_->screenshot(std::string(folder) + "/" + pictures_ + name + ".png", true).ok());
+  }
+
+  // From the invitation to the score, by `press` a button and `stroke` both blocks.
+  void play(const std::function<void(const char*)>& press_button, const std::function<void()>& stroke) {
+    press_button("1");
+    for (int round = 1; round <= 3; ++round) {
+      ASSERT_EQ(state(), State::guess);
+      EXPECT_TRUE(says("Round " + std::to_string(round) + " of 3"));
+      expect_released();
+      press_button(round == 3 ? "2" : "1");
+      ASSERT_EQ(state(), State::press);
+      ASSERT_TRUE(until_over(stroke));
+      EXPECT_GT(game().trace().columns().size(), 20u) << "what was pressed was drawn";
+      expect_released();
+      press_button("Enter");
+    }
+    ASSERT_EQ(state(), State::score);
+    EXPECT_TRUE(says(std::to_string(game().right()) + " of 3"));
+    EXPECT_TRUE(says("microseconds"));
+    for (const ExhibitRound& round : game().rounds()) EXPECT_GT(round.largest_over_jnd, 0.0);
+  }
+  void visit_with_mouse() {
+    float below_px = 0.0F;
+    play([&](const char* button) { click_on(button); },
+         [&] { move(block(0, below_px = below_px > 60.0F ? -40.0F : below_px + 25.0F)); });
+  }
+  void visit_by_touch() {
+    play([&](const char* button) { touch_on(button); }, [&] { touch(block(1, 60.0F), 12); });
+  }
+  void visit_with_keys() {
+    const std::map<std::string, int> keys = {{"1", GLFW_KEY_1}, {"2", GLFW_KEY_2}, {"Enter", GLFW_KEY_ENTER}};
+    play([&](const char* button) { press(keys.at(button)); },
+         [&] {
+           const auto over = [&] { return state() != State::press; };
+           hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.003; });
+           hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
+         });
+  }
+};
+
+TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
+  open_exhibit({});
+  EXPECT_TRUE(says("Can you tell the computer from the block?"));
+  EXPECT_EQ(app_->view().block_count, 2u) << "the comparison, not an empty block";
+  visit_with_mouse();
+  click_on("Enter");
+  EXPECT_EQ(state(), State::guess) << "once more";
+  EXPECT_EQ(game().right(), 0u) << "and from the beginning";
+}
+
+TEST_F(ExhibitTest, IsPlayedWithKeysAlone) {
+  open_exhibit({});
+  visit_with_keys();
+}
+
+TEST_F(ExhibitTest, IsPlayedByTouchAlone) {
+  open_exhibit({});
+  visit_by_touch();
+}
+
+// Pictures are of what the exhibit learns; without them its models are made up.
+TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
+  const bool learned = std::getenv("PALPATE_PICTURES") != nullptr;
+  for (const int height : {720, 1080}) {
+    open_exhibit({{learned ? 6.0 : 1.0, 300.0, 285.0}, nullptr, learned, height});
+    for (const char* language : {"en", "de"}) {
+      pictures_ = language + std::to_string(height) + "-";
+      until([&] { return app_->exhibit().attract_trace().seconds() > 0.6 * (learned ? 6.0 : 1.0); });
+      picture("attract");
+      press(GLFW_KEY_L);
+    }
+    for (const char* language : {"en", "de"}) {
+      pictures_ = language + std::to_string(height) + "-";
+      press(GLFW_KEY_ENTER);
+      for (const char* round : {"1", "2", "3"}) {
+        picture(std::string("guess") + round);
+        press(GLFW_KEY_1);
+        const auto over = [&] { return state() != State::press; };
+        hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.005; });
+        picture(std::string("press") + round);
+        hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
+        ASSERT_TRUE(until([&] { return state() == State::reveal; }));
+        picture(std::string("reveal") + round);
+        press(GLFW_KEY_ENTER);
+      }
+      if (learned) until([&] { return says("Ends in") || says("Endet in"); });
+      picture("score");
+      EXPECT_EQ(state(), State::score);
+      press(GLFW_KEY_L);
+    }
+    app_.reset();
+  }
+}
+
+TEST_F(ExhibitTest, TheObviousIsNoticedAndTheBestIsNot) {
+  open_exhibit({{4.0, 30.0, 2.0}, nullptr, true});
+  visit_with_keys();
+  EXPECT_TRUE(game().rounds()[0].noticed()) << game().rounds()[0].largest_over_jnd;
+  EXPECT_FALSE(game().rounds()[2].noticed()) << game().rounds()[2].largest_over_jnd;
+  EXPECT_GT(game().rounds()[0].largest_over_jnd, game().rounds()[1].largest_over_jnd);
+  EXPECT_GT(game().rounds()[1].largest_over_jnd, game().rounds()[2].largest_over_jnd);
+  EXPECT_GE(game().right(), 2u);
+}
+
+// As many as PALPATE_VISITORS says (30 take some ten minutes), else three: with a mouse,
+// with keys, by touch, in turns; after every third one nobody comes until all is forgotten.
+TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
+  const char* asked = std::getenv("PALPATE_VISITORS");
+  const int visitors = asked != nullptr ? std::atoi(asked) : 3;
+  open_exhibit({});
+  const ImVec2 home = block(0, 0.0F);
+  double first_MB = 0.0;
+  for (int i = 0; i < visitors; ++i) {
+    if (i % 3 == 0) visit_with_mouse();
+    if (i % 3 == 1) visit_with_keys();
+    if (i % 3 == 2) visit_by_touch();
+    EXPECT_EQ(app_->exhibit().tally().answers, 3 * static_cast<std::uint64_t>(i + 1));
+    press(GLFW_KEY_L);
+    ASSERT_EQ(state(), State::score);
+    ASSERT_TRUE(until([&] { return state() == State::attract; })) << "forgotten";
+    EXPECT_EQ(app_->session().newest().rendered_N, 0.0);
+    frames(3);
+    EXPECT_TRUE(says("Can you tell")) << "in the first language";
+    EXPECT_TRUE(app_->session().mouse()->hand_is_exploring()) << "the comparison goes on at once";
+    EXPECT_NEAR(block(0, 0.0F).x, home.x, 0.5F);
+    if (first_MB == 0.0) first_MB = resident_MB();
+    std::printf("visitor %d: %.1f MB, %llu frames, late p50 %.0f us\n", i + 1, resident_MB(),
+                static_cast<unsigned long long>(app_->frames().frames),
+                app_->session().loop().statistics().lateness.p50_us);
+  }
+  EXPECT_LT(resident_MB(), first_MB + 8.0) << "memory grows with every visitor";
+}
+
+TEST_F(ExhibitTest, NobodyIsThrownOutWhileReading) {
+  open_exhibit({{1.0, 3.0, 2.0}});
+  visit_with_keys();
+  ASSERT_TRUE(until([&] { return says("Ends in "); })) << "a countdown";
+  move(block(0, 10.0F));
+  EXPECT_FALSE(says("Ends in ")) << "any movement begins it anew";
+  EXPECT_EQ(state(), State::score);
+  ASSERT_TRUE(until([&] { return state() == State::attract; }));
+}
+
+TEST_F(ExhibitTest, LanguagesHaveKeysOfTheirOwnAndTheHostsTallyIsHidden) {
+  open_exhibit({});
+  EXPECT_FALSE(says("Rounds today"));
+  press(GLFW_KEY_T, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
+  EXPECT_TRUE(says("Rounds today: 0"));
+  press(GLFW_KEY_T, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
+  EXPECT_FALSE(says("Rounds today"));
+  press(GLFW_KEY_L);
+  EXPECT_TRUE(says("Kannst du Computer und Block unterscheiden?"));
+}
+
+TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
+  test::FakeHidBus bus;
+  open_exhibit({{1.0, 30.0, 2.0}, &bus});
+  press(GLFW_KEY_1);
+  ASSERT_EQ(state(), State::press) << "no guess before a hand has felt anything";
+  EXPECT_TRUE(says("feel a difference"));
+  EXPECT_TRUE(app_->view().blind);
+  EXPECT_EQ(app_->view().block_count, 1u);
+  press(GLFW_KEY_D);
+  EXPECT_EQ(state(), State::press) << "both have to be pressed";
+  const std::size_t one = app_->session().models().selected();
+  press(GLFW_KEY_2);
+  if (!game().round().is_catch()) {
+    EXPECT_NE(app_->session().models().selected(), one);
+  }
+}
+
+TEST_F(ExhibitTest, HasOneWayOut) {
+  open_exhibit({});
+  EXPECT_EQ(app_->view().theme, Theme::dark);
+  press(GLFW_KEY_ESCAPE);
+  press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
+  glfwSetWindowShouldClose(app_->window().handle(), GLFW_TRUE);
+  frames(2);
+  EXPECT_FALSE(app_->closing());
+  press(GLFW_KEY_T);
+  EXPECT_EQ(app_->view().theme, Theme::dark) << "a visitor changes nothing";
+  press(GLFW_KEY_Q, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
+  EXPECT_TRUE(app_->closing());
+}
+
+}  // namespace
+}  // namespace palpate
