@@ -2,9 +2,11 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "models/check/check_recording.h"
 #include "scenes/cli/check_recordings.h"
 #include "scenes/cli/verbs.h"
@@ -35,6 +37,7 @@ void print_check_json(const std::vector<CheckedFile>& files) {
                     {"verdict", file.check.verdict()},
                     {"findings", findings},
                     {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
+                    {"surface_told", file.check.surface_told},
                     {"surface_offset_m", file.check.surface_offset_m},
                     {"force_zero_N", file.check.force_zero_N}});
   }
@@ -46,19 +49,6 @@ std::string verdict_text(const RecordingCheck& check) {
   return verdict == "care" ? "usable with care" : verdict == "unusable" ? "not usable" : "usable";
 }
 
-void print_check(const CheckedFile& file) {
-  std::cout << file.path << ": " << verdict_text(file.check) << "\n";
-  for (const Finding& finding : file.check.findings) {
-    const std::string severity = severity_name(finding.severity);
-    std::cout << "  " << severity << std::string(9 - severity.size(), ' ') << finding.code
-              << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
-              << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
-  }
-  std::cout << "  a perfect model would be within the JND in " << 100.0 * file.check.noise_floor_within_jnd
-            << " % of the contact samples\n";
-  if (!file.whole) std::cout << "  checked by its first " << kMostCheckedRows << " rows\n";
-}
-
 Status run_check(const CheckOptions& options) {
   const auto scene = load_scene(options.scene);
   if (!scene) return scene.error();
@@ -67,12 +57,27 @@ Status run_check(const CheckOptions& options) {
   if (options.json) {
     print_check_json(*files);
   } else {
-    for (const CheckedFile& file : *files) print_check(file);
+    for (const CheckedFile& file : *files) std::cout << check_text(file);
   }
   return refuse_unusable(*files);
 }
 
 }  // namespace
+
+std::string check_text(const CheckedFile& file) {
+  std::ostringstream text;
+  text << file.path << ": " << verdict_text(file.check) << "\n";
+  for (const Finding& finding : file.check.findings) {
+    const std::string severity = severity_name(finding.severity);
+    text << "  " << severity << std::string(9 - severity.size(), ' ') << finding.code
+         << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
+         << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
+  }
+  text << "  a perfect model would be within the JND in " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
+       << " % of the contact samples\n";
+  if (!file.whole) text << "  checked by its first " << kMostCheckedRows << " rows\n";
+  return text.str();
+}
 
 CheckRequest check_request(const Scene& scene) {
   CheckRequest request;

@@ -14,6 +14,9 @@ namespace palpate::cli {
 // What the scene asks of a recording.
 CheckRequest check_request(const Scene& scene);
 
+// What the check found, as palpate check prints it.
+std::string check_text(const CheckedFile& file);
+
 // Reads and checks `paths`: an error for the first fatal finding, a line on stderr for
 // each warning.
 Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);

@@ -1,16 +1,28 @@
 // palpate devices: which devices there are, and why one cannot be opened.
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "devices/registry/device_registry.h"
+#include "devices/bridge/bridge_bus.h"
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hidapi_bus.h"
-#include "scenes/scene/assets.h"
+#include "devices/registry/device_registry.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/scene/assets.h"
 
 namespace palpate::cli {
 namespace {
+
+void print_hid_drivers() {
+  std::printf("\nWHAT hid KNOWS\n");
+  for (const HidDriver* driver : kHidDrivers) {
+    if (driver->knows_position) continue;  // of a bridge, not of hid
+    std::printf("  %s: %s; tried %s\n", driver->name, driver->description, driver->tried);
+  }
+}
 
 void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& assets) {
   std::printf("\nPLUGGED IN (hidraw)\n");
@@ -24,8 +36,10 @@ void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& a
     std::printf("    cannot be used: %s\n", one.problem.c_str());
   }
   if (!problems) return;
-  std::printf("\nThe udev rule, once: sudo cp %s/udev/70-palpate.rules /etc/udev/rules.d/ && sudo udevadm control "
-              "--reload && sudo udevadm trigger\n", assets.c_str());
+  std::printf(
+      "\nThe udev rule, once: sudo cp %s/udev/70-palpate.rules /etc/udev/rules.d/ && sudo udevadm control "
+      "--reload && sudo udevadm trigger\n",
+      assets.c_str());
 }
 
 Status print_devices() {
@@ -46,15 +60,38 @@ Status print_devices() {
                 device.problem.empty() ? "yes" : "no", device.summary.c_str());
     if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
   }
+  print_hid_drivers();
   print_plugged_in(plugged_in, assets);
+  return {};
+}
+
+struct DevicesOptions {
+  std::string test;
+  bool bridge_remote = false;
+};
+
+Status run_devices(const DevicesOptions& options) {
+  constexpr std::string_view kBridge = "bridge:";
+  const std::string device = options.bridge_remote ? with_remote_bridge(options.test) : options.test;
+  if (options.test.empty()) return print_devices();
+  if (options.test.rfind(kBridge, 0) != 0) {
+    throw CLI::ValidationError("--test", "found \"" + options.test + "\", expected bridge:TARGET");
+  }
+  const auto result = test_bridge(device.substr(kBridge.size()));
+  if (!result) return result.error();
+  std::printf("%s", result->c_str());
   return {};
 }
 
 }  // namespace
 
 void add_devices(CLI::App& app, Verbs& verbs) {
+  auto options = std::make_shared<DevicesOptions>();
   CLI::App* command = app.add_subcommand("devices", "List the devices and say why one cannot be opened");
-  verbs.emplace_back(command, print_devices);
+  command->add_option("--test", options->test, "Moves nothing: lets a device show that its watchdog stops it")
+      ->type_name("bridge:TARGET");
+  command->add_flag("--bridge-remote", options->bridge_remote, "bridge:tcp: may name another computer");
+  verbs.emplace_back(command, [options] { return run_devices(*options); });
 }
 
 }  // namespace palpate::cli

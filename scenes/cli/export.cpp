@@ -36,28 +36,28 @@ Result<PositionSensor> sensor_of(const ExportArguments& arguments, const ModelDa
 
 void print_json(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
                 const ExportedC& file) {
-  const nlohmann::ordered_json object = {
-      {"file", arguments.out},
-      {"model", data.name},
-      {"precision", arguments.single_precision ? "float" : "double"},
-      {"encoder_step_m", request.sensor.encoder_step_m},
-      {"position_noise_m", request.sensor.position_noise_m},
-      {"text_bytes", file.text.size()},
-      {"table_bytes", file.table_bytes},
-      {"state_bytes", file.state_bytes},
-      {"operations",
-       {{"arithmetic", file.operations.arithmetic},
-        {"divisions", file.operations.divisions},
-        {"roots", file.operations.roots},
-        {"exponentials", file.operations.exponentials},
-        {"logarithms", file.operations.logarithms}}}};
+  const nlohmann::ordered_json object = {{"file", arguments.out},
+                                         {"model", data.name},
+                                         {"precision", arguments.single_precision ? "float" : "double"},
+                                         {"encoder_step_m", request.sensor.encoder_step_m},
+                                         {"position_noise_m", request.sensor.position_noise_m},
+                                         {"text_bytes", file.text.size()},
+                                         {"table_bytes", file.table_bytes},
+                                         {"state_bytes", file.state_bytes},
+                                         {"operations",
+                                          {{"arithmetic", file.operations.arithmetic},
+                                           {"divisions", file.operations.divisions},
+                                           {"roots", file.operations.roots},
+                                           {"exponentials", file.operations.exponentials},
+                                           {"logarithms", file.operations.logarithms}}}};
   std::printf("%s\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
 std::string source_of_sensor(const ExportArguments& arguments, const ModelData& data) {
   if (!arguments.sensor.empty()) return "as in " + arguments.sensor;
   if (arguments.encoder_step_m > 0.0) return "as told";
-  return data.sensor ? "as in the recordings of the model" : "the model does not know its recordings' step: see --encoder-step";
+  return data.sensor ? "as in the recordings of the model"
+                     : "the model does not know its recordings' step: see --encoder-step";
 }
 
 void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
@@ -65,14 +65,16 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
   const TickOperations& counted = file.operations;
   std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
               arguments.single_precision ? "single" : "double", file.text.size());
-  std::printf("takes positions in steps of %g um with a noise of %g um beside (%s);\n"
-              "a recording of such positions alone gives the forces of palpate replay\n",
-              1e6 * request.sensor.encoder_step_m, 1e6 * request.sensor.position_noise_m,
-              source_of_sensor(arguments, data).c_str());
+  std::printf(
+      "takes positions in steps of %g um with a noise of %g um beside (%s);\n"
+      "a recording of such positions alone gives the forces of palpate replay\n",
+      1e6 * request.sensor.encoder_step_m, 1e6 * request.sensor.position_noise_m,
+      source_of_sensor(arguments, data).c_str());
   std::printf("tables %zu bytes, state %zu bytes\n", file.table_bytes, file.state_bytes);
-  std::printf("a tick in contact, at most: %zu additions and multiplications, %zu divisions, %zu square roots, "
-              "%zu exponentials, %zu logarithms\n",
-              counted.arithmetic, counted.divisions, counted.roots, counted.exponentials, counted.logarithms);
+  std::printf(
+      "a tick in contact, at most: %zu additions and multiplications, %zu divisions, %zu square roots, "
+      "%zu exponentials, %zu logarithms\n",
+      counted.arithmetic, counted.divisions, counted.roots, counted.exponentials, counted.logarithms);
 }
 
 Status run_export(const ExportArguments& arguments) {
@@ -101,9 +103,11 @@ void add_export(CLI::App& app, Verbs& verbs) {
   command->add_option("model", arguments->model, "Model file (JSON)")->required();
   command->add_option("--c", arguments->out, "C file to write")->required();
   command->add_flag("--float", arguments->single_precision, "Single precision");
-  CLI::Option* step = command->add_option("--encoder-step", arguments->encoder_step_m,
-                                          "Steps that positions come in, metres; 0: those of the model's recordings")
-                          ->check(CLI::Range(0.0, 0.1))->capture_default_str();
+  CLI::Option* step = command
+                          ->add_option("--encoder-step", arguments->encoder_step_m,
+                                       "Steps that positions come in, metres; 0: those of the model's recordings")
+                          ->check(CLI::Range(0.0, 0.1))
+                          ->capture_default_str();
   command->add_option("--sensor", arguments->sensor, "Recording whose encoder step and position noise to take (CSV)")
       ->excludes(step);
   command->add_flag("--json", arguments->json, "Print one JSON object");

@@ -62,18 +62,19 @@ Status add_item(std::string_view item, FeatureList& list) {
     for (const double threshold_mm : thresholds_mm) list.stop_thresholds_m.push_back(1e-3 * threshold_mm);
     return {};
   }
-  if (kind == "peak" && list.peak_times_s.empty()) {
-    const auto times_s = parse_values(rest, "");
-    if (times_s.size() != 1) return wrong(item, "peak: with one healing time in seconds such as peak:6");
-    list.peak_times_s = times_s;
+  if (kind == "creep" && list.creep_times_s.empty()) {
+    list.creep_times_s = parse_values(rest, "");
+    if (list.creep_times_s.empty() || list.creep_times_s.size() > kMaxFeatureParts) {
+      return wrong(item, "creep: with one to eight times in seconds such as creep:0.1+1");
+    }
     return {};
   }
-  return wrong(item, "depth, velocity, maxwell:, stops: and peak:, of which only maxwell: may come again");
+  return wrong(item, "depth, velocity, maxwell:, stops: and creep:, of which only maxwell: may come again");
 }
 
 std::size_t feature_count(const FeatureList& list) {
   return 1 + (list.velocity ? 1 : 0) + list.relaxation_times_s.size() + (list.stop_thresholds_m.empty() ? 0 : 1) +
-         list.peak_times_s.size();
+         (list.creep_times_s.empty() ? 0 : 1);
 }
 
 }  // namespace

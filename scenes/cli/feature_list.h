@@ -1,22 +1,23 @@
 // The list behind `palpate fit --features LIST`:
-//   depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.05mm+0.1mm,peak:6
+//   depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.05mm+0.1mm,creep:0.1+1
 // Items in any order, each but maxwell at most once:
 //   depth                always there; may be left out
 //   velocity
 //   maxwell:T[+T...]     one feature, the sum of the branches with these times (s)
 //   stops:Rmm[+Rmm...]   the sum of stop operators with these thresholds
-//   peak:T               the deepest depth, healing with this time (s)
+//   creep:T[+T...]       the sum of bristles that creep, with these times (s) at the greatest depth
 // Thread guarantee: pure function.
 #pragma once
 
 #include <string>
 
 #include "engine/base/result.h"
-#include "models/training/feature_selection.h"
+#include "models/training/trend_dictionary.h"
 
 namespace palpate::cli {
 
-inline constexpr const char* kFeatureListExample = "depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.1mm,peak:6";
+inline constexpr const char* kFeatureListExample =
+    "depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.1mm,creep:0.1+1";
 
 // Errors: the item, what was found and what was expected.
 Result<FeatureList> parse_feature_list(const std::string& text);

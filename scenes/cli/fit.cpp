@@ -12,17 +12,25 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/text.h"
+#include "engine/tick/replay.h"
 #include "models/fit/fit.h"
+#include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
+#include "models/model/fitted_model.h"
 #include "scenes/cli/check_recordings.h"
 #include "scenes/cli/feature_list.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/evaluation/error_figures.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/training.h"
 
 namespace palpate::cli {
 namespace {
+
+// A training figure that a replay contradicts by more is explained.
+constexpr double kContradiction = 0.005;
+constexpr double kSingular = 1e300;
 
 struct FitArguments {
   std::vector<std::string> recordings;
@@ -45,13 +53,19 @@ struct FitArguments {
   bool list_methods = false;
 };
 
+// Choosing centres takes a time that grows with their square, half a minute at this many; a
+// model of more is hardly smaller than that of `direct`, which has them all.
+constexpr int kMostCentres = 2000;
+
 // An option that only some methods take.
 struct MethodOnly {
   const char* option;
   MethodOption takes;
 };
-constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres}, {"--candidates", kTakesCandidates},
-                                      {"--grid", kTakesGrid},       {"--kernel", kTakesKernel},
+constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres},
+                                      {"--candidates", kTakesCandidates},
+                                      {"--grid", kTakesGrid},
+                                      {"--kernel", kTakesKernel},
                                       {"--solver", kTakesSolver}};
 
 // "0.17,1.27" as positive numbers; empty when it is anything else.
@@ -127,6 +141,8 @@ TrainingRequest training_request(const FitArguments& arguments, const Scene& sce
     request.choice = FeatureChoice::given;
     request.list = *parse_feature_list(arguments.features);
   }
+  // Its two times are fitted, unless others are asked for.
+  if (papers && arguments.relaxation.empty()) return recipe_2009_request(request);
   if (arguments.relaxation == "auto") {
     request.relaxation = Relaxation::automatic;
   } else if (!arguments.relaxation.empty() && arguments.relaxation != "scene") {
@@ -164,14 +180,21 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
 
 // One row a feature: what the trend's error on strokes left out is with it and
 // without it.
-void print_worth(const FeatureSelection& selection) {
-  if (selection.worth.empty()) return;
+void print_worth(const std::vector<FeatureWorth>& worth) {
+  if (worth.empty()) return;
   std::printf("%-32s %-5s %12s %12s   RMS over the JND, strokes left out\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
-  for (const FeatureWorth& one : selection.worth) {
+  for (const FeatureWorth& one : worth) {
     std::printf("%-32s %-5s %12.4f %12.4f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
                 one.error_without);
   }
   std::fflush(stdout);
+}
+
+// An error in training is smaller where an accelerometer helped, and a device may have none.
+std::string sensor_text(const std::vector<CheckedFile>& files) {
+  const bool any = std::any_of(files.begin(), files.end(),
+                               [](const CheckedFile& one) { return one.recording.columns.acceleration; });
+  return any ? " (with the accelerometer)" : " (from positions alone)";
 }
 
 std::string strength_text(const StrengthChoice& strength) {
@@ -192,27 +215,32 @@ void print_surfaces(const Provenance& provenance) {
   for (const RecordingSurface& surface : provenance.surfaces) {
     const std::string error = std::isfinite(surface.standard_error_m)
                                   ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
-                                  : std::string(" mm (no onset found)");
+                                  : std::string(" mm (not told)");
     std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
-              << fixed(1e3 * surface.force_zero_N, 1) << " mN: " << surface.name << "\n";
+              << fixed(1e3 * surface.force_zero_N, 1) << " mN"
+              << (surface.lag_s != 0.0 ? ", force moved back by " + fixed(1e3 * surface.lag_s, 1) + " ms" : "") << ": "
+              << surface.name << "\n";
   }
 }
 
 nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
   auto list = nlohmann::ordered_json::array();
   for (const RecordingSurface& surface : surfaces_of(provenance)) {
-    list.push_back({{"name", surface.name},
-                    {"surface_offset_m", surface.offset_m},
-                    {"standard_error_m", std::isfinite(surface.standard_error_m)
-                                             ? nlohmann::ordered_json(surface.standard_error_m)
-                                             : nlohmann::ordered_json(nullptr)},
-                    {"force_zero_N", surface.force_zero_N}});
+    list.push_back(
+        {{"name", surface.name},
+         {"surface_offset_m", surface.offset_m},
+         {"standard_error_m", std::isfinite(surface.standard_error_m) ? nlohmann::ordered_json(surface.standard_error_m)
+                                                                      : nlohmann::ordered_json(nullptr)},
+         {"told", std::isfinite(surface.standard_error_m)},
+         {"force_zero_N", surface.force_zero_N},
+         {"force_lag_s", surface.lag_s}});
   }
   return list;
 }
 
-void print_summary(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& out) {
-  print_worth(prepared.selection);
+void print_summary(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
+                   const std::string& out) {
+  print_worth(prepared.worth);
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
@@ -220,17 +248,20 @@ void print_summary(const MethodFit& fit, const PreparedTraining& prepared, doubl
   print_surfaces(provenance);
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
             << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
-            << "condition, rank     " << fit.report.condition << ", " << fit.report.rank << " of "
-            << fit.report.columns << "\n"
-            << "fit time            " << seconds << " s\n"
-            << "training <= JND     " << 100.0 * provenance.training_within_jnd << " %\n";
+            << "fit time            " << fixed(seconds, 2) << " s\n"
+            << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
+  // The trend alone solves for no weights; a matrix that is singular has no condition.
+  if (fit.report.columns > 0) {
+    std::cout << "rank                " << fit.report.rank << " of " << fit.report.columns << "\n";
+    if (fit.report.condition < kSingular) std::cout << "condition           " << fit.report.condition << "\n";
+  }
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";
   std::cout << "written             " << out << "\n";
 }
 
-nlohmann::ordered_json worth_json(const FeatureSelection& selection) {
+nlohmann::ordered_json worth_json(const std::vector<FeatureWorth>& worth) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const FeatureWorth& one : selection.worth) {
+  for (const FeatureWorth& one : worth) {
     list.push_back({{"name", one.name},
                     {"taken", one.taken},
                     {"error_over_jnd_with", one.error_with},
@@ -247,8 +278,7 @@ nlohmann::ordered_json strength_json(const std::optional<StrengthChoice>& streng
           {"trend_error_over_jnd", strength->trend_error_over_jnd}};
 }
 
-void print_json(const MethodFit& fit, const PreparedTraining& prepared, const FitArguments& arguments,
-                double seconds) {
+void print_json(const MethodFit& fit, const PreparedTraining& prepared, const FitArguments& arguments, double seconds) {
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
   for (const FeatureSpec& spec : fit.data.features) features.push_back(feature_name(spec));
   const Provenance& provenance = fit.data.provenance;
@@ -266,7 +296,7 @@ void print_json(const MethodFit& fit, const PreparedTraining& prepared, const Fi
                                          {"training_within_jnd", provenance.training_within_jnd},
                                          {"name", fit.data.name},
                                          {"features", features},
-                                         {"feature_worth", worth_json(prepared.selection)},
+                                         {"feature_worth", worth_json(prepared.worth)},
                                          {"correction", strength_json(prepared.strength)},
                                          {"contact_samples", provenance.contact_samples},
                                          {"relaxation_times", times},
@@ -284,6 +314,10 @@ void check_usage(const CLI::App& verb, const FitArguments& arguments) {
   if (arguments.list_methods) return;
   for (const char* needed : {"--recording", "--method", "--out"}) {
     if (verb.count(needed) == 0) throw CLI::RequiredError(needed);
+  }
+  if (verb.count("--relaxation") > 0 && verb.count("--features") > 0 && arguments.features != "scene") {
+    throw CLI::ValidationError("--relaxation", "these are times of the scene's features, and --features asks for \"" +
+                                                   arguments.features + "\"; leave one of the two out");
   }
   const Method& method = *find_method(arguments.method);
   for (const MethodOnly& only : kMethodOnly) {
@@ -309,6 +343,33 @@ void fit_grid_to(std::vector<int>& grid, std::size_t features, std::vector<std::
   notes.push_back("the recording supports " + std::to_string(features) + " features; the grid is " + sizes);
 }
 
+// Replays the training recordings as they came, and says where that contradicts the
+// share that the fit printed for itself.
+std::string training_contradiction(const std::vector<std::string>& recordings, const ModelData& data) {
+  const auto model = std::make_shared<const FittedModel>(data);
+  ErrorFigures errors;
+  for (const std::string& path : recordings) {
+    auto reader = RecordingReader::open(path);
+    if (!reader) return {};
+    const auto replayed =
+        replay(*reader, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+          if (snapshot.in_contact) errors.add(snapshot.force_N[0], row.force_N, false, data.jnd);
+        });
+    if (!replayed) return {};
+  }
+  const double as_recorded = errors.within_jnd();
+  const double printed = data.provenance.training_within_jnd;
+  if (!(std::abs(as_recorded - printed) > kContradiction)) return {};
+  const auto& surfaces = data.provenance.surfaces;
+  const bool changed = std::any_of(surfaces.begin(), surfaces.end(), [](const RecordingSurface& one) {
+    return one.offset_m != 0.0 || one.force_zero_N != 0.0 || one.lag_s != 0.0;
+  });
+  return "replayed as recorded, the training recordings have " + fixed(100.0 * as_recorded, 2) + " % within the JND, " +
+         fixed(100.0 * printed, 2) + " % " +
+         (changed ? "with the surfaces, force zeros and lags above taken off"
+                  : "at positions where the model has its material; the rest are forces outside of it");
+}
+
 Status run_fit(const FitArguments& arguments) {
   if (arguments.list_methods) return list_methods();
   const auto scene = load_scene(arguments.scene);
@@ -324,6 +385,7 @@ Status run_fit(const FitArguments& arguments) {
 
   auto checked = check_before_use(arguments.recordings, check_request(*scene));
   if (!checked) return checked.error();
+  const std::string sensor = sensor_text(*checked);
   MotionSource source(training_inputs(std::move(*checked)));
   const TrainingRequest training = training_request(arguments, *scene);
   const auto prepared = prepare_training(source, training, prepare);
@@ -331,16 +393,20 @@ Status run_fit(const FitArguments& arguments) {
   MethodRequest asked = method_request(arguments);
   std::vector<std::string> notes;
   if (training.choice == FeatureChoice::automatic) fit_grid_to(asked.grid, prepared->common.features.size(), notes);
-  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
   const auto fit = fit_method(*prepared, asked, method);
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (const std::string contradiction = training_contradiction(arguments.recordings, fit->data);
+      !contradiction.empty()) {
+    notes.push_back(contradiction);
+  }
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;
   line.reset();  // what follows goes onto a line of its own
+  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
   if (arguments.json) {
     print_json(*fit, *prepared, arguments, seconds);
   } else {
-    print_summary(*fit, *prepared, seconds, arguments.out);
+    print_summary(*fit, *prepared, seconds, sensor, arguments.out);
   }
   return {};
 }
@@ -356,33 +422,44 @@ void add_fit(CLI::App& app, Verbs& verbs) {
   for (const Method* method : methods()) names.emplace_back(method->name);
   verb->add_option("--method", arguments->method, "One of " + method_names())->check(CLI::IsMember(names));
   verb->add_flag("--list-methods", arguments->list_methods, "Name the methods, one to a line");
-  verb->add_option("--centres", arguments->centres, "Centres of " + methods_that_take(kTakesCentres))
-      ->check(CLI::Range(1, 100000))->capture_default_str();
+  verb->add_option("--centres", arguments->centres,
+                   "Centres of " + methods_that_take(kTakesCentres) + "; for every site there is direct")
+      ->check(CLI::Range(1, kMostCentres))
+      ->capture_default_str();
   verb->add_option("--candidates", arguments->candidates,
                    "Sites tried per step, or all, of " + methods_that_take(kTakesCandidates))
-      ->check(CLI::Validator(check_candidates, "N|all"))->capture_default_str();
-  verb->add_option("--kernel", arguments->kernel, "cubic, linear, thin-plate or quintic")
-      ->check(CLI::IsMember({"cubic", "linear", "thin-plate", "quintic"}))->capture_default_str();
+      ->check(CLI::Validator(check_candidates, "N|all"))
+      ->capture_default_str();
+  verb->add_option("--kernel", arguments->kernel, "The radial function")
+      ->check(CLI::IsMember(kernel_names()))
+      ->capture_default_str();
   verb->add_option("--weighting", arguments->weighting, "What an error counts: 1/JND, the paper's 1/f, or 1")
-      ->check(CLI::IsMember({"jnd", "relative", "none"}))->capture_default_str();
+      ->check(CLI::IsMember({"jnd", "relative", "none"}))
+      ->capture_default_str();
   verb->add_option("--reduction", arguments->reduction,
                    "Which samples become sites: feature space covered, the paper's 50 mN steps, or all")
-      ->check(CLI::IsMember({"coverage", "force", "none"}))->capture_default_str();
+      ->check(CLI::IsMember({"coverage", "force", "none"}))
+      ->capture_default_str();
   verb->add_option("--features", arguments->features,
                    std::string("What the force may depend on: what the recordings support, the scene's features, or a "
-                               "list such as ") + kFeatureListExample)
-      ->check(CLI::Validator(check_features, "auto|scene|LIST"))->capture_default_str();
+                               "list such as ") +
+                       kFeatureListExample)
+      ->check(CLI::Validator(check_features, "auto|scene|LIST"))
+      ->capture_default_str();
   verb->add_option("--relaxation", arguments->relaxation,
                    "The scene's features with its relaxation times, identified ones, or these")
       ->check(CLI::Validator(check_relaxation, "scene|auto|S,S"));
   verb->add_option("--surface", arguments->surface, "Where each recording's surface is: found, or at 0 as recorded")
-      ->check(CLI::IsMember({"auto", "recorded"}))->capture_default_str();
+      ->check(CLI::IsMember({"auto", "recorded"}))
+      ->capture_default_str();
   verb->add_option("--grid", arguments->grid,
                    "Nodes of the grid per feature [25x11x11x11], of " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene whose features and JND line count")->capture_default_str();
-  verb->add_option("--solver", arguments->solver, "Cholesky, or the paper's truncated SVD, of " + methods_that_take(kTakesSolver))
-      ->check(CLI::IsMember({"cholesky", "tsvd"}))->capture_default_str();
+  verb->add_option("--solver", arguments->solver,
+                   "Cholesky, or the paper's truncated SVD, of " + methods_that_take(kTakesSolver))
+      ->check(CLI::IsMember({"cholesky", "tsvd"}))
+      ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Of " + methods_that_take(kTakesSeed))->capture_default_str();
   verb->add_option("--out", arguments->out, "Model file to write")->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");

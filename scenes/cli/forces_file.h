@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "engine/tick/replay.h"
 #include "engine/base/result.h"
+#include "engine/tick/replay.h"
 
 namespace palpate::cli {
 

@@ -1,5 +1,6 @@
 // palpate import: a table that another program wrote becomes a recording.
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -9,8 +10,10 @@
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/import/import_table.h"
 #include "engine/import/import_words.h"
+#include "models/surface/surface_estimate.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -25,6 +28,9 @@ struct ImportOptions {
   std::string delimiter;
   std::string decimal;
   double rate_Hz = 0.0;
+  double gain_N_per_V = 0.0;
+  std::uint64_t skip_bad_rows = 0;
+  std::string zero;
   bool json = false;
   bool force = false;
 };
@@ -43,9 +49,10 @@ void read_column(const std::string& text, RoleRequest& columns) {
 void read_unit(const std::string& text, std::vector<Unit>& units) {
   const auto unit = find_unit(text);
   if (!unit) {
-    throw CLI::ValidationError("--units", "found \"" + text +
-                                              "\", expected a unit of length (m, cm, mm, um, inch), force (N, mN, kN, g, kg, "
-                                              "lbf) or time (s, ms, us, ns)");
+    throw CLI::ValidationError("--units",
+                               "found \"" + text +
+                                   "\", expected a unit of length (m, cm, mm, um, inch), force (N, mN, kN, g, kg, "
+                                   "lbf) or time (s, ms, us, ns)");
   }
   for (const Unit& other : units) {
     if (other.quantity == unit->quantity) {
@@ -61,12 +68,41 @@ ImportRequest import_request(const ImportOptions& options) {
   for (const std::string& column : options.columns) read_column(column, request.columns);
   for (const std::string& unit : options.units) read_unit(unit, request.units);
   for (const std::string& flip : options.flips) {
-    (flip == "position" ? request.flip_position : request.flip_force) = true;
+    request.flip_position = request.flip_position || flip != "force";
+    request.flip_force = request.flip_force || flip != "position";
   }
   if (!options.delimiter.empty()) request.layout.delimiter = delimiter_from_name(options.delimiter);
   if (!options.decimal.empty()) request.layout.decimal = options.decimal == "comma" ? ',' : '.';
   if (options.rate_Hz > 0.0) request.rate_Hz = options.rate_Hz;
+  if (options.gain_N_per_V != 0.0) request.gain_N_per_V = options.gain_N_per_V;
+  request.skip_bad_rows = options.skip_bad_rows;
   return request;
+}
+
+// "contact", "first" or metres, from --zero.
+Status move_zero(const std::string& zero, Recording& recording) {
+  double at_m = recording.rows.front().position_m;
+  if (zero == "contact") {
+    const SurfaceEstimate surface = estimate_surface(recording);
+    if (!surface.told()) {
+      return Error{"where force begins cannot be told, " +
+                   std::string(surface.free_air ? "although there is free air" : "for there is no free air") +
+                   "; give --zero first, or a position in metres"};
+    }
+    at_m = surface.raw_offset_m;
+  } else if (zero != "first") {
+    at_m = std::stod(zero);
+  }
+  for (RecordingRow& row : recording.rows) row.position_m -= at_m;
+  return {};
+}
+
+std::string check_zero(const std::string& zero) {
+  char* end = nullptr;
+  const double value = std::strtod(zero.c_str(), &end);
+  const bool number = !zero.empty() && *end == '\0' && std::isfinite(value);
+  return zero == "contact" || zero == "first" || number ? ""
+                                                        : "found \"" + zero + "\", expected contact, first or metres";
 }
 
 double seconds_of(const ImportedTable& table) {
@@ -81,22 +117,24 @@ void print_text(const ImportOptions& options, const ImportRequest& request, cons
   }
   for (const std::string& flip : flipped_roles(request)) std::cout << "flipped    " << flip << "\n";
   for (const std::string& note : table.notes) std::cout << "note       " << note << "\n";
-  std::cout << "written    " << options.out << ": " << table.recording.rows.size() << " rows, " << seconds_of(table) << " s\n";
+  std::cout << "written    " << options.out << ": " << table.recording.rows.size() << " rows, " << seconds_of(table)
+            << " s\n";
 }
 
 void print_import_json(const ImportOptions& options, const ImportRequest& request, const ImportedTable& table) {
   using Json = nlohmann::ordered_json;
+  const double seconds = seconds_of(table);
+  const double rate_Hz = request.rate_Hz.value_or(static_cast<double>(table.recording.rows.size() - 1) / seconds);
   Json columns = Json::object();
   for (std::size_t role = 0; role < kRoles; ++role) {
     const ImportedColumn& column = table.columns[role];
     if (column.number == 0) {
-      columns[kRoleNames[role]] = {{"rate_Hz", *request.rate_Hz}};
+      columns[kRoleNames[role]] = {{"rate_Hz", rate_Hz}};
     } else {
       columns[kRoleNames[role]] = {
           {"number", column.number}, {"name", column.header}, {"unit", column.unit}, {"guessed", column.guessed}};
     }
   }
-  const double seconds = seconds_of(table);
   const Json object = {{"file", options.file},
                        {"out", options.out},
                        {"rows", table.recording.rows.size()},
@@ -121,9 +159,18 @@ Status run_import(const ImportOptions& options) {
   const ImportRequest request = import_request(options);
   // A name that cannot be written is told now and not after the reading.
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();
-  const auto table = import_table(options.file, request);
+  auto table = import_table(options.file, request);
   if (!table) return table.error();
-  const Status written = write_recording(options.out, table->recording, import_origin(options.file, request, *table), options.force);
+  if (!options.zero.empty()) {
+    const double before_m = table->recording.rows.front().position_m;
+    if (Status status = move_zero(options.zero, table->recording); !status) {
+      return Error{options.file + ": " + status.error().message};
+    }
+    table->notes.push_back("position 0 is what was " +
+                           fixed(1e3 * (before_m - table->recording.rows.front().position_m), 4) + " mm");
+  }
+  const Status written =
+      write_recording(options.out, table->recording, import_origin(options.file, request, *table), options.force);
   if (!written) return written;
   if (options.json) {
     print_import_json(options, request, *table);
@@ -141,13 +188,24 @@ void add_import(CLI::App& app, Verbs& verbs) {
   verb->add_option("file", options->file, "Table as text: CSV, TXT, LVM, TSV, ...")->required()->type_name("FILE");
   verb->add_option("--out", options->out, "Recording to write")->required()->type_name("REC.csv");
   verb->add_option("--columns", options->columns, "time=NAME,position=NAME,force=NAME; a name or a number from 1")
-      ->delimiter(',')->type_name("ROLE=NAME,...");
-  verb->add_option("--units", options->units, "Units that the header does not say or says wrongly, such as mm,N or ms,mm,mN")
-      ->delimiter(',')->type_name("UNIT,...");
+      ->delimiter(',')
+      ->type_name("ROLE=NAME,...");
+  verb->add_option("--units", options->units,
+                   "Units that the header does not say or says wrongly, such as mm,N or ms,mm,mN")
+      ->delimiter(',')
+      ->type_name("UNIT,...");
   verb->add_option("--rate", options->rate_Hz, "Rows are evenly spaced at this rate; the file's time is not used")
-      ->check(CLI::Range(10.0, 20000.0))->type_name("HZ");
+      ->check(CLI::Range(10.0, 20000.0))
+      ->type_name("HZ");
   verb->add_option("--flip", options->flips, "Turn the sign round: position, force or both")
-      ->delimiter(',')->check(CLI::IsMember({"position", "force"}));
+      ->delimiter(',')
+      ->check(CLI::IsMember({"position", "force", "both"}));
+  verb->add_option("--zero", options->zero, "Where position 0 is: contact (where force begins), first (row), or metres")
+      ->check(CLI::Validator(check_zero, "contact|first|M"));
+  verb->add_option("--gain", options->gain_N_per_V, "Newtons in a volt, for a force recorded in volts")
+      ->type_name("N_PER_V");
+  verb->add_option("--skip-bad-rows", options->skip_bad_rows, "So many rows that do not parse may be left out")
+      ->type_name("N");
   verb->add_option("--delimiter", options->delimiter, "Instead of the guess: comma, semicolon, tab or blanks")
       ->check(CLI::IsMember({"comma", "semicolon", "tab", "blanks"}));
   verb->add_option("--decimal", options->decimal, "Instead of the guess: point or comma")

@@ -36,6 +36,7 @@ void add_all_verbs(CLI::App& app, Verbs& verbs) {
   add_replay(app, verbs);
   add_export(app, verbs);
   add_report(app, verbs);
+  add_record(app, verbs);
   add_scenes(app, verbs);
   add_devices(app, verbs);
   add_study(app, verbs);
@@ -80,8 +81,7 @@ Status run_chosen(const Verbs& verbs) {
 // A first word that is no verb, told before CLI11 calls it "not expected".
 bool names_unknown_verb(const Verbs& verbs, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return false;
-  return std::none_of(verbs.begin(), verbs.end(),
-                      [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
+  return std::none_of(verbs.begin(), verbs.end(), [&](const auto& verb) { return verb.first->get_name() == argv[1]; });
 }
 
 int run_program(int argc, char** argv) {

@@ -27,10 +27,7 @@ std::string progress_text(const std::string& label, double fraction, double elap
 }
 
 ProgressLine::ProgressLine(std::string label)
-    : label_(std::move(label)),
-      start_(Clock::now()),
-      last_drawn_(start_),
-      terminal_(isatty(STDERR_FILENO) == 1) {}
+    : label_(std::move(label)), start_(Clock::now()), last_drawn_(start_), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_) std::fputs("\r\033[K", stderr);

@@ -4,14 +4,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/text.h"
 #include "scenes/cli/check_recordings.h"
+#include "scenes/cli/forces_file.h"
+#include "scenes/cli/loaded_models.h"
 #include "scenes/cli/replay_plot.h"
-#include "scenes/cli/replayed_recording.h"
 #include "scenes/cli/verbs.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/plot/draw.h"
 
 namespace palpate::cli {
 namespace {
@@ -28,11 +32,30 @@ struct Options {
   bool force = false;
 };
 
+// A change of the surface is worth a note from here.
+constexpr double kShareThatMatters = 0.005;
+constexpr double kRmsThatMatters = 0.1;
+
+struct ModelFigures {
+  ErrorSummary as_recorded;
+  ErrorSummary surface_moved;
+  PredictedErrors predicted;
+  Located surface;
+  ModelTiming time;
+};
+
+struct ReplayedRecording {
+  std::string path;
+  std::uint64_t samples = 0;
+  std::uint64_t contact_samples = 0;
+  std::vector<ModelFigures> models;
+};
+
 // The output must not replace what is being read, --force or not.
 Status check_output(const Options& options, const std::string& option, const std::string& out) {
   if (options.recordings.size() > 1) {
-    return Error{"found " + std::to_string(options.recordings.size()) +
-                 " recordings with " + option + ", expected one; replay them in several runs"};
+    return Error{"found " + std::to_string(options.recordings.size()) + " recordings with " + option +
+                 ", expected one; replay them in several runs"};
   }
   std::vector<std::string> inputs = options.models;
   inputs.push_back(options.recordings.front());
@@ -69,20 +92,26 @@ void add_figures(OrderedJson& object, const ErrorSummary& errors) {
   object["max_error_over_jnd"] = figure(errors.max_error_over_jnd);
 }
 
-OrderedJson model_json(const LoadedModel& one, const ModelErrors& errors) {
-  const auto time = [&](double value) { return errors.time.measured ? OrderedJson(value) : OrderedJson(nullptr); };
-  OrderedJson object = {
-      {"name", one.name}, {"method", one.model->method()}, {"centres", one.model->centre_count()}};
-  add_figures(object, errors.as_recorded);
-  object["out_of_domain_samples"] = errors.as_recorded.out_of_domain_samples;
-  object["evaluation_ns"] = {{"median", time(errors.time.median_ns)}, {"p99", time(errors.time.p99_ns)}};
+OrderedJson time_json(const Timing& time, bool measured) {
+  const auto figure = [&](double value) { return measured ? OrderedJson(value) : OrderedJson(nullptr); };
+  return {{"median", figure(time.median_ns)}, {"p99", figure(time.p99_ns)}};
+}
+
+OrderedJson model_json(const LoadedModel& one, const ModelFigures& figures) {
+  OrderedJson object = {{"name", one.name}, {"method", one.model->method()}, {"centres", one.model->centre_count()}};
+  add_figures(object, figures.as_recorded);
+  object["out_of_domain_samples"] = figures.as_recorded.out_of_domain_samples;
+  object["evaluation_ns"] = time_json(figures.time.evaluation, figures.time.measured);
+  object["tick_ns"] = time_json(figures.time.tick, figures.time.measured);
   OrderedJson moved;
-  add_figures(moved, errors.surface_moved);
+  add_figures(moved, figures.surface_moved);
   object["surface_moved"] = std::move(moved);
+  object["surface_offset_m"] = figures.surface.at;
+  object["surface_told"] = figures.surface.told;
   const auto bound = [&](double value) { return std::isnan(value) ? OrderedJson(nullptr) : OrderedJson(value); };
-  object["predicted_error"] = {{"bound_95_held", bound(errors.bound.held_share)},
-                               {"median_bound_N", bound(errors.bound.median_N)}};
-  object["bins"] = bins_json(errors.as_recorded.bins);
+  object["predicted_error"] = {{"bound_95_held", bound(figures.predicted.held_share)},
+                               {"median_bound_N", bound(figures.predicted.median_N)}};
+  object["bins"] = bins_json(figures.as_recorded.bins);
   return object;
 }
 
@@ -92,7 +121,7 @@ OrderedJson recording_json(const ReplayedRecording& replayed, const std::vector<
   return {{"recording", replayed.path},
           {"samples", replayed.samples},
           {"contact_samples", replayed.contact_samples},
-          {"surface_offset_m", replayed.surface_offset_m},
+          {"surface_offset_m", replayed.models.front().surface.at},
           {"models", list}};
 }
 
@@ -100,13 +129,19 @@ void print_json(const std::vector<ReplayedRecording>& all, const std::vector<Loa
   OrderedJson list = OrderedJson::array();
   for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed, models));
   // A path need not be UTF-8; what cannot be said is replaced.
-  std::printf("%s\n", (all.size() == 1 ? list.front() : list)
-                          .dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
+  std::printf(
+      "%s\n",
+      (all.size() == 1 ? list.front() : list).dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
 }
 
 using Row = std::vector<std::string>;
 
-Row table_row(const LoadedModel& one, const ModelErrors& model) {
+std::string surface_text(const Located& surface) {
+  if (!surface.told) return "not told";
+  return fixed(1e3 * surface.at, 3) + " +- " + fixed(1e3 * surface.standard_error, 3);
+}
+
+Row table_row(const LoadedModel& one, const ModelFigures& model) {
   const auto figure = [&](const ErrorSummary& errors, double value, int decimals) {
     return errors.samples > 0 ? fixed(value, decimals) : std::string("-");
   };
@@ -121,29 +156,49 @@ Row table_row(const LoadedModel& one, const ModelErrors& model) {
           figure(errors, errors.p99_error_over_jnd, 2),
           figure(errors, errors.max_error_over_jnd, 2),
           std::to_string(errors.out_of_domain_samples),
+          surface_text(model.surface),
           figure(moved, 1e3 * moved.rms_error_N, 1),
           figure(moved, 1e3 * moved.max_error_N, 1),
           figure(moved, 1e2 * moved.within_jnd, 2),
           figure(moved, moved.p99_error_over_jnd, 2),
           figure(moved, moved.max_error_over_jnd, 2),
-          time(model.time.median_ns),
-          time(model.time.p99_ns)};
+          time(model.time.tick.median_ns),
+          time(model.time.tick.p99_ns)};
 }
 
-std::string surface_text(const ReplayedRecording& replayed) {
-  if (!std::isfinite(replayed.surface_error_m)) return "surface not found";
-  const std::string error = fixed(1e3 * replayed.surface_error_m, 3) + " mm";
-  if (replayed.surface_offset_m == 0.0) return "surface where the models have it, +- " + error;
-  return "surface at " + fixed(1e3 * replayed.surface_offset_m, 3) + " +- " + error;
+// What moving the surface changed, in words; empty where it changes nothing that matters.
+std::string surface_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+  std::size_t most = models.size();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const ErrorSummary& plain = replayed.models[i].as_recorded;
+    const ErrorSummary& moved = replayed.models[i].surface_moved;
+    const double share = std::abs(moved.within_jnd - plain.within_jnd);
+    const bool matters = share > kShareThatMatters ||
+                         std::abs(moved.rms_error_N - plain.rms_error_N) > kRmsThatMatters * plain.rms_error_N;
+    if (!matters || (most < models.size() && share <= largest)) continue;
+    most = i;
+    largest = share;
+  }
+  if (most == models.size()) return {};
+  const ErrorSummary& plain = replayed.models[most].as_recorded;
+  const ErrorSummary& moved = replayed.models[most].surface_moved;
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "the surface of this recording lies at %+.3f mm for %s, and that decides the figures: "
+                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved",
+                1e3 * replayed.models[most].surface.at, models[most].name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
+                1e3 * plain.rms_error_N, 1e2 * moved.within_jnd, 1e3 * moved.rms_error_N);
+  return text;
 }
 
 void print_table(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
-  std::printf("%s: %llu samples, %llu in contact, %s\n", replayed.path.c_str(),
+  std::printf("%s: %llu samples, %llu in contact\n", replayed.path.c_str(),
               static_cast<unsigned long long>(replayed.samples),
-              static_cast<unsigned long long>(replayed.contact_samples), surface_text(replayed).c_str());
+              static_cast<unsigned long long>(replayed.contact_samples));
   std::vector<Row> rows = {{"MODEL", "CENTRES", "RMS mN", "MAX mN", "WITHIN JND %", "P99 JND", "MAX JND",
-                            "OUT OF DOMAIN", "MOVED: RMS mN", "MAX mN", "WITHIN JND %", "P99 JND", "MAX JND",
-                            "MEDIAN ns", "P99 ns"}};
+                            "OUT OF DOMAIN", "SURFACE mm", "MOVED: RMS mN", "MAX mN", "WITHIN JND %", "P99 JND",
+                            "MAX JND", "TICK ns", "P99 ns"}};
   for (std::size_t i = 0; i < models.size(); ++i) rows.push_back(table_row(models[i], replayed.models[i]));
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const Row& row : rows) {
@@ -154,7 +209,44 @@ void print_table(const ReplayedRecording& replayed, const std::vector<LoadedMode
     for (std::size_t i = 1; i < row.size(); ++i) line += "  " + std::string(widths[i] - row[i].size(), ' ') + row[i];
     std::printf("%s\n", line.c_str());
   }
-  if (const std::string remark = surface_remark(replayed, models); !remark.empty()) std::printf("note: %s\n", remark.c_str());
+  if (const std::string remark = surface_remark(replayed, models); !remark.empty())
+    std::printf("note: %s\n", remark.c_str());
+}
+
+// `also` sees every row as recorded.
+Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<LoadedModel>& models,
+                                     const Options& options, const ReplayVisitor& also) {
+  std::vector<EvaluatedModel> evaluated;
+  ForceModels force_models;
+  std::vector<std::string> names;
+  for (const LoadedModel& one : models) {
+    evaluated.push_back({one.model, one.model->data().jnd});
+    force_models.push_back(one.model);
+    names.push_back(one.name);
+  }
+  std::optional<ForcesFile> forces;
+  if (!options.out.empty()) {
+    Result<ForcesFile> file = ForcesFile::create(options.out, options.force, force_models, names);
+    if (!file) return file.error();
+    forces.emplace(std::move(*file));
+  }
+  EvaluationRequest request;
+  request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+    if (forces) forces->add(row, snapshot, tick);
+    if (also) also(row, snapshot, tick);
+  };
+  const auto evaluation = evaluate(rows_of_file(path), evaluated, request);
+  if (!evaluation) return evaluation.error();
+  if (forces) {
+    if (const Status status = forces->commit(); !status) return status.error();
+  }
+  ReplayedRecording replayed{path, evaluation->samples, evaluation->contact_samples, {}};
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const ModelEvaluation& one = evaluation->models[i];
+    replayed.models.push_back({one.as_recorded.summary(), one.surface_moved.summary(), one.predicted, one.surface,
+                               time_model(models[i].model, evaluation->sensor, evaluation->timing)});
+  }
+  return replayed;
 }
 
 Status run(const Options& options) {
@@ -174,16 +266,20 @@ Status run(const Options& options) {
   ReplayPlot plot(*models);
   ReplayVisitor also;
   if (!options.plot.empty()) {
-    also = [&plot](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) { plot.add(row, snapshot); };
+    also = [&plot](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+      plot.add(row, snapshot);
+    };
   }
   for (const std::string& recording : options.recordings) {
-    auto replayed = replay_recording(recording, *models, options.out, options.force, also);
+    auto replayed = replay_one(recording, *models, options, also);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
   }
   if (!options.plot.empty()) {
     const std::string name = std::filesystem::path(options.recordings.front()).filename().string();
-    if (const Status status = plot.draw(options.plot, name, options.force); !status) return status;
+    std::vector<ErrorSummary> errors;
+    for (const ModelFigures& one : all.front().models) errors.push_back(one.as_recorded);
+    if (const Status status = plot.draw(options.plot, name, errors, options.force); !status) return status;
   }
   if (options.json) {
     print_json(all, *models);
@@ -199,7 +295,8 @@ void add_replay(CLI::App& app, Verbs& verbs) {
   CLI::App* command = app.add_subcommand("replay", "Run models over recordings and measure their errors");
   const auto options = std::make_shared<Options>();
   command->add_option("--recording", options->recordings, "Recordings to replay; repeat the option or list them")
-      ->required()->type_name("CSV");
+      ->required()
+      ->type_name("CSV");
   command->add_option("--model", options->models, "Model file (JSON); up to 16, repeat the option or list them")
       ->required();
   command->add_option("--name", options->names, "What to call the models, one for each, in their order");

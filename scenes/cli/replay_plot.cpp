@@ -2,123 +2,83 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <limits>
 
-#include "engine/base/atomic_file.h"
-#include "scenes/report/data/binned_errors.h"
-#include "scenes/report/figures/figure.h"
-#include "scenes/report/page/report_folder.h"
-#include "scenes/scene/gnuplot.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/plot/draw.h"
+#include "scenes/scene/method_look.h"
 
 namespace palpate::cli {
 namespace {
 
-constexpr std::size_t kMostMoments = 1800;  // more than pixels are of no use
-
-std::string ending(const std::string& path) { return std::filesystem::path(path).extension().string(); }
-
-double colour_of(const LoadedModel& model) {
-  PlannedModel plan;
-  if (const Method* method = find_method(model.model->method())) plan.request.method = method;
-  return model_colour(plan);
-}
+constexpr std::size_t kMostMoments = 3000;
+constexpr double kLeastScale_jnd = 1.6;
+constexpr double kMostScale_jnd = 5.0;
 
 }  // namespace
 
-Status check_plot_path(const std::string& path, bool overwrite) {
-  if (ending(path) != ".svg" && ending(path) != ".png") {
-    return Error{"found --plot " + path + ", expected a file that ends in .svg or .png"};
-  }
-  std::error_code error;
-  if (!overwrite && std::filesystem::exists(path, error)) return Error{path + " exists; pass --force to replace it"};
-  return {};
-}
-
-ReplayPlot::ReplayPlot(const std::vector<LoadedModel>& models) : models_(models) {}
-
 void ReplayPlot::add(const RecordingRow& row, const TickSnapshot& snapshot) {
-  moments_.push_back({row.time_s, row.position_m, row.force_N, snapshot.in_contact});
-  for (std::size_t i = 0; i < models_.size(); ++i) force_N_.push_back(static_cast<float>(snapshot.force_N[i]));
+  Moment moment{row.time_s, row.force_N, counts(snapshot, row.force_N), {}};
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const JndLine& jnd = models_[i].model->data().jnd;
+    moment.over_jnd.push_back(static_cast<float>((snapshot.force_N[i] - row.force_N) / jnd.at(row.force_N)));
+  }
+  moments_.push_back(std::move(moment));
 }
 
-Status ReplayPlot::draw(const std::string& path, const std::string& recording, bool overwrite) const {
-  if (const Status status = check_plot_path(path, overwrite); !status) return status;
-  const auto gnuplot = find_gnuplot();
-  if (!gnuplot) return gnuplot.error();
-  const std::size_t count = models_.size();
-  const JndLine jnd = models_.front().model->data().jnd;
-  const auto ratio = [&](std::size_t moment, std::size_t model) {
-    const double measured_N = moments_[moment].force_N;
-    return (static_cast<double>(force_N_[moment * count + model]) - measured_N) / jnd.at(measured_N);
-  };
-  Figure figure;
-  figure.name = "replay";
-  Table trace{"replay", "", false, {{"time_s", ""}, {"depth_mm", ""}, {"force_N", ""}}, {}};
-  for (const LoadedModel& model : models_) trace.columns.push_back({model.name, ""});
-  const double none = std::numeric_limits<double>::quiet_NaN();
+Status ReplayPlot::draw(const std::string& path, const std::string& recording, const std::vector<ErrorSummary>& errors,
+                        bool overwrite) const {
+  Plot plot;
+  plot.name = "replay";
+  plot.height = 0.7;
+  Panel force;
+  force.title = recording;
+  force.y.title = "Force [N]";
+  force.series = {{"measured", kMeasuredColour, Mark::line, {}}};
+  Panel difference;
+  difference.y.title = "Difference [JND]";
+  difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
+  for (const LoadedModel& one : models_) {
+    difference.series.push_back({one.name, method_rgb(one.model->method()), Mark::line, {}});
+  }
+  double largest = kLeastScale_jnd;
   const std::size_t group = moments_.size() / kMostMoments + 1;
-  double limit = 1.6;
+  const auto worst_of = [](const Moment& moment) {
+    float worst = 0.0F;
+    for (const float over : moment.over_jnd) worst = std::max(worst, std::abs(over));
+    return moment.in_contact ? static_cast<double>(worst) : -1.0;
+  };
   // Of every group the moment with the largest error, so that a bad sample is seen.
   for (std::size_t first = 0; first < moments_.size(); first += group) {
-    std::size_t worst = first;
-    double largest = -1.0;
-    for (std::size_t i = first; i < std::min(moments_.size(), first + group); ++i) {
-      for (std::size_t m = 0; m < count && moments_[i].in_contact; ++m) {
-        if (std::abs(ratio(i, m)) <= largest) continue;
-        largest = std::abs(ratio(i, m));
-        worst = i;
-      }
+    const auto begin = moments_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = moments_.begin() + static_cast<std::ptrdiff_t>(std::min(first + group, moments_.size()));
+    const Moment& shown =
+        *std::max_element(begin, end, [&](const Moment& a, const Moment& b) { return worst_of(a) < worst_of(b); });
+    largest = std::max(largest, 1.1 * worst_of(shown));
+    force.series[0].rows.push_back({shown.time_s, shown.measured_N});
+    difference.series[0].rows.push_back({shown.time_s, 0.0, -1.0, 1.0});
+    for (std::size_t i = 0; i < models_.size(); ++i) {
+      const double over = static_cast<double>(shown.over_jnd[i]);
+      difference.series[i + 1].rows.push_back({shown.time_s, shown.in_contact ? over : kNoValue});
     }
-    limit = std::max(limit, 1.1 * largest);
-    std::vector<TableCell> row{moments_[worst].time_s, 1e3 * moments_[worst].position_m, moments_[worst].force_N};
-    for (std::size_t m = 0; m < count; ++m) row.emplace_back(moments_[worst].in_contact ? ratio(worst, m) : none);
-    trace.rows.push_back(std::move(row));
   }
-  double largest_N = 0.0;
-  for (const Moment& moment : moments_) largest_N = std::max(largest_N, moment.force_N);
-  Table bins{"replay_bins", "", false, {{"model", ""}, {"force_N", ""}, {"error_mN", ""}, {"colour", ""}}, {}};
-  Table names{"replay_models", "", false, {{"model", ""}, {"label", ""}, {"colour", ""}}, {}};
-  for (std::size_t m = 0; m < count; ++m) {
-    BinnedErrors errors(jnd, largest_N);
-    for (std::size_t i = 0; i < moments_.size(); ++i) {
-      if (moments_[i].in_contact) errors.add(static_cast<double>(force_N_[i * count + m]), moments_[i].force_N);
+  difference.y.high = std::min(largest, kMostScale_jnd);
+  difference.y.low = -difference.y.high;
+  difference.x.title = "Time [s]";
+  Panel against;
+  against.x.title = "Measured force [N]";
+  against.y = {"Mean error + deviation", "N", true};
+  Series jnd{"JND", kMutedColour, Mark::dashed, {}};
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    Series series{"", method_rgb(models_[i].model->method()), Mark::curve, {}};
+    for (const ForceBin& bin : errors[i].bins) {
+      if (bin.count > 0) series.rows.push_back({bin.mean_force_N, bin.mean_abs_error_N + bin.std_abs_error_N});
+      if (i == 0) jnd.rows.push_back({0.5 * (bin.force_from_N + bin.force_to_N), bin.jnd_N});
     }
-    for (const ErrorBin& bin : errors.bins()) {
-      bins.rows.push_back({static_cast<std::uint64_t>(m), std::max(0.0, bin.mean_force_N),
-                           1e3 * (bin.mean_abs_error_N + bin.std_abs_error_N), colour_of(models_[m])});
-    }
-    bins.rows.push_back({});
-    names.rows.push_back({static_cast<std::uint64_t>(m), models_[m].name, colour_of(models_[m])});
+    against.series.push_back(std::move(series));
   }
-  figure.width = 900;
-  figure.height = 345 + 70 * static_cast<int>(count);
-  figure.set_text("title_text", recording);
-  figure.set_number("models", static_cast<double>(count));
-  figure.set_number("limit", std::min(limit, 5.0));
-  figure.set_number("from_s", moments_.empty() ? 0.0 : moments_.front().time_s);
-  figure.set_number("to_s", moments_.empty() ? 1.0 : moments_.back().time_s);
-  double least_mN = 1e3 * jnd.at(0.0);
-  for (const auto& row : bins.rows) {
-    if (!row.empty() && row[2].number > 0.0) least_mN = std::min(least_mN, row[2].number);
-  }
-  figure.set_number("error_low", 0.7 * least_mN);
-  figure.set_number("force_high", largest_N > 0.0 ? largest_N : 1.0);
-  figure.set_number("jnd_offset_N", jnd.offset_N);
-  figure.set_number("jnd_fraction", jnd.weber_fraction);
-  figure.data = {std::move(trace), std::move(bins), std::move(names)};
-
-  const auto files = figure_files({figure});
-  if (!files) return files.error();
-  auto folder = ReportFolder::create(path + ".parts", false);
-  if (!folder) return folder.error();
-  for (const auto& [name, text] : *files) {
-    if (const Status status = folder->write(name, text); !status) return status;
-  }
-  if (const Status status = run_gnuplot(*gnuplot, folder->path_of(""), {"replay.gp"}); !status) return status;
-  const auto drawn = folder->read("replay" + ending(path));
-  if (!drawn) return drawn.error();
-  return write_file_atomically(path, *drawn, overwrite);
+  against.series.push_back(std::move(jnd));
+  plot.panels = {std::move(force), std::move(difference), std::move(against)};
+  return draw_plot(plot, path, overwrite);
 }
 
 }  // namespace palpate::cli

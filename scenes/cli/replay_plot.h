@@ -1,6 +1,5 @@
 // A replayed recording as a figure: the measured force, every model's difference from
-// it over the JND, and the error against the force. Drawn by
-// assets/figures/report/replay.gp.
+// it over the JND, and the error against the force.
 // Thread guarantee: slow side; one thread per object; `draw` starts gnuplot.
 #pragma once
 
@@ -9,34 +8,31 @@
 
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
-#include "scenes/cli/replayed_recording.h"
+#include "scenes/cli/loaded_models.h"
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate::cli {
 
 class ReplayPlot {
  public:
-  explicit ReplayPlot(const std::vector<LoadedModel>& models);
+  explicit ReplayPlot(const std::vector<LoadedModel>& models) : models_(models) {}
 
-  // Every row in time order; keeps 4 bytes a model and 24 more.
+  // Every row in time order; keeps 8 bytes a model and 32 more.
   void add(const RecordingRow& row, const TickSnapshot& snapshot);
-  // `path` ends in .svg or .png. Errors: it does not; it exists and `overwrite` is false;
-  // gnuplot is missing.
-  Status draw(const std::string& path, const std::string& recording, bool overwrite) const;
+  // `errors`: of the same rows, one a model. Errors: those of draw_plot (scenes/plot/draw.h).
+  Status draw(const std::string& path, const std::string& recording, const std::vector<ErrorSummary>& errors,
+              bool overwrite) const;
 
  private:
   struct Moment {
     double time_s;
-    double position_m;
-    double force_N;
+    double measured_N;
     bool in_contact;
+    std::vector<float> over_jnd;  // a model: its difference from the measured force
   };
 
   const std::vector<LoadedModel>& models_;
   std::vector<Moment> moments_;
-  std::vector<float> force_N_;  // all models of a moment, then the next
 };
-
-// Nothing when `path` can be drawn to; what is wrong otherwise.
-Status check_plot_path(const std::string& path, bool overwrite);
 
 }  // namespace palpate::cli

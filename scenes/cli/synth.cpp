@@ -45,9 +45,9 @@ void check_usage(const SynthOptions& options) {
 
 Status list_materials() {
   for (const Material& material : materials()) {
-    std::printf("%-9.*s %.*s (relaxation times: %s)\n", static_cast<int>(material.name.size()),
-                material.name.data(), static_cast<int>(material.summary.size()),
-                material.summary.data(), relaxation_times_text(material).c_str());
+    std::printf("%-9.*s %.*s (relaxation times: %s)\n", static_cast<int>(material.name.size()), material.name.data(),
+                static_cast<int>(material.summary.size()), material.summary.data(),
+                relaxation_times_text(material).c_str());
   }
   return {};
 }
@@ -57,27 +57,24 @@ Status run_synth(const SynthOptions& options) {
   const Result<Material> material = find_material(options.rig.material);
   if (!material) return material.error();
   ProgressLine line("recording " + options.rig.material);
-  const Result<Recording> recording =
-      record_sensors(options.rig, [&](double share) { return line.update(share); });
+  const Result<Recording> recording = record_sensors(options.rig, [&](double share) { return line.update(share); });
   if (!recording) return recording.error();
-  return write_recording(options.out, *recording,
-                         describe_recording(options.rig, *material, recording->rows.size()), options.force);
+  return write_recording(options.out, *recording, describe_recording(options.rig, *material, recording->rows.size()),
+                         options.force);
 }
 
 }  // namespace
 
 void add_synth(CLI::App& app, Verbs& verbs) {
   auto options = std::make_shared<SynthOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "synth", "Make a recording: a virtual hand presses a virtual material");
+  CLI::App* verb = app.add_subcommand("synth", "Make a recording: a virtual hand presses a virtual material");
   verb->add_option("--material", options->rig.material, "What to press; --list names them");
   verb->add_option("--seed", options->rig.seed, "Which hand motion and noise")
       ->check(whole_number)
       ->capture_default_str();
-  options->seconds = verb->add_option("--seconds", options->rig.seconds,
-                                      "How long; the material's own length if not given");
-  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second, 10 to 20000")
-      ->capture_default_str();
+  options->seconds =
+      verb->add_option("--seconds", options->rig.seconds, "How long; the material's own length if not given");
+  verb->add_option("--rate", options->rig.rate_Hz, "Rows per second, 10 to 20000")->capture_default_str();
   verb->add_option("--surface-offset", options->rig.sensors.surface_offset_m,
                    "Metres by which every position is recorded too large")
       ->capture_default_str();

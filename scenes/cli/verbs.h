@@ -25,6 +25,7 @@ void add_check(CLI::App& app, Verbs& verbs);
 void add_fit(CLI::App& app, Verbs& verbs);
 void add_replay(CLI::App& app, Verbs& verbs);
 void add_export(CLI::App& app, Verbs& verbs);
+void add_record(CLI::App& app, Verbs& verbs);
 void add_scenes(CLI::App& app, Verbs& verbs);
 void add_devices(CLI::App& app, Verbs& verbs);
 void add_report(CLI::App& app, Verbs& verbs);

@@ -25,13 +25,12 @@ void Block::reset(double position_m) noexcept {
 }
 
 double Block::step(double position_m, double velocity_m_per_s, double dt_s) noexcept {
-  if (!std::isfinite(position_m) || !std::isfinite(velocity_m_per_s) || !std::isfinite(dt_s) ||
-      dt_s <= 0.0) {
+  if (!std::isfinite(position_m) || !std::isfinite(velocity_m_per_s) || !std::isfinite(dt_s) || dt_s <= 0.0) {
     return force_N_;
   }
   // The small excess keeps a dt of 1 ms, inexact in binary, at ten sub-steps.
-  const int count = static_cast<int>(
-      std::clamp(std::ceil(dt_s / kLongestSubstep_s * (1.0 - 1e-9)), 1.0, kMostSubsteps));
+  const int count =
+      static_cast<int>(std::clamp(std::ceil(dt_s / kLongestSubstep_s * (1.0 - 1e-9)), 1.0, kMostSubsteps));
   if (dt_s / count != substep_s_) {
     substep_s_ = dt_s / count;
     prepare();
@@ -41,8 +40,7 @@ double Block::step(double position_m, double velocity_m_per_s, double dt_s) noex
     const double u = static_cast<double>(i) / count;
     const double rest = 1.0 - u;
     const double rise = u * u * (3.0 - 2.0 * u);
-    const double x = x0 + (position_m - x0) * rise +
-                     dt_s * u * rest * (v0 * rest - velocity_m_per_s * u);
+    const double x = x0 + (position_m - x0) * rise + dt_s * u * rest * (v0 * rest - velocity_m_per_s * u);
     const double v = 6.0 * u * rest * (position_m - x0) / dt_s + v0 * rest * (1.0 - 3.0 * u) +
                      velocity_m_per_s * u * (3.0 * u - 2.0);
     substep(x, v);

@@ -11,9 +11,7 @@ double FrictionBlock::held_force_N(double depth_m) const noexcept {
   return kContact.force_N(depth_m) * (1.0 + 0.5 * spectrum_.total_weight());
 }
 
-std::string FrictionBlock::relaxation_times_text() const {
-  return "continuous, 0.05 s to 2 s; dry friction";
-}
+std::string FrictionBlock::relaxation_times_text() const { return "continuous, 0.05 s to 2 s; dry friction"; }
 
 double FrictionBlock::friction_limit_N(double depth_m) noexcept {
   return kFriction_N * std::min(1.0, depth_m / kGripped_m);

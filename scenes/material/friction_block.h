@@ -26,10 +26,10 @@ namespace palpate {
 class FrictionBlock final : public Block {
  public:
   static constexpr SphereContact kContact = {.radius_m = 0.01, .modulus_Pa = 12e3};
-  static constexpr double kFriction_N = 0.35;       // F_c
-  static constexpr double kPresliding_m = 1e-4;     // x_p
-  static constexpr double kGripped_m = 0.004;       // d_c
-  static constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
+  static constexpr double kFriction_N = 0.35;    // F_c
+  static constexpr double kPresliding_m = 1e-4;  // x_p
+  static constexpr double kGripped_m = 0.004;    // d_c
+  static constexpr double kWeight = 0.03;        // of the box spectrum, per unit of ln tau
 
   FrictionBlock();
   double held_force_N(double depth_m) const noexcept override;

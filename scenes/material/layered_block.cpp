@@ -39,8 +39,7 @@ void LayeredBlock::prepare() noexcept {
 // convex: from below the root Newton overshoots at most to where the contact is
 // open, which is bounded by s - g, and from there the next step is exact or from
 // below.
-double LayeredBlock::balance_m(double surface_m, double slope_N_per_m, double offset_N,
-                               double guess_m) noexcept {
+double LayeredBlock::balance_m(double surface_m, double slope_N_per_m, double offset_N, double guess_m) noexcept {
   const double reach_m = surface_m - kGap_m;
   const double open_m = -offset_N / slope_N_per_m;
   if (open_m >= reach_m) return open_m;
@@ -65,8 +64,7 @@ double LayeredBlock::inclusion_after_m(double surface_m) const noexcept {
 double LayeredBlock::contact_force_N(double surface_m, double) const noexcept {
   const double elastic_N = kTop.force_N(surface_m);
   const double squeezed_m = surface_m - kGap_m - inclusion_after_m(surface_m);
-  const double inclusion_N =
-      squeezed_m > 0.0 ? kInclusion_N_per_m1_5 * squeezed_m * std::sqrt(squeezed_m) : 0.0;
+  const double inclusion_N = squeezed_m > 0.0 ? kInclusion_N_per_m1_5 * squeezed_m * std::sqrt(squeezed_m) : 0.0;
   return elastic_N + spectrum_.memory_N(elastic_N - elastic_N_) + inclusion_N;
 }
 
@@ -75,8 +73,7 @@ void LayeredBlock::settle(double surface_m, bool) noexcept {
   spectrum_.settle(elastic_N - elastic_N_);
   elastic_N_ = elastic_N;
   const double inclusion_m = inclusion_after_m(surface_m);
-  branch_N_ = branch_N_ * branch_decay_ +
-              kSupportBranch_N_per_m * branch_gain_ * (inclusion_m - inclusion_m_);
+  branch_N_ = branch_N_ * branch_decay_ + kSupportBranch_N_per_m * branch_gain_ * (inclusion_m - inclusion_m_);
   if (std::abs(branch_N_) < kNoForce_N) branch_N_ = 0.0;
   inclusion_m_ = std::abs(inclusion_m) < 1e-30 ? 0.0 : inclusion_m;
 }

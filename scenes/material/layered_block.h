@@ -27,7 +27,7 @@ class LayeredBlock final : public Block {
   static constexpr double kSupport_N_per_m = 3000.0;        // k_s
   static constexpr double kSupportBranch_N_per_m = 2000.0;  // k_m
   static constexpr double kSupportTime_s = 0.3;             // tau_m
-  static constexpr double kWeight = 0.06;  // of the box spectrum, per unit of ln tau
+  static constexpr double kWeight = 0.06;                   // of the box spectrum, per unit of ln tau
 
   LayeredBlock();
   double held_force_N(double depth_m) const noexcept override;

@@ -33,9 +33,8 @@ constexpr std::array kMaterials = {
     Material{.name = "softening",
              .summary = "foam that softens below its deepest press and heals in 6 s",
              .make_block = &make<SofteningBlock>},
-    Material{.name = "layered",
-             .summary = "soft block with a stiff inclusion 6 mm down",
-             .make_block = &make<LayeredBlock>},
+    Material{
+        .name = "layered", .summary = "soft block with a stiff inclusion 6 mm down", .make_block = &make<LayeredBlock>},
     Material{.name = "friction",
              .summary = "soft block that grips the probe: dry friction, 0.35 N",
              .make_block = &make<FrictionBlock>,
@@ -78,8 +77,6 @@ Result<Material> find_material(std::string_view name) {
   return Error{"unknown material '" + std::string(name) + "'; known: " + known};
 }
 
-std::string relaxation_times_text(const Material& material) {
-  return material.make_block()->relaxation_times_text();
-}
+std::string relaxation_times_text(const Material& material) { return material.make_block()->relaxation_times_text(); }
 
 }  // namespace palpate

@@ -7,8 +7,7 @@
 namespace palpate {
 
 double MaxwellParameters::elastic_force_N(double depth_m) const noexcept {
-  return depth_m * (elastic_linear_N_per_m +
-                    depth_m * (elastic_quadratic_N_per_m2 + depth_m * elastic_cubic_N_per_m3));
+  return depth_m * (elastic_linear_N_per_m + depth_m * (elastic_quadratic_N_per_m2 + depth_m * elastic_cubic_N_per_m3));
 }
 
 double MaxwellParameters::unrelaxed_force_N(std::size_t branch, double depth_m) const noexcept {
@@ -17,8 +16,7 @@ double MaxwellParameters::unrelaxed_force_N(std::size_t branch, double depth_m) 
 }
 
 double MaxwellParameters::viscous_force_N(double depth_m, double rate_m_per_s) const noexcept {
-  const double thinned =
-      (1.0 - thick_fraction) / (1.0 + std::abs(rate_m_per_s) / thinning_speed_m_per_s);
+  const double thinned = (1.0 - thick_fraction) / (1.0 + std::abs(rate_m_per_s) / thinning_speed_m_per_s);
   return viscosity_Ns_per_m2 * depth_m * rate_m_per_s * (thick_fraction + thinned);
 }
 
@@ -35,8 +33,7 @@ std::string MaxwellBlock::relaxation_times_text() const {
   std::string text;
   for (std::size_t b = 0; b < material_.branch_count; ++b) {
     char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits,
-                                   material_.branches[b].relaxation_time_s);
+    const auto end = std::to_chars(digits, digits + sizeof digits, material_.branches[b].relaxation_time_s);
     text += b == 0 ? "" : ", ";
     text.append(digits, end.ptr);
     text += " s";
@@ -59,14 +56,13 @@ MaxwellBlock::Inner MaxwellBlock::inner_at(double surface_m) const noexcept {
   const double elastic_N = material_.elastic_force_N(surface_m);
   inner.static_force_N = elastic_N;
   for (std::size_t b = 0; b < material_.branch_count; ++b) {
-    const double change_N = material_.unrelaxed_force_N(b, surface_m) -
-                            material_.unrelaxed_force_N(b, last_surface_m());
+    const double change_N =
+        material_.unrelaxed_force_N(b, surface_m) - material_.unrelaxed_force_N(b, last_surface_m());
     inner.branch_N[b] = branch_force_N_[b] * decay_[b] + change_N * gain_[b];
     inner.static_force_N += inner.branch_N[b];
   }
   const double limit_N = material_.friction_fraction * elastic_N;
-  const double dragged_N =
-      friction_N_ + material_.friction_stiffness_N_per_m * (surface_m - last_surface_m());
+  const double dragged_N = friction_N_ + material_.friction_stiffness_N_per_m * (surface_m - last_surface_m());
   inner.friction_N = std::clamp(dragged_N, -limit_N, limit_N);
   inner.static_force_N += inner.friction_N;
   return inner;

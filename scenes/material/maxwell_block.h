@@ -28,9 +28,9 @@ inline constexpr std::size_t kMaximumBranches = 3;
 // One Maxwell branch: a spring that stiffens with depth, in series with a
 // dashpot that lets it relax.
 struct RelaxationBranch {
-  double relaxation_time_s = 1.0;           // tau_b > 0
-  double stiffness_N_per_m = 0.0;           // K_b0 >= 0
-  double stiffness_slope_N_per_m2 = 0.0;    // K_b1 >= 0
+  double relaxation_time_s = 1.0;         // tau_b > 0
+  double stiffness_N_per_m = 0.0;         // K_b0 >= 0
+  double stiffness_slope_N_per_m2 = 0.0;  // K_b1 >= 0
 };
 
 struct MaxwellParameters {
@@ -53,44 +53,39 @@ struct MaxwellParameters {
   double viscous_force_N(double depth_m, double rate_m_per_s) const noexcept;
 };
 
-inline constexpr MaxwellParameters kMaxwell = {
-    .elastic_linear_N_per_m = 330.0,
-    .elastic_quadratic_N_per_m2 = 1.2e4,
-    .elastic_cubic_N_per_m3 = 1.2e6,
-    .viscosity_Ns_per_m2 = 800.0,
-    .thick_fraction = 0.5,
-    .thinning_speed_m_per_s = 0.15,
-    .branch_count = 2,
-    .branches = {{{0.17, 70.0, 9.0e3}, {1.27, 50.0, 6.0e3}}}};
+inline constexpr MaxwellParameters kMaxwell = {.elastic_linear_N_per_m = 330.0,
+                                               .elastic_quadratic_N_per_m2 = 1.2e4,
+                                               .elastic_cubic_N_per_m3 = 1.2e6,
+                                               .viscosity_Ns_per_m2 = 800.0,
+                                               .thick_fraction = 0.5,
+                                               .thinning_speed_m_per_s = 0.15,
+                                               .branch_count = 2,
+                                               .branches = {{{0.17, 70.0, 9.0e3}, {1.27, 50.0, 6.0e3}}}};
 
-inline constexpr MaxwellParameters kFoam = {
-    .elastic_linear_N_per_m = 520.0,
-    .elastic_quadratic_N_per_m2 = -6.5e4,
-    .elastic_cubic_N_per_m3 = 3.6e6,
-    .viscosity_Ns_per_m2 = 260.0,
-    .thick_fraction = 0.6,
-    .thinning_speed_m_per_s = 0.1,
-    .friction_fraction = 0.025,
-    .friction_stiffness_N_per_m = 60.0,
-    .branch_count = 2,
-    .branches = {{{0.08, 60.0, 5.0e3}, {0.9, 45.0, 3.0e3}}}};
+inline constexpr MaxwellParameters kFoam = {.elastic_linear_N_per_m = 520.0,
+                                            .elastic_quadratic_N_per_m2 = -6.5e4,
+                                            .elastic_cubic_N_per_m3 = 3.6e6,
+                                            .viscosity_Ns_per_m2 = 260.0,
+                                            .thick_fraction = 0.6,
+                                            .thinning_speed_m_per_s = 0.1,
+                                            .friction_fraction = 0.025,
+                                            .friction_stiffness_N_per_m = 60.0,
+                                            .branch_count = 2,
+                                            .branches = {{{0.08, 60.0, 5.0e3}, {0.9, 45.0, 3.0e3}}}};
 
-inline constexpr MaxwellParameters kElastic = {.elastic_linear_N_per_m = 400.0,
-                                               .elastic_quadratic_N_per_m2 = 1.5e4,
-                                               .elastic_cubic_N_per_m3 = 2.0e6};
+inline constexpr MaxwellParameters kElastic = {
+    .elastic_linear_N_per_m = 400.0, .elastic_quadratic_N_per_m2 = 1.5e4, .elastic_cubic_N_per_m3 = 2.0e6};
 
-inline constexpr MaxwellParameters kStiff = {.elastic_linear_N_per_m = 3000.0,
-                                             .viscosity_Ns_per_m2 = 2000.0};
+inline constexpr MaxwellParameters kStiff = {.elastic_linear_N_per_m = 3000.0, .viscosity_Ns_per_m2 = 2000.0};
 
-inline constexpr MaxwellParameters kGel = {
-    .elastic_linear_N_per_m = 170.0,
-    .elastic_quadratic_N_per_m2 = 6.0e3,
-    .elastic_cubic_N_per_m3 = 6.0e5,
-    .viscosity_Ns_per_m2 = 500.0,
-    .thick_fraction = 0.4,
-    .thinning_speed_m_per_s = 0.1,
-    .branch_count = 3,
-    .branches = {{{0.05, 60.0, 5.0e3}, {0.4, 60.0, 5.0e3}, {2.5, 50.0, 4.0e3}}}};
+inline constexpr MaxwellParameters kGel = {.elastic_linear_N_per_m = 170.0,
+                                           .elastic_quadratic_N_per_m2 = 6.0e3,
+                                           .elastic_cubic_N_per_m3 = 6.0e5,
+                                           .viscosity_Ns_per_m2 = 500.0,
+                                           .thick_fraction = 0.4,
+                                           .thinning_speed_m_per_s = 0.1,
+                                           .branch_count = 3,
+                                           .branches = {{{0.05, 60.0, 5.0e3}, {0.4, 60.0, 5.0e3}, {2.5, 50.0, 4.0e3}}}};
 
 class MaxwellBlock final : public Block {
  public:
@@ -100,9 +95,7 @@ class MaxwellBlock final : public Block {
   double branch_force_N(std::size_t branch) const noexcept { return branch_force_N_[branch]; }
 
   double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override {
-    return material_.elastic_force_N(depth_m);
-  }
+  double relaxed_force_N(double depth_m) const noexcept override { return material_.elastic_force_N(depth_m); }
   std::string relaxation_times_text() const override;
 
  private:

@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 constexpr double kGridRate_Hz = 20000.0;
-constexpr double kConverterSteps = 4096.0;  // 12 bits
+constexpr double kConverterSteps = 4096.0;    // 12 bits
 constexpr std::size_t kRowsPerUpdate = 4096;  // between two words on progress
 
 enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream, kJitterStream };
@@ -19,9 +19,8 @@ RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   const double rest = 1.0 - u;
   const auto straight = [&](double from, double to) { return from + (to - from) * u; };
   RigTruth truth;
-  truth.position_m =
-      a.position_m + (b.position_m - a.position_m) * u * u * (3.0 - 2.0 * u) +
-      kRigStep_s * u * rest * (a.velocity_m_per_s * rest - b.velocity_m_per_s * u);
+  truth.position_m = a.position_m + (b.position_m - a.position_m) * u * u * (3.0 - 2.0 * u) +
+                     kRigStep_s * u * rest * (a.velocity_m_per_s * rest - b.velocity_m_per_s * u);
   truth.velocity_m_per_s = straight(a.velocity_m_per_s, b.velocity_m_per_s);
   truth.acceleration_m_per_s2 = straight(a.acceleration_m_per_s2, b.acceleration_m_per_s2);
   truth.force_N = straight(a.force_N, b.force_N);
@@ -82,8 +81,7 @@ Result<Rig> Rig::create(const RigSettings& settings) {
   if (!(settings.rate_Hz >= kSlowestRate_Hz && settings.rate_Hz <= kFastestRate_Hz)) {
     return Error{"the rate must be 10 to 20000 Hz"};
   }
-  const double seconds =
-      settings.seconds == 0.0 ? material->recording_seconds : settings.seconds;
+  const double seconds = settings.seconds == 0.0 ? material->recording_seconds : settings.seconds;
   if (!(seconds > 0.0)) return Error{"the seconds must be a number above 0"};
   const double rows = std::floor(seconds * settings.rate_Hz + 0.5);
   if (rows < static_cast<double>(kRecordingMinimumRows)) {
@@ -116,8 +114,10 @@ Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_
 
 RigTruth Rig::truth_now() const noexcept {
   const double force_N = block_->force_N();
-  return {hand_.position_m(),         hand_.velocity_m_per_s(),
-          hand_.acceleration_m_per_s2(), force_N,
+  return {hand_.position_m(),
+          hand_.velocity_m_per_s(),
+          hand_.acceleration_m_per_s2(),
+          force_N,
           block_->surface_depth_m(),
           filter_share_ < 1.0 ? after_.cell_force_N + filter_share_ * (force_N - after_.cell_force_N) : force_N};
 }
@@ -150,14 +150,12 @@ bool Rig::next(RecordingRow& row, RigTruth& truth) noexcept {
   row.position_m = encoded(truth.position_m + sensors.surface_offset_m, sensors.encoder_step_m);
   row.force_N = converted(truth.cell_force_N + sensors.force_zero_N + sensors.force_noise_N * force_noise_.normal(),
                           sensors.force_range_N);
-  row.acceleration_m_per_s2 =
-      converted(truth.acceleration_m_per_s2 + bias_m_per_s2_ +
-                    sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal(),
-                sensors.acceleration_range_m_per_s2);
+  row.acceleration_m_per_s2 = converted(
+      truth.acceleration_m_per_s2 + bias_m_per_s2_ + sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal(),
+      sensors.acceleration_range_m_per_s2);
   const double share = std::min(1.0, 1.0 / (settings_.rate_Hz * sensors.acceleration_bias_time_s));
-  bias_m_per_s2_ += -share * bias_m_per_s2_ + sensors.acceleration_bias_m_per_s2 *
-                                                  std::sqrt(share * (2.0 - share)) *
-                                                  bias_noise_.normal();
+  bias_m_per_s2_ += -share * bias_m_per_s2_ +
+                    sensors.acceleration_bias_m_per_s2 * std::sqrt(share * (2.0 - share)) * bias_noise_.normal();
   return true;
 }
 
@@ -200,17 +198,14 @@ std::vector<std::string> describe_recording(const RigSettings& settings, const M
                                             std::size_t row_count) {
   const SensorSettings sensors = suited(settings, material).sensors;
   std::vector<std::string> lines = {
-      "virtual recording by palpate synth: material " + settings.material + ", seed " +
-          std::to_string(settings.seed) + ", " + std::to_string(row_count) + " rows at " +
-          shortest(settings.rate_Hz) + " Hz",
+      "virtual recording by palpate synth: material " + settings.material + ", seed " + std::to_string(settings.seed) +
+          ", " + std::to_string(row_count) + " rows at " + shortest(settings.rate_Hz) + " Hz",
       "true relaxation times: " + relaxation_times_text(material),
-      "encoder step " + shortest(sensors.encoder_step_m) + " m; force noise " +
-          shortest(sensors.force_noise_N) + " N, 12 bits over +-" + shortest(sensors.force_range_N) +
-          " N",
-      "accelerometer noise " + shortest(sensors.acceleration_noise_m_per_s2) +
-          " m/s2, bias wandering by " + shortest(sensors.acceleration_bias_m_per_s2) +
-          " m/s2 within " + shortest(sensors.acceleration_bias_time_s) + " s, 12 bits over +-" +
-          shortest(sensors.acceleration_range_m_per_s2) + " m/s2",
+      "encoder step " + shortest(sensors.encoder_step_m) + " m; force noise " + shortest(sensors.force_noise_N) +
+          " N, 12 bits over +-" + shortest(sensors.force_range_N) + " N",
+      "accelerometer noise " + shortest(sensors.acceleration_noise_m_per_s2) + " m/s2, bias wandering by " +
+          shortest(sensors.acceleration_bias_m_per_s2) + " m/s2 within " + shortest(sensors.acceleration_bias_time_s) +
+          " s, 12 bits over +-" + shortest(sensors.acceleration_range_m_per_s2) + " m/s2",
   };
   if (sensors.surface_offset_m != 0.0 || sensors.force_zero_N != 0.0) {
     lines.push_back("surface recorded at " + shortest(sensors.surface_offset_m) + " m, force zero at " +

@@ -22,11 +22,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording/recording.h"
+#include "engine/base/random_stream.h"
 #include "engine/base/result.h"
+#include "engine/recording/recording.h"
 #include "scenes/material/hand.h"
 #include "scenes/material/material.h"
-#include "engine/base/random_stream.h"
 
 namespace palpate {
 
@@ -36,13 +36,13 @@ struct SensorSettings {
   double force_range_N = 0.0;  // -range .. +range in 4096 steps; clips beyond; 0: as suits the material
   double acceleration_noise_m_per_s2 = 0.07;
   double acceleration_range_m_per_s2 = 40.0;  // -range .. +range in 4096 steps
-  double acceleration_bias_m_per_s2 = 0.1;  // standard deviation
-  double acceleration_bias_time_s = 20.0;   // how slowly it wanders
+  double acceleration_bias_m_per_s2 = 0.1;    // standard deviation
+  double acceleration_bias_time_s = 20.0;     // how slowly it wanders
   // What real rigs do as well:
-  double surface_offset_m = 0.0;   // the recorded position is so much too large
-  double force_zero_N = 0.0;       // the recorded force is so much too large
+  double surface_offset_m = 0.0;     // the recorded position is so much too large
+  double force_zero_N = 0.0;         // the recorded force is so much too large
   double force_filter_time_s = 0.0;  // first-order lag before the force cell; 0: none
-  double jitter_share = 0.0;  // rows are late by up to this share of their spacing, 0 .. < 1
+  double jitter_share = 0.0;         // rows are late by up to this share of their spacing, 0 .. < 1
 };
 
 inline constexpr double kRigStep_s = 1.0 / 20000.0;

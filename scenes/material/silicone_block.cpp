@@ -2,16 +2,13 @@
 
 namespace palpate {
 
-SiliconeBlock::SiliconeBlock()
-    : spectrum_(kShortest_s, kLongest_s, [](double) { return kWeight; }) {}
+SiliconeBlock::SiliconeBlock() : spectrum_(kShortest_s, kLongest_s, [](double) { return kWeight; }) {}
 
 double SiliconeBlock::held_force_N(double depth_m) const noexcept {
   return kContact.force_N(depth_m) * (1.0 + 0.5 * spectrum_.total_weight());
 }
 
-std::string SiliconeBlock::relaxation_times_text() const {
-  return "continuous, 0.001 s to 30 s";
-}
+std::string SiliconeBlock::relaxation_times_text() const { return "continuous, 0.001 s to 30 s"; }
 
 double SiliconeBlock::contact_force_N(double surface_m, double) const noexcept {
   const double elastic_N = kContact.force_N(surface_m);

@@ -27,13 +27,9 @@ double SofteningBlock::held_force_N(double depth_m) const noexcept {
   return elastic_force_N(depth_m) * (1.0 + 0.5 * spectrum_.total_weight());
 }
 
-double SofteningBlock::relaxed_force_N(double depth_m) const noexcept {
-  return elastic_force_N(depth_m);
-}
+double SofteningBlock::relaxed_force_N(double depth_m) const noexcept { return elastic_force_N(depth_m); }
 
-std::string SofteningBlock::relaxation_times_text() const {
-  return "continuous, 0.01 s to 3 s; heals in 6 s";
-}
+std::string SofteningBlock::relaxation_times_text() const { return "continuous, 0.01 s to 3 s; heals in 6 s"; }
 
 void SofteningBlock::prepare() noexcept {
   spectrum_.prepare(substep_s());

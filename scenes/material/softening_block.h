@@ -27,7 +27,7 @@ class SofteningBlock final : public Block {
   static constexpr double kSharpness_J = 1e-3;             // w0
   static constexpr double kSharpnessShare = 0.3;           // beta
   static constexpr double kHealing_s = 6.0;                // tau_heal
-  static constexpr double kWeight = 0.03;  // of the box spectrum, per unit of ln tau
+  static constexpr double kWeight = 0.03;                  // of the box spectrum, per unit of ln tau
 
   SofteningBlock();
   double held_force_N(double depth_m) const noexcept override;

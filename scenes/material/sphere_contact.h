@@ -14,9 +14,9 @@
 namespace palpate {
 
 struct SphereContact {
-  double radius_m = 0.01;    // R > 0
-  double modulus_Pa = 0.0;   // E >= 0, Young's modulus of the incompressible solid at rest
-  double stiffening = 0.0;   // b >= 0
+  double radius_m = 0.01;   // R > 0
+  double modulus_Pa = 0.0;  // E >= 0, Young's modulus of the incompressible solid at rest
+  double stiffening = 0.0;  // b >= 0
 
   // F(depth), newtons; depth_m >= 0.
   double force_N(double depth_m) const noexcept;

@@ -15,9 +15,7 @@ constexpr double kMostClosed = 0.9;
 constexpr double kNoPressure_Pa = 1e-25;
 
 // The ring's share of the tool's area: rings are equally wide.
-constexpr double ring_share(size_t ring) {
-  return (2.0 * static_cast<double>(ring) + 1.0) / (kRingCount * kRingCount);
-}
+constexpr double ring_share(size_t ring) { return (2.0 * static_cast<double>(ring) + 1.0) / (kRingCount * kRingCount); }
 
 double skeleton_N(double depth_m) {
   const double strain = depth_m / SpongeBlock::kHeight_m;
@@ -51,8 +49,7 @@ std::string SpongeBlock::relaxation_times_text() const {
 void SpongeBlock::begin_substep() noexcept {
   const double strain = last_surface_m() / kHeight_m;
   const double width_m = kRadius_m / kRingCount;
-  const double flow = substep_s() * kDiffusivity_m2_per_s * std::exp(-kPermeabilityFall * strain) /
-                      (width_m * width_m);
+  const double flow = substep_s() * kDiffusivity_m2_per_s * std::exp(-kPermeabilityFall * strain) / (width_m * width_m);
   Rings above{};  // of the diagonal, divided by the pivot
   double from_inside = 0.0, last_drained = 0.0, last_squeezed = 0.0;
   for (size_t i = 0; i < kRings; ++i) {

@@ -29,13 +29,13 @@ namespace palpate {
 class SpongeBlock final : public Block {
  public:
   static constexpr std::size_t kRings = 12;
-  static constexpr double kHeight_m = 0.03;            // L
-  static constexpr double kRadius_m = 0.012;           // a
-  static constexpr double kSkeleton_Pa = 9e3;         // E
-  static constexpr double kClosed_strain = 0.8;        // e_d
-  static constexpr double kPore_Pa = 160e3;            // M
+  static constexpr double kHeight_m = 0.03;                 // L
+  static constexpr double kRadius_m = 0.012;                // a
+  static constexpr double kSkeleton_Pa = 9e3;               // E
+  static constexpr double kClosed_strain = 0.8;             // e_d
+  static constexpr double kPore_Pa = 160e3;                 // M
   static constexpr double kDiffusivity_m2_per_s = 1.25e-4;  // k0 M
-  static constexpr double kPermeabilityFall = 5.0;     // b
+  static constexpr double kPermeabilityFall = 5.0;          // b
 
   double held_force_N(double depth_m) const noexcept override;
   double relaxed_force_N(double depth_m) const noexcept override;

@@ -18,9 +18,7 @@ TissueBlock::TissueBlock() : spectrum_(kShortest_s, kLongest_s, density) {
   held_share_ = 1.0 - kFractionalShare + density(kLongest_s) / kExponent;
 }
 
-std::string TissueBlock::relaxation_times_text() const {
-  return "a power law of time, t^-0.15";
-}
+std::string TissueBlock::relaxation_times_text() const { return "a power law of time, t^-0.15"; }
 
 double TissueBlock::contact_force_N(double surface_m, double) const noexcept {
   const double elastic_N = kContact.force_N(surface_m);

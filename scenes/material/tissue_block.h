@@ -24,14 +24,12 @@ class TissueBlock final : public Block {
   static constexpr SphereContact kContact = {.radius_m = 0.008, .modulus_Pa = 25e3, .stiffening = 3.0};
   static constexpr double kShortest_s = 1e-4;
   static constexpr double kLongest_s = 1000.0;
-  static constexpr double kExponent = 0.15;       // alpha
+  static constexpr double kExponent = 0.15;         // alpha
   static constexpr double kFractionalShare = 0.45;  // p
 
   TissueBlock();
   double held_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  double relaxed_force_N(double depth_m) const noexcept override {
-    return held_share_ * kContact.force_N(depth_m);
-  }
+  double relaxed_force_N(double depth_m) const noexcept override { return held_share_ * kContact.force_N(depth_m); }
   std::string relaxation_times_text() const override;
 
  private:

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/tick/jnd.h"
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
 #include "scenes/scene/jnd_line_fit.h"
 
 namespace palpate {

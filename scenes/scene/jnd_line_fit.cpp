@@ -39,7 +39,8 @@ Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points) {
     lines.conservative.offset_N =
         std::min(lines.conservative.offset_N, point.jnd_N - lines.fitted.weber_fraction * point.reference_N);
   }
-  if (lines.conservative.weber_fraction < 0.0) return useless_line(lines.conservative, "JNDs that do not fall with the force");
+  if (lines.conservative.weber_fraction < 0.0)
+    return useless_line(lines.conservative, "JNDs that do not fall with the force");
   if (lines.conservative.offset_N <= 0.0) return useless_line(lines.conservative, "one that is above 0 N at no force");
   return lines;
 }

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/tick/jnd.h"
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
 
 namespace palpate {
 

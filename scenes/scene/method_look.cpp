@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint32_t kPositionColour = 0x8C8C8C;
+constexpr std::uint32_t kPositionColour = 0xF0E442;  // Okabe & Ito; grey is the band
 
 }  // namespace
 

@@ -45,7 +45,7 @@ std::string describe_features(const Scene& scene) {
       case FeatureKind::maxwell_branch:  // these are identified in a fit, never written in a scene
       case FeatureKind::maxwell_spectrum:
       case FeatureKind::stops:
-      case FeatureKind::fading_peak:
+      case FeatureKind::creep:
       case FeatureKind::surface_lag:
         break;
     }

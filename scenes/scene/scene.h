@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "engine/tick/jnd.h"
-#include "engine/base/result.h"
 
 namespace palpate {
 

@@ -10,8 +10,8 @@
 #include "engine/json/json_fields.h"
 #include "models/fit/methods.h"
 #include "scenes/material/material.h"
-#include "scenes/scene/scene.h"
 #include "scenes/scene/jnd_file.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {
@@ -54,8 +54,8 @@ class SceneReader : private JsonFields {
     const JsonNode node = member(object, key, expected);
     if (node.value == nullptr) return {};
     const std::string code = node.value->is_string() ? node.value->get<std::string>() : "";
-    const bool valid = code.size() == 7 && code[0] == '#' &&
-                       code.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    const bool valid =
+        code.size() == 7 && code[0] == '#' && code.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
     if (!valid) {
       complain(node.pointer, found(*node.value) + ", expected " + expected);
       return {};
@@ -112,10 +112,9 @@ class SceneReader : private JsonFields {
     } else if (kind && time.value != nullptr) {
       complain(time.pointer, "found a relaxation time, expected none for the kind \"" + kKinds[*kind] + "\"");
     }
-    const bool again =
-        std::any_of(scene_.features.begin(), scene_.features.end(), [&](const FeatureSpec& other) {
-          return other.kind == feature.kind && other.relaxation_time_s == feature.relaxation_time_s;
-        });
+    const bool again = std::any_of(scene_.features.begin(), scene_.features.end(), [&](const FeatureSpec& other) {
+      return other.kind == feature.kind && other.relaxation_time_s == feature.relaxation_time_s;
+    });
     if (kind && again) complain(node.pointer, "found the same feature twice, expected each once");
     scene_.features.push_back(feature);
   }

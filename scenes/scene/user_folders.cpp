@@ -21,7 +21,8 @@ Result<std::string> folder(const char* variable, const char* below_home) {
   base /= "palpate";
   std::error_code problem;
   std::filesystem::create_directories(base, problem);
-  if (problem) return Error{base.string() + ": " + problem.message() + "; set " + variable + " to a folder that can be written"};
+  if (problem)
+    return Error{base.string() + ": " + problem.message() + "; set " + variable + " to a folder that can be written"};
   return base.string();
 }
 

@@ -38,8 +38,12 @@ int found_side(const ShareInterval& interval) {
 std::string prediction_words(const StrokePair& strokes) {
   char text[160];
   switch (predicted_side(strokes)) {
-    case -1: std::snprintf(text, sizeof text, "Predicted below the JND (at most %.2f of it). ", strokes.max_over_jnd); break;
-    case 1: std::snprintf(text, sizeof text, "Predicted above the JND (%.2f of it on average). ", strokes.mean_over_jnd); break;
+    case -1:
+      std::snprintf(text, sizeof text, "Predicted below the JND (at most %.2f of it). ", strokes.max_over_jnd);
+      break;
+    case 1:
+      std::snprintf(text, sizeof text, "Predicted above the JND (%.2f of it on average). ", strokes.mean_over_jnd);
+      break;
     default:
       std::snprintf(text, sizeof text, "Above the JND for a moment only (at most %.2f of it, on average %.2f). ",
                     strokes.max_over_jnd, strokes.mean_over_jnd);
@@ -49,7 +53,8 @@ std::string prediction_words(const StrokePair& strokes) {
 
 std::string agreement_words(int predicted, int found) {
   if (found == 0) return "too few answers to tell, the interval holds 75 %.";
-  if (predicted == 0) return found < 0 ? "not noticed as one JND would be." : "noticed more often than one JND would be.";
+  if (predicted == 0)
+    return found < 0 ? "not noticed as one JND would be." : "noticed more often than one JND would be.";
   return predicted == found ? "consistent." : "not consistent.";
 }
 
@@ -65,7 +70,8 @@ Status check_discrimination_files(const std::vector<StudyData>& files) {
     const StrokePair& first = *files.front().header.strokes;
     if (!same_strokes(*header.strokes, first)) {
       return Error{"found other strokes in the file of subject " + header.subject + ", expected \"" + first.reference +
-                   "\" and \"" + first.comparison + "\" in " + first.recording + " as in the first; analyse them apart"};
+                   "\" and \"" + first.comparison + "\" in " + first.recording +
+                   " as in the first; analyse them apart"};
     }
     if (!seen.insert(header.subject).second) {
       return Error{"found two files of subject " + header.subject + ", expected one; leave one of them out"};
@@ -123,8 +129,9 @@ std::string discrimination_verdict(const Discrimination& result, const StrokePai
   const ShareInterval interval = wilson_interval(result.correct, result.trials);
   const double guessing = guessing_probability(result.correct, result.trials);
   char text[200];
-  std::snprintf(text, sizeof text, "%.0f %% right [%.0f to %.0f], %s (p %.2g); 75 %% would be one JND: ",
-                100.0 * result.share(), 100.0 * interval.low, 100.0 * interval.high,
+  std::snprintf(text, sizeof text,
+                "%.0f %% right [%.0f to %.0f], %s (p %.2g); 75 %% would be one JND: ", 100.0 * result.share(),
+                100.0 * interval.low, 100.0 * interval.high,
                 guessing < 1.0 - kLevel ? "more than by guessing" : "as by guessing", guessing);
   return prediction_words(strokes) + text + agreement_words(predicted_side(strokes), found_side(interval));
 }

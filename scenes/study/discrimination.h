@@ -3,7 +3,7 @@
 // Of n answers k are right; chance is one half.
 //   interval   of the share right, by E. B. Wilson (1927), Journal of the American
 //              Statistical Association 22, 209-212
-//   d'         sqrt(2) Phi^-1((k + 0.5) / (n + 1)), as for 2AFC (study_procedure.h says
+//   d'         sqrt(2) Phi^-1((k + 0.5) / (n + 1)), as for 2AFC (study_plan.h says
 //              why), with M. J. Hautus's (1995) correction, Behavior Research Methods 27,
 //              46-51, so that all right is not infinitely much
 //   p          how often a guesser has k right or more (binomial, exact)

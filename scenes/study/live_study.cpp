@@ -58,9 +58,7 @@ Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& reque
 }
 
 LiveStudy::LiveStudy(std::unique_ptr<Device> device, std::unique_ptr<StudySession> session)
-    : device_(std::move(device)),
-      session_(std::move(session)),
-      presented_(std::make_unique<Presented>(*session_)) {}
+    : device_(std::move(device)), session_(std::move(session)), presented_(std::make_unique<Presented>(*session_)) {}
 
 LiveStudy::~LiveStudy() {
   if (loop_ != nullptr) loop_->stop();

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "engine/live/haptics_loop.h"
 #include "engine/base/result.h"
+#include "engine/live/haptics_loop.h"
 #include "scenes/study/study_session.h"
 
 namespace palpate {

@@ -9,17 +9,17 @@
 #include <utility>
 
 #include "engine/tick/replay.h"
-#include "engine/tick/error_figures.h"
+#include "scenes/evaluation/error_figures.h"
+#include "scenes/material/rig.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
-#include "scenes/material/rig.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::uint64_t kTrainingSeed = 1;  // as the window has it
 constexpr std::uint64_t kTestSeed = 2;
-constexpr std::size_t kSmoothing_ticks = 10;  // to either side
+constexpr std::size_t kSmoothing_ticks = 10;                                   // to either side
 constexpr std::array<std::size_t, 4> kWindow_ticks = {2000, 1500, 1000, 500};  // ramps included
 constexpr std::size_t kBetweenWindows_ticks = 100;
 constexpr double kAboutAsHard = 0.75;
@@ -52,9 +52,11 @@ Result<std::vector<Sample>> samples_of(const Recording& recording, const Model& 
   ForceModels models{comparison};
   if (reference != nullptr) models.push_back(reference);
   std::vector<Sample> samples;
-  const auto summary = replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
-    samples.push_back({row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
-  });
+  const auto summary =
+      replay(recording, models, [&](const RecordingRow& row, const TickSnapshot& tick, const HapticsTick&) {
+        samples.push_back(
+            {row.time_s, reference != nullptr ? tick.force_N[1] : row.force_N, tick.force_N[0], tick.in_contact});
+      });
   if (!summary) return summary.error();
   return samples;
 }
@@ -70,7 +72,8 @@ std::vector<double> smoothed(const std::vector<double>& values) {
   std::vector<double> result(values.size(), 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::size_t k = 0; k < window.size(); ++k) {
-      const std::size_t at = std::clamp(i + k, kSmoothing_ticks, values.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks;
+      const std::size_t at =
+          std::clamp(i + k, kSmoothing_ticks, values.size() - 1 + kSmoothing_ticks) - kSmoothing_ticks;
       result[i] += window[k] / sum * values[at];
     }
   }
@@ -115,7 +118,8 @@ bool can_be_presented(const std::vector<double>& force_N, const Window& window) 
   double before_N = 0.0, squares_N2 = 0.0;
   for (std::size_t i = 0; i < window.ticks; ++i) {
     const double now_N = force_N[window.from + i] * interval_share(timing, static_cast<std::uint32_t>(i));
-    if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kStudyTick_s) return false;
+    if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kStudyTick_s)
+      return false;
     before_N = now_N;
     squares_N2 += now_N * now_N;
   }
@@ -150,7 +154,8 @@ std::vector<Window> windows_in(const Traces& traces) {
     const std::size_t whole = end - begin;
     if (whole >= kWindow_ticks.back() && whole <= kWindow_ticks.front()) windows.push_back({begin, whole});
     for (const std::size_t ticks : kWindow_ticks) {
-      for (std::size_t from = begin; from + ticks <= end; from += kBetweenWindows_ticks) windows.push_back({from, ticks});
+      for (std::size_t from = begin; from + ticks <= end; from += kBetweenWindows_ticks)
+        windows.push_back({from, ticks});
     }
     touch = release;
   }
@@ -207,7 +212,8 @@ std::uint32_t checksum_of(const StrokePair& strokes) {
 
 // What stands in one line of a file.
 std::string one_line(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char letter) { return static_cast<unsigned char>(letter) < 0x20; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](char letter) { return static_cast<unsigned char>(letter) < 0x20; }, '?');
   return text.empty() ? "?" : text;
 }
 
@@ -266,8 +272,8 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
   const Traces traces = traces_of(*samples);
   const std::optional<Window> best = hardest_window(traces, jnd);
   if (!best) {
-    return Error{"found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " + recording.name +
-                 ", expected one that a still hand can be given; name another recording"};
+    return Error{"found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " +
+                 recording.name + ", expected one that a still hand can be given; name another recording"};
   }
   auto strokes = std::make_shared<StrokePair>();
   strokes->reference = one_line(reference != nullptr ? reference->name() : kRecordedForce);

@@ -21,8 +21,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/recording/recording.h"
 #include "engine/base/result.h"
+#include "engine/recording/recording.h"
 #include "engine/tick/force_model.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/stroke_pair.h"

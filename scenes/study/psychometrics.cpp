@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 constexpr double kFlattestSlope = 0.25;  // a JND of 2.7 times the reference
-constexpr double kSteepestSlope = 40.0;    // of 1.7 %: no difference of the study is as small
+constexpr double kSteepestSlope = 40.0;  // of 1.7 %: no difference of the study is as small
 constexpr double kLargestBias = 3.0;
 constexpr double kLapseStep = 0.01;
 constexpr int kLapseSteps = 6;
@@ -99,7 +99,8 @@ Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficien
 
 // Climbs from `coefficients` for one lapse rate, all but `held`; halves a step that does
 // not climb.
-double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients, Eigen::Index held = kNone) {
+double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients,
+             Eigen::Index held = kNone) {
   double best = log_likelihood(cells, coefficients, lapse);
   for (int i = 0; i < kMostIterations; ++i) {
     Coefficients step = scoring_step(cells, coefficients, lapse, held);
@@ -137,7 +138,8 @@ double likelihood_given(const std::vector<AnswerCell>& cells, const Psychometric
   const auto last = static_cast<Eigen::Index>(fit.functions.size());
   const auto held = static_cast<Eigen::Index>(reference);
   Coefficients coefficients(last + 1);
-  for (std::size_t i = 0; i < fit.functions.size(); ++i) coefficients[static_cast<Eigen::Index>(i)] = fit.functions[i].slope;
+  for (std::size_t i = 0; i < fit.functions.size(); ++i)
+    coefficients[static_cast<Eigen::Index>(i)] = fit.functions[i].slope;
   coefficients[last] = fit.functions.front().order_bias;
   coefficients[held] = slope;
   double best = climb(cells, 0.0, coefficients, held);
@@ -218,8 +220,8 @@ PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size
 Estimate bias_corrected_interval(double value, std::vector<double> replicates, double level) {
   std::sort(replicates.begin(), replicates.end());
   const double count = static_cast<double>(replicates.size());
-  const double below = static_cast<double>(std::lower_bound(replicates.begin(), replicates.end(), value) -
-                                           replicates.begin());
+  const double below =
+      static_cast<double>(std::lower_bound(replicates.begin(), replicates.end(), value) - replicates.begin());
   const double bias = normal_quantile(std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const auto percentile = [&](double share) {
     const double corrected = normal_cdf(2.0 * bias + normal_quantile(share));
@@ -242,7 +244,8 @@ std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const P
   for (std::size_t r = 0; r < fit.functions.size(); ++r) {
     const double flattest = slope_limit(cells, fit, r, kFlattestSlope, least_likelihood);
     const double steepest = slope_limit(cells, fit, r, kSteepestSlope, least_likelihood);
-    estimates.push_back({deviations / fit.functions[r].slope, deviations / steepest, deviations / flattest, fit.determined[r]});
+    estimates.push_back(
+        {deviations / fit.functions[r].slope, deviations / steepest, deviations / flattest, fit.determined[r]});
   }
   return estimates;
 }

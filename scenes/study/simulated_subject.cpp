@@ -15,23 +15,7 @@ double noise_N(const JndLine& jnd, double force_N) {
   return kPerJnd * jnd.at(force_N);
 }
 
-// The difference that is told apart with z standard deviations; its sign is that of z.
-double difference_at(const JndLine& jnd, double reference_N, double z) {
-  double low = z < 0.0 ? -reference_N : 0.0, high = z < 0.0 ? 0.0 : 100.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    const double noise = std::hypot(noise_N(jnd, reference_N), noise_N(jnd, reference_N + middle));
-    (middle < z * noise ? low : high) = middle;
-  }
-  return low;
-}
-
 }  // namespace
-
-double true_relative_jnd(const JndLine& jnd, double reference_N, double criterion) {
-  const double z = normal_quantile(criterion);
-  return 0.5 * (difference_at(jnd, reference_N, z) - difference_at(jnd, reference_N, -z)) / reference_N;
-}
 
 bool SimulatedSubject::second_feels_larger(double first_N, double second_N) noexcept {
   // Always the same number of draws, so that trials do not shift each other.

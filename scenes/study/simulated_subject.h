@@ -18,9 +18,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/tick/jnd.h"
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
 #include "scenes/study/study_store.h"
 
 namespace palpate {
@@ -30,12 +30,6 @@ struct SubjectTraits {
   double order_bias_jnd = 0.0;  // added to the second force, multiples of the JND
   double lapse_rate = 0.0;      // 0 .. 0.5: missed trials are 2 x this, half of them wrong
 };
-
-// What a perfect analysis would find: half the distance, relative to the reference,
-// between the comparisons judged larger with probability c and 1 - c, without bias
-// and lapses. The noise of the comparison grows with it, so this is a little more
-// than JND(reference) / reference.
-double true_relative_jnd(const JndLine& jnd, double reference_N, double criterion);
 
 class SimulatedSubject {
  public:

@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <set>
 
-#include "scenes/study/quest_plus.h"
-
 namespace palpate {
 namespace {
 
@@ -63,24 +61,6 @@ Estimate scaled(Estimate relative, double reference_N) {
   return {relative.value * reference_N, relative.low * reference_N, relative.high * reference_N, relative.determined};
 }
 
-std::vector<Estimate> relative_jnds(const SubjectAnswers& answers, const std::vector<double>& references_N,
-                                    const StudyHeader& header, const IntervalSettings& settings) {
-  if (header.procedure == ProcedureKind::constant) {
-    return profile_jnds(answers.cells, fit_psychometric(answers.cells, references_N.size()), settings);
-  }
-  const std::vector<double> planned_N(kReferenceForces_N.begin(), kReferenceForces_N.end());
-  QuestPlus beliefs;
-  for (const StudyRecord* record : answers.records) {
-    beliefs.answered(index_of(planned_N, record->trial.reference_N), record->rendered_difference(),
-                     record->trial.comparison_first, record->comparison_judged_larger());
-  }
-  std::vector<Estimate> estimates;
-  for (const double reference_N : references_N) {
-    estimates.push_back(beliefs.relative_jnd(index_of(planned_N, reference_N), settings.criterion, settings.level));
-  }
-  return estimates;
-}
-
 using Group = std::vector<const std::vector<AnswerCell>*>;
 
 PsychometricFit fit_group(const Group& group, std::size_t references) {
@@ -92,9 +72,8 @@ PsychometricFit fit_group(const Group& group, std::size_t references) {
 }
 
 // One function for the answers of a group; the intervals by drawing its members.
-std::vector<Estimate> pooled_relative_jnds(const Group& group, std::size_t references,
-                                           const IntervalSettings& settings, RandomStream random,
-                                           const std::function<bool(double)>& progress) {
+std::vector<Estimate> pooled_relative_jnds(const Group& group, std::size_t references, const IntervalSettings& settings,
+                                           RandomStream random, const std::function<bool(double)>& progress) {
   const PsychometricFit fit = fit_group(group, references);
   if (group.size() == 1) return profile_jnds(*group.front(), fit, settings);
   std::vector<std::vector<double>> replicates(references);
@@ -107,7 +86,8 @@ std::vector<Estimate> pooled_relative_jnds(const Group& group, std::size_t refer
   }
   std::vector<Estimate> estimates;
   for (std::size_t r = 0; r < references; ++r) {
-    estimates.push_back(bias_corrected_interval(fit.functions[r].jnd(settings.criterion), replicates[r], settings.level));
+    estimates.push_back(
+        bias_corrected_interval(fit.functions[r].jnd(settings.criterion), replicates[r], settings.level));
     estimates.back().determined = fit.determined[r];
   }
   return estimates;
@@ -145,13 +125,14 @@ Status check_files(const std::vector<StudyData>& files) {
     }
     if (file.header.strokes != nullptr) {
       return Error{"found the procedure discriminate in the file of subject " + subject +
-                   ", expected constant or adaptive as in the first; analyse them apart"};
+                   ", expected constant as in the first; analyse them apart"};
     }
     for (const StudyRecord& record : file.records) {
       const auto& planned_N = kReferenceForces_N;
       if (std::find(planned_N.begin(), planned_N.end(), record.trial.reference_N) != planned_N.end()) continue;
       char text[160];
-      std::snprintf(text, sizeof text, "found a reference force of %g N in the file of subject %s, expected 0.3, 0.5, 1 or 2.5 N",
+      std::snprintf(text, sizeof text,
+                    "found a reference force of %g N in the file of subject %s, expected 0.3, 0.5, 1 or 2.5 N",
                     record.trial.reference_N, subject.c_str());
       return Error{text};
     }
@@ -165,8 +146,8 @@ Status check_files(const std::vector<StudyData>& files) {
 std::string row(const std::string& who, const std::string& how, double reference_N, double rendered_N,
                 std::size_t count, const Estimate& jnd_N) {
   char text[256];
-  std::snprintf(text, sizeof text, "%s,%s,%.4g,%.5g,%zu,%.5f,%.5f,%.5f,%.2f,%s\n", who.c_str(), how.c_str(), reference_N,
-                rendered_N, count, jnd_N.value, jnd_N.low, jnd_N.high, 100.0 * jnd_N.value / rendered_N,
+  std::snprintf(text, sizeof text, "%s,%s,%.4g,%.5g,%zu,%.5f,%.5f,%.5f,%.2f,%s\n", who.c_str(), how.c_str(),
+                reference_N, rendered_N, count, jnd_N.value, jnd_N.low, jnd_N.high, 100.0 * jnd_N.value / rendered_N,
                 jnd_N.determined ? "yes" : "no");
   return text;
 }
@@ -176,9 +157,10 @@ std::string row(const std::string& who, const std::string& how, double reference
 SubjectJnd analyse_subject(const StudyData& data, const IntervalSettings& settings) {
   const std::vector<double> references_N = references_in({&data});
   const SubjectAnswers answers = usable_answers(data, references_N);
-  SubjectJnd result{data.header.subject, data.header.procedure, answers.unusable, {}};
+  SubjectJnd result{data.header.subject, answers.unusable, {}};
   if (references_N.empty()) return result;
-  const std::vector<Estimate> relative = relative_jnds(answers, references_N, data.header, settings);
+  const std::vector<Estimate> relative =
+      profile_jnds(answers.cells, fit_psychometric(answers.cells, references_N.size()), settings);
   for (std::size_t r = 0; r < references_N.size(); ++r) {
     ReferenceJnd reference{references_N[r], 0.0, 0, {}};
     for (const StudyRecord* record : answers.records) {
@@ -233,8 +215,8 @@ std::string analysis_table(const StudyAnalysis& analysis) {
       "subject,procedure,reference_N,rendered_N,count,jnd_N,jnd_low_N,jnd_high_N,jnd_percent,determined\n";
   for (const SubjectJnd& subject : analysis.subjects) {
     for (const ReferenceJnd& reference : subject.references) {
-      text += row(subject.subject, procedure_name(subject.procedure), reference.reference_N, reference.rendered_N,
-                  reference.trials, reference.jnd_N);
+      text += row(subject.subject, "constant", reference.reference_N, reference.rendered_N, reference.trials,
+                  reference.jnd_N);
     }
   }
   for (const PooledJnd& pooled : analysis.pooled) {

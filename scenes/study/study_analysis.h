@@ -1,10 +1,12 @@
 // From the answers of all subjects to the JND line.
 //
-// Per subject and reference force: constant stimuli by maximum likelihood with a
-// likelihood interval (psychometrics.h), adaptive trials by the posterior of the
-// procedure itself (quest_plus.h). For each reference force then the mean over the
-// subjects, as in the paper, and one function for the answers of all, its interval by
-// drawing subjects with replacement. The means are the points of the line
+// Per subject and reference force: maximum likelihood with a likelihood interval
+// (psychometrics.h). For each reference force then the mean over the subjects, as in the
+// paper, and one function for the answers of all, its interval by drawing subjects with
+// replacement. That one and its interval lie above the subjects' at the larger forces,
+// where a JND is a small part of the comparisons' range: the 320 answers of one subject do
+// not tell a miss from a lapse, and each miss that is taken for a lapse makes the function
+// steeper; all answers together tell. The means are the points of the line
 // (jnd_line_fit.h). Differences and references are those that were rendered, not those
 // that were planned. Training trials do not count, nor do trials whose forces did not
 // reach half of what was planned.
@@ -31,7 +33,6 @@ struct ReferenceJnd {
 
 struct SubjectJnd {
   std::string subject;
-  ProcedureKind procedure = ProcedureKind::constant;
   std::size_t unusable = 0;  // trials
   std::vector<ReferenceJnd> references;
 };

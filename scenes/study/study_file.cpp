@@ -91,25 +91,24 @@ std::string study_header_text(const StudyHeader& header) {
          " jnd_weber_fraction " + number_text(strokes.jnd.weber_fraction) + "\n";
 }
 
-std::string study_columns(ProcedureKind procedure, bool has_device) {
+std::string study_columns(ProcedureKind procedure) {
   std::string columns(kStudyColumns);
   if (procedure == ProcedureKind::discriminate) columns += kStrokeColumns;
-  if (has_device) columns += kDeviceColumns;
-  return columns;
+  return columns.append(kDeviceColumns);
 }
 
-std::string study_row(const StudyRecord& record, ProcedureKind procedure, bool has_device) {
+std::string study_row(const StudyRecord& record, ProcedureKind procedure) {
   std::string row = record.training ? "training," : "study,";
   row += std::to_string(record.number) + "," + number_text(record.trial.reference_N) + "," +
          number_text(record.trial.comparison_N) + (record.trial.comparison_first ? ",1," : ",0,") +
          number_text(record.first_rendered_N) + "," + number_text(record.second_rendered_N) +
-         (record.limited ? ",1," : ",0,") + (record.answered_second ? "second," : "first,") + std::to_string(record.response_ms);
+         (record.limited ? ",1," : ",0,") + (record.answered_second ? "second," : "first,") +
+         std::to_string(record.response_ms);
   if (procedure == ProcedureKind::discriminate) {
     row += ',';
     row += number_text(record.reminder_rendered_N) + "," + number_text(record.worst_N);
   }
-  if (has_device) row.append(",").append(record.device).append(record.rendered ? ",true" : ",false");
-  return row + "\n";
+  return row + "," + record.device + (record.rendered ? ",true\n" : ",false\n");
 }
 
 std::size_t remove_rehearsals(StudyData& data) {
@@ -152,10 +151,6 @@ Status StudyFile::take_up() {
   if (is_cut_header(*text, study_header_text(header_), study_columns(header_.procedure))) return {};
   const Result<StudyData> data = parse_study(*text, path_);
   if (!data) return data.error();
-  if (!data->has_device && !header_.rendered) {
-    return Error{path_ + ": found a study whose answers do not say on what they were given, expected a new file for a "
-                         "rehearsal; take another folder or subject code"};
-  }
   const StudyHeader& found = data->header;
   if (found.subject != header_.subject || found.procedure != header_.procedure || !(found.timing == header_.timing)) {
     return Error{path_ + ": found a study of subject " + found.subject + ", procedure " +
@@ -172,7 +167,6 @@ Status StudyFile::take_up() {
     return failure(errno);
   }
   size_ = data->whole_bytes;
-  has_device_ = data->has_device;
   consented_ = true;
   records_ = data->records;
   return {};
@@ -200,9 +194,10 @@ Status StudyFile::consent(const std::string& text, const std::string& when) {
     if (const Status locked = lock(); !locked) return locked;
   }
   if (ftruncate(descriptor_, 0) != 0) return failure(errno);
-  const std::string consent_line = "# consent accepted, text " + checksum(text) + (when.empty() ? "" : ", " + when) +
-                                   "\n";
-  const Status written = write_whole(study_header_text(header_) + consent_line + study_columns(header_.procedure) + "\n");
+  const std::string consent_line =
+      "# consent accepted, text " + checksum(text) + (when.empty() ? "" : ", " + when) + "\n";
+  const Status written =
+      write_whole(study_header_text(header_) + consent_line + study_columns(header_.procedure) + "\n");
   if (!written) return written;
   flush_folder_of(path_);
   consented_ = true;
@@ -216,7 +211,7 @@ Status StudyFile::append(const StudyRecord& record) {
   on_device.rendered = header_.rendered;
   // What a refused row may have left behind.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
-  if (const Status written = write_whole(study_row(on_device, header_.procedure, has_device_)); !written) return written;
+  if (const Status written = write_whole(study_row(on_device, header_.procedure)); !written) return written;
   records_.push_back(on_device);
   return {};
 }

@@ -16,7 +16,6 @@
 //   # forces reference_mean_N 1.2 comparison_mean_N 1.21 checksum 2350029213
 //   # predicted mean_over_jnd 0.1 max_over_jnd 0.6 jnd_offset_N 0.065 jnd_weber_fraction 0.0633
 //   part,...,response_ms,reminder_rendered_N,worst_N,device,rendered
-// Files of before the last two columns are read and continued without them.
 //
 // The consent's text is named by a checksum (FNV-1a), the time is the caller's word.
 // Nothing is written before the consent. A row is appended in one go and flushed to
@@ -38,7 +37,6 @@ namespace palpate {
 inline constexpr std::string_view kStudyColumns =
     "part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,"
     "response_ms";
-
 inline constexpr std::string_view kStrokeColumns = ",reminder_rendered_N,worst_N";
 inline constexpr std::string_view kDeviceColumns = ",device,rendered";
 
@@ -46,7 +44,6 @@ struct StudyData {
   StudyHeader header;
   std::string consent;  // "text 8c1f2a9d, 2024-05-06 10:20"
   std::vector<StudyRecord> records;
-  bool has_device = true;       // the last two columns
   std::size_t whole_bytes = 0;  // up to the end of the last whole row
 };
 
@@ -56,9 +53,9 @@ Result<StudyData> read_study(const std::string& path);
 
 // The lines above the consent, and the columns' names.
 std::string study_header_text(const StudyHeader& header);
-std::string study_columns(ProcedureKind procedure, bool has_device = true);
+std::string study_columns(ProcedureKind procedure);
 // One row of the table, with its line end.
-std::string study_row(const StudyRecord& record, ProcedureKind procedure, bool has_device = true);
+std::string study_row(const StudyRecord& record, ProcedureKind procedure);
 // Takes out the answers that nobody could feel; returns how many.
 std::size_t remove_rehearsals(StudyData& data);
 
@@ -89,7 +86,6 @@ class StudyFile final : public StudyStore {
   int descriptor_ = -1;
   std::size_t size_ = 0;  // of what is confirmed
   bool consented_ = false;
-  bool has_device_ = true;
   std::vector<StudyRecord> records_;
 };
 

@@ -8,10 +8,8 @@ namespace {
 constexpr std::uint64_t kStudySeed = 0x70a1fa7e5eed0001u;  // fixed: codes alone differ
 constexpr std::size_t kMostLetters = 3;
 constexpr std::size_t kMostDigits = 4;
-constexpr std::size_t kAdaptiveRounds = 20;  // of one trial for each reference
 constexpr std::uint64_t kConstantStream = 1;
 constexpr std::uint64_t kTrainingStream = 2;
-constexpr std::uint64_t kAdaptiveStream = 3;
 constexpr std::uint64_t kDiscriminationStream = 4;
 constexpr std::uint64_t kDiscriminationTrainingStream = 5;
 constexpr std::size_t kDiscriminationTraining = 4;
@@ -83,22 +81,6 @@ std::vector<StudyTrial> plan_training_trials(const std::string& code) {
   return trials;
 }
 
-std::vector<AdaptiveSlot> plan_adaptive_slots(const std::string& code) {
-  RandomStream random = subject_random(code, kAdaptiveStream);
-  std::vector<std::vector<AdaptiveSlot>> rounds(kAdaptiveRounds);
-  for (const double reference_N : kReferenceForces_N) {
-    const std::vector<bool> larger = balanced_flags(kAdaptiveRounds, random);
-    const std::vector<bool> first = balanced_flags(kAdaptiveRounds, random);
-    for (std::size_t i = 0; i < rounds.size(); ++i) rounds[i].push_back({reference_N, larger[i], first[i]});
-  }
-  std::vector<AdaptiveSlot> slots;
-  for (std::vector<AdaptiveSlot>& round : rounds) {
-    shuffle(round, random);
-    slots.insert(slots.end(), round.begin(), round.end());
-  }
-  return slots;
-}
-
 std::vector<StudyTrial> plan_discrimination_trials(const std::string& code, double reference_mean_N,
                                                    double comparison_mean_N) {
   RandomStream random = subject_random(code, kDiscriminationStream);
@@ -118,6 +100,33 @@ std::vector<StudyTrial> plan_discrimination_training(const std::string& code, do
     trials.push_back({reference_mean_N, percent_of(reference_mean_N, 100.0 * kEasyShare), first});
   }
   return trials;
+}
+
+const char* procedure_name(ProcedureKind kind) noexcept {
+  return kind == ProcedureKind::constant ? "constant" : "discriminate";
+}
+
+Result<ProcedureKind> find_procedure(const std::string& name) {
+  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::discriminate}) {
+    if (name == procedure_name(kind)) return kind;
+  }
+  return Error{"found the procedure \"" + name + "\", expected constant or discriminate"};
+}
+
+StudyPlan plan_study(ProcedureKind kind, const std::string& code, const StrokePair* strokes) {
+  if (kind == ProcedureKind::constant) return {kind, plan_training_trials(code), plan_constant_trials(code)};
+  return {kind, plan_discrimination_training(code, strokes->reference_mean_N),
+          plan_discrimination_trials(code, strokes->reference_mean_N, strokes->comparison_mean_N),
+          kDiscriminationBlock};
+}
+
+Stimuli StudyPlan::stimuli(const StudyTrial& trial, bool in_training) const {
+  if (kind == ProcedureKind::constant) return {{trial.first_N()}, {trial.second_N()}, false, {}};
+  const Stimulus reference{1.0, StimulusKind::reference};
+  const Stimulus comparison =
+      in_training ? Stimulus{kEasyShare, StimulusKind::reference} : Stimulus{1.0, StimulusKind::comparison};
+  return {trial.comparison_first ? comparison : reference, trial.comparison_first ? reference : comparison, true,
+          reference};
 }
 
 }  // namespace palpate

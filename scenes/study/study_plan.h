@@ -1,6 +1,7 @@
-// Which forces a subject compares, and in which order.
+// What a subject is given to compare, and in which order: constant stimuli, or two
+// strokes to tell apart. All of it is known before the first answer.
 //
-// Two-alternative forced choice without movement: a reference force and a
+// Constant stimuli: two-alternative forced choice without movement: a reference force and a
 // comparison force one after the other, "which was larger?". Method of constant
 // stimuli as in Hoever & Harders (2009), section 4.1: reference forces 0.3, 0.5,
 // 1.0 and 2.5 N, comparison forces from 60 % to 140 % of the reference in eight
@@ -8,6 +9,15 @@
 // trials. The order is drawn anew for each subject, and balanced: each pair comes
 // once in every 32 trials, five times with the comparison first and five times
 // second.
+//
+// Two strokes: two-alternative forced choice with a reminder (M. J. Hautus, N. A.
+// Macmillan & C. D. Creelman 2022, Detection Theory: A User's Guide, 3rd ed., chapter
+// 7: "2AFCR"; the design of the duo-trio test with constant reference, ISO 10399): the
+// reference stroke, then reference and comparison in either order; which of the two was
+// like the first? Who uses the difference does as well as in 2AFC without a reminder, so
+// that d' = sqrt(2) Phi^-1(share correct) and one JND (criterion 0.75) is 75 % correct:
+// what the JND says can be held against it. A reminder is needed because strokes differ
+// in any way, not only in size. No feedback after the training.
 // Deterministic: the subject code alone decides.
 // Thread guarantee: values and pure functions; slow side (they allocate).
 #pragma once
@@ -20,6 +30,7 @@
 
 #include "engine/base/random_stream.h"
 #include "engine/base/result.h"
+#include "scenes/study/study_presenter.h"
 
 namespace palpate {
 
@@ -62,16 +73,6 @@ std::vector<StudyTrial> plan_constant_trials(const std::string& code);
 // Eight easy trials to learn the task: each reference against 60 % and 140 %.
 std::vector<StudyTrial> plan_training_trials(const std::string& code);
 
-// What the adaptive procedure leaves to the plan: everything but how large the
-// difference is. Each reference 20 times, once in every four trials; balanced for
-// order and for the side of the difference.
-struct AdaptiveSlot {
-  double reference_N = 0.0;
-  bool comparison_larger = false;
-  bool comparison_first = false;
-};
-std::vector<AdaptiveSlot> plan_adaptive_slots(const std::string& code);
-
 // Which of two strokes is which: 100 trials, in each kDiscriminationBlock of which the
 // comparison comes first as often as second. The forces are the strokes' means.
 inline constexpr std::size_t kDiscriminationTrials = 100;
@@ -81,5 +82,22 @@ std::vector<StudyTrial> plan_discrimination_trials(const std::string& code, doub
 // Four to learn the task: the reference stroke against itself at kEasyShare.
 inline constexpr double kEasyShare = 0.5;
 std::vector<StudyTrial> plan_discrimination_training(const std::string& code, double reference_mean_N);
+
+enum class ProcedureKind : std::uint8_t { constant, discriminate };
+const char* procedure_name(ProcedureKind kind) noexcept;  // "constant", "discriminate"
+// Errors: neither of them.
+Result<ProcedureKind> find_procedure(const std::string& name);
+
+struct StudyPlan {
+  ProcedureKind kind = ProcedureKind::constant;
+  std::vector<StudyTrial> training;
+  std::vector<StudyTrial> trials;
+  std::size_t trials_per_block = 64;  // between two breaks: two repetitions of each pair
+
+  // What is presented in a trial, of the training or not.
+  Stimuli stimuli(const StudyTrial& trial, bool in_training) const;
+};
+// `strokes`: for discriminate, else ignored.
+StudyPlan plan_study(ProcedureKind kind, const std::string& code, const StrokePair* strokes);
 
 }  // namespace palpate

@@ -22,8 +22,7 @@ Status check_study_timing(const StudyTiming& timing) {
   if (timing.ramp < kShortestRamp || timing.ramp > kLongestStudyForce_ticks) {
     return wrong("ramp", timing.ramp, "60 to 5000 ms");
   }
-  if (timing.hold < 1 || timing.hold > kLongestStudyForce_ticks ||
-      timing.interval() > kLongestStudyForce_ticks) {
+  if (timing.hold < 1 || timing.hold > kLongestStudyForce_ticks || timing.interval() > kLongestStudyForce_ticks) {
     return wrong("hold", timing.hold, "1 ms or more, and 5000 ms at most together with both ramps");
   }
   if (timing.lead_in > kLongestWait) return wrong("lead-in", timing.lead_in, "60000 ms at most");
@@ -45,22 +44,32 @@ std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
 
 std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
   switch (phase) {
-    case PresentationPhase::lead_in: return timing_.lead_in;
-    case PresentationPhase::reminder: return order_.stimuli.has_reminder ? timing_.interval() : 0;
-    case PresentationPhase::reminder_pause: return order_.stimuli.has_reminder ? timing_.pause : 0;
+    case PresentationPhase::lead_in:
+      return timing_.lead_in;
+    case PresentationPhase::reminder:
+      return order_.stimuli.has_reminder ? timing_.interval() : 0;
+    case PresentationPhase::reminder_pause:
+      return order_.stimuli.has_reminder ? timing_.pause : 0;
     case PresentationPhase::first:
-    case PresentationPhase::second: return timing_.interval();
-    case PresentationPhase::pause: return timing_.pause;
-    default: return 0;
+    case PresentationPhase::second:
+      return timing_.interval();
+    case PresentationPhase::pause:
+      return timing_.pause;
+    default:
+      return 0;
   }
 }
 
 const Stimulus* StudyPresenter::stimulus() const noexcept {
   switch (state_.phase) {
-    case PresentationPhase::reminder: return &order_.stimuli.reminder;
-    case PresentationPhase::first: return &order_.stimuli.first;
-    case PresentationPhase::second: return &order_.stimuli.second;
-    default: return nullptr;
+    case PresentationPhase::reminder:
+      return &order_.stimuli.reminder;
+    case PresentationPhase::first:
+      return &order_.stimuli.first;
+    case PresentationPhase::second:
+      return &order_.stimuli.second;
+    default:
+      return nullptr;
   }
 }
 

@@ -21,8 +21,8 @@
 #include <memory>
 #include <utility>
 
-#include "engine/live/force_limiter.h"
 #include "engine/base/result.h"
+#include "engine/live/force_limiter.h"
 #include "engine/live/triple_buffer.h"
 #include "scenes/study/stroke_pair.h"
 
@@ -67,7 +67,15 @@ struct Stimuli {
 };
 
 enum class PresentationPhase : std::uint8_t {
-  idle, lead_in, reminder, reminder_pause, first, pause, second, finished, stopped
+  idle,
+  lead_in,
+  reminder,
+  reminder_pause,
+  first,
+  pause,
+  second,
+  finished,
+  stopped
 };
 
 struct PresentationState {
@@ -126,7 +134,7 @@ class StudyPresenter {
   ForceLimiter limiter_;
   Order order_;
   PresentationState state_;
-  std::uint32_t in_phase_ = 0;  // ticks since the phase began
+  std::uint32_t in_phase_ = 0;                              // ticks since the phase began
   PresentationPhase sent_phase_ = PresentationPhase::idle;  // of the force sent last
   double sent_commanded_N_ = 0.0;
   bool sent_stimulus_ = false;

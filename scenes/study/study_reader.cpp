@@ -14,10 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kColumnCount = 10;
-constexpr std::size_t kStrokeCount = 2;  // more with strokes
-constexpr std::size_t kDeviceCount = 2;  // more since rows say on what they were given
-constexpr std::size_t kMostColumns = kColumnCount + kStrokeCount + kDeviceCount;
+constexpr std::size_t kColumnCount = 12;
+constexpr std::size_t kMostColumns = kColumnCount + 2;  // with strokes
 
 template <typename T>
 bool read_number(std::string_view text, T& value) {
@@ -34,7 +32,7 @@ class StudyReader {
     data_.header.subject = next_line("# subject ");
     if (!check_subject_code(data_.header.subject)) return refuse("\"# subject \" and a code such as S01");
     const Result<ProcedureKind> procedure = find_procedure(next_line("# procedure "));
-    if (!procedure) return refuse("\"# procedure \" and constant, adaptive or discriminate");
+    if (!procedure) return refuse("\"# procedure \" and constant or discriminate");
     data_.header.procedure = *procedure;
     if (!read_timing(next_line("# timing_ms "))) {
       return refuse("\"# timing_ms lead_in 400 ramp 100 hold 900 pause 500\" or such");
@@ -42,15 +40,12 @@ class StudyReader {
     const bool strokes = *procedure == ProcedureKind::discriminate;
     if (strokes) {
       if (const Status read = read_strokes(); !read) return read.error();
-      columns_ += kStrokeCount;
+      columns_ = kMostColumns;
     }
     data_.consent = next_line("# consent accepted, ");
     if (failed_) return refuse("\"# consent accepted, \" and which text");
-    const std::string columns = study_columns(*procedure, false);
-    const std::string more = next_line(columns);
-    if (more != "" && more != kDeviceColumns) return refuse("the columns " + study_columns(*procedure));
-    data_.has_device = !more.empty();
-    if (data_.has_device) columns_ += kDeviceCount;
+    const std::string columns = study_columns(*procedure);
+    if (next_line(columns) != "") return refuse("the columns " + columns);
     data_.whole_bytes = next_;
     while (text_.find('\n', next_) != std::string_view::npos) {
       if (const Status row = read_row(); !row) return row.error();
@@ -78,8 +73,8 @@ class StudyReader {
 
   Error refuse_at(std::size_t offset, std::string_view what, const std::string& expected) const {
     const std::string shown = what.size() > 60 ? std::string(what.substr(0, 57)) + "..." : std::string(what);
-    return Error{position_prefix(path_, position_of_offset(text_, offset)) + "found \"" + shown +
-                 "\", expected " + expected};
+    return Error{position_prefix(path_, position_of_offset(text_, offset)) + "found \"" + shown + "\", expected " +
+                 expected};
   }
 
   // "name number name number ..." in this order.
@@ -96,8 +91,10 @@ class StudyReader {
   bool read_timing(const std::string& text) {
     StudyTiming& timing = data_.header.timing;
     std::istringstream words(text);
-    return read_named<std::uint32_t>(words, {{"lead_in", &timing.lead_in}, {"ramp", &timing.ramp},
-                                             {"hold", &timing.hold}, {"pause", &timing.pause}}) &&
+    return read_named<std::uint32_t>(words, {{"lead_in", &timing.lead_in},
+                                             {"ramp", &timing.ramp},
+                                             {"hold", &timing.hold},
+                                             {"pause", &timing.pause}}) &&
            check_study_timing(timing).ok();
   }
 
@@ -111,7 +108,8 @@ class StudyReader {
     std::string of;
     const bool placed = read_named<double>(stroke, {{"from_s", &strokes.from_s}, {"to_s", &strokes.to_s}}) &&
                         stroke >> of && of == "of" && stroke.get() == ' ';
-    if (!placed || !std::getline(stroke, strokes.recording)) return refuse("\"# stroke from_s 1.5 to_s 3 of \" and a recording");
+    if (!placed || !std::getline(stroke, strokes.recording))
+      return refuse("\"# stroke from_s 1.5 to_s 3 of \" and a recording");
     std::istringstream forces(next_line("# forces "));
     if (!read_named<double>(forces, {{"reference_mean_N", &strokes.reference_mean_N},
                                      {"comparison_mean_N", &strokes.comparison_mean_N}}) ||
@@ -123,7 +121,8 @@ class StudyReader {
                                         {"max_over_jnd", &strokes.max_over_jnd},
                                         {"jnd_offset_N", &strokes.jnd.offset_N},
                                         {"jnd_weber_fraction", &strokes.jnd.weber_fraction}})) {
-      return refuse("\"# predicted mean_over_jnd 0.2 max_over_jnd 0.9 jnd_offset_N 0.065 jnd_weber_fraction 0.0633\" or such");
+      return refuse(
+          "\"# predicted mean_over_jnd 0.2 max_over_jnd 0.9 jnd_offset_N 0.065 jnd_weber_fraction 0.0633\" or such");
     }
     data_.header.strokes = std::make_shared<const StrokePair>(std::move(strokes));
     return {};
@@ -138,7 +137,8 @@ class StudyReader {
       const std::size_t comma = text_.find(',', at);
       const std::size_t stop = comma == std::string_view::npos || comma > end ? end : comma;
       if ((stop == end) != (i + 1 == columns_)) {
-        return refuse_at(next_, text_.substr(next_, end - next_), "a row of " + std::string(columns_ == kColumnCount ? "ten" : columns_ == kMostColumns ? "fourteen" : "twelve") + " fields");
+        return refuse_at(next_, text_.substr(next_, end - next_),
+                         columns_ == kMostColumns ? "a row of fourteen fields" : "a row of twelve fields");
       }
       fields[i] = text_.substr(at, stop - at);
       offsets[i] = at;
@@ -181,11 +181,9 @@ class StudyReader {
       record.reminder_rendered_N = force(10, 0.0);
       record.worst_N = force(11, 0.0);
     }
-    if (data_.has_device) {
-      record.device = fields[columns_ - 2];
-      check(columns_ - 2, !record.device.empty(), "the name of a device");
-      record.rendered = flag(columns_ - 1, "false", "true", "true or false");
-    }
+    record.device = fields[columns_ - 2];
+    check(columns_ - 2, !record.device.empty(), "the name of a device");
+    record.rendered = flag(columns_ - 1, "false", "true", "true or false");
     if (wrong < kMostColumns) return refuse_at(offsets[wrong], fields[wrong], expected);
     data_.records.push_back(record);
     return {};
@@ -202,9 +200,7 @@ class StudyReader {
 
 }  // namespace
 
-Result<StudyData> parse_study(std::string_view text, const std::string& path) {
-  return StudyReader(text, path).read();
-}
+Result<StudyData> parse_study(std::string_view text, const std::string& path) { return StudyReader(text, path).read(); }
 
 Result<StudyData> read_study(const std::string& path) {
   const std::optional<std::string> text = read_whole_file(path);

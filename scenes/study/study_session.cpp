@@ -43,8 +43,7 @@ const std::string& study_consent_text(ProcedureKind procedure) {
       kBegin + "Each time you feel two pushes, one after the other, and say which was the larger." + kEnd;
   static const std::string kStrokes =
       kBegin +
-      "Each time you feel three pushes, one after the other, and say which of the last two was like the first." +
-      kEnd;
+      "Each time you feel three pushes, one after the other, and say which of the last two was like the first." + kEnd;
   return procedure == ProcedureKind::discriminate ? kStrokes : kForces;
 }
 
@@ -54,8 +53,7 @@ double StudyRecord::rendered_difference() const noexcept {
   return (comparison_N - reference_N) / reference_N;
 }
 
-Result<std::unique_ptr<StudySession>> StudySession::create(const StudyHeader& header,
-                                                           std::unique_ptr<StudyStore> store,
+Result<std::unique_ptr<StudySession>> StudySession::create(const StudyHeader& header, std::unique_ptr<StudyStore> store,
                                                            std::uint64_t rest_ticks) {
   if (const Status code = check_subject_code(header.subject); !code) return code.error();
   if (const Status timing = check_study_timing(header.timing); !timing) return timing.error();
@@ -69,25 +67,19 @@ StudySession::StudySession(const StudyHeader& header, std::unique_ptr<StudyStore
     : header_(header),
       store_(std::move(store)),
       rest_ticks_(rest_ticks),
-      procedure_(StudyProcedure::create(header.procedure, header.subject, header.strokes.get())),
-      training_(procedure_->training()),
+      plan_(plan_study(header.procedure, header.subject, header.strokes.get())),
       presenter_(header.timing, header.strokes) {}
 
 // Gives the stored answers again; each must be to the trial of the plan.
 Status StudySession::resume() {
   for (const StudyRecord& record : store_->records()) {
-    const bool fits = record.training == training() && (training() || !procedure_->done()) &&
-                      record.trial == (training() ? training_[trained_] : procedure_->next()) &&
-                      record.number == (training() ? trained_ : procedure_->answered_count()) + 1;
+    const bool fits = record.training == training() && (training() || !all_answered()) &&
+                      record.trial == next_trial() && record.number == next_number();
     if (!fits) return unexpected_answer(record);
-    if (record.training) {
-      ++trained_;
-    } else {
-      procedure_->answered(record.comparison_judged_larger());
-    }
+    ++(record.training ? trained_ : answered_);
   }
   if (!store_->consented()) return {};
-  state_ = procedure_->done() ? StudyState::done : StudyState::ready;
+  state_ = all_answered() ? StudyState::done : StudyState::ready;
   return {};
 }
 
@@ -104,8 +96,8 @@ void StudySession::proceed() {
 }
 
 void StudySession::present_next() {
-  trial_ = training() ? training_[trained_] : procedure_->next();
-  presentation_ = presenter_.present(procedure_->stimuli(trial_, training()));
+  trial_ = next_trial();
+  presentation_ = presenter_.present(plan_.stimuli(trial_, training()));
   state_ = StudyState::presenting;
 }
 
@@ -122,7 +114,7 @@ void StudySession::answer(bool second) {
   const PresentationState& seen = presenter_.newest();
   record_ = {};
   record_.training = training();
-  record_.number = (training() ? trained_ : procedure_->answered_count()) + 1;
+  record_.number = next_number();
   record_.trial = trial_;
   record_.first_rendered_N = to_tenth_mN(seen.first_rendered_N);
   record_.second_rendered_N = to_tenth_mN(seen.second_rendered_N);
@@ -163,10 +155,10 @@ void StudySession::continue_session() {
     return;
   }
   has_feedback_ = false;
-  procedure_->answered(record_.comparison_judged_larger());
-  if (procedure_->done()) {
+  ++answered_;
+  if (all_answered()) {
     state_ = StudyState::done;
-  } else if (procedure_->answered_count() % procedure_->trials_per_block() == 0) {
+  } else if (answered_ % plan_.trials_per_block == 0) {
     rest_from_ = presenter_.newest().tick;
     state_ = StudyState::rest;
   } else {
@@ -188,8 +180,8 @@ StudyView StudySession::view() {
   StudyView view;
   view.state = state_;
   view.training = training();
-  view.answered = training() ? trained_ : procedure_->answered_count();
-  view.trials = training() ? training_.size() : procedure_->trial_count();
+  view.answered = training() ? trained_ : answered_;
+  view.trials = training() ? plan_.training.size() : plan_.trials.size();
   view.has_feedback = has_feedback_;
   view.was_correct = was_correct_;
   const PresentationState& seen = presenter_.newest();
@@ -208,21 +200,26 @@ StudyView StudySession::view() {
 
 std::string StudySession::message(const StudyView& view) const {
   switch (state_) {
-    case StudyState::consent: return problem_.empty() ? study_consent_text(header_.procedure) : problem_;
+    case StudyState::consent:
+      return problem_.empty() ? study_consent_text(header_.procedure) : problem_;
     case StudyState::ready:
       if (!view.training) return "Now the study itself. Go on when you are ready.";
-      return view.has_reminder ? "First a few trials to learn the task. Which of the two pushes was like the "
-                                 "reference? Go on when you are ready."
-                               : "First a few trials to learn the task. Which push was larger? Go on when you are ready.";
+      return view.has_reminder
+                 ? "First a few trials to learn the task. Which of the two pushes was like the "
+                   "reference? Go on when you are ready."
+                 : "First a few trials to learn the task. Which push was larger? Go on when you are ready.";
     case StudyState::presenting:
       if (view.reminder) return "The reference";
       return view.interval == 1 ? "First push" : view.interval == 2 ? "Second push" : "Hold still";
     case StudyState::answering:
       return view.has_reminder ? "Which was like the reference, 1 or 2?"
                                : "Which push was larger, the first or the second?";
-    case StudyState::unsaved: return "Your answer could not be stored: " + problem_ + ". Call the experimenter.";
-    case StudyState::rest: return "A break. Relax your hand; go on when you are ready.";
-    case StudyState::done: return "That was all. Thank you!";
+    case StudyState::unsaved:
+      return "Your answer could not be stored: " + problem_ + ". Call the experimenter.";
+    case StudyState::rest:
+      return "A break. Relax your hand; go on when you are ready.";
+    case StudyState::done:
+      return "That was all. Thank you!";
     case StudyState::aborted:
       return problem_.empty() ? "The session was ended; all answers are stored."
                               : "The session was ended; the last answer could not be stored: " + problem_;

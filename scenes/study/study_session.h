@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
+#include "scenes/study/study_plan.h"
 #include "scenes/study/study_presenter.h"
-#include "scenes/study/study_procedure.h"
 #include "scenes/study/study_store.h"
 
 namespace palpate {
@@ -32,16 +32,14 @@ namespace palpate {
 // What a subject reads before anything else.
 const std::string& study_consent_text(ProcedureKind procedure);
 
-enum class StudyState : std::uint8_t {
-  consent, ready, presenting, answering, unsaved, rest, done, aborted
-};
+enum class StudyState : std::uint8_t { consent, ready, presenting, answering, unsaved, rest, done, aborted };
 
 // What to show.
 struct StudyView {
   StudyState state = StudyState::consent;
   bool training = false;
-  std::size_t answered = 0;  // of this part: training or study
-  std::size_t trials = 0;    // of this part
+  std::size_t answered = 0;   // of this part: training or study
+  std::size_t trials = 0;     // of this part
   bool has_reminder = false;  // before the two forces comes one to compare with
   bool reminder = false;      // it is presented now
   int interval = 0;           // 1 or 2 while that force is presented, else 0
@@ -58,16 +56,15 @@ class StudySession {
   // Takes up where `store` ends. Errors: a code that is none, a timing that is not
   // accepted, strokes that do not fill it, answers in the store that this plan did not
   // ask for.
-  static Result<std::unique_ptr<StudySession>> create(const StudyHeader& header,
-                                                      std::unique_ptr<StudyStore> store,
+  static Result<std::unique_ptr<StudySession>> create(const StudyHeader& header, std::unique_ptr<StudyStore> store,
                                                       std::uint64_t rest_ticks = kRest_ticks);
 
   // Slow thread. Calls that do not fit the state do nothing.
   void accept_consent(const std::string& when);
-  void proceed();  // leaves `ready`, and `rest` when it has lasted
-  void update();   // takes in what the ticks did
+  void proceed();            // leaves `ready`, and `rest` when it has lasted
+  void update();             // takes in what the ticks did
   void answer(bool second);  // it was the larger, or the one like the reminder
-  void retry();    // in `unsaved`
+  void retry();              // in `unsaved`
   void abort();
 
   StudyView view();
@@ -76,7 +73,7 @@ class StudySession {
   const StudyStore& store() const noexcept { return *store_; }
   // What is being presented or asked about.
   const StudyTrial& trial() const noexcept { return trial_; }
-  bool training() const noexcept { return trained_ < training_.size(); }
+  bool training() const noexcept { return trained_ < plan_.training.size(); }
   const PresentationState& presentation() noexcept { return presenter_.newest(); }
 
   // Haptics thread; see StudyPresenter.
@@ -85,6 +82,9 @@ class StudySession {
  private:
   StudySession(const StudyHeader& header, std::unique_ptr<StudyStore> store, std::uint64_t rest_ticks);
   Status resume();
+  bool all_answered() const noexcept { return answered_ == plan_.trials.size(); }
+  std::size_t next_number() const noexcept { return (training() ? trained_ : answered_) + 1; }
+  const StudyTrial& next_trial() const { return training() ? plan_.training[trained_] : plan_.trials[answered_]; }
   std::string message(const StudyView& view) const;
   void present_next();
   void save();
@@ -93,12 +93,12 @@ class StudySession {
   StudyHeader header_;
   std::unique_ptr<StudyStore> store_;
   std::uint64_t rest_ticks_;
-  std::unique_ptr<StudyProcedure> procedure_;
-  std::vector<StudyTrial> training_;
+  StudyPlan plan_;
   StudyPresenter presenter_;
 
   StudyState state_ = StudyState::consent;
-  std::size_t trained_ = 0;
+  std::size_t trained_ = 0;   // trials of the training that are answered
+  std::size_t answered_ = 0;  // of the study proper
   StudyTrial trial_;
   StudyRecord record_;  // the answer at hand
   std::uint64_t presentation_ = 0;

@@ -13,7 +13,6 @@
 #include "scenes/study/stroke_pair.h"
 #include "scenes/study/study_plan.h"
 #include "scenes/study/study_presenter.h"
-#include "scenes/study/study_procedure.h"
 
 namespace palpate {
 
@@ -37,13 +36,13 @@ struct StudyRecord {
   double first_rendered_N = 0.0;  // mean while held, to 0.1 mN
   double second_rendered_N = 0.0;
   bool limited = false;
-  bool answered_second = false;  // "the second was larger", or "it was like the reminder"
-  std::uint32_t response_ms = 0;  // from the end of the second force
+  bool answered_second = false;      // "the second was larger", or "it was like the reminder"
+  std::uint32_t response_ms = 0;     // from the end of the second force
   double reminder_rendered_N = 0.0;  // these two with strokes only
   double worst_N = 0.0;              // at any tick away from what it should be, to 0.1 mN
 
-  std::string device = "unknown";  // of a file of before these two were written: unknown, true
-  bool rendered = true;            // false: a rehearsal, nobody could feel anything
+  std::string device = "unknown";
+  bool rendered = true;  // false: a rehearsal, nobody could feel anything
 
   bool comparison_judged_larger() const noexcept { return answered_second != trial.comparison_first; }
   bool found_larger() const noexcept { return answered_second == (trial.second_N() > trial.first_N()); }

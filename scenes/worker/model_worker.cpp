@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/recording/recording.h"
+#include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"
@@ -187,19 +188,6 @@ Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const Tra
   return {};
 }
 
-namespace {
-
-// 50 mN steps and rows weighted 1/f, together.
-TrainingRequest paper_request(const Scene& scene) {
-  TrainingRequest request = training_request(scene);
-  request.reduction = Reduction::force;
-  request.weighting = Weighting::relative;
-  request.choice = FeatureChoice::scene;
-  return request;
-}
-
-}  // namespace
-
 // All as `palpate fit` does it by itself.
 Result<ModelData> ModelWorker::fit_recording(const SlotPlan& plan) {
   Result<Recording> recording = read_recording(plan.path);
@@ -235,7 +223,7 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   std::optional<PreparedTraining>& prepared = position ? of_position : plan.paper ? prepared_as_paper_ : prepared_;
   const bool prepared_before = prepared.has_value();
   if (const Status status = prepare(prepared, position     ? position_request(scene_)
-                                              : plan.paper ? paper_request(scene_)
+                                              : plan.paper ? recipe_2009_request(training_request(scene_))
                                                            : training_request(scene_));
       !status) {
     return status.error();
@@ -249,9 +237,9 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   const FitControl rest = control(prepared_before ? 0.0 : kPrepared, 1.0);
   const bool nested = !position && plan.method->choose != nullptr && request.centres <= kMostCentres &&
                       !nested_.try_emplace({plan.method, plan.paper}).second;
-  Result<MethodFit> fitted =
-      nested ? fit_nested(*prepared, request, plan.paper, rest)
-             : fit_method(*prepared, request, rest, base == bases_.end() ? nullptr : &base->second);
+  Result<MethodFit> fitted = nested
+                                 ? fit_nested(*prepared, request, plan.paper, rest)
+                                 : fit_method(*prepared, request, rest, base == bases_.end() ? nullptr : &base->second);
   if (!fitted) return fitted.error();
   if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);

@@ -30,8 +30,8 @@
 #include "models/fit/fit.h"
 #include "models/fit/nested_fit.h"
 #include "models/model/fitted_model.h"
-#include "scenes/worker/slot_plan.h"
 #include "scenes/scene/scene.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 

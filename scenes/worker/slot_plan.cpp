@@ -65,9 +65,11 @@ std::string plan_name(const SlotPlan& plan) {
       if (plan.paper) name += kPaperMark;
       return name;
     }
-    case ModelOrigin::position: return "position only";
+    case ModelOrigin::position:
+      return "position only";
     case ModelOrigin::recording:
-    case ModelOrigin::file: return std::filesystem::path(plan.path).stem().string();
+    case ModelOrigin::file:
+      return std::filesystem::path(plan.path).stem().string();
   }
   return {};
 }
@@ -79,11 +81,14 @@ bool SlotPlan::same_as(const SlotPlan& other) const {
 
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
-      {"Ladder", "few centres beside many: the paper's recipe with 10 centres, and this program's own",
+      {"Ladder",
+       "few centres beside many: the paper's recipe with 10 centres, and this program's own",
        {"paper:random-10", "greedy", "paper:greedy-10", "paper:kdtree-10", "voxel", "direct", "trend"}},
-      {"2009", "the paper's recipe: few centres, the grid and all sites",
+      {"2009",
+       "the paper's recipe: few centres, the grid and all sites",
        {"paper:random-10", "paper:kdtree-10", "paper:greedy-10", "paper:voxel", "paper:direct"}},
-      {"Palpate", "this program's own fits of every method",
+      {"Palpate",
+       "this program's own fits of every method",
        {"greedy", "kdtree", "random", "voxel", "direct", "trend"}}};
   return all;
 }
@@ -97,10 +102,14 @@ const LineUp* find_line_up(const std::string& name) {
 
 std::string plan_method(const SlotPlan& plan) {
   switch (plan.origin) {
-    case ModelOrigin::method: return plan.method->name;
-    case ModelOrigin::position: return "position";
-    case ModelOrigin::recording: return plan.method->name;
-    case ModelOrigin::file: return {};
+    case ModelOrigin::method:
+      return plan.method->name;
+    case ModelOrigin::position:
+      return "position";
+    case ModelOrigin::recording:
+      return plan.method->name;
+    case ModelOrigin::file:
+      return {};
   }
   return {};
 }

@@ -1,0 +1,190 @@
+// palpate record: motion and measured force of a real tool, from a device into a recording.
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "devices/bridge/bridge_target.h"
+#include "devices/registry/device_registry.h"
+#include "engine/base/signals.h"
+#include "engine/base/text.h"
+#include "engine/live/haptics_loop.h"
+#include "scenes/cli/check_recordings.h"
+#include "scenes/cli/record_guide.h"
+#include "scenes/cli/verbs.h"
+#include "scenes/live/session_recorder.h"
+#include "scenes/scene/assets.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(100);
+
+struct RecordOptions {
+  std::string device;
+  std::string out;
+  std::string scene = "silicone_block";
+  double seconds = 0.0;  // 0: until Ctrl-C
+  bool guide = false;
+  bool force = false;
+  bool bridge_remote = false;
+};
+
+// What a person at the device sees, on stderr: a line that changes where that is a
+// terminal, and what goes wrong as lines of its own.
+class RecordProgress {
+ public:
+  explicit RecordProgress(bool measures_force) : measures_force_(measures_force) {}
+  ~RecordProgress() { clear(); }
+
+  void show(const LoopSnapshot& snapshot, const RecordingStatus& status) {
+    tell_faults(snapshot.device_faults_latched);
+    if (!terminal_) return;
+    const double step_s = snapshot.tick.time_s - last_s_;
+    const double speed_m_per_s = step_s > 0.0 ? (snapshot.tick.position_m - last_m_) / step_s : 0.0;
+    last_s_ = snapshot.tick.time_s;
+    last_m_ = snapshot.tick.position_m;
+    const double rate_Hz = snapshot.device.interval_s > 0.0 ? 1.0 / snapshot.device.interval_s : 0.0;
+    std::string text = fixed(status.seconds, 1) + " s, " + std::to_string(status.rows) + " rows";
+    if (rate_Hz > 0.0) text += ", " + fixed(rate_Hz, 0) + " a second";
+    text += "   depth " + fixed(1e3 * snapshot.tick.position_m, 2) + " mm   speed " + fixed(1e3 * speed_m_per_s, 0) +
+            " mm/s";
+    if (measures_force_) text += "   force " + fixed(snapshot.measured_N, 3) + " N";
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    drawn_ = true;
+  }
+  void line(const std::string& text) {
+    clear();
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+
+ private:
+  void tell_faults(std::uint32_t faults) {
+    for (const std::string& words : device_fault_words(faults & ~told_)) line("device: " + words);
+    told_ |= faults;
+  }
+  void clear() {
+    if (drawn_) std::fputs("\r\033[K", stderr);
+    drawn_ = false;
+  }
+
+  bool measures_force_;
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  bool drawn_ = false;
+  std::uint32_t told_ = 0;
+  double last_s_ = 0.0, last_m_ = 0.0;
+};
+
+// A device that has to be zeroed: Enter says that the tool is at its rest position.
+void zero_on_enter(Device& device, const DeviceHealth& health, bool& told, RecordProgress& progress) {
+  if (health.zeroing != Zeroing::needed) {
+    told = false;
+    return;
+  }
+  if (!told) progress.line(zeroing_words(health) + " (press Enter)");
+  told = true;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  char typed[256];
+  if (poll(&input, 1, 0) == 1 && ::read(STDIN_FILENO, typed, sizeof typed) > 0) device.start_zeroing();
+}
+
+Result<std::unique_ptr<Device>> open_for_recording(const RecordOptions& options) {
+  DeviceRequest request;
+  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
+  return open_device(options.bridge_remote ? with_remote_bridge(options.device) : options.device, request);
+}
+
+RecorderRequest recorder_request(const RecordOptions& options, Device& device) {
+  const SensorSpec sensor = device.sensor();
+  RecorderRequest request;
+  request.path = options.out;
+  request.force = WrittenForce::measured;
+  request.columns = {sensor.has_velocity, sensor.has_acceleration, device.measures_force()};
+  request.overwrite = options.force;
+  request.comments = {"recorded by palpate record; device " + options.device,
+                      "position_m: as the device gave it; " +
+                          std::string(device.measures_force() ? "force_N: as it measured it" : "it measures no force")};
+  return request;
+}
+
+// Until the time is up or somebody stops it.
+Result<std::string> record(const RecordOptions& options, const CheckRequest& check, Device& device) {
+  HapticsLoop loop(device);
+  SessionRecorder recorder(loop);
+  RecordProgress progress(device.measures_force());
+  if (const std::string note = device.note(); !note.empty()) progress.line(note);
+  if (const Status status = loop.start(); !status) return status.error();
+  if (const Status status = recorder.start(recorder_request(options, device)); !status) return status.error();
+  LoopControls controls;
+  controls.recording = recorder.number();
+  loop.set_controls(controls);
+  RecordGuide guide(options.out, check);
+  bool zeroing_told = false;
+  std::optional<Notice> outcome;
+  for (const double start_s = steady_now_s(); !outcome && stop_requested() == 0;) {
+    std::this_thread::sleep_for(kPause);
+    progress.show(loop.newest(), recorder.status());
+    zero_on_enter(device, loop.newest().device, zeroing_told, progress);
+    if (options.guide) {
+      for (const std::string& line : guide.update(steady_now_s())) progress.line(line);
+    }
+    if (options.seconds > 0.0 && steady_now_s() - start_s >= options.seconds) break;
+    outcome = recorder.read_outcome();
+  }
+  recorder.stop();
+  recorder.wait();
+  loop.stop();
+  if (!outcome) outcome = recorder.read_outcome();
+  if (outcome->problem) return Error{outcome->text};
+  return outcome->text;
+}
+
+Status run_record(const RecordOptions& options) {
+  const StopListener listener;
+  const auto scene = load_scene(options.scene);
+  if (!scene) return scene.error();
+  auto device = open_for_recording(options);
+  if (!device) return device.error();
+  if (options.guide && !(*device)->measures_force()) {
+    return Error{"--guide: " + options.device + " measures no force, and without it nobody knows where the surface is"};
+  }
+  const Result<std::string> recorded = record(options, check_request(*scene), **device);
+  (*device)->close();
+  if (!recorded) return recorded.error();
+  std::printf("%s\n", recorded->c_str());
+  if (!(*device)->measures_force()) {
+    std::printf("%s has time and motion alone: to fit it, add a column force_N with the force of a sensor\n",
+                options.out.c_str());
+    return {};
+  }
+  const auto file = check_recording_file(options.out, check_request(*scene));
+  if (!file) return file.error();
+  std::printf("%s", check_text(*file).c_str());
+  return {};
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, Verbs& verbs) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* verb = app.add_subcommand("record", "Record motion and measured force of a tool, until Ctrl-C");
+  verb->add_option("--device", options->device, "As palpate-demo takes it; palpate devices lists them")
+      ->required()
+      ->type_name("NAME");
+  verb->add_option("--out", options->out, "Recording to write (CSV)")->required()->type_name("REC.csv");
+  verb->add_option("--seconds", options->seconds, "End by itself after so long")->check(CLI::Range(0.1, 1e6));
+  verb->add_flag("--guide", options->guide, "Say what to press next, and which depths and speeds are still missing");
+  verb->add_option("--scene", options->scene, "Scene whose relaxation times and JND line the check counts with")
+      ->capture_default_str();
+  verb->add_flag("--bridge-remote", options->bridge_remote, "bridge:tcp: may name another computer");
+  verb->add_flag("--force", options->force, "Replace --out if it exists");
+  verbs.emplace_back(verb, [options] { return run_record(*options); });
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,88 @@
+#include "scenes/cli/record_guide.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "engine/live/pacer.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr double kPeriod_s = 2.0;
+constexpr double kRest = 10.0;  // of what a check takes
+constexpr int kSmallStrokes = 10;
+
+constexpr const char* kBands[kSpeedBands] = {"below 10 mm/s", "10 to 50 mm/s", "above 50 mm/s"};
+constexpr const char* kPresses[kSpeedBands] = {
+    "slow presses: take five seconds for the way in and as long for the way out",
+    "presses by hand: half a second in, half a second out",
+    "fast presses: as quick taps, in and out at once",
+};
+
+bool visited(const RecordingMeasures& measures, std::size_t quarter, std::size_t band) {
+  return measures.seconds[quarter][band] >= kLeastCell_s;
+}
+
+}  // namespace
+
+std::string guide_advice(const RecordingMeasures& measures, double longest_relaxation_s) {
+  for (std::size_t band = 0; band < kSpeedBands; ++band) {
+    for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
+      if (!visited(measures, quarter, band)) return kPresses[band];
+    }
+  }
+  // As `check` counts it and advises.
+  if (measures.longest_hold_s < longest_relaxation_s) {
+    return "press, and hold still for " + fixed(2.0 * longest_relaxation_s, 1) + " s";
+  }
+  if (measures.small_strokes < kSmallStrokes) return "small strokes: stay in the block and go a little in and out";
+  return {};
+}
+
+std::vector<std::string> guide_cells(const RecordingMeasures& measures, double surface_m) {
+  std::vector<std::string> lines = {"  depth [mm]     " + std::string(kBands[0]) + "  " + kBands[1] + "  " + kBands[2]};
+  const double deepest_mm = 1e3 * (measures.highest_position_m - surface_m);
+  for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
+    const auto edge = [&](std::size_t i) { return fixed(0.25 * static_cast<double>(i) * deepest_mm, 2); };
+    std::string line = "  " + edge(quarter) + " to " + edge(quarter + 1);
+    line.resize(std::max<std::size_t>(line.size(), 17), ' ');
+    for (std::size_t band = 0; band < kSpeedBands; ++band) {
+      std::string cell = visited(measures, quarter, band) ? fixed(measures.seconds[quarter][band], 1) + " s" : "-";
+      cell.resize(15, ' ');
+      line += cell;
+    }
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+RecordGuide::RecordGuide(std::string path, const CheckRequest& request) : path_(std::move(path)), request_(request) {
+  for (const double time_s : request.relaxation_times_s)
+    longest_relaxation_s_ = std::max(longest_relaxation_s_, time_s);
+}
+
+std::vector<std::string> RecordGuide::update(double now_s) {
+  if (now_s < next_s_) return {};
+  next_s_ = now_s + kPeriod_s;
+  // Not there before its first 1000 rows.
+  const auto file = check_recording_file(path_, request_);
+  next_s_ = std::max(next_s_, now_s + kRest * (steady_now_s() - now_s));
+  const auto telling = [&](const std::string& text) { return std::exchange(told_, text) != text; };
+  if (!file || file->check.measures.contact_rows == 0) {
+    const std::string touch = "next: touch the block, then press it slowly";
+    return telling(touch) ? std::vector<std::string>{touch} : std::vector<std::string>{};
+  }
+  const RecordingMeasures& measures = file->check.measures;
+  const std::string advice = guide_advice(measures, longest_relaxation_s_);
+  std::string cells;
+  for (const auto& quarter : measures.seconds) {
+    for (const double seconds : quarter) cells += seconds >= kLeastCell_s ? '+' : '-';
+  }
+  if (!telling(advice + cells)) return {};
+  std::vector<std::string> lines = guide_cells(measures, file->check.surface_offset_m);
+  lines.push_back(advice.empty() ? "  nothing is missing: Ctrl-C ends the recording" : "  next: " + advice);
+  return lines;
+}
+
+}  // namespace palpate::cli
