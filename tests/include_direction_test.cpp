@@ -41,13 +41,16 @@ const std::map<std::string, Names> kRooms = {
     {"devices/virtual", {"engine/live"}},
     {"devices/stream", {"engine/live"}},
     {"devices/hid", {"devices/virtual", "devices/stream", "devices/firmware", "engine/json"}},
-    {"devices/registry", {"devices/hid"}},
+    {"devices/bridge", {"devices/hid"}},
+    {"devices/registry", {"devices/bridge"}},
     {"scenes/material", {"devices/virtual"}},
     {"scenes/scene", {"models/fit", "scenes/material"}},
+    {"scenes/evaluation", {"models/surface"}},
+    {"scenes/plot", {"scenes/scene"}},
     {"scenes/worker", {"scenes/scene"}},
-    {"scenes/live", {"scenes/worker", "devices/registry", "engine/import"}},
-    {"scenes/report", {"scenes/scene"}},
-    {"scenes/study", {"scenes/worker", "devices/registry"}},
+    {"scenes/live", {"scenes/worker", "scenes/evaluation", "scenes/plot", "devices/registry", "engine/import"}},
+    {"scenes/report", {"scenes/plot", "scenes/evaluation"}},
+    {"scenes/study", {"scenes/worker", "scenes/evaluation", "scenes/plot", "devices/registry"}},
     {"scenes/cli", {"engine/import", "models/check", "models/export", "scenes/report", "scenes/study", "scenes/live"}},
     {"rendering/ui", {"scenes/live"}},
     {"rendering/picture", {"rendering/ui"}},
@@ -72,8 +75,7 @@ bool reaches(const std::string& from, const std::string& to) {
 // Drawing sees snapshots and names: no model and no device, although the rooms it
 // stands on do.
 bool is_hidden_from(const std::string& room, const std::string& included) {
-  return room.rfind("rendering/", 0) == 0 &&
-         (included.rfind("models/", 0) == 0 || included.rfind("devices/", 0) == 0);
+  return room.rfind("rendering/", 0) == 0 && (included.rfind("models/", 0) == 0 || included.rfind("devices/", 0) == 0);
 }
 
 // Third parties by the folders and rooms that may know them; the start of the path counts.

@@ -64,6 +64,7 @@ def inline_commands(text):
 def make_scratch(folder, build):
     """What the READMEs' commands take for granted."""
     os.symlink(build, folder / "build")
+    os.symlink(build.parent / "assets", folder / "assets")
     palpate = build / "palpate"
     # A stroke that a still hand can be given is not in every six seconds.
     for name, seed, seconds in (("rec-of-the-rig", 1, 6), ("other", 2, 6), ("test", 3, 20)):

@@ -21,8 +21,7 @@ void run_queries(benchmark::State& state, const Eigen::MatrixXd& points, const E
   for (auto _ : state) {
     const double* point = points.col(at).data();
     // Adds nothing, but the processor cannot know before `last` is there.
-    for (Eigen::Index k = 0; k < points.rows(); ++k)
-      query[static_cast<std::size_t>(k)] = point[k] + 1e-200 * last;
+    for (Eigen::Index k = 0; k < points.rows(); ++k) query[static_cast<std::size_t>(k)] = point[k] + 1e-200 * last;
     last = evaluate(query.data());
     at = at + 1 < points.cols() ? at + 1 : 0;
   }

@@ -34,8 +34,8 @@ void MedianReporter::ReportRuns(const std::vector<Run>& runs) {
     // Processor time of what runs on one thread, which other programs disturb less.
     const bool wall = !run.run_name.time_type.empty();
     BenchRow row;
-    row.seconds = (wall ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime()) /
-                  benchmark::GetTimeUnitMultiplier(run.time_unit);
+    row.seconds =
+        (wall ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime()) / benchmark::GetTimeUnitMultiplier(run.time_unit);
     row.label = run.report_label;
     std::printf("%-40s %10s", name.c_str(), duration(row.seconds).c_str());
     for (const auto& [counter, value] : run.counters) {

@@ -152,14 +152,12 @@ void print_goals(const BenchRows& rows) {
     print_row(cells);
   }
   if (scalar == nullptr) return;
-  std::printf("\nReference pace: times x %.3f, so that the scalar loop takes 17.43 us at 6,850 centres.\n",
-              pace);
+  std::printf("\nReference pace: times x %.3f, so that the scalar loop takes 17.43 us at 6,850 centres.\n", pace);
 }
 
 // One line for each number that any of the columns has a row for.
 template <std::size_t count>
-void print_against(const BenchRows& rows, const std::string& title, const char* first,
-                   const Column (&columns)[count]) {
+void print_against(const BenchRows& rows, const std::string& title, const char* first, const Column (&columns)[count]) {
   std::set<long> numbers;
   for (const auto& [name, row] : rows)
     for (const Column& column : columns)
@@ -177,8 +175,7 @@ void print_against(const BenchRows& rows, const std::string& title, const char* 
     for (const Column& column : columns) {
       const BenchRow* row = find(rows, std::string(column.benchmark) + "/" + std::to_string(number));
       cells.push_back(row != nullptr ? duration(row->seconds) : "-");
-      if (column.with_memory)
-        cells.push_back(row != nullptr ? text("%.3g MB", row->counters.at("peak_MB")) : "-");
+      if (column.with_memory) cells.push_back(row != nullptr ? text("%.3g MB", row->counters.at("peak_MB")) : "-");
     }
     print_row(cells);
   }
@@ -211,10 +208,10 @@ void print_peers(const BenchRows& rows) {
     const auto counter = [&counters = fit.counters](const char* key) { return counters.at(key); };
     if (data != last_data) {
       print_settings();
-      print_header("Beside peers: " + data + ", " + thousands(static_cast<long>(counter("test_samples"))) +
-                       " test samples",
-                   {"fitted by", "sites", "fit", "one query", "RMS [mN]", "within the JND [%]",
-                    "with trend: RMS [mN]", "within the JND [%]"});
+      print_header(
+          "Beside peers: " + data + ", " + thousands(static_cast<long>(counter("test_samples"))) + " test samples",
+          {"fitted by", "sites", "fit", "one query", "RMS [mN]", "within the JND [%]", "with trend: RMS [mN]",
+           "within the JND [%]"});
       last_data = data;
     }
     const BenchRow* query = find(rows, name.substr(0, name.rfind('/')) + "/query");
@@ -257,16 +254,17 @@ void print_materials(const BenchRows& rows, const std::string& group, const std:
 }
 
 void print_choices(const BenchRows& rows) {
-  print_materials(rows, "choice", "What each choice is worth: RMS [mN] cross-validated / on a recording held out",
-                  "greedy, 100 centres",
-                  {"default", "filters_driven_by_velocity", "relaxation_identified", "kernel_linear",
-                   "kernel_thin_plate", "kernel_quintic", "weights_relative", "weights_none", "every_50_mN",
-                   "papers_recipe", "candidates_all", "direct"},
-                  [](const BenchRow& row) {
-                    const auto validated = row.counters.find("cross_validated_mN");
-                    return (validated != row.counters.end() ? text("%.3g / ", validated->second) : std::string("- / ")) +
-                           text("%.3g", row.counters.at("rms_mN"));
-                  });
+  print_materials(
+      rows, "choice", "What each choice is worth: RMS [mN] cross-validated / on a recording held out",
+      "greedy, 100 centres",
+      {"default", "filters_driven_by_velocity", "relaxation_identified", "kernel_linear", "kernel_thin_plate",
+       "kernel_quintic", "weights_relative", "weights_none", "every_50_mN", "papers_recipe", "candidates_all",
+       "direct"},
+      [](const BenchRow& row) {
+        const auto validated = row.counters.find("cross_validated_mN");
+        return (validated != row.counters.end() ? text("%.3g / ", validated->second) : std::string("- / ")) +
+               text("%.3g", row.counters.at("rms_mN"));
+      });
   const std::vector<std::string> centres{"0", "1", "2", "5", "10", "20", "50", "100", "200"};
   const auto within = [](const BenchRow& row) {
     return text("%.2f", row.counters.at("within_JND_percent")) + text(" (%.3g)", row.counters.at("rms_mN"));

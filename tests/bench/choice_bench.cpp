@@ -36,11 +36,13 @@ std::vector<RecordingPtr> skin(const std::string& kind, const std::vector<std::s
 Material make_material(const std::string& name) {
   if (name == "skin") return {"skin", skin("train", {"250", "600", "1000"}), skin("test", {"400", "800", "900"})};
   if (name == "press")
-    return {"silicone_block", {test::real_recording("ur3e_press_mit/train_cycle1.csv")},
+    return {"silicone_block",
+            {test::real_recording("ur3e_press_mit/train_cycle1.csv")},
             {test::real_recording("ur3e_press_mit/test_cycle2.csv")}};
   const std::map<std::string, std::string> scenes{
       {"silicone", "silicone_block"}, {"foam", "foam_block"}, {"gel", "silicone_block"}, {"stiff", "stiff_block"}};
-  return {scenes.at(name), {test::rig_recording(test::train_settings(name))},
+  return {scenes.at(name),
+          {test::rig_recording(test::train_settings(name))},
           {test::rig_recording(test::test_settings(name))}};
 }
 
@@ -145,19 +147,18 @@ void run(benchmark::State& state, const std::string& name, const Choice& choice,
 }
 
 void add(const std::string& group, const std::string& name, const Choice& choice) {
-  benchmark::RegisterBenchmark((group + "/" + name + "/" + choice.name).c_str(),
-                               [name, choice, group](benchmark::State& state) {
-                                 run(state, name, choice, group == "choice");
-                               })
-      ->Iterations(1)->UseRealTime()->Unit(benchmark::kSecond);
+  benchmark::RegisterBenchmark(
+      (group + "/" + name + "/" + choice.name).c_str(),
+      [name, choice, group](benchmark::State& state) { run(state, name, choice, group == "choice"); })
+      ->Iterations(1)
+      ->UseRealTime()
+      ->Unit(benchmark::kSecond);
 }
 
 const std::vector<Choice>& choices() {
   static const std::vector<Choice> all{
       {"default", [](TrainingRequest&, MethodRequest&) {}},
-      {"filters_driven_by_velocity", [](TrainingRequest& t, MethodRequest&) { t.drive = BranchDrive::velocity; }},
-      {"relaxation_identified",
-       [](TrainingRequest& t, MethodRequest&) { t.relaxation = Relaxation::automatic; }},
+      {"relaxation_identified", [](TrainingRequest& t, MethodRequest&) { t.relaxation = Relaxation::automatic; }},
       {"kernel_linear", [](TrainingRequest&, MethodRequest& m) { m.kernel = KernelKind::linear; }},
       {"kernel_thin_plate", [](TrainingRequest&, MethodRequest& m) { m.kernel = KernelKind::thin_plate; }},
       {"kernel_quintic", [](TrainingRequest&, MethodRequest& m) { m.kernel = KernelKind::quintic; }},

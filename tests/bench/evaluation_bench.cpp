@@ -6,10 +6,10 @@
 #include <string>
 
 #include "models/model/fitted_model.h"
-#include "models/solve/fill_grid.h"
+#include "models/model/grid/voxel_lookup.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/model/rbf/rbf_simd.h"
-#include "models/model/grid/voxel_lookup.h"
+#include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 #include "tests/bench/scalar_loop.h"
@@ -99,14 +99,14 @@ const int registered = [] {
   prepare(benchmark::RegisterBenchmark("evaluate/rbf_denormal", rbf_denormal));
   prepare(benchmark::RegisterBenchmark("evaluate/voxel_25x11x11x11", voxel));
   for (const KernelKind kernel : kKernelKinds)
-    prepare(benchmark::RegisterBenchmark(("evaluate/kernel/" + std::string(kernel_name(kernel))).c_str(),
-                                         rbf_of_kernel, kernel));
+    prepare(benchmark::RegisterBenchmark(("evaluate/kernel/" + std::string(kernel_name(kernel))).c_str(), rbf_of_kernel,
+                                         kernel));
   for (const Method* method : methods())
-    prepare(benchmark::RegisterBenchmark(("evaluate/model/" + std::string(method->name)).c_str(),
-                                         whole_model, method));
+    prepare(benchmark::RegisterBenchmark(("evaluate/model/" + std::string(method->name)).c_str(), whole_model, method));
   for (const std::string& target : simd::target_names())
     prepare(benchmark::RegisterBenchmark(("evaluate/target/" + target).c_str(), rbf_on_target, target)
-                ->Arg(100)->Arg(6850));
+                ->Arg(100)
+                ->Arg(6850));
   return 0;
 }();
 

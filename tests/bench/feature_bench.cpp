@@ -62,7 +62,6 @@ const int registered = [] {
     add("maxwell_spectrum of " + std::to_string(parts), {with_parts(FeatureKind::maxwell_spectrum, parts)});
     add("stops of " + std::to_string(parts), {with_parts(FeatureKind::stops, parts)});
   }
-  add("fading_peak", {{FeatureKind::fading_peak, 6.0}});
   return 0;
 }();
 

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "models/fit/fit_direct.h"
-#include "models/solve/fill_grid.h"
 #include "models/fit/fit_greedy.h"
 #include "models/fit/fit_kdtree.h"
 #include "models/fit/fit_random.h"
 #include "models/fit/nested_fit.h"
-#include "models/model/rbf/rbf_evaluate.h"
 #include "models/model/grid/voxel_lookup.h"
+#include "models/model/rbf/rbf_evaluate.h"
+#include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
 
@@ -99,9 +99,15 @@ class TimedFit {
 };
 
 void at_paper_size(const std::string& name, const Fit& fit, int repetitions) {
-  benchmark::RegisterBenchmark(("fit/" + name).c_str(), [timed = TimedFit(fit)](benchmark::State& state) mutable {
-    timed.run(state, recorded_sites(), recorded_jnd_N());
-  })->Repetitions(repetitions)->Iterations(1)->UseManualTime()->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark(("fit/" + name).c_str(),
+                               [timed = TimedFit(fit)](benchmark::State& state) mutable {
+                                 timed.run(state, recorded_sites(), recorded_jnd_N());
+                               })
+      ->Repetitions(repetitions)
+      ->Iterations(1)
+      ->UseManualTime()
+      ->ReportAggregatesOnly()
+      ->Unit(benchmark::kMillisecond);
 }
 
 void against_size(const std::string& name, const Fit& fit) {
@@ -111,7 +117,10 @@ void against_size(const std::string& name, const Fit& fit) {
                                    const Sites sites = made_sites(4, count);
                                    timed.run(state, sites, sites.row_scale.cwiseInverse());
                                  })
-        ->Repetitions(count < 50000 ? 3 : 1)->Iterations(1)->UseManualTime()->ReportAggregatesOnly()
+        ->Repetitions(count < 50000 ? 3 : 1)
+        ->Iterations(1)
+        ->UseManualTime()
+        ->ReportAggregatesOnly()
         ->Unit(benchmark::kMillisecond);
 }
 
@@ -123,26 +132,32 @@ void against_dimension(const std::string& name, const Fit& fit) {
                                    const Sites sites = made_sites(d, kPaperSites);
                                    timed.run(state, sites, sites.row_scale.cwiseInverse());
                                  })
-        ->Repetitions(3)->Iterations(1)->UseManualTime()->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+        ->Repetitions(3)
+        ->Iterations(1)
+        ->UseManualTime()
+        ->ReportAggregatesOnly()
+        ->Unit(benchmark::kMillisecond);
 }
 
 // Ten nodes a side, as the paper has it, from all sites as centres. With seven
 // and eight dimensions that would be 1e7 and 1e8 nodes: left out.
 void grid_against_dimension() {
   for (int d = 1; d <= 6; ++d)
-    benchmark::RegisterBenchmark(("dimension/grid_10_a_side/" + std::to_string(d)).c_str(),
-                                 [d](benchmark::State& state) {
-                                   const Sites sites = made_sites(d, kPaperSites);
-                                   RbfFunction function{KernelKind::cubic, sites.points, sites.target_N,
-                                                        Eigen::VectorXd::Ones(1 + d)};
-                                   TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<FittedRbf> {
-                                     VoxelGrid grid = even_grid(all, std::vector<int>(static_cast<std::size_t>(d), 10));
-                                     if (const Status filled = fill(grid, function); !filled) return filled.error();
-                                     return FittedRbf{};
-                                   });
-                                   timed.run(state, sites, sites.target_N);
-                                 })
-        ->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(
+        ("dimension/grid_10_a_side/" + std::to_string(d)).c_str(),
+        [d](benchmark::State& state) {
+          const Sites sites = made_sites(d, kPaperSites);
+          RbfFunction function{KernelKind::cubic, sites.points, sites.target_N, Eigen::VectorXd::Ones(1 + d)};
+          TimedFit timed([&](const Sites& all, const Eigen::VectorXd&) -> Result<FittedRbf> {
+            VoxelGrid grid = even_grid(all, std::vector<int>(static_cast<std::size_t>(d), 10));
+            if (const Status filled = fill(grid, function); !filled) return filled.error();
+            return FittedRbf{};
+          });
+          timed.run(state, sites, sites.target_N);
+        })
+        ->Iterations(1)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
 }
 
 void evaluate_rbf_in(benchmark::State& state) {
@@ -170,13 +185,23 @@ const int registered = [] {
   at_paper_size("greedy-100_of_100", greedy_fit(100), 5);
   at_paper_size("greedy-200_of_100", greedy_fit(100, kMostCentres), 3);
   benchmark::RegisterBenchmark("fit/greedy-1_to_200_of_100", slider_all)
-      ->Repetitions(3)->Iterations(1)->ReportAggregatesOnly()->UseRealTime()->Unit(benchmark::kMillisecond);
+      ->Repetitions(3)
+      ->Iterations(1)
+      ->ReportAggregatesOnly()
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
   for (const Method* method : methods()) {
     if (method->choose == nullptr) continue;
     for (const bool papers : {false, true})
-      benchmark::RegisterBenchmark((std::string("slider/") + method->name + (papers ? "_2009" : "")).c_str(), slider_step,
-                                   method, papers)
-          ->Arg(10)->Arg(50)->Arg(100)->Arg(kMostCentres)->Repetitions(5)->ReportAggregatesOnly()->UseRealTime()
+      benchmark::RegisterBenchmark((std::string("slider/") + method->name + (papers ? "_2009" : "")).c_str(),
+                                   slider_step, method, papers)
+          ->Arg(10)
+          ->Arg(50)
+          ->Arg(100)
+          ->Arg(kMostCentres)
+          ->Repetitions(5)
+          ->ReportAggregatesOnly()
+          ->UseRealTime()
           ->Unit(benchmark::kMillisecond);
   }
   at_paper_size("greedy-100_of_all", greedy_fit(0), 3);
@@ -188,9 +213,12 @@ const int registered = [] {
   against_dimension("random-100", random_fit);
   against_dimension("greedy-100_of_100", greedy_fit(100));
   grid_against_dimension();
-  for (const auto& [name, function] : {std::pair{"dimension/evaluate_rbf", &evaluate_rbf_in},
-                                       std::pair{"dimension/evaluate_grid", &evaluate_grid_in}})
-    benchmark::RegisterBenchmark(name, function)->DenseRange(1, kMaxDimension)->Repetitions(5)->MinTime(0.02)
+  for (const auto& [name, function] :
+       {std::pair{"dimension/evaluate_rbf", &evaluate_rbf_in}, std::pair{"dimension/evaluate_grid", &evaluate_grid_in}})
+    benchmark::RegisterBenchmark(name, function)
+        ->DenseRange(1, kMaxDimension)
+        ->Repetitions(5)
+        ->MinTime(0.02)
         ->ReportAggregatesOnly();
   return 0;
 }();

@@ -40,8 +40,7 @@ Result<Function> build(const Sites& sites, const Choice& choose) {
     choose(built->model);
     alglib::rbfreport report;
     alglib::rbfbuildmodel(built->model, report);
-    if (report.terminationtype != 1)
-      return Error{"ALGLIB ended with " + std::to_string(report.terminationtype)};
+    if (report.terminationtype != 1) return Error{"ALGLIB ended with " + std::to_string(report.terminationtype)};
     alglib::rbfcreatecalcbuffer(built->model, built->buffer);
     built->x.setlength(d);
     built->y.setlength(1);
@@ -78,9 +77,9 @@ std::vector<Peer> alglib_peers() {
   // The manual asks for a radius several times the distance between points. Of
   // 0.06, 0.12, 0.25 and 0.5, at which a fit takes a minute, the last had the
   // least error on the test recording of silicone.
-  hierarchical.settings.push_back(
-      setting("base radius 0.5, 5 layers, no smoothing",
-              [](alglib::rbfmodel& model) { alglib::rbfsetalgohierarchical(model, 0.5, 5, 0.0); }));
+  hierarchical.settings.push_back(setting("base radius 0.5, 5 layers, no smoothing", [](alglib::rbfmodel& model) {
+    alglib::rbfsetalgohierarchical(model, 0.5, 5, 0.0);
+  }));
   return {polyharmonic, hierarchical};
 }
 

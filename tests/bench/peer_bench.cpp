@@ -115,22 +115,20 @@ void register_peer(const std::string& data, const Peer& peer) {
 
 #ifdef PALPATE_PYTHON
 // The script took the times.
-void scipy_row(benchmark::State& state, const std::string& data_name, const std::string& peer_name,
-               bool query) {
+void scipy_row(benchmark::State& state, const std::string& data_name, const std::string& peer_name, bool query) {
   const PeerData& data = peer_data(data_name);
   const auto& peers = scipy_peers(data);
   if (!peers) return state.SkipWithError(peers.error().message.c_str());
   const ScipyPeer& peer = peers->at(peer_name);
   for (auto _ : state) state.SetIterationTime(query ? peer.query_s : peer.fit_s);
-  if (!query)
-    report_errors(state, data, data.forces.sites.count(), peer.forces, peer.remainder, peer.setting);
+  if (!query) report_errors(state, data, data.forces.sites.count(), peer.forces, peer.remainder, peer.setting);
 }
 
 void register_scipy(const std::string& data) {
   for (const std::string peer : kScipyPeers)
     for (const bool query : {false, true})
-      benchmark::RegisterBenchmark(("peer/" + data + "/" + peer + (query ? "/query" : "/fit")).c_str(),
-                                   scipy_row, data, peer, query)
+      benchmark::RegisterBenchmark(("peer/" + data + "/" + peer + (query ? "/query" : "/fit")).c_str(), scipy_row, data,
+                                   peer, query)
           ->Iterations(1)
           ->UseManualTime()
           ->Unit(query ? benchmark::kMicrosecond : benchmark::kMillisecond);

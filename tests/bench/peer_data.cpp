@@ -40,18 +40,17 @@ PeerData make_data(const std::string& name, const PreparedTraining& prepared,
   const test::ModelPtr model = test::fit(prepared, &kRandomMethod);  // only to see its features
   std::vector<double> points, force_N, trend_N, trust;
   for (const RecordingPtr& recording : test_recordings) {
-    must(replay(
-        *recording, {model},
-        [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-          if (!snapshot.in_contact) return;
-          const double* features = tick.features_of(0).values.data();
-          const Eigen::VectorXd u =
-              (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
-          points.insert(points.end(), u.begin(), u.end());
-          force_N.push_back(row.force_N);
-          trend_N.push_back(common.trend.at(features, common.features));
-          trust.push_back(guard.trust(u.data()));
-        }));
+    must(replay(*recording, {model},
+                [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+                  if (!snapshot.in_contact) return;
+                  const double* features = tick.features_of(0).values.data();
+                  const Eigen::VectorXd u =
+                      (Eigen::Map<const Eigen::VectorXd>(features, d) - common.offset).cwiseQuotient(common.scale);
+                  points.insert(points.end(), u.begin(), u.end());
+                  force_N.push_back(row.force_N);
+                  trend_N.push_back(common.trend.at(features, common.features));
+                  trust.push_back(guard.trust(u.data()));
+                }));
   }
   const auto n = static_cast<Eigen::Index>(force_N.size());
   data.test_points = Eigen::Map<const Eigen::MatrixXd>(points.data(), d, n);
@@ -66,22 +65,19 @@ constexpr const char* kMaterials[] = {"friction", "softening", "tissue", "layere
 
 PeerData make_data(const std::string& name) {
   if (name == "silicone") {
-    return make_data(name,
-                     test::prepare({test::rig_recording(test::train_settings(name))},
-                                   test::scene_request("silicone_block")),
-                     {test::rig_recording(test::test_settings(name))});
+    return make_data(
+        name, test::prepare({test::rig_recording(test::train_settings(name))}, test::scene_request("silicone_block")),
+        {test::rig_recording(test::test_settings(name))});
   }
   if (std::find(std::begin(kMaterials), std::end(kMaterials), name) != std::end(kMaterials)) {
-    return make_data(name,
-                     test::prepare({test::rig_recording(test::train_settings(name))},
-                                   test::default_request("silicone_block")),
-                     {test::rig_recording(test::test_settings(name))});
+    return make_data(
+        name, test::prepare({test::rig_recording(test::train_settings(name))}, test::default_request("silicone_block")),
+        {test::rig_recording(test::test_settings(name))});
   }
   if (name == "press") {
-    return make_data(name,
-                     test::prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")},
-                                   test::default_request("skin")),
-                     {test::real_recording("ur3e_press_mit/test_cycle2.csv")});
+    return make_data(
+        name, test::prepare({test::real_recording("ur3e_press_mit/train_cycle1.csv")}, test::default_request("skin")),
+        {test::real_recording("ur3e_press_mit/test_cycle2.csv")});
   }
   std::vector<RecordingPtr> train, tested;
   for (const char* force : {"250", "600", "1000"})
@@ -97,8 +93,7 @@ PeerError error_of(const PeerData& data, const std::function<double(Eigen::Index
   for (Eigen::Index i = 0; i < data.test_force_N.size(); ++i) {
     double force = force_N(i);
     if (!(force > 0.0)) force = 0.0;
-    figures.add(std::min(force, kForceMargin * common.largest_force_N), data.test_force_N[i], false,
-                common.jnd);
+    figures.add(std::min(force, kForceMargin * common.largest_force_N), data.test_force_N[i], false, common.jnd);
   }
   return {figures.rms_error_N(), figures.within_jnd()};
 }
@@ -154,8 +149,7 @@ PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index 
   PreparedTraining some = prepared;
   const Eigen::Index all = prepared.sites.count();
   if (count > 0 && count < all)
-    some.sites =
-        some_sites(prepared.sites, [&](Eigen::Index i) { return (i + 1) * count / all != i * count / all; });
+    some.sites = some_sites(prepared.sites, [&](Eigen::Index i) { return (i + 1) * count / all != i * count / all; });
   return some;
 }
 

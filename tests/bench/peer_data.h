@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/tick/error_figures.h"
 #include "models/fit/fit.h"
+#include "scenes/evaluation/error_figures.h"
 #include "tests/bench/peer.h"
 
 namespace palpate::bench {

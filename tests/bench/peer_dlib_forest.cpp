@@ -32,9 +32,8 @@ std::vector<Peer> dlib_forest_peers() {
         char text[80];
         std::snprintf(text, sizeof text, "%d trees, leaves of %d or more, %.2g of the features a split", trees, leaf,
                       fraction);
-        peer.settings.push_back({text, [=](const PreparedTraining& prepared) {
-                                   return train(prepared.sites, trees, leaf, fraction);
-                                 }});
+        peer.settings.push_back(
+            {text, [=](const PreparedTraining& prepared) { return train(prepared.sites, trees, leaf, fraction); }});
       }
     }
   }

@@ -25,8 +25,7 @@ Peer nothing_peer() {
 std::vector<Peer> palpate_peers() {
   std::vector<Peer> peers;
   const auto add = [&](const Method* method, const char* name, const char* text) {
-    peers.push_back(
-        {name, {{text, [method](const PreparedTraining& prepared) { return fit(prepared, method); }}}});
+    peers.push_back({name, {{text, [method](const PreparedTraining& prepared) { return fit(prepared, method); }}}});
   };
   add(&kRandomMethod, "palpate_random-100", "100 centres");
   add(&kKdTreeMethod, "palpate_kdtree-100", "100 centres");

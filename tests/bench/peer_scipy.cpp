@@ -52,8 +52,8 @@ void write_data(const std::filesystem::path& folder, const PeerData& data) {
 }
 
 Result<std::string> run_script(const std::filesystem::path& folder) {
-  const std::string command = std::string("'" PALPATE_PYTHON "' '" PALPATE_SCIPY_SCRIPT "' '") +
-                              folder.string() + "' " + kRepetitions;
+  const std::string command =
+      std::string("'" PALPATE_PYTHON "' '" PALPATE_SCIPY_SCRIPT "' '") + folder.string() + "' " + kRepetitions;
   std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return Error{"cannot start " + command};
   std::string output;
@@ -67,8 +67,7 @@ Result<Eigen::VectorXd> read_output(const std::filesystem::path& path, Eigen::In
   std::ifstream file(path);
   Eigen::VectorXd output(count);
   for (Eigen::Index i = 0; i < count; ++i)
-    if (!(file >> output[i]))
-      return Error{path.string() + ": fewer than " + std::to_string(count) + " numbers"};
+    if (!(file >> output[i])) return Error{path.string() + ": fewer than " + std::to_string(count) + " numbers"};
   return output;
 }
 

@@ -75,7 +75,11 @@ const int registered = [] {
                                       std::pair{"program/fit_greedy", "--method greedy --features scene"},
                                       std::pair{"program/fit_greedy_auto", "--method greedy"}}) {
     benchmark::RegisterBenchmark(name, fit_program, options)
-        ->Repetitions(kRepetitions)->Iterations(1)->UseRealTime()->ReportAggregatesOnly()->Unit(benchmark::kMillisecond);
+        ->Repetitions(kRepetitions)
+        ->Iterations(1)
+        ->UseRealTime()
+        ->ReportAggregatesOnly()
+        ->Unit(benchmark::kMillisecond);
   }
   return 0;
 }();

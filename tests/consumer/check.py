@@ -1,7 +1,8 @@
 """check.py PALPATE BUILD SOURCE COMPILER LAUNCHER KIND: builds the consumer project and
 compares its forces with those of `palpate replay`, bit for bit.
-KIND: shared, static (the installed tree, moved to another folder first), pkg-config,
-source (add_subdirectory), fetch (FetchContent), or system (installed below BUILD). Folders are made below a temporary one and removed."""
+KIND: shared, static (the installed tree, moved to another folder first), pkg-config (also, of
+the static library, for a C program), source (add_subdirectory, then FetchContent in the same
+folder), or system (installed below BUILD). Folders are made below a temporary one and removed."""
 import csv
 import os
 import pathlib
@@ -48,11 +49,42 @@ def build_consumer(source, folder, compiler, launcher, options):
 
 def build_by_pkg_config(source, folder, compiler, root):
     pc = next(root.rglob("palpate_model.pc"))
-    flags = run("pkg-config", "--cflags", "--libs", "palpate_model",
-                env={**os.environ, "PKG_CONFIG_PATH": str(pc.parent)}).split()
-    run(compiler, "-std=c++17", source / "tests" / "consumer" / "main.cpp", "-o", folder / "consumer", *flags,
+
+    def flags(*options):
+        return run("pkg-config", "--cflags", "--libs", *options, "palpate_model",
+                   env={**os.environ, "PKG_CONFIG_PATH": str(pc.parent)}).split()
+
+    run(compiler, "-std=c++17", source / "tests" / "consumer" / "main.cpp", "-o", folder / "consumer", *flags(),
         "-Wl,-rpath," + str(pc.parent.parent))
+    # A C program has nobody but the .pc file to tell it of the C++ runtime.
+    static = folder / "static"
+    static.mkdir()
+    os.symlink(next(root.rglob("libpalpate_model.a")), static / "libpalpate_model.a")
+    run("cc", "-std=c99", source / "tests" / "models" / "library" / "c_program.c", "-o", folder / "c_program",
+        "-L" + str(static), *flags("--static"))
     return folder / "consumer"
+
+
+def build_by_source(source, folder, compiler, launcher):
+    options = ["-DPALPATE_SOURCE=" + str(source)]
+    program = build_consumer(source, folder, compiler, launcher, options + ["-DPALPATE_FETCH=OFF"])
+    os.rename(program, folder / "added")
+    built = build_consumer(source, folder, compiler, launcher, options + ["-DPALPATE_FETCH=ON"])
+    return [folder / "added", built]
+
+
+def compare(program, model, recording, forces):
+    with open(forces) as motion:
+        printed = run(program, model, recording, stdin=motion).splitlines()
+    with open(forces, newline="") as table:
+        rows = list(csv.DictReader(table))
+    column = [key for key in rows[0] if key.startswith("random")][0]
+    if len(rows) != len(printed):
+        sys.exit("replay gave %d forces, the consumer %d" % (len(rows), len(printed)))
+    for number, (row, line) in enumerate(zip(rows, printed)):
+        if float(row[column]).hex() != float(line.split(",")[0]).hex():
+            sys.exit("row %d: replay %s N, the consumer %s N" % (number, row[column], line))
+    print("%d forces equal" % len(rows))
 
 
 def main(palpate, build, source, compiler, launcher, kind):
@@ -60,30 +92,18 @@ def main(palpate, build, source, compiler, launcher, kind):
     with tempfile.TemporaryDirectory(prefix="palpate-consumer-") as name:
         folder = pathlib.Path(name)
         if kind == "source":
-            program = build_consumer(source, folder, compiler, launcher, ["-DPALPATE_SOURCE=" + str(source)])
-        elif kind == "fetch":
-            program = build_consumer(source, folder, compiler, launcher,
-                                     ["-DPALPATE_SOURCE=" + str(source), "-DPALPATE_FETCH=ON"])
+            programs = build_by_source(source, folder, compiler, launcher)
         elif kind == "system":
-            program = build_consumer(source, folder, compiler, launcher, ["-DCMAKE_PREFIX_PATH=" + build])
+            programs = [build_consumer(source, folder, compiler, launcher, ["-DCMAKE_PREFIX_PATH=" + build])]
         elif kind == "pkg-config":
-            program = build_by_pkg_config(source, folder, compiler, installed(build, folder))
+            programs = [build_by_pkg_config(source, folder, compiler, installed(build, folder))]
         else:
             options = ["-DCMAKE_PREFIX_PATH=" + str(installed(build, folder))]
-            program = build_consumer(source, folder, compiler, launcher,
-                                     options + (["-Dpalpate_STATIC=ON"] if kind == "static" else []))
+            programs = [build_consumer(source, folder, compiler, launcher,
+                                       options + (["-Dpalpate_STATIC=ON"] if kind == "static" else []))]
         model, recording, forces = model_and_forces(palpate, folder)
-        with open(forces) as motion:
-            printed = run(program, model, recording, stdin=motion).splitlines()
-        with open(forces, newline="") as table:
-            rows = list(csv.DictReader(table))
-        column = [key for key in rows[0] if key.startswith("random")][0]
-        if len(rows) != len(printed):
-            sys.exit("replay gave %d forces, the consumer %d" % (len(rows), len(printed)))
-        for number, (row, line) in enumerate(zip(rows, printed)):
-            if float(row[column]).hex() != float(line.split(",")[0]).hex():
-                sys.exit("row %d: replay %s N, the consumer %s N" % (number, row[column], line))
-        print("%d forces equal" % len(rows))
+        for program in programs:
+            compare(program, model, recording, forces)
 
 
 if __name__ == "__main__":

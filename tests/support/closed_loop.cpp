@@ -71,7 +71,9 @@ void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
 }
 
 ClosedLoop::ClosedLoop(const LoopSettings& settings)
-    : tool_(settings), live_(tool_, slot_, LiveTickSettings{{}, nullptr, nullptr, settings.passivity}), ticking_(settings.ticking) {}
+    : tool_(settings),
+      live_(tool_, slot_, LiveTickSettings{{}, nullptr, nullptr, settings.passivity}),
+      ticking_(settings.ticking) {}
 
 void ClosedLoop::publish(std::shared_ptr<const ForceModel> model) {
   slot_.publish(std::make_unique<LiveModels>(++id_, tool_.sensor(), std::vector{std::move(model)}));

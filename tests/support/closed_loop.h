@@ -13,8 +13,8 @@
 #include <memory>
 #include <string>
 
-#include "engine/live/live_tick.h"
 #include "engine/base/random_stream.h"
+#include "engine/live/live_tick.h"
 
 namespace palpate::test {
 
@@ -33,9 +33,9 @@ const std::array<Grip, 4>& grips();
 
 // When the ticks come.
 enum class Ticking {
-  even,       // every millisecond
-  jittered,   // up to 0.45 ms late, each by itself
-  gaps,       // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
+  even,      // every millisecond
+  jittered,  // up to 0.45 ms late, each by itself
+  gaps,      // jittered, one in 30 left out, and one gap of 5 ms in each 100 ms
 };
 
 struct LoopSettings {
@@ -44,7 +44,7 @@ struct LoopSettings {
   double delay_s = 1e-3;
   Ticking ticking = Ticking::even;
   ForceLimits limits{10.0, 5000.0, 0.0};  // as a force-feedback device bears
-  bool passivity = true;  // false: without the passivity controller
+  bool passivity = true;                  // false: without the passivity controller
 };
 
 // What the tool has exchanged with the rendered force, joules: `put_in_J` while

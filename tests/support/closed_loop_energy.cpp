@@ -11,9 +11,7 @@
 
 namespace palpate::test {
 
-double held_and_late_Ns_per_m(double stiffness_N_per_m) {
-  return -stiffness_N_per_m * (0.5 * kOneTick_s + kOneTick_s);
-}
+double held_and_late_Ns_per_m(double stiffness_N_per_m) { return -stiffness_N_per_m * (0.5 * kOneTick_s + kOneTick_s); }
 
 void say(const std::string& who, const char* format, double first, double second) {
   char figures[120];
@@ -78,17 +76,20 @@ Strokes stroke(const ForcePtr& model, const LoopSettings& settings, const Press&
     const LoopEnergy before = loop.tool().energy();
     if (held(grip)) {
       const double aim_m = press.depth_m + press.force_N / grip.stiffness_N_per_m;
-      loop.run(half_s, [&](double time_s) { return minimum_jerk(-2e-3, aim_m, half_s, time_s); }, watch);
-      loop.run(half_s + 0.3, [&](double time_s) { return minimum_jerk(aim_m, -2e-3, half_s, time_s); }, watch);
+      loop.run(
+          half_s, [&](double time_s) { return minimum_jerk(-2e-3, aim_m, half_s, time_s); }, watch);
+      loop.run(
+          half_s + 0.3, [&](double time_s) { return minimum_jerk(aim_m, -2e-3, half_s, time_s); }, watch);
     } else {
       // Thrown from the air, and it flies away again.
       loop.tool().place(-1e-3, press.depth_m / half_s);
-      loop.run(0.6, [](double) { return ClosedLoop::Drive{}; }, watch);
+      loop.run(
+          0.6, [](double) { return ClosedLoop::Drive{}; }, watch);
     }
     const LoopEnergy& after = loop.tool().energy();
     EXPECT_EQ(loop.tool().force_N(), 0.0) << grip.name << ": back in the air";
-    strokes.worst_return = std::max(strokes.worst_return, (after.got_out_J - before.got_out_J) /
-                                                              (after.put_in_J - before.put_in_J));
+    strokes.worst_return =
+        std::max(strokes.worst_return, (after.got_out_J - before.got_out_J) / (after.put_in_J - before.put_in_J));
   }
   strokes.mean_cost_jnd = contacts > 0.0 ? cost_sum / contacts : 0.0;
   return strokes;

@@ -13,7 +13,8 @@ std::vector<ModelPtr> fitted(const std::string& material) {
   RigSettings settings = train_settings(material);
   settings.seconds = 10.0;
   settings.rate_Hz = 250.0;
-  return fit_all(prepare({rig_recording(settings)}, scene_request(material == "maxwell" ? "silicone_block" : material + "_block")));
+  return fit_all(prepare({rig_recording(settings)},
+                         scene_request(material == "maxwell" ? "silicone_block" : material + "_block")));
 }
 
 // Peak to peak after a straight line is taken off: the material creeps while it

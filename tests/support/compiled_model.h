@@ -35,8 +35,8 @@ class CompiledModel {
     const std::string source = folder_.with_file("model.c", text);
     const std::string library = folder_.file("model.so");
     const auto run = run_program({PALPATE_C_COMPILER, "-std=c99", "-ffreestanding", "-O1", "-Wall", "-Wextra",
-                                        "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC",
-                                        "-shared", source, "-o", library, "-lm"});
+                                  "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Werror", "-fPIC", "-shared",
+                                  source, "-o", library, "-lm"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     library_.reset(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL));
     EXPECT_NE(library_, nullptr);

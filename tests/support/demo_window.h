@@ -62,8 +62,7 @@ class DemoWindowTest : public ::testing::Test {
   bool until(Done done) {
     const auto start = std::chrono::steady_clock::now();
     while (!done()) {
-      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s)
-        return false;
+      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > kPatience_s) return false;
       app_->frame();
     }
     return true;

@@ -15,14 +15,19 @@ constexpr double kVelocity_m_per_s = 0.05;
 
 double typical_size(FeatureKind kind) {
   switch (kind) {
-    case FeatureKind::depth: return kDepth_m;
-    case FeatureKind::velocity: return kVelocity_m_per_s;
-    case FeatureKind::lowpass_velocity: return 0.5 * kVelocity_m_per_s;
+    case FeatureKind::depth:
+      return kDepth_m;
+    case FeatureKind::velocity:
+      return kVelocity_m_per_s;
+    case FeatureKind::lowpass_velocity:
+      return 0.5 * kVelocity_m_per_s;
     case FeatureKind::maxwell_branch:
     case FeatureKind::maxwell_spectrum:
-    case FeatureKind::stops: return 1.0;
-    case FeatureKind::fading_peak:
-    case FeatureKind::surface_lag: return kDepth_m;
+    case FeatureKind::stops:
+    case FeatureKind::creep:
+      return 1.0;
+    case FeatureKind::surface_lag:
+      return kDepth_m;
   }
   return 1.0;
 }
@@ -40,7 +45,8 @@ VoxelGrid random_grid(std::size_t dimension, std::uint64_t seed) {
   std::size_t count = 1;
   for (std::size_t k = 0; k < dimension; ++k) {
     std::vector<double> axis;
-    for (std::size_t i = 0; i < 3 + k; ++i) axis.push_back(-1.0 + 2.0 * static_cast<double>(i) / static_cast<double>(2 + k));
+    for (std::size_t i = 0; i < 3 + k; ++i)
+      axis.push_back(-1.0 + 2.0 * static_cast<double>(i) / static_cast<double>(2 + k));
     count *= axis.size();
     grid.nodes.push_back(std::move(axis));
   }
@@ -82,12 +88,16 @@ void change_grid(ModelData& data, const std::function<void(VoxelGrid&)>& change)
 std::vector<FeatureSpec> position_features() { return {FeatureSpec{}}; }
 
 std::vector<FeatureSpec> paper_features() {
-  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, filter(FeatureKind::lowpass_velocity, 0.17),
+  return {FeatureSpec{},
+          {FeatureKind::velocity, 0.0, {}},
+          filter(FeatureKind::lowpass_velocity, 0.17),
           filter(FeatureKind::lowpass_velocity, 1.27)};
 }
 
 std::vector<FeatureSpec> maxwell_features() {
-  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, filter(FeatureKind::maxwell_branch, 0.1),
+  return {FeatureSpec{},
+          {FeatureKind::velocity, 0.0, {}},
+          filter(FeatureKind::maxwell_branch, 0.1),
           filter(FeatureKind::maxwell_branch, 1.0 / 0.9)};
 }
 
@@ -98,15 +108,19 @@ std::vector<FeatureSpec> memory_features() {
   FeatureSpec stops;
   stops.kind = FeatureKind::stops;
   stops.part_count = 2;
+  FeatureSpec creep;
+  creep.kind = FeatureKind::creep;
+  creep.part_count = 2;
   for (std::size_t p = 0; p < 3; ++p) {
     const double size = static_cast<double>(p + 1);
     spectrum.parts[p].relaxation_time_s = 0.03 * size * size;
     spectrum.parts[p].drive = {kDepth_m, {0.3, 0.1 * size, 0.0, 0.05}};
     if (p == stops.part_count) continue;
+    creep.parts[p] = {0.02 * size * size, kDepth_m, {kDepth_m, {0.2 * size, 0.1, 0.0, 0.0}}};
     stops.parts[p].threshold_m = 2e-4 * size;
     stops.parts[p].drive = {kDepth_m, {0.2, 0.0, 0.1 * size, 0.0}};
   }
-  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, spectrum, stops, filter(FeatureKind::fading_peak, 0.9)};
+  return {FeatureSpec{}, {FeatureKind::velocity, 0.0, {}}, spectrum, stops, creep};
 }
 
 std::vector<FeatureSpec> lagging_features() {
@@ -178,9 +192,6 @@ std::vector<ModelData> example_models() {
   models.back().corrects_trend = false;
   models.back().name = "paper-recipe";
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
-  for (std::size_t j = 0; j < models.back().trend.softening.size(); ++j) {
-    models.back().trend.softening[j] = {kDepth_m, {0.1, 0.05 * static_cast<double>(j), 0.1, 0.0}};
-  }
   models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
   models.back().trend.has_elastic_knots = true;
   models.back().trend.elastic_knot_N = models.back().features[1].drive.knot_N;

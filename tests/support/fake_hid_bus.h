@@ -14,9 +14,7 @@
 
 namespace palpate::test {
 
-inline HidDeviceInfo found_teensy() {
-  return {"/dev/hidraw7", "Teensyduino RawHID", 0x16C0, 0x0486, 0xFFAB, 0x0200};
-}
+inline HidDeviceInfo found_teensy() { return {"/dev/hidraw7", "Teensyduino RawHID", 0x16C0, 0x0486, 0xFFAB, 0x0200}; }
 inline HidDeviceInfo found_space_mouse() { return {"/dev/hidraw8", "SpaceNavigator", 0x046D, 0xC626, 1, 8}; }
 
 class FakeHidBus final : public HidBus {

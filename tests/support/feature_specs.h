@@ -17,7 +17,8 @@ inline FeatureSpec maxwell(double relaxation_time_s, const DriveCurve& drive) {
   return {FeatureKind::maxwell_branch, relaxation_time_s, drive};
 }
 
-inline const FeatureVector& feed(FeatureFilter& filter, double time_s, double position_m, double velocity_m_per_s = 0.0) {
+inline const FeatureVector& feed(FeatureFilter& filter, double time_s, double position_m,
+                                 double velocity_m_per_s = 0.0) {
   return filter.update({time_s, position_m, 0.0, 0.0}, {position_m, velocity_m_per_s});
 }
 
@@ -35,7 +36,12 @@ inline FeatureSpec spectrum(std::initializer_list<double> times_s, const DriveCu
   return spec;
 }
 
-inline FeatureSpec fading_peak(double time_s) { return {FeatureKind::fading_peak, time_s}; }
+inline FeatureSpec creep(std::initializer_list<double> times_s, const DriveCurve& drive) {
+  FeatureSpec spec;
+  spec.kind = FeatureKind::creep;
+  for (const double time_s : times_s) spec.parts[spec.part_count++] = {time_s, 5e-3, drive};
+  return spec;
+}
 
 // A motion in contact that ends where it began, of several incommensurable sines.
 inline double closed_motion_m(double phase) {

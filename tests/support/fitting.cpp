@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "engine/tick/replay.h"
-#include "models/surface/surface_search.h"
+#include "scenes/evaluation/evaluate.h"
 #include "scenes/scene/scene.h"
 #include "scenes/scene/training.h"
 
@@ -15,6 +14,12 @@ constexpr double kTestSeconds = 45.272;
 constexpr std::uint64_t kTestSeed = 2;
 // Fewer samples than this say nothing about a bin's deviation.
 constexpr std::uint64_t kFullBin = 100;
+
+std::vector<EvaluatedModel> evaluated_models(const std::vector<ModelPtr>& models) {
+  std::vector<EvaluatedModel> list;
+  for (const ModelPtr& model : models) list.push_back({model, model->data().jnd});
+  return list;
+}
 
 }  // namespace
 
@@ -79,27 +84,20 @@ std::vector<ModelPtr> fit_all(const PreparedTraining& prepared) {
   return models;
 }
 
-std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models,
-                                double surface_offset_m) {
-  std::vector<ErrorStatistics> statistics;
-  for (const ModelPtr& model : models) statistics.emplace_back(model->data().jnd);
-  must(replay(recording, ForceModels(models.begin(), models.end()),
-              [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-                if (!snapshot.in_contact) return;
-                for (std::size_t i = 0; i < models.size(); ++i) {
-                  statistics[i].add(snapshot.force_N[i], row.force_N, (snapshot.out_of_domain_mask >> i & 1U) != 0);
-                }
-              },
-              surface_offset_m));
+std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models) {
+  EvaluationRequest request;
+  request.move_surface = false;
   std::vector<ErrorSummary> summaries;
-  for (const ErrorStatistics& one : statistics) summaries.push_back(one.summary());
+  const RecordingEvaluation evaluated = must(evaluate(rows_of(recording), evaluated_models(models), request));
+  for (const ModelEvaluation& one : evaluated.models) summaries.push_back(one.as_recorded.summary());
   return summaries;
 }
 
 std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models) {
-  const SurfaceLocation surface = locate_surface(thinned_rows(recording, kSearchRows), {models.begin(), models.end()},
-                                                 models.front()->data().jnd);
-  return judge(recording, models, surface.offset_m);
+  std::vector<ErrorSummary> summaries;
+  const RecordingEvaluation evaluated = must(evaluate(rows_of(recording), evaluated_models(models)));
+  for (const ModelEvaluation& one : evaluated.models) summaries.push_back(one.surface_moved.summary());
+  return summaries;
 }
 
 ErrorSummary judge(const Recording& recording, const ModelPtr& model) {

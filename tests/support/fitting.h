@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/tick/evaluation.h"
 #include "models/fit/fit.h"
+#include "scenes/evaluation/model_errors.h"
 #include "scenes/material/rig.h"
 
 namespace palpate::test {
@@ -51,8 +51,7 @@ ModelPtr fit(const PreparedTraining& prepared, const Method* method, std::uint64
 std::vector<ModelPtr> fit_all(const PreparedTraining& prepared);
 
 // One summary per model, over the samples in contact.
-std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models,
-                                double surface_offset_m = 0.0);
+std::vector<ErrorSummary> judge(const Recording& recording, const std::vector<ModelPtr>& models);
 ErrorSummary judge(const Recording& recording, const ModelPtr& model);
 // The same with the surface of the recording moved to where the models have theirs.
 std::vector<ErrorSummary> evaluate_moved(const Recording& recording, const std::vector<ModelPtr>& models);

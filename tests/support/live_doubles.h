@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "engine/live/device.h"
-#include "engine/tick/force_model.h"
 #include "engine/live/live_tick.h"
 #include "engine/live/pacer.h"
+#include "engine/tick/force_model.h"
 
 namespace palpate::test {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "models/model/rbf/rbf_function.h"
 #include "models/model/rbf/polynomial_tail.h"
+#include "models/model/rbf/rbf_function.h"
 #include "models/training/sites.h"
 
 namespace palpate::test {

@@ -30,8 +30,7 @@ struct Outcome {
 
 Outcome parse(std::string_view text, std::size_t piece_bytes, std::size_t batch_rows) {
   Outcome outcome;
-  auto parser = RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv",
-                                       kBufferBytes);
+  auto parser = RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv", kBufferBytes);
   if (!parser) return {{}, parser.error().message};
   std::vector<RecordingRow> batch(batch_rows);
   for (;;) {
@@ -43,8 +42,7 @@ Outcome parse(std::string_view text, std::size_t piece_bytes, std::size_t batch_
     }
     if (*count == 0) return outcome;
     require(*count <= batch.size(), "more rows than asked for");
-    outcome.rows.insert(outcome.rows.end(), batch.begin(),
-                        batch.begin() + static_cast<std::ptrdiff_t>(*count));
+    outcome.rows.insert(outcome.rows.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(*count));
   }
 }
 
@@ -71,8 +69,7 @@ void check_message(const std::string& message) {
 
 bool same_row(const RecordingRow& a, const RecordingRow& b) {
   return a.time_s == b.time_s && a.position_m == b.position_m && a.force_N == b.force_N &&
-         a.velocity_m_per_s == b.velocity_m_per_s &&
-         a.acceleration_m_per_s2 == b.acceleration_m_per_s2;
+         a.velocity_m_per_s == b.velocity_m_per_s && a.acceleration_m_per_s2 == b.acceleration_m_per_s2;
 }
 
 }  // namespace

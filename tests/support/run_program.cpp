@@ -12,8 +12,8 @@ namespace palpate::test {
 namespace {
 
 // In the child: never returns.
-[[noreturn]] void become(const std::vector<std::string>& command, const std::vector<std::string>& environment,
-                         int out, int err) {
+[[noreturn]] void become(const std::vector<std::string>& command, const std::vector<std::string>& environment, int out,
+                         int err) {
   const int empty = open("/dev/null", O_RDONLY);
   dup2(empty, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
@@ -66,8 +66,7 @@ ProgramRun run_program(const std::vector<std::string>& command, const std::vecto
   return run;
 }
 
-ProgramRun run_palpate(const std::vector<std::string>& arguments,
-                       const std::vector<std::string>& environment) {
+ProgramRun run_palpate(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
   std::vector<std::string> command = {PALPATE_BINARY};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_program(command, environment);

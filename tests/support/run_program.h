@@ -15,11 +15,9 @@ struct ProgramRun {
 // Runs `command` (the program's path and its arguments, no shell) with an empty
 // standard input; `environment` holds "NAME=value" to add to this process's
 // own. 127 when it cannot be started. Blocks until it ends.
-ProgramRun run_program(const std::vector<std::string>& command,
-                       const std::vector<std::string>& environment = {});
+ProgramRun run_program(const std::vector<std::string>& command, const std::vector<std::string>& environment = {});
 
 // The same for the built `palpate` with `arguments`.
-ProgramRun run_palpate(const std::vector<std::string>& arguments,
-                       const std::vector<std::string>& environment = {});
+ProgramRun run_palpate(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
 
 }  // namespace palpate::test

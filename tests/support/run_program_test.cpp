@@ -13,8 +13,7 @@ TEST(RunProgram, CapturesBothStreamsAndTheExitCode) {
 }
 
 TEST(RunProgram, SurvivesMoreThanAPipeHolds) {
-  const ProgramRun run =
-      run_program({"/bin/sh", "-c", "head -c 300000 /dev/zero >&2; head -c 300000 /dev/zero"});
+  const ProgramRun run = run_program({"/bin/sh", "-c", "head -c 300000 /dev/zero >&2; head -c 300000 /dev/zero"});
   EXPECT_EQ(run.out.size(), 300000u);
   EXPECT_EQ(run.err.size(), 300000u);
 }

@@ -4,8 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "scenes/material/material.h"
 #include "engine/base/random_stream.h"
+#include "scenes/material/material.h"
 
 namespace palpate::test {
 namespace {

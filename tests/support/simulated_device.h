@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "devices/firmware/hapkit/hapkit_firmware.h"
 #include "devices/firmware/paddle/paddle_firmware.h"
 #include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
@@ -33,6 +34,11 @@ inline HidCalibration example_calibration(const HidDriver* driver) {
   calibration.limits = {5.0, 200.0, 0.1};
   calibration.limits.continuous_N = 4.5;
   calibration.limits.stale_after_s = 0.008;
+  if (driver->knows_position) {
+    calibration.counts_per_metre = 1e9;
+    calibration.rest_position_m = 0.0;
+    calibration.force_N_per_unit = 1e-6;
+  }
   return calibration;
 }
 
@@ -50,9 +56,7 @@ class DeviceModel {
 class PaddleModel final : public DeviceModel, public paddle::Board {
  public:
   PaddleModel() { restart(); }
-  void restart() override {
-    firmware_ = std::make_unique<paddle::Firmware>(*this, std::int16_t{1250}, ++boot_);
-  }
+  void restart() override { firmware_ = std::make_unique<paddle::Firmware>(*this, std::int16_t{1250}, ++boot_); }
   void hear(const Report& report) override { inbox_.push_back(report); }
   void step(std::uint32_t now_us, std::int32_t counts) override {
     now_us_ = now_us;
@@ -78,9 +82,7 @@ class PaddleModel final : public DeviceModel, public paddle::Board {
     std::copy(first.begin(), first.end(), report);
     return true;
   }
-  void send(const std::uint8_t* report) override {
-    outbox.emplace_back(report, report + paddle::kReportBytes);
-  }
+  void send(const std::uint8_t* report) override { outbox.emplace_back(report, report + paddle::kReportBytes); }
 
   std::unique_ptr<paddle::Firmware> firmware_;
   std::deque<Report> inbox_;
@@ -90,35 +92,16 @@ class PaddleModel final : public DeviceModel, public paddle::Board {
   std::uint16_t boot_ = 0;
 };
 
-class PolhemModel final : public DeviceModel {
- public:
-  void hear(const Report& report) override {
-    units_ = static_cast<std::int16_t>(paddle::read16(report.data()));
-    heard_us_ = now_us_;
-  }
-  void step(std::uint32_t now_us, std::int32_t counts) override {
-    now_us_ = now_us;
-    if (now_us - heard_us_ > 500'000) units_ = 0.0;  // its own watchdog
-    if (now_us % 1000 != 0) return;
-    Report report(64, 0);
-    paddle::write16(report.data(), static_cast<std::uint16_t>(counts));
-    outbox.push_back(report);
-  }
-  double force_units() const override { return units_; }
-
- private:
-  std::uint32_t now_us_ = 0, heard_us_ = 0;
-  double units_ = 0.0;
-};
-
+// The effects manager of an OpenFFBoard, as its source has it: an effect of its own for each
+// `new`, without an end until it is given a duration, which then counts from its last start.
 class OpenFfBoardModel final : public DeviceModel {
  public:
   void hear(const Report& report) override {
     if (report.size() != 25 || report[0] != 0xA1) return;
     const std::uint16_t object = paddle::read16(report.data() + 2);
-    if (object == 0xA03 && paddle::read32(report.data() + 5) == 4) {
-      units_ = static_cast<std::int32_t>(paddle::read32(report.data() + 9));
-    }
+    const std::uint32_t command = paddle::read32(report.data() + 5);
+    const auto value = static_cast<std::int32_t>(paddle::read32(report.data() + 9));
+    if (object == 0xA03) hear_effect(command, value);
     if (object != 0xA01) return;
     Report answer = report;
     answer[1] = 10;
@@ -126,16 +109,74 @@ class OpenFfBoardModel final : public DeviceModel {
     paddle::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
     outbox.push_back(answer);
   }
-  void step(std::uint32_t, std::int32_t counts) override { counts_ = counts; }
-  double force_units() const override { return units_; }
+  void step(std::uint32_t now_us, std::int32_t counts) override {
+    now_ms_ = now_us / 1000;
+    counts_ = counts;
+    if (duration_ms_ != kNoEnd && now_ms_ - started_ms_ > duration_ms_) runs_ = false;
+  }
+  double force_units() const override { return active_ && exists_ && runs_ ? units_ : 0.0; }
 
  private:
+  static constexpr std::uint32_t kNoEnd = 0xFFFF;
+
+  void hear_effect(std::uint32_t command, std::int32_t value) {
+    if (command == 0) active_ = value != 0;
+    if (command == 1) active_ = exists_ = runs_ = false;
+    if (command == 2) exists_ = value == 1;
+    if (command == 2) duration_ms_ = kNoEnd;
+    if (command == 4) units_ = value;
+    if (command == 5) runs_ = value != 0;
+    if (command == 5) started_ms_ = now_ms_;
+    if (command == 7) duration_ms_ = static_cast<std::uint32_t>(value);
+  }
+
+  bool active_ = false, exists_ = false, runs_ = false;
+  std::uint32_t now_ms_ = 0, started_ms_ = 0, duration_ms_ = kNoEnd;
   std::int32_t counts_ = 0;
   double units_ = 0.0;
 };
 
+// The Hapkit's firmware on a board of air: a sample a millisecond, or every `period_us`.
+class BridgeModel final : public DeviceModel {
+ public:
+  BridgeModel() { restart(); }
+  void restart() override { firmware_ = std::make_unique<hapkit::Firmware<BridgeModel>>(*this, 5'000'000); }
+  void hear(const Report& report) override { inbox_.insert(inbox_.end(), report.begin(), report.end()); }
+  void step(std::uint32_t now_us, std::int32_t counts) override {
+    now_us_ = now_us;
+    counts_ = counts;
+    firmware_->loop();
+  }
+  double force_units() const override { return -pushed_uN_; }
+  std::uint32_t period_us = 1000;
+
+  // The board, as hapkit_firmware.h names it.
+  std::uint32_t now_us() const { return now_us_; }
+  bool receive(std::uint8_t& byte) {
+    if (inbox_.empty()) return false;
+    byte = inbox_.front();
+    inbox_.pop_front();
+    return true;
+  }
+  bool sample(std::uint32_t& time_us, std::int32_t& position_nm, std::int32_t& force_uN) {
+    if (now_us_ - sampled_us_ < period_us) return false;
+    sampled_us_ = time_us = now_us_;
+    position_nm = counts_;
+    force_uN = 250'000;
+    return true;
+  }
+  void push(std::int32_t force_uN) { pushed_uN_ = force_uN; }
+  void send(const std::uint8_t* frame) { outbox.emplace_back(frame, frame + bridge::kDeviceBytes); }
+
+ private:
+  std::unique_ptr<hapkit::Firmware<BridgeModel>> firmware_;
+  std::deque<std::uint8_t> inbox_;
+  std::uint32_t now_us_ = 0, sampled_us_ = 0;
+  std::int32_t counts_ = 0, pushed_uN_ = 0;
+};
+
 inline std::unique_ptr<DeviceModel> device_model(const HidDriver* driver) {
-  if (driver == &kPolhemDriver) return std::make_unique<PolhemModel>();
+  if (driver == &kBridgeDriver) return std::make_unique<BridgeModel>();
   if (driver == &kOpenFfBoardDriver) return std::make_unique<OpenFfBoardModel>();
   return std::make_unique<PaddleModel>();
 }
@@ -147,7 +188,7 @@ class EndpointDevice final : public Device {
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return {1.0 / endpoint.calibration().counts_per_metre}; }
   bool renders_force() const noexcept override { return true; }
-  ForceLimits limits() const noexcept override { return endpoint.calibration().limits; }
+  ForceLimits limits() const noexcept override { return endpoint.limits(); }
   bool read(double, DeviceSample& sample) noexcept override { return endpoint.read(sample); }
   void write(double force_N) noexcept override { endpoint.write(force_N); }
   DeviceHealth health(double now_s) noexcept override { return endpoint.health(now_s); }

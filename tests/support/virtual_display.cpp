@@ -42,8 +42,8 @@ class Server {
     dup2(silence, STDERR_FILENO);
     const std::string number = std::to_string(descriptor);
     // Without -noreset it starts anew after the last window, deaf meanwhile to the next.
-    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1080x24", "-nolisten", "tcp",
-           "-noreset", nullptr);
+    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1080x24", "-nolisten", "tcp", "-noreset",
+           nullptr);
     _exit(127);
   }
 
