@@ -54,7 +54,7 @@ Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N
   if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
   const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
   return locate([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
-                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kWidest_s, true});
+                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kWidest_s, true, kWidest_s});
 }
 
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {

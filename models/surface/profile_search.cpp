@@ -9,19 +9,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kLeastGain = 0.05;
 constexpr double kLeastBlock = 0.1;  // of a mean block: smaller differences are noise
 constexpr std::size_t kMostValleys = 4;
 constexpr double kGolden = 0.6180339887498949;
-constexpr int kBisections = 6;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
 
+// Every block has one voice, whatever it costs.
 bool as_good(const BlockCosts& one, const BlockCosts& best) {
   const auto count = static_cast<double>(one.size());
-  const double difference = sum(one) - sum(best);
-  if (difference <= kLeastGain * sum(best)) return true;
-  // Every block has one voice, whatever it costs.
   const double least = kLeastBlock * sum(best) / count;
   double mean = 0.0;
   double squares = 0.0;
@@ -45,26 +41,25 @@ class Search {
   Located run() {
     scan();
     const Place zero = place(0.0);
-    if (range_.zero_suffices && std::all_of(scanned_.begin(), scanned_.end(),
-                                            [&](const Place& one) { return as_good(zero.costs, one.costs); })) {
+    if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(),
+                                         [&](const Place& one) { return as_good(zero.costs, one.costs); })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
     }
     refine_valleys();
+    look_around();
+    Located found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
     // Outside of the range, where recordings do not overlap, a cost at 0 says nothing.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
-    if (zero_counts && sum(zero.costs) <= sum(best_.costs)) best_ = zero;
-    Located found{0.0,
-                  !zero_counts || !as_good(zero.costs, best_.costs),
-                  kUnknownError,
-                  false,
-                  sum(best_.costs),
-                  sum(zero.costs)};
-    const double low = edge(-1.0);
-    const double high = edge(1.0);
-    const double half = 0.5 * (high - low);
-    const bool inside = low > range_.low && high < range_.high;
-    found.told = inside && half <= range_.widest && alone(low, high);
-    if (found.told) found.standard_error = std::max(0.5 * half, range_.fine_step);
+    double half = kSignificantErrors * found.standard_error;
+    found.told = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
+    if (range_.blur > 0.0) {
+      found.told = found.told && certainly_worse(best_.at - range_.blur) && certainly_worse(best_.at + range_.blur);
+      half += range_.blur;
+      found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
+    }
+    found.not_zero = !zero_counts || std::abs(best_.at) > half;
+    if (found.not_zero && zero_counts && range_.imitated && as_good(zero.costs, best_.costs)) found.told = false;
+    if (!found.told) found.standard_error = kUnknownError;
     if (found.told && found.not_zero) found.at = best_.at;
     return found;
   }
@@ -88,14 +83,58 @@ class Search {
     std::sort(valleys.begin(), valleys.end(),
               [&](std::size_t a, std::size_t b) { return sum(scanned_[a].costs) < sum(scanned_[b].costs); });
     valleys.resize(std::min(valleys.size(), kMostValleys));
-    best_ = scanned_[valleys.front()];
+    std::vector<Place> bottoms;
     for (const std::size_t valley : valleys) {
       const double around = scanned_[valley].at;
-      Place bottom =
-          golden(std::max(range_.low, around - range_.coarse_step), std::min(range_.high, around + range_.coarse_step));
-      if (sum(bottom.costs) < sum(best_.costs)) best_ = bottom;
-      scanned_[valley] = std::move(bottom);
+      bottoms.push_back(golden(std::max(range_.low, around - range_.coarse_step),
+                               std::min(range_.high, around + range_.coarse_step)));
+      scanned_.push_back(bottoms.back());
     }
+    best_ = *std::min_element(bottoms.begin(), bottoms.end(),
+                              [](const Place& a, const Place& b) { return sum(a.costs) < sum(b.costs); });
+    alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Place& one) {
+      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && as_good(one.costs, best_.costs);
+    });
+  }
+
+  // Places ever further from the best, for where it lies when a block is left out.
+  void look_around() {
+    for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
+      for (const double at : {best_.at - step, best_.at + step}) {
+        if (at > range_.low && at < range_.high) scanned_.push_back(place(at));
+      }
+    }
+    std::sort(scanned_.begin(), scanned_.end(), [](const Place& a, const Place& b) { return a.at < b.at; });
+  }
+
+  // Where the cost without one block has its minimum: the best place seen and a parabola
+  // through it and its neighbours.
+  double best_without(std::size_t block) const {
+    const auto cost = [&](std::size_t i) { return sum(scanned_[i].costs) - scanned_[i].costs[block]; };
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < scanned_.size(); ++i) best = cost(i) < cost(best) ? i : best;
+    const double at = scanned_[best].at;
+    if (best == 0 || best + 1 == scanned_.size()) return at;
+    const double left = at - scanned_[best - 1].at;
+    const double right = scanned_[best + 1].at - at;
+    if (!(left > 0.0) || !(right > 0.0)) return at;
+    const double fall = (cost(best - 1) - cost(best)) / left;
+    const double climb = (cost(best + 1) - cost(best)) / right;
+    const double bend = fall + climb;
+    return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
+  }
+
+  bool certainly_worse(double at) const { return !as_good(cost_(at), best_.costs); }
+
+  // Quenouille (1956), Tukey (1958): a block left out at a time.
+  double jackknife_error() const {
+    const std::size_t count = best_.costs.size();
+    std::vector<double> places;
+    for (std::size_t b = 0; b < count; ++b) places.push_back(best_without(b));
+    const double mean = std::accumulate(places.begin(), places.end(), 0.0) / static_cast<double>(count);
+    double squares = 0.0;
+    for (const double at : places) squares += (at - mean) * (at - mean);
+    return std::max(std::sqrt(squares * static_cast<double>(count - 1) / static_cast<double>(count)), range_.fine_step);
   }
 
   Place golden(double low, double high) const {
@@ -115,34 +154,11 @@ class Search {
     return sum(a.costs) < sum(b.costs) ? a : b;
   }
 
-  // Where the interval of confidence ends on one side.
-  double edge(double direction) const {
-    double inside = best_.at;
-    double outside = inside;
-    for (double step = range_.fine_step;; step *= 2.0) {
-      outside = std::clamp(best_.at + direction * step, range_.low, range_.high);
-      if (!as_good(cost_(outside), best_.costs)) break;
-      inside = outside;
-      if (inside == range_.low || inside == range_.high) return inside;
-    }
-    for (int i = 0; i < kBisections; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (as_good(cost_(middle), best_.costs) ? inside : outside) = middle;
-    }
-    return inside;
-  }
-
-  bool alone(double low, double high) const {
-    return std::none_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
-      return (one.at < low - range_.coarse_step || one.at > high + range_.coarse_step) &&
-             as_good(one.costs, best_.costs);
-    });
-  }
-
   const std::function<BlockCosts(double)>& cost_;
   SearchRange range_;
   std::vector<Place> scanned_;
   Place best_;
+  bool alone_ = true;
 };
 
 }  // namespace

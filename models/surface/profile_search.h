@@ -1,14 +1,19 @@
 // Where a cost has its minimum, how sure that is, and whether it can be told at all:
 // the one search behind shifts, surfaces and lags.
 //
-// The cost comes in blocks, pieces of the recordings that err independently. Two places
-// x and y are as good when the blocks do not agree that one is better: the mean over blocks
-// of r_b = (J_b(x) - J_b(y)) / (J_b(x) + J_b(y)) is within two of its standard errors of 0,
-// or the difference of the sums is below 5 % of J. A scan over the whole range and golden sections at
-// its lowest valleys find the best place; all places as good as it are the interval of
-// confidence. Where that reaches an edge of the range, or lies in two pieces, or is wider
-// than `widest`, the place is not told. Where 0 is as good it is 0: what was recorded
-// stands until the evidence is against it, or lies outside of the range.
+// The cost comes in blocks, pieces of the recordings that err independently. A scan over the
+// whole range and golden sections at its lowest valleys find the best place. Its standard error
+// is the jackknife's: how far the minimum moves when one block after the other is left out
+// (Quenouille 1956; Tukey 1958), sqrt((n - 1)/n sum_b (x_b - mean)^2). Not told is a place
+// whose two standard errors reach an edge of the range or are wider than `widest`, and
+// one of two valleys as good as each other: the mean over blocks of
+// r_b = (J_b(x) - J_b(y)) / (J_b(x) + J_b(y)) is within two of its standard errors of 0.
+// Within two standard errors of 0 it is 0: what was recorded stands until the evidence is
+// against it, or lies outside of the range.
+// What a material imitates (friction a shift, viscosity a lag) errs in all blocks alike, which no
+// jackknife sees: such a place is told when 0 is certainly worse, not as good in the sense above;
+// and where the material imitates within `blur`, when all that far from it is certainly worse and
+// 0 further away.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -22,7 +27,7 @@ using BlockCosts = std::vector<double>;
 struct Located {
   double at = 0.0;              // 0 where it is not told
   bool not_zero = false;        // 0 is not as good as the best place, told or not
-  double standard_error = 0.0;  // a quarter of the interval's width; infinite: not told
+  double standard_error = 0.0;  // infinite: not told
   bool told = false;
   double cost = 0.0;  // J there, and at 0
   double cost_at_zero = 0.0;
@@ -33,8 +38,9 @@ struct SearchRange {
   double high = 0.0;
   double coarse_step = 0.0;
   double fine_step = 0.0;
-  double widest = 0.0;         // interval of confidence, from its middle
-  bool zero_suffices = false;  // where no place of the scan is better, no more is asked
+  double widest = 0.0;    // two standard errors of a place that is told
+  bool imitated = false;  // by what the material does itself
+  double blur = 0.0;
 };
 
 Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -77,7 +78,7 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
   const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
-  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFineShift_m, kWidestSurface_m};
+  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFineShift_m, kWidestSurface_m, true};
   return locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
 }
 
@@ -109,20 +110,18 @@ bool unmoved(const Member& member, double shift_m) {
          std::max(kLeastOffset_m, kSignificantErrors * member.place.standard_error);
 }
 
-// Of the shifts common to all, the one that leaves most recordings as they are, and of
-// those the smallest.
+// The place in the middle: of the told ones that which is nearest to all others, and of two as
+// near that of the later recording, whose state the next one will begin from.
 double common_shift_m(const std::vector<Member>& members) {
   double best_m = 0.0;
-  std::ptrdiff_t most = -1;
+  double least_m = std::numeric_limits<double>::infinity();
   for (const Member& candidate : members) {
     if (!candidate.place.told) continue;
-    const double shift_m = candidate.place.at;
-    const auto count = std::count_if(members.begin(), members.end(),
-                                     [&](const Member& one) { return one.place.told && unmoved(one, shift_m); });
-    if (count > most || (count == most && std::abs(shift_m) < std::abs(best_m))) {
-      most = count;
-      best_m = shift_m;
-    }
+    double away_m = 0.0;
+    for (const Member& one : members) away_m += one.place.told ? std::abs(one.place.at - candidate.place.at) : 0.0;
+    if (away_m > least_m + kLeastOffset_m) continue;
+    least_m = std::min(least_m, away_m);
+    best_m = candidate.place.at;
   }
   return best_m;
 }

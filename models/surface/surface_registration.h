@@ -2,8 +2,8 @@
 //
 // Registration is relative: the recording with the longest way stays, every other one is
 // moved over the whole overlap of positions until one material explains both best
-// (common_fit.h, profile_search.h). What all of them share is the rig's: of the shifts
-// common to all, the one that leaves most recordings as they are. A recording whose place
+// (common_fit.h, profile_search.h). What all of them share is the rig's: the
+// recording in the middle stays as it is, of two the later one. A recording whose place
 // cannot be told stays as recorded. The model's own surface is where the onsets of force
 // say, in these positions, either side of 0; without free air it is at 0.
 // Where recorded forces reach further out (adhesion, a press that never lets go), it is

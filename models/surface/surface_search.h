@@ -2,8 +2,7 @@
 // that minimises the error of its forces, over all positions at which the recording
 // overlaps the model's depths (profile_search.h). Errors count in units of the JND, in
 // proportion beyond one, so that no bad stretch decides; before the surface the model's
-// force is 0, as in the tick. What the model explains as well where it was recorded is not
-// moved.
+// force is 0, as in the tick. Within two standard errors of where it was recorded nothing is moved.
 // Thread guarantee: slow side, pure.
 #pragma once
 

@@ -25,9 +25,30 @@ TEST(ProfileSearch, FindsThePlaceThatAllBlocksAgreeOn) {
 }
 
 TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
-  const Located found = locate([](double x) { return bowl(x, 0.05, 1.0); }, kRange);
+  const Located found = locate([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
   EXPECT_TRUE(found.told);
   EXPECT_EQ(found.at, 0.0);
+}
+
+// All blocks err alike where the material imitates a shift: the jackknife says 0.05 +- 0.02, but
+// no block is better for it by more than its own noise.
+TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
+  SearchRange imitated = kRange;
+  imitated.imitated = true;
+  const Located found = locate([](double x) { return bowl(x, 0.05, 1.0); }, imitated);
+  EXPECT_FALSE(found.told);
+  EXPECT_EQ(found.at, 0.0);
+  EXPECT_NEAR(locate([](double x) { return bowl(x, 7.3, 0.01); }, imitated).at, 7.3, 0.01);
+}
+
+TEST(ProfileSearch, ABlurIsPartOfTheError) {
+  SearchRange blurred = kRange;
+  blurred.imitated = true;
+  blurred.blur = 1.0;
+  const auto at = [&](double place) { return locate([=](double x) { return bowl(x, place, 0.01); }, blurred); };
+  EXPECT_EQ(at(0.9).at, 0.0);
+  EXPECT_NEAR(at(3.0).at, 3.0, 0.01);
+  EXPECT_GE(at(3.0).standard_error, 0.5);
 }
 
 // Recordings that do not overlap as recorded fit any way.
