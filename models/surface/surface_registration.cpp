@@ -82,6 +82,22 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
   return locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
 }
 
+// Where force begins at the same place in both, as each shows by itself, a shift is the
+// material's doing: two speeds look like one.
+Located unless_onsets_agree(Located place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
+  if (!own.told() || !first.told()) return place;
+  const double apart_m = own.raw_offset_m - first.raw_offset_m;
+  const double error_m = std::hypot(own.standard_error_m, first.standard_error_m);
+  const double off_m = std::abs(place.at - apart_m);
+  if (std::abs(apart_m) <= std::max(kLeastOffset_m, kSignificantErrors * error_m) &&
+      off_m > kSignificantErrors * std::hypot(error_m, place.standard_error)) {
+    place.told = true;
+    place.standard_error = error_m;
+    place.at = 0.0;
+  }
+  return place;
+}
+
 // The recording with the longest way stays at 0; the others, the longest first, are
 // placed one by one beside those that are.
 void place_all(std::vector<Member>& members, double force_noise_N, const FitControl& control) {
@@ -97,7 +113,7 @@ void place_all(std::vector<Member>& members, double force_noise_N, const FitCont
   fit.add(first.rows, 0.0);
   for (std::size_t k = 1; k < order.size() && control.may_continue(0.0); ++k) {
     Member& member = members[order[k]];
-    member.place = place_of(fit, member, low_m, high_m);
+    member.place = unless_onsets_agree(place_of(fit, member, low_m, high_m), member.own, first.own);
     if (!member.place.told) continue;
     fit.add(member.rows, member.place.at);
     low_m = std::min(low_m, member.low_m - member.place.at);

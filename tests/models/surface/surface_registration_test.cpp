@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/tick/replay.h"
@@ -63,6 +65,39 @@ TEST(SurfaceRegistration, InventsNothing) {
       EXPECT_EQ(surface.force_zero_N, 0.0) << name;
     }
   }
+}
+
+// Two ramps of a quasi-linear material (Fung 1993), at 2 and 50 mm/s: quick is stiffer, which a
+// deeper surface would explain, if force did not begin at 0 in both.
+TEST(SurfaceRegistration, TwoSpeedsAreNotAShift) {
+  const auto pressed = [](double speed_m_per_s) {
+    auto recording = std::make_shared<Recording>();
+    constexpr std::array kTimes_s{0.05, 0.5, 5.0};
+    std::array<double, 3> held_N{};
+    double before_N = 0.0;
+    const double way_s = 7e-3 / speed_m_per_s;
+    for (double t = 0.0; t < 2.0 * way_s + 1.0; t += 1e-3) {
+      const double at = std::clamp(t - 0.5, 0.0, 2.0 * way_s);
+      const double z = -1e-3 + speed_m_per_s * std::min(at, 2.0 * way_s - at);
+      const double depth = std::max(0.0, z);
+      const double elastic_N = 120.0 * depth + 4e4 * depth * depth;
+      double force_N = elastic_N;
+      for (std::size_t k = 0; k < held_N.size(); ++k) {
+        held_N[k] = held_N[k] * std::exp(-1e-3 / kTimes_s[k]) + 0.3 * (elastic_N - before_N);
+        force_N += held_N[k];
+      }
+      before_N = elastic_N;
+      RecordingRow row;
+      row.time_s = t;
+      row.position_m = z;
+      // 2 mN of a wave that no row shares with the next.
+      row.force_N = (z > 0.0 ? std::max(0.0, force_N) : 0.0) + 2e-3 * std::sin(977.0 * t * t + 12.9 * t);
+      recording->rows.push_back(row);
+    }
+    return recording;
+  };
+  const RegisteredSurfaces found = registered({pressed(2e-3), pressed(50e-3)});
+  for (const RegisteredSurface& surface : found.recordings) EXPECT_EQ(surface.offset_m, 0.0);
 }
 
 // What all share is the rig's, on either side of 0; nothing is moved by it.
