@@ -34,7 +34,8 @@ std::string bound_html(const ModelResult& model) {
   const Evidence& errors = model.errors;
   if (errors.beyond_samples > 0) {
     return "at 95 % at least " + figure_html(model, "within_at_least", percent(errors.within_at_least())) + "; " +
-           figure_html(model, "beyond_strokes", strokes_text(errors)) + " go beyond";
+           figure_html(model, "beyond_strokes", strokes_text(errors)) + (errors.strokes == 1 ? " goes" : " go") +
+           " beyond";
   }
   const std::string none = figure_html(model, "beyond_strokes", strokes_text(errors)) + " beyond, ";
   if (errors.strokes <= 3) return none + "too few for a bound";
@@ -198,7 +199,7 @@ std::string learnt_html(const ReportData& data) {
     return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
            "</td></tr>\n";
   };
-  std::string html = "<table>" + row("Features", features);
+  std::string html = "<table class=\"learnt\">" + row("Features", features);
   if (data.correction_strength)
     html += row("Strength of the correction by centres",
                 fixed(100.0 * *data.correction_strength, 0) + " % of what it could be, by strokes left out");
