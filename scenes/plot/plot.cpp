@@ -108,7 +108,9 @@ std::string axis_text(const char* name, const Axis& axis, const Range& range) {
   text += "set " + letter + "range [" + number(range.low) + ":" + number(range.high) + "]\n";
   text += "set " + letter + "label " + quoted(axis.title) + "\n";
   if (!axis.logarithmic) return text + "set " + letter + "tics autofreq\nset format " + letter + " \"%g\"\n";
-  text += "set format " + letter + (axis.unit.empty() ? " \"%g\"\n" : " \"%.0s %c" + axis.unit + "\"\n");
+  // Counts of thousands and more would run into each other.
+  const std::string plain = range.high < 1e4 ? "%g" : "%.0s%c";
+  text += "set format " + letter + " \"" + (axis.unit.empty() ? plain : "%.0s %c" + axis.unit) + "\"\n";
   return text + log_tics(name, range.low, range.high);
 }
 
