@@ -15,7 +15,7 @@ set border 3 linecolor rgb ink linewidth 1
 set tics nomirror textcolor rgb ink scale 0.6,0.3
 set title textcolor rgb ink offset 0,-0.6
 set xlabel textcolor rgb ink offset 0,0.4
-set ylabel textcolor rgb ink offset 0.6,0
+set ylabel textcolor rgb ink offset -0.2,0
 set grid xtics ytics linetype 1 linecolor rgb "#d8d8d8" linewidth 1
 set grid back
 set errorbars 0

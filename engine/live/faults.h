@@ -55,14 +55,16 @@ enum class FaultSource : std::uint8_t { device, loop, window };
 struct Fault {
   FaultSource source;
   std::uint32_t bit;
-  const char* sentence;  // what happened and what to do; empty: part of normal running, or told by others
+  // What happened and what to do; empty: part of normal running, or told by others. Whether to zero the device is
+  // told by zeroing_words, for not every device needs it.
+  const char* sentence;
   bool stops_force;
   bool alarm;  // the user needs to be told at once, and has to acknowledge it
 };
 
 // In the order in which they are told.
 inline constexpr std::array<Fault, 23> kFaults = {{
-    {FaultSource::device, device_fault::kUnplugged, "unplugged: plug the device in again, then zero it", true, true},
+    {FaultSource::device, device_fault::kUnplugged, "the device is gone: connect it again", true, true},
     {FaultSource::device, device_fault::kLate, "reports come late: no force until they are on time again", true, true},
     {FaultSource::device, device_fault::kOutOfOrder,
      "a report came out of order: no force until they are in order again", true, true},
@@ -70,12 +72,10 @@ inline constexpr std::array<Fault, 23> kFaults = {{
      true, true},
     {FaultSource::device, device_fault::kCorrupt,
      "a report was corrupted: no force until they are good again; check the cable", true, true},
-    {FaultSource::device, device_fault::kStuck,
-     "the position is stuck although the motor pushes: check the encoder, then zero the device", true, true},
-    {FaultSource::device, device_fault::kJump, "the position jumped: check the encoder, then zero the device", true,
-     true},
-    {FaultSource::device, device_fault::kReset, "the firmware started again: check its supply, then zero the device",
+    {FaultSource::device, device_fault::kStuck, "the position is stuck although the motor pushes: check the encoder",
      true, true},
+    {FaultSource::device, device_fault::kJump, "the position jumped: check the encoder", true, true},
+    {FaultSource::device, device_fault::kReset, "the firmware started again: check its supply", true, true},
     {FaultSource::device, device_fault::kWriteStalled, "commands do not reach the device: no force until they do", true,
      true},
     {FaultSource::device, device_fault::kOwn, "the device reports a fault of its own: check its motor and encoder",

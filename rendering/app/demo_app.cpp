@@ -57,12 +57,12 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 }
 
 Status DemoApp::set_up(const DemoRequest& request) {
-  view_.kiosk = request.kiosk;
-  view_.theme = request.kiosk ? Theme::dark : Theme::light;
+  view_.exhibit = request.exhibit;
+  view_.theme = request.exhibit ? Theme::dark : Theme::light;
   // Without a display nothing else needs to start.
   if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
-  if (request.kiosk) {  // models from obvious to impossible to tell
+  if (request.exhibit) {  // models from obvious to impossible to tell
     wanted.position_only = true;
     if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
   }
@@ -86,8 +86,8 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
   blocks_->camera().turn(settings_.camera);
-  if (view_.kiosk) {
-    if (Status status = set_up_exhibit(request.exhibit); !status) return status;
+  if (view_.exhibit) {
+    if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   }
   commands_ = make_commands();
   listen();
@@ -128,7 +128,7 @@ DemoApp::~DemoApp() {
 }
 
 bool DemoApp::closing() const noexcept {
-  return view_.kiosk ? leaving_ : glfwWindowShouldClose(window_->handle()) != 0;
+  return view_.exhibit ? leaving_ : glfwWindowShouldClose(window_->handle()) != 0;
 }
 
 void DemoApp::close() {
@@ -137,7 +137,7 @@ void DemoApp::close() {
 }
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
-  if (view_.kiosk) return;
+  if (view_.exhibit) return;
   for (const std::string& path : paths) {
     if (is_offered(path)) {
       offer(path);
@@ -195,7 +195,7 @@ void DemoApp::draw() {
   stirred_ = false;
   panel_drawn_s_ = steady_now_s();
   panel_drawn_in_ = {window_->ui_size().width, window_->ui_size().height};
-  style_.update(window_->ui_size(), view_.kiosk ? kKioskText : view_.text_size, view_.theme);
+  style_.update(window_->ui_size(), view_.exhibit ? kExhibitText : view_.text_size, view_.theme);
   ui_->begin_frame();
   wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
   draw_blocks();
@@ -206,7 +206,7 @@ void DemoApp::draw() {
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
                 {&commands_, [this](const std::string& scene) { switch_to(scene, first_device_); },
                  [this](const std::string& path) { switch_to(request_.scene, "replay:" + path); }});
-  if (view_.kiosk) {
+  if (view_.exhibit) {
     exhibit_.draw(*session_, *blocks_, style_, layout);
   } else {
     panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
@@ -252,10 +252,10 @@ std::vector<BlockPose> DemoApp::block_poses() const {
     const SlotView& model = *models.slots[slot];
     pose.dent_m = static_cast<float>(model.dent_m);
     pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
-    const bool exaggerated = view_.exaggerated && !view_.kiosk && std::isfinite(reference_N);
+    const bool exaggerated = view_.exaggerated && !view_.exhibit && std::isfinite(reference_N);
     const double shown_N = exaggerated ? reference_N + kExaggeration * (model.force_N - reference_N) : model.force_N;
     pose.force_N = static_cast<float>(std::max(0.0, shown_N));
-    pose.arrow = view_.kiosk ? method_colour(model.method, view_.theme) : slot_colour(models, slot, view_.theme);
+    pose.arrow = view_.exhibit ? method_colour(model.method, view_.theme) : slot_colour(models, slot, view_.theme);
     pose.chosen = slot == models.selected;
     if (view_.blind) pose.arrow = palette(view_.theme).text;
     pose.shows_error = !view_.blind;
@@ -302,7 +302,7 @@ void DemoApp::read_notices(double now_s) {
 }
 
 void DemoApp::notify(std::string text, bool problem) {
-  if (view_.kiosk) {  // not for visitors
+  if (view_.exhibit) {  // not for visitors
     write_to_log(text);
     return;
   }

@@ -29,8 +29,8 @@ namespace palpate {
 struct DemoRequest {
   SessionRequest session;
   WindowRequest window;
-  bool kiosk = false;
-  ExhibitTimes exhibit;       // of a kiosk
+  bool exhibit = false;  // a game for visitors in place of the panel
+  ExhibitTimes exhibit_times;
   std::string settings_file;  // empty: nothing is remembered
   std::string recording;      // offered to be fitted or replayed; empty: none
 };

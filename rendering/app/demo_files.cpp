@@ -20,7 +20,7 @@ namespace palpate {
 
 void DemoApp::use_settings(const DemoRequest& request) {
   settings_file_ = request.settings_file;
-  if (settings_file_.empty() || view_.kiosk) return;
+  if (settings_file_.empty() || view_.exhibit) return;
   auto settings = read_settings(settings_file_);
   if (!settings) {
     notify(settings.error().message, true);
@@ -34,7 +34,7 @@ void DemoApp::use_settings(const DemoRequest& request) {
 }
 
 void DemoApp::save_settings() {
-  if (settings_file_.empty() || view_.kiosk || blocks_ == nullptr) return;
+  if (settings_file_.empty() || view_.exhibit || blocks_ == nullptr) return;
   settings_.theme = view_.theme;
   settings_.block_count = view_.block_count;
   settings_.difference = view_.difference;
@@ -104,7 +104,7 @@ void DemoApp::offer_finished_recording() {
     recording_ = status.path;
   } else if (!recording_.empty()) {
     std::error_code missing;
-    if (!view_.kiosk && std::filesystem::exists(recording_, missing)) view_.offered = {recording_, {}, {}};
+    if (!view_.exhibit && std::filesystem::exists(recording_, missing)) view_.offered = {recording_, {}, {}};
     recording_.clear();
   }
 }

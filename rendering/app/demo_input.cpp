@@ -26,7 +26,7 @@ constexpr float kClick_px = 4.0F;
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
   stirred_ = true;
   std::erase(down_, key);
-  if (view_.kiosk && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
+  if (view_.exhibit && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
   if (action == GLFW_RELEASE) return;
   down_.push_back(key);
   keys_.push_back({key, modifiers, action == GLFW_REPEAT});
@@ -41,7 +41,7 @@ void DemoApp::handle_keys() {
   run_held();
   for (const KeyPress& press : std::exchange(keys_, {})) handle_key(press);
   // The next visitor finds it as new.
-  if (view_.kiosk && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
+  if (view_.exhibit && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
 void DemoApp::run_held() {
@@ -55,10 +55,11 @@ void DemoApp::run_held() {
 
 void DemoApp::handle_key(const KeyPress& press) {
   const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
-  if (view_.kiosk) {
+  if (view_.exhibit) {
     const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
     if (chord && press.key == GLFW_KEY_Q) close();
     if (chord && press.key == GLFW_KEY_T) exhibit_.show_host(!exhibit_.shows_host());
+    if (press.key == GLFW_KEY_Z && session_->newest().device.zeroing == Zeroing::needed) session_->start_zeroing();
     if (!control && !press.again) exhibit_.press_key(press.key, *session_);
     return;
   }
@@ -83,7 +84,7 @@ void DemoApp::handle_mouse() {
     return;
   }
   // A finger that leaves the screen lets go.
-  if (view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(*session_);
+  if (view_.exhibit && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(*session_);
   if (!over_scene) return;
   if (wheel_ != 0.0F) {
     if (io.KeyCtrl) {
@@ -92,11 +93,11 @@ void DemoApp::handle_mouse() {
       nudge_tool(-kWheelStep_m * static_cast<double>(wheel_));
     }
   }
-  if (!view_.kiosk && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+  if (!view_.exhibit && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
     if (const auto slot = overlay_.slot_at(*session_, *blocks_, view_, area, io.MousePos)) session_->select(*slot);
   }
-  const bool touched = view_.kiosk && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
+  const bool touched = view_.exhibit && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched) move_tool_to_mouse();
 }
 
@@ -109,7 +110,7 @@ void DemoApp::move_tool_to_mouse() {
   const std::vector<std::size_t> slots = shown_slots(*session_, view_.block_count);
   const std::size_t count = std::max<std::size_t>(slots.size(), 1);
   const auto over = overlay_.slot_at(*session_, *blocks_, view_, area, mouse);
-  if (!over && !slots.empty() && !view_.kiosk) return;  // a visitor need not aim
+  if (!over && !slots.empty() && !view_.exhibit) return;  // a visitor need not aim
   const auto at = std::find(slots.begin(), slots.end(), over.value_or(0));
   const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
   const glm::vec2 surface = blocks_->on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);

@@ -72,7 +72,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--stats", arguments.stats, "Write how the loop, the picture and the models did, at the end")
       ->type_name("JSON");
   app.add_flag("--fullscreen", arguments.demo.window.fullscreen, "Fill the screen");
-  app.add_flag("--kiosk", arguments.demo.kiosk,
+  app.add_flag("--kiosk", arguments.demo.exhibit,
                "An exhibit: full screen, a game; Ctrl+Shift+T is the host's, Ctrl+Shift+Q ends it");
   app.add_flag("--force", arguments.force, "Replace existing files");
 }
@@ -96,7 +96,7 @@ void sort_files(Arguments& arguments) {
       session.models.push_back(file);
     }
   }
-  if (session.models.empty() && !arguments.demo.kiosk) session.line_up = line_ups().front().name;
+  if (session.models.empty() && !arguments.demo.exhibit) session.line_up = line_ups().front().name;
 }
 
 // Frame after frame until closed, stopped, or so many seconds have passed. A first
@@ -133,7 +133,7 @@ Status run_demo(Arguments& arguments) {
   // As palpate record takes it.
   std::string& device = arguments.demo.session.device;
   if (arguments.bridge_remote && device.rfind("bridge:tcp:", 0) == 0) device.insert(7, "remote-");
-  if (arguments.demo.kiosk) arguments.demo.window.fullscreen = true;
+  if (arguments.demo.exhibit) arguments.demo.window.fullscreen = true;
   if (!arguments.screenshot.empty() && arguments.seconds == 0.0) arguments.seconds = kPictureAfter_s;
   if (arguments.discriminates || arguments.demo.session.scene == kStudyScene) return run_study(arguments);
   // A picture is the same whoever takes it.

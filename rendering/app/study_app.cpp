@@ -16,10 +16,6 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kRehearsal =
-    "No force device: nobody can feel anything. This is a rehearsal; its answers are marked so and left out of the "
-    "analysis.";
-
 constexpr float kColumnShare = 0.62F;     // of the window's width
 constexpr std::size_t kLongestCode = 12;  // longer than any, so that one is told
 constexpr Theme kTheme = Theme::dark;     // nothing glares in a dim room
@@ -138,7 +134,7 @@ void StudyApp::handle_key(int key) {
 
 void StudyApp::draw() {
   const Framebuffer picture = window_->framebuffer();
-  style_.update(window_->ui_size(), kKioskText, kTheme);
+  style_.update(window_->ui_size(), kExhibitText, kTheme);
   ui_->begin_frame();
   const Rgb& background = style_.colours().background;
   glViewport(0, 0, picture.width, picture.height);

@@ -1,6 +1,7 @@
 // The exhibit's screens.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "engine/base/text.h"
 #include "rendering/panels/exhibit.h"
@@ -26,6 +27,19 @@ const char* kind_of(const ExhibitModel& model) {
 bool pointer_moved() {
   const ImGuiIO& io = ImGui::GetIO();
   return io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || io.MouseWheel != 0.0F || ImGui::IsAnyMouseDown();
+}
+
+// Broken at blanks alone: Dear ImGui also breaks behind the point of a number.
+std::string in_lines(const std::string& text, float width) {
+  std::string lines, line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    const bool fits = line.empty() || ImGui::CalcTextSize(longer.c_str()).x <= width;
+    if (!fits) lines += line + "\n";
+    line = fits ? longer : word;
+  }
+  return lines + line;
 }
 
 void space(const UiStyle& style, float lines) { ImGui::Dummy({1.0F, lines * height_of(style.fonts().body)}); }
@@ -66,7 +80,7 @@ std::string Exhibit::verdict() const {
 }
 
 void Exhibit::say(const std::string& text) {
-  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::TextUnformatted(in_lines(text, ImGui::GetContentRegionAvail().x).c_str());
   said_.push_back(text);
 }
 
@@ -214,7 +228,8 @@ void Exhibit::draw_score(const Canvas& canvas) {
   for (const ExhibitRound& round : rounds) draw_bar(canvas, round);
   say_quietly(canvas, words()("bars"));
   space(canvas.style, 0.6F);
-  const std::string used_us = number(1e-3 * canvas.session.models().view(rounds.back().second.slot).evaluation_ns);
+  // All that is done within each millisecond, both blocks and the device included.
+  const std::string used_us = number(canvas.session.loop().statistics().tick.p50_us);
   say(game_.felt() ? words()("take_home_felt", used_us)
                    : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
   space(canvas.style, 0.6F);
@@ -301,7 +316,7 @@ void Exhibit::draw_forces(const Canvas& canvas) {
       first.emplace_back(x, plot.y_px(columns[i].first_N));
       second.emplace_back(x, plot.y_px(columns[i].second_N));
     }
-    const float thick = 4.0F * canvas.style.scale();
+    const float thick = 2.5F * canvas.style.scale();  // so that the band shows beside them
     plot.band(upper, lower, ink(canvas.style.colours().band));
     plot.line(first, ink(round.first ? canvas.colour_of(*round.first) : kReferenceColour), thick);
     plot.line(second, ink(canvas.colour_of(round.second)), thick);
@@ -326,8 +341,8 @@ void Exhibit::draw_foot(const Canvas& canvas) {
 void Exhibit::draw_host(const Canvas& canvas) {
   ImGui::SetCursorScreenPos({canvas.panel.at.x + 0.4F * canvas.panel.size.x, canvas.panel.at.y + 2.0F});
   ImGui::PushFont(canvas.style.fonts().body);
-  say(words()("tally", std::to_string(tally_.answers), std::to_string(tally_.as_expected)) + "\n" +
-      health_words(health_view(canvas.session), 0.0).text);
+  said_.push_back(words()("tally", std::to_string(tally_.answers), std::to_string(tally_.as_expected)));
+  ImGui::TextUnformatted((said_.back() + "\n" + health_words(health_view(canvas.session), 0.0).text).c_str());
   ImGui::PopFont();
 }
 

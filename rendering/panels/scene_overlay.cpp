@@ -207,18 +207,18 @@ std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, con
 void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
                         const SceneArea& area, const std::vector<Toast>& toasts, const OverlayActions& actions) {
   const float line = height_of(style.fonts().body);
-  const float buttons = view.kiosk ? 0.0F : std::max(buttons_height_, 2.4F * line);
+  const float buttons = view.exhibit ? 0.0F : std::max(buttons_height_, 2.4F * line);
   const float surface = session.surface().found_m() != 0.0 ? 1.7F * line : 0.0F;
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
   // An exhibit has names of its own.
-  if (!view.kiosk) draw_labels(session, blocks, view, style, area, big_number_height(style, bars));
-  if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
-  if (!view.kiosk) draw_data_warning(session, style, area);
-  if (!view.kiosk) draw_title(session, view, style, area);
-  if (!view.kiosk) draw_hint(session, style, area);
+  if (!view.exhibit) draw_labels(session, blocks, view, style, area, big_number_height(style, bars));
+  if (!view.exhibit && session.models().size() > 0) draw_big_number(session, style, area, bars);
+  if (!view.exhibit) draw_data_warning(session, style, area);
+  if (!view.exhibit) draw_title(session, view, style, area);
+  if (!view.exhibit) draw_hint(session, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
-  if (!view.kiosk) buttons_height_ = draw_buttons(area, *actions.commands);
+  if (!view.exhibit) buttons_height_ = draw_buttons(area, *actions.commands);
   draw_device_words(session, view.offered.any(), style, area);
   draw_toasts(toasts, style, area);
   draw_file_list(session, view);

@@ -63,7 +63,7 @@ struct OfferedFile {
 
 struct ViewState {
   Theme theme = Theme::light;
-  bool kiosk = false;
+  bool exhibit = false;
   float text_size = 1.0F;       // times the usual
   bool blind = false;           // which model is active is a secret
   bool tool_is_held = false;    // out of the block, whatever the mouse does

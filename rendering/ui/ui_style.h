@@ -30,7 +30,7 @@ struct UiSize {
 // window has to the eye, so that a display with twice the pixels shows the same text.
 float ui_scale(const UiSize& size, float larger) noexcept;
 // How much larger text is for people who stand.
-inline constexpr float kKioskText = 1.5F;
+inline constexpr float kExhibitText = 1.5F;
 
 struct Fonts {
   ImFont* body = nullptr;

@@ -18,21 +18,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-// "0.17+1.27" as positive numbers, each followed by `unit`; empty when it is
-// anything else.
-std::vector<double> parse_values(std::string_view text, std::string_view unit) {
-  std::vector<double> values;
-  for (std::string_view part : split(text, '+')) {
-    if (!part.ends_with(unit)) return {};
-    part.remove_suffix(unit.size());
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || next != part.data() + part.size() || !(value > 0.0) || !std::isfinite(value)) return {};
-    values.push_back(value);
-  }
-  return values;
-}
-
 Error wrong(std::string_view item, const std::string& expected) {
   return Error{"found \"" + std::string(item) + "\", expected " + expected};
 }
@@ -47,7 +32,7 @@ Status add_item(std::string_view item, FeatureList& list) {
     return {};
   }
   if (kind == "maxwell") {
-    auto times_s = parse_values(rest, "");
+    auto times_s = parse_values(rest, '+');
     if (times_s.empty() || times_s.size() > kMaxFeatureParts) {
       return wrong(item, "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27");
     }
@@ -55,7 +40,7 @@ Status add_item(std::string_view item, FeatureList& list) {
     return {};
   }
   if (kind == "stops" && list.stop_thresholds_m.empty()) {
-    const auto thresholds_mm = parse_values(rest, "mm");
+    const auto thresholds_mm = parse_values(rest, '+', "mm");
     if (thresholds_mm.empty() || thresholds_mm.size() > kMaxFeatureParts) {
       return wrong(item, "stops: with one to eight thresholds such as stops:0.05mm+0.1mm");
     }
@@ -63,7 +48,7 @@ Status add_item(std::string_view item, FeatureList& list) {
     return {};
   }
   if (kind == "creep" && list.creep_times_s.empty()) {
-    list.creep_times_s = parse_values(rest, "");
+    list.creep_times_s = parse_values(rest, '+');
     if (list.creep_times_s.empty() || list.creep_times_s.size() > kMaxFeatureParts) {
       return wrong(item, "creep: with one to eight times in seconds such as creep:0.1+1");
     }
@@ -78,6 +63,19 @@ std::size_t feature_count(const FeatureList& list) {
 }
 
 }  // namespace
+
+std::vector<double> parse_values(std::string_view text, char separator, std::string_view unit) {
+  std::vector<double> values;
+  for (std::string_view part : split(text, separator)) {
+    if (!part.ends_with(unit)) return {};
+    part.remove_suffix(unit.size());
+    double value = 0.0;
+    const auto [next, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || next != part.data() + part.size() || !(value > 0.0) || !std::isfinite(value)) return {};
+    values.push_back(value);
+  }
+  return values;
+}
 
 Result<FeatureList> parse_feature_list(const std::string& text) {
   FeatureList list;

@@ -10,6 +10,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "engine/base/result.h"
 #include "models/training/trend_dictionary.h"
@@ -21,6 +23,9 @@ inline constexpr const char* kFeatureListExample =
 
 // Errors: the item, what was found and what was expected.
 Result<FeatureList> parse_feature_list(const std::string& text);
+
+// "0.17+1.27" as positive numbers, each followed by `unit`; empty when it is anything else.
+std::vector<double> parse_values(std::string_view text, char separator, std::string_view unit = "");
 
 // For --features: nothing for "auto", "scene" or a list as above, what is wrong otherwise.
 std::string check_features(const std::string& text);

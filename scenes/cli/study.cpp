@@ -1,5 +1,5 @@
-// palpate study: the force-discrimination study without a window. Analyses the files
-// of real subjects, simulates subjects.
+// palpate study: the force-discrimination study without a window. Runs it in a terminal,
+// analyses the files of real subjects, simulates subjects.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -10,13 +10,12 @@
 
 #include "engine/base/atomic_file.h"
 #include "scenes/cli/progress.h"
+#include "scenes/cli/study_options.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/jnd_file.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
-#include "scenes/study/simulated_subject.h"
-#include "scenes/study/study_analysis.h"
 #include "scenes/study/study_figure.h"
 
 namespace palpate::cli {
@@ -25,23 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPopulationStream = 51;
-
-struct StudyOptions {
-  IntervalSettings intervals;
-  bool with_published = false;
-  std::string out;
-  bool force = false;
-  std::vector<std::string> files;  // analyse
-  bool rehearsals = false;         // also answers that nobody could feel
-  int subjects = 12;
-  std::uint64_t seed = 1;
-  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N
-  double spread = 0.15;
-  bool discriminates = false;
-  std::string recording;  // to discriminate; empty: virtual
-  std::string strokes_scene = "silicone_block";
-  std::vector<std::string> models;
-};
 
 void print_analysis(const StudyAnalysis& analysis) {
   std::printf("%-13s %8s %12s %22s\n", "reference [N]", "subjects", "mean JND [%]", "all answers [%], 95 %");
@@ -173,22 +155,8 @@ std::string file_text(const StudyHeader& header, const std::vector<StudyRecord>&
   return text;
 }
 
-// What all subjects' headers have in common.
-Result<StudyHeader> common_header(const StudyOptions& options) {
-  StudyHeader header;
-  if (!options.discriminates) return header;
-  const Result<Scene> scene = load_scene(options.strokes_scene);
-  if (!scene) return scene.error();
-  const auto strokes = prepare_strokes({*scene, options.models, options.recording});
-  if (!strokes) return strokes.error();
-  header.procedure = ProcedureKind::discriminate;
-  header.strokes = *strokes;
-  header.timing = stroke_timing(**strokes);
-  return header;
-}
-
 Status run_simulate(const StudyOptions& options) {
-  Result<StudyHeader> header = common_header(options);
+  Result<StudyHeader> header = study_header(options);
   if (!header) return header.error();
   if (const Status made = make_folder(options.out); !made) return made;
   std::vector<StudyData> files;
@@ -238,11 +206,7 @@ void add_analyse(CLI::App& study, Verbs& verbs) {
   verbs.emplace_back(verb, [options] { return run_analyse(*options); });
 }
 
-void add_simulate(CLI::App& study, Verbs& verbs) {
-  auto options = std::make_shared<StudyOptions>();
-  CLI::App* verb =
-      study.add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
-  verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
+void add_stroke_options(CLI::App* verb, const std::shared_ptr<StudyOptions>& options) {
   CLI::Option* discriminate =
       verb->add_option_function<std::string>(
               "--discriminate",
@@ -258,6 +222,27 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
                    "To tell from the recorded force, or two to tell apart [the scene's first]")
       ->type_name("FILE_OR_METHOD")
       ->needs(discriminate);
+}
+
+void add_run(CLI::App& study, Verbs& verbs) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* verb = study.add_subcommand("run", "One subject at a device, in this terminal; takes up where it ended");
+  verb->add_option("--device", options->device, "As palpate-demo takes it; palpate devices lists them")
+      ->capture_default_str()
+      ->type_name("NAME");
+  verb->add_option("--subject", options->subject, "The code that stands for the person, such as S01")->required();
+  add_stroke_options(verb, options);
+  verb->add_option("--out", options->out, "Folder for study-CODE.csv or discriminate-CODE.csv")->capture_default_str();
+  verb->add_flag("--bridge-remote", options->bridge_remote, "bridge:tcp: may name another computer");
+  verbs.emplace_back(verb, [options] { return run_study_session(*options); });
+}
+
+void add_simulate(CLI::App& study, Verbs& verbs) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* verb =
+      study.add_subcommand("simulate", "A whole study with simulated subjects, from the first trial to the figure");
+  verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
+  add_stroke_options(verb, options);
   verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
   verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
       ->check(CLI::Range(0.001, 1.0))
@@ -280,11 +265,25 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
 
 }  // namespace
 
+Result<StudyHeader> study_header(const StudyOptions& options) {
+  StudyHeader header;
+  if (!options.discriminates) return header;
+  const Result<Scene> scene = load_scene(options.strokes_scene);
+  if (!scene) return scene.error();
+  const auto strokes = prepare_strokes({*scene, options.models, options.recording});
+  if (!strokes) return strokes.error();
+  header.procedure = ProcedureKind::discriminate;
+  header.strokes = *strokes;
+  header.timing = stroke_timing(**strokes);
+  return header;
+}
+
 void add_study(CLI::App& app, Verbs& verbs) {
-  CLI::App* study = app.add_subcommand("study", "The force-discrimination study: analyse, simulate");
+  CLI::App* study = app.add_subcommand("study", "The force-discrimination study: run, analyse, simulate");
   study->require_subcommand(1);
   verbs.emplace_back(study, [] { return Status(); });
   Verbs parts;
+  add_run(*study, parts);
   add_analyse(*study, parts);
   add_simulate(*study, parts);
   verbs.back().second = [parts] {

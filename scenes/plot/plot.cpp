@@ -46,15 +46,17 @@ std::string data_block(const Series& series, const std::string& name) {
   return text + "END\n";
 }
 
-// Of a logarithmic axis: every decade is labelled; where there are few, 2 and 5 as well.
+// Of a logarithmic axis: every decade is labelled; where there are few, 2 and 5 as well, and where there is
+// hardly one, what lies between.
 std::string log_tics(const char* axis, double low, double high) {
   const bool few = high / low < 50.0;
+  const bool hardly = high / low < 5.0;
   const bool many = high / low > 1e7;
   std::string tics;
   for (int decade = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, decade) <= high; ++decade) {
-    for (const int step : {1, 2, 5}) {
+    for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
       const double at = step * std::pow(10.0, decade);
-      const bool wanted = step == 1 ? !many || decade % 2 == 0 : few;
+      const bool wanted = step == 1.0 ? !many || decade % 2 == 0 : step == 2.0 || step == 5.0 ? few : hardly;
       if (at < low * 0.999 || at > high * 1.001 || !wanted) continue;
       tics += (tics.empty() ? "" : ", ") + number(at);
     }
@@ -106,7 +108,9 @@ std::string axis_text(const char* name, const Axis& axis, const Range& range) {
   text += "set " + letter + "range [" + number(range.low) + ":" + number(range.high) + "]\n";
   text += "set " + letter + "label " + quoted(axis.title) + "\n";
   if (!axis.logarithmic) return text + "set " + letter + "tics autofreq\nset format " + letter + " \"%g\"\n";
-  text += "set format " + letter + (axis.unit.empty() ? " \"%g\"\n" : " \"%.0s %c" + axis.unit + "\"\n");
+  // Counts of thousands and more would run into each other.
+  const std::string plain = range.high < 1e4 ? "%g" : "%.0s%c";
+  text += "set format " + letter + " \"" + (axis.unit.empty() ? plain : "%.0s %c" + axis.unit) + "\"\n";
   return text + log_tics(name, range.low, range.high);
 }
 
@@ -135,31 +139,32 @@ std::string drawn_with(const Series& series) {
   return {};
 }
 
-// How far up the axis a value is, 0 to 1.
-double place_on(const Axis& axis, const Range& range, double value) {
-  if (axis.logarithmic) return std::log(value / range.low) / std::log(range.high / range.low);
-  return (value - range.low) / (range.high - range.low);
-}
-
-// The name stands above its line, below it near the top.
-std::string level_text(const Level& level, bool near_top, int tag) {
+// A line across and its name: beside the panel, where no curve is, or at the upper end of one that stands.
+std::string level_text(const Level& level, int tag) {
   const std::string at = number(level.value);
   const std::string id = std::to_string(tag);
   const std::string ends = level.vertical ? " from first " + at + ", graph 0 to first " + at + ", graph 1"
                                           : " from graph 0, first " + at + " to graph 1, first " + at;
-  const std::string place =
-      level.vertical ? " at first " + at + ", graph 1 right offset character -0.5,-0.7"
-                     : " at graph 0, first " + at + " left offset character 0.5," + (near_top ? "-0.6" : "0.6");
+  const std::string place = level.vertical ? " at first " + at + ", graph 1 right offset character -0.5,-0.7"
+                                           : " at graph 1, first " + at + " left offset character 0.5,0";
   return "set arrow " + id + ends + " nohead dashtype 2 linewidth 1.5 linecolor rgb muted\n" + "set label " + id + " " +
          quoted(level.text) + place + " textcolor rgb muted\n";
 }
 
+// Room for the names of the lines across, beside the panel.
+int right_margin(const Panel& panel) {
+  std::size_t longest = 0;
+  for (const Level& level : panel.levels) longest = std::max(longest, level.vertical ? 0 : level.text.size());
+  return static_cast<int>(std::max<std::size_t>(3, longest + 1));
+}
+
 std::string panel_text(const Panel& panel, std::size_t index) {
-  const Range y = range_of(panel, true, panel.y);
   std::string text = "set title " + quoted(panel.title) + "\n";
-  text += axis_text("x", panel.x, range_of(panel, false, panel.x)) + axis_text("y", panel.y, y);
+  text += axis_text("x", panel.x, range_of(panel, false, panel.x)) +
+          axis_text("y", panel.y, range_of(panel, true, panel.y));
   int tag = 1;
-  for (const Level& level : panel.levels) text += level_text(level, place_on(panel.y, y, level.value) > 0.75, tag++);
+  text += "set rmargin " + std::to_string(right_margin(panel)) + "\n";
+  for (const Level& level : panel.levels) text += level_text(level, tag++);
   std::string curves;
   for (const bool area : {true, false}) {  // grey is behind everything, so first
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -231,8 +236,9 @@ Result<std::string> plot_script(const Plot& plot) {
     }
   }
   // Room for the legend: as high as the lines of a title.
-  const std::string room =
-      legend.lines > 0 ? " title \"" + std::string(static_cast<std::size_t>(legend.lines - 1), ' ') + " \"" : "";
+  std::string room = legend.lines > 0 ? " title \" " : "";
+  for (int i = 1; i < legend.lines; ++i) room += "\\n ";
+  if (legend.lines > 0) room += '"';
   for (const char* medium : {"svg", "png"}) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
     text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + room + "\n";

@@ -163,9 +163,8 @@ Figure speed_figure(const ReportData& data) {
     }
     panel.series.push_back(std::move(curve));
   }
-  panel.levels.push_back({1.0, "1 JND: what a hand can notice"});
-  if (data.floor.p99_error_over_jnd > 0.3 * least)
-    panel.levels.push_back({data.floor.p99_error_over_jnd, "noise of the force sensor"});
+  panel.levels.push_back({1.0, "1 JND"});
+  if (data.floor.p99_error_over_jnd > 0.3 * least) panel.levels.push_back({data.floor.p99_error_over_jnd, "noise"});
   if (slowest_s > kNear * kBudget_s) {
     panel.levels.push_back({kBudget_s, "budget 1 ms", true});
   } else {
@@ -176,7 +175,9 @@ Figure speed_figure(const ReportData& data) {
   figure.plot.height = 1.9;
   figure.plot.panels = {std::move(panel)};
   figure.caption =
-      "Down is better, left is faster. A curve: one method with more and more centres. Bars: 95 % by strokes, of 100 "
+      "Down is better, left is faster; below 1 JND a hand notices nothing; noise: of the force sensor. A curve: one "
+      "method "
+      "with more and more centres. Bars: 95 % by strokes, of 100 "
       "centres; models that are tied are told by their paired difference in the table, not by bars. +: the "
       "bare evaluation, without motion estimate and features.";
   return figure;

@@ -34,7 +34,8 @@ std::string bound_html(const ModelResult& model) {
   const Evidence& errors = model.errors;
   if (errors.beyond_samples > 0) {
     return "at 95 % at least " + figure_html(model, "within_at_least", percent(errors.within_at_least())) + "; " +
-           figure_html(model, "beyond_strokes", strokes_text(errors)) + " go beyond";
+           figure_html(model, "beyond_strokes", strokes_text(errors)) + (errors.strokes == 1 ? " goes" : " go") +
+           " beyond";
   }
   const std::string none = figure_html(model, "beyond_strokes", strokes_text(errors)) + " beyond, ";
   if (errors.strokes <= 3) return none + "too few for a bound";
@@ -198,7 +199,7 @@ std::string learnt_html(const ReportData& data) {
     return "<tr><td class=\"text\">" + std::string(name) + "</td><td class=\"text\">" + escape_html(value) +
            "</td></tr>\n";
   };
-  std::string html = "<table>" + row("Features", features);
+  std::string html = "<table class=\"learnt\">" + row("Features", features);
   if (data.correction_strength)
     html += row("Strength of the correction by centres",
                 fixed(100.0 * *data.correction_strength, 0) + " % of what it could be, by strokes left out");
@@ -211,158 +212,6 @@ std::string learnt_html(const ReportData& data) {
                     ", force zero " + fixed(1e3 * surface.force_zero_N, 1) + " mN");
   }
   return html + "</table>\n";
-}
-
-TableCell any(const ErrorSummary& errors, double value) { return errors.samples > 0 ? value : kNoNumber; }
-
-Table models_table(const ReportData& data) {
-  Table table{"models", "", false, {}, {}};
-  table.columns = {{"model", "model"},
-                   {"size", "size"},
-                   {"contact_samples", "samples"},
-                   {"within_jnd", "≤ JND [%]", kInPercent, 2, true},
-                   {"within_jnd_low", ""},
-                   {"within_jnd_high", ""},
-                   {"within_at_least", "at least [%]", kInPercent, 2},
-                   {"p99_error_over_jnd", "99 % error [JND]", 1.0, TableColumn::kThreeDigits, true},
-                   {"p99_error_over_jnd_low", ""},
-                   {"p99_error_over_jnd_high", ""},
-                   {"p99_at_most", ""},
-                   {"rms_error_N", "RMS [mN]", kInMilli, TableColumn::kThreeDigits, true},
-                   {"rms_error_N_low", ""},
-                   {"rms_error_N_high", ""},
-                   {"max_error_N", "worst [mN]", kInMilli},
-                   {"max_error_over_jnd", "worst [JND]"},
-                   {"strokes", "strokes"},
-                   {"beyond_strokes", "beyond"},
-                   {"out_of_domain_samples", ""},
-                   {"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2},
-                   {"moved_p99_error_over_jnd", "99 % [JND]"},
-                   {"moved_rms_error_N", "RMS [mN]", kInMilli},
-                   {"left_out_p99_error_over_jnd", "left out: 99 % [JND]"},
-                   {"difference_p99", "against the choice [JND]", 1.0, TableColumn::kThreeDigits, true},
-                   {"difference_p99_low", ""},
-                   {"difference_p99_high", ""}};
-  const Evidence& chosen = data.models[data.choice.chosen].errors;
-  for (const ModelResult& one : data.models) {
-    const Evidence& e = one.errors;
-    const Interval within = e.within_interval();
-    const Interval p99 = e.p99_interval();
-    const Interval rms = e.rms_interval_N();
-    const PairedDifference difference = paired_difference(e, chosen);
-    table.rows.push_back({one.plan.name,
-                          static_cast<std::uint64_t>(one.size),
-                          e.samples,
-                          e.within_jnd,
-                          within.low,
-                          within.high,
-                          e.within_at_least(),
-                          e.p99_error_over_jnd,
-                          p99.low,
-                          p99.high,
-                          e.p99_at_most(),
-                          e.rms_error_N,
-                          rms.low,
-                          rms.high,
-                          e.max_error_N,
-                          e.max_error_over_jnd,
-                          e.strokes,
-                          e.beyond_strokes,
-                          e.out_of_domain_samples,
-                          any(one.moved, one.moved.within_jnd),
-                          any(one.moved, one.moved.p99_error_over_jnd),
-                          any(one.moved, one.moved.rms_error_N),
-                          any(one.left_out, one.left_out.p99_error_over_jnd),
-                          difference.p99,
-                          difference.interval.low,
-                          difference.interval.high});
-  }
-  return table;
-}
-
-Table times_table(const ReportData& data) {
-  Table table{"times",
-              "",
-              true,
-              {{"model", "model"},
-               {"tick_ns", "tick [ns]", 1.0, 0},
-               {"tick_p99_ns", "p99 [ns]", 1.0, 0},
-               {"evaluation_ns", "evaluation [ns]", 1.0, 0},
-               {"evaluation_p99_ns", "p99 [ns]", 1.0, 0},
-               {"fit_seconds", "fit [s]"}},
-              {}};
-  for (const ModelResult& one : data.models) {
-    if (!one.time.measured) continue;
-    table.rows.push_back({one.plan.name, one.time.tick.median_ns, one.time.tick.p99_ns, one.time.evaluation.median_ns,
-                          one.time.evaluation.p99_ns, one.fit_seconds});
-  }
-  return table;
-}
-
-Table recordings_table(const ReportData& data) {
-  Table table{"recordings",
-              "",
-              false,
-              {{"role", ""},
-               {"name", "recording"},
-               {"samples", "samples"},
-               {"contact_samples", "in contact"},
-               {"seconds", "[s]"},
-               {"rate_Hz", "[Hz]"},
-               {"deepest_m", "deepest [mm]", kInMilli},
-               {"largest_force_N", "largest [N]"},
-               {"force_noise_N", "force noise [mN]", kInMilli},
-               {"accelerometer", "accelerometer"},
-               {"content_hash", ""}},
-              {}};
-  table.columns[0].title = "role";
-  for (const RecordingFacts& facts : data.recordings) {
-    table.rows.push_back({facts.role, facts.name, facts.samples, facts.contact_samples, facts.seconds, facts.rate_Hz,
-                          facts.deepest_m, facts.largest_force_N, facts.force_noise_N,
-                          std::string(facts.accelerometer ? "yes" : "no"), facts.content_hash});
-  }
-  return table;
-}
-
-Table bins_table(const ReportData& data) {
-  Table table{"force_bins",
-              "",
-              false,
-              {{"model", ""},
-               {"force_from_N", ""},
-               {"force_to_N", ""},
-               {"count", ""},
-               {"mean_force_N", ""},
-               {"mean_abs_error_N", ""},
-               {"std_abs_error_N", ""},
-               {"max_abs_error_N", ""},
-               {"mean_error_over_jnd", ""},
-               {"std_error_over_jnd", ""},
-               {"max_error_over_jnd", ""}},
-              {}};
-  for (const ModelResult& one : data.models) {
-    for (const ForceBin& bin : one.errors.bins) {
-      if (!one.plan.main || bin.count == 0) continue;
-      table.rows.push_back({one.plan.name, bin.force_from_N, bin.force_to_N, bin.count, bin.mean_force_N,
-                            bin.mean_abs_error_N, bin.std_abs_error_N, bin.max_abs_error_N, bin.mean_error_over_jnd,
-                            bin.std_error_over_jnd, bin.max_error_over_jnd});
-    }
-  }
-  return table;
-}
-
-Table worth_table(const ReportData& data) {
-  Table table{"features",
-              "",
-              false,
-              {{"feature", "feature"},
-               {"taken", "taken"},
-               {"error_over_jnd_with", "RMS error over the JND with it"},
-               {"error_over_jnd_without", "without"}},
-              {}};
-  for (const FeatureWorth& one : data.worth)
-    table.rows.push_back({one.name, std::string(one.taken ? "yes" : "no"), one.error_with, one.error_without});
-  return table;
 }
 
 }  // namespace
@@ -385,18 +234,18 @@ std::string answer_html(const ReportData& data) {
   return html + next_html(data, chosen);
 }
 
-std::vector<Table> make_tables(const ReportData& data) {
-  return {models_table(data), recordings_table(data), bins_table(data), worth_table(data), times_table(data)};
-}
-
-Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Figure>& figures,
-                              const std::map<std::string, std::string>& svgs) {
+Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
+                              const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
   const std::string path = *assets + "/report/page.html";
   const auto text = read_whole_file(path);
   if (!text) return Error{"cannot read " + path + ", the template of the report; check the assets folder"};
   const auto figure = [&](std::size_t index) { return figure_html(figures[index], svgs); };
+  const auto table = [&](const std::string& name) {
+    const auto at = std::find_if(tables.begin(), tables.end(), [&](const Table& one) { return one.name == name; });
+    return at->rows.empty() ? std::string() : table_html(*at);
+  };
   std::string tests;
   for (const RecordingFacts& facts : data.recordings) {
     if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
@@ -409,11 +258,11 @@ Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin
       {"notes", notes_html(data)},
       {"worst", figure(1)},
       {"learnt", learnt_html(data)},
-      {"features", data.worth.empty() ? "" : table_html(worth_table(data))},
-      {"recordings", table_html(recordings_table(data))},
+      {"features", table("features")},
+      {"recordings", table("recordings")},
       {"paper", figure(2)},
-      {"models", table_html(models_table(data))},
-      {"times", table_html(times_table(data))},
+      {"models", table("models")},
+      {"times", table("times")},
       {"origin", escape_html(origin.command_line + " · " + origin.version + ", " + origin.compiler + " · " +
                              origin.machine + " · " + three_digits(origin.seconds) + " s")}};
   std::string page;

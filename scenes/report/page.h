@@ -1,4 +1,4 @@
-// The report's page, tables and report.json from its data.
+// The report's page from its data.
 //
 // Thread guarantee: pure functions; make_page reads the template in the assets.
 #pragma once
@@ -27,11 +27,9 @@ struct ReportOrigin {
 // tests/scenes/report/check_report.py can recompute it from FORCES.csv.
 std::string answer_html(const ReportData& data);
 
-// Everything measured; those with times differ from run to run.
-std::vector<Table> make_tables(const ReportData& data);
-
-// `svgs`: by the name of the plot. Errors: the template is missing, or asks for what is not there.
-Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Figure>& figures,
-                              const std::map<std::string, std::string>& svgs);
+// `tables`: those of make_tables; `svgs`: by the name of the plot. Errors: the template is missing, or asks for what is
+// not there.
+Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
+                              const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs);
 
 }  // namespace palpate

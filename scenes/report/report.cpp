@@ -15,6 +15,7 @@
 #include "scenes/report/measure.h"
 #include "scenes/report/page.h"
 #include "scenes/report/report_folder.h"
+#include "scenes/report/report_tables.h"
 
 namespace palpate {
 namespace {
@@ -161,7 +162,7 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   const std::string json =
       report_json(*data, origin, tables, figures).dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
   if (const Status status = folder->write("report.json", json); !status) return status.error();
-  const auto page = make_page(*data, origin, figures, *svgs);
+  const auto page = make_page(*data, origin, tables, figures, *svgs);
   if (!page) return page.error();
   if (const Status status = folder->write("index.html", *page); !status) return status.error();
   if (!control.may_continue(1.0)) return interrupted();

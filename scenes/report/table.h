@@ -50,7 +50,6 @@ inline constexpr double kInMilli = 1e3;
 
 struct Table {
   std::string name;        // of the CSV file, without its ending
-  std::string caption;     // on the page: what to conclude; empty: not on the page
   bool has_times = false;  // holds measured times: differs from run to run
   std::vector<TableColumn> columns;
   std::vector<std::vector<TableCell>> rows;  // as many cells as columns

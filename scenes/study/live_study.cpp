@@ -75,10 +75,6 @@ void LiveStudy::update() {
   session_->update();
 }
 
-bool LiveStudy::device_pushes() const noexcept {
-  return device_->renders_force() && newest_.device.zeroing != Zeroing::not_needed;
-}
-
 std::string LiveStudy::device_words() const {
   const auto faults = device_fault_words(newest_.device.faults);
   if (!faults.empty()) return faults.front();

@@ -13,6 +13,10 @@
 
 namespace palpate {
 
+inline constexpr const char* kRehearsal =
+    "No force device: nobody can feel anything. This is a rehearsal; its answers are marked so and left out of the "
+    "analysis.";
+
 struct LiveStudyRequest {
   std::string device = "auto";
   StudyHeader header;  // who, and by which procedure
@@ -42,7 +46,7 @@ class LiveStudy {
   LoopStatistics statistics() const noexcept { return loop_->statistics(); }
   const RtStatus& scheduling() const noexcept { return loop_->scheduling(); }
   // Whether a hand can feel it; else this is a rehearsal.
-  bool device_pushes() const noexcept;
+  bool device_pushes() const noexcept { return session_->header().rendered; }
   // What the device needs first, or what it is; may be empty.
   std::string device_words() const;
   void start_zeroing() { device_->start_zeroing(); }

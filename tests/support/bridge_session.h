@@ -63,13 +63,15 @@ inline bool wait_for(const std::function<bool()>& done, int seconds = 20) {
   return false;
 }
 
-// The loop on an open device, with a spring.
+// The loop on an open device, with a spring or a model of a test's own.
 class SpringSession {
  public:
   static constexpr double kStiffness_N_per_m = 1000.0;
 
-  explicit SpringSession(std::unique_ptr<Device> device) : device_(std::move(device)), loop_(*device_) {
-    loop_.publish_models(std::make_unique<LiveModels>(1, device_->sensor(), std::vector{spring(kStiffness_N_per_m)}));
+  explicit SpringSession(std::unique_ptr<Device> device,
+                         const std::shared_ptr<const ForceModel>& model = spring(kStiffness_N_per_m))
+      : device_(std::move(device)), loop_(*device_) {
+    loop_.publish_models(std::make_unique<LiveModels>(1, device_->sensor(), std::vector{model}));
     started_ = loop_.start().ok();
   }
   ~SpringSession() {

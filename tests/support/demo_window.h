@@ -43,13 +43,13 @@ class DemoWindowTest : public ::testing::Test {
   }
 
   // A scene without a virtual material: no fit runs beside the test.
-  void open(const std::string& device, bool kiosk = false) {
+  void open(const std::string& device, bool exhibit = false) {
     DemoRequest request;
     request.session.scene = "skin";
     request.session.device = device;
     request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
     request.session.realtime = false;  // a test does not outrank the machine it runs on
-    request.kiosk = kiosk;
+    request.exhibit = exhibit;
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);

@@ -42,7 +42,7 @@ inline HidCalibration example_calibration(const HidDriver* driver) {
   return calibration;
 }
 
-// The device's end. Time in microseconds; `step` once every 250 us.
+// The device's end. Time in microseconds; `step` once every 250 us, or as often as a test says.
 class DeviceModel {
  public:
   virtual ~DeviceModel() = default;
@@ -149,6 +149,8 @@ class BridgeModel final : public DeviceModel {
   }
   double force_units() const override { return -pushed_uN_; }
   std::uint32_t period_us = 1000;
+  std::function<std::uint32_t()> next_period_us;  // of an irregular one
+  std::uint32_t samples = 0;
 
   // The board, as hapkit_firmware.h names it.
   std::uint32_t now_us() const { return now_us_; }
@@ -161,6 +163,8 @@ class BridgeModel final : public DeviceModel {
   bool sample(std::uint32_t& time_us, std::int32_t& position_nm, std::int32_t& force_uN) {
     if (now_us_ - sampled_us_ < period_us) return false;
     sampled_us_ = time_us = now_us_;
+    ++samples;
+    if (next_period_us) period_us = next_period_us();
     position_nm = counts_;
     force_uN = 250'000;
     return true;
@@ -203,7 +207,6 @@ class SimulatedDevice {
  public:
   static constexpr double kStiffness_N_per_m = 1300.0;  // nearly 4 N where the tool is held
   static constexpr double kStart_s = 100.0;
-  static constexpr int kStep_us = 250;
 
   explicit SimulatedDevice(const HidDriver* driver)
       : calibration(example_calibration(driver)),
@@ -226,8 +229,8 @@ class SimulatedDevice {
   // One haptics tick, and what the device and the two I/O threads do meanwhile.
   const LoopSnapshot& tick() {
     inside_ = rest ? 0.0 : std::min(1.0, inside_ + 0.02);
-    for (int i = 0; i < 1000 / kStep_us; ++i) {
-      now_us += kStep_us;
+    for (int i = 0; i < 1000 / step_us; ++i) {
+      now_us += step_us;
       now_s = kStart_s + 1e-6 * static_cast<double>(now_us);
       const double counts = calibration.counts_per_metre * (position_m() - calibration.rest_position_m);
       if (!encoder_frozen) counts_ = static_cast<std::int32_t>(std::lround(counts)) + counts_offset;
@@ -264,6 +267,7 @@ class SimulatedDevice {
   LoopSnapshot snapshot;
   double now_s = kStart_s;
   std::int64_t now_us = 0;
+  int step_us = 250;  // of the device's end; divides a millisecond
   bool rest = true;
   bool encoder_frozen = false;
   bool writer_hangs = false;

@@ -2,9 +2,11 @@
 // away, and it comes back by itself with a ramp when the fault is over.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
+#include "engine/base/random_stream.h"
 #include "tests/support/simulated_device.h"
 
 namespace palpate {
@@ -159,8 +161,9 @@ TEST(BridgeEndpoint, EveryFaultTakesTheForceAwayAndItComesBackByItself) {
 }
 
 TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
-  for (const std::uint32_t period_us : {10'000u, 2'000u, 1'000u, 250u}) {  // the simulation's own step
+  for (const std::uint32_t period_us : {10'000u, 2'000u, 1'000u, 250u, 100u}) {
     SimulatedDevice simulated(&kBridgeDriver);
+    simulated.step_us = period_us < 250 ? 50 : 250;
     dynamic_cast<test::BridgeModel&>(*simulated.model).period_us = period_us;
     press(simulated);
     EXPECT_EQ(simulated.snapshot.device.faults, 0u) << period_us;
@@ -170,6 +173,28 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
     for (int i = 0; i < 100; ++i) samples += simulated.tick().samples;
     EXPECT_NEAR(samples, 1e5 / period_us, 1.0) << "every one is handed over";
   }
+}
+
+// Anything from 10 kHz to 200 Hz from one sample to the next, half a second together.
+TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
+  SimulatedDevice simulated(&kBridgeDriver);
+  simulated.step_us = 50;
+  auto& model = dynamic_cast<test::BridgeModel&>(*simulated.model);
+  RandomStream random(3, 0);
+  model.next_period_us = [&random] {
+    return static_cast<std::uint32_t>(std::lround(100.0 * std::pow(50.0, random.uniform(0.0, 1.0))));
+  };
+  press(simulated);
+  const std::uint32_t sent_before = model.samples;
+  std::uint32_t samples = 0, faults = 0;
+  for (int i = 0; i < 500; ++i) {
+    samples += simulated.tick().samples;
+    faults |= simulated.snapshot.device.faults;
+    EXPECT_GT(simulated.snapshot.rendered_N, 3.0) << i;
+  }
+  EXPECT_EQ(faults, 0u);
+  EXPECT_NEAR(samples, model.samples - sent_before, 10.0) << "but those on their way";
+  EXPECT_NEAR(simulated.motor_N(), wanted_N(simulated), kResolution_N);
 }
 
 TEST(BridgeEndpoint, TheDeviceStopsByItselfWithoutFramesOrHeartbeat) {

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "engine/recording/recording.h"
+#include "models/model/file/model_io.h"
 #include "tests/support/bridge_session.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -84,12 +87,13 @@ TEST(Hapkit, RecordsASimulatedMaterial) {
   EXPECT_GT(largest_N, 0.5);
 }
 
-TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) {
+// The motor's pins while `model` is rendered, and after the host was killed in a press.
+void expect_stop_after_kill(const std::shared_ptr<const ForceModel>& model) {
   const Board board("");
   ChildProcess host([&] {
     auto device = test::open_bridge(board.port());
     if (!device) return;
-    test::SpringSession session(std::move(*device));
+    test::SpringSession session(std::move(*device), model);
     test::wait_for([] { return false; }, 300);
   });
   // In the middle of a press: what drives for so long already.
@@ -104,11 +108,38 @@ TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) {
   ASSERT_TRUE(test::wait_for([&] { return board.last_line().rfind("zero", 0) == 0; }));
   double at_ms = 0.0, after_ms = 1e9;
   const std::string zero = board.last_line();
-  std::printf("%s\n", zero.c_str());
+  std::printf("%s: %s\n", model->name().c_str(), zero.c_str());
   ASSERT_EQ(std::sscanf(zero.c_str(), "zero %lf ms, %lf ms after", &at_ms, &after_ms), 2);
   EXPECT_LE(after_ms, 60.0) << "by the board's own clock";
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_EQ(board.last_line(), zero) << "nothing drives again";
+}
+
+TEST(Hapkit, StopsWithin60MsWhenTheHostIsKilled) { expect_stop_after_kill(test::spring(1000.0)); }
+
+// From a box to a felt model: another hand's press is within the JND, and the model is
+// rendered until the host is killed.
+TEST(Hapkit, WhatWasRecordedThroughItIsFittedReplayedAndRendered) {
+  const test::TemporaryFolder folder;
+  for (const std::string seed : {"1", "2"}) {
+    const Board board("--material silicone --seed " + seed);
+    const auto run = run_palpate(
+        {"record", "--device", "bridge:" + board.port(), "--seconds", "12", "--out", folder.file(seed + ".csv")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  const auto fit = run_palpate(
+      {"fit", "--recording", folder.file("1.csv"), "--method", "greedy", "--out", folder.file("press.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const auto replay =
+      run_palpate({"replay", "--recording", folder.file("2.csv"), "--model", folder.file("press.json"), "--json"});
+  ASSERT_EQ(replay.exit_code, 0) << replay.err;
+  const auto judged = nlohmann::json::parse(replay.out)["models"][0]["surface_moved"];
+  std::printf("within the JND %.4f, 99 %% up to %.2f JND\n", judged["within_jnd"].get<double>(),
+              judged["p99_error_over_jnd"].get<double>());
+  EXPECT_GT(judged["within_jnd"].get<double>(), 0.98);
+  const auto model = load_model(folder.file("press.json"));
+  ASSERT_TRUE(model.ok()) << model.error().message;
+  expect_stop_after_kill(*model);
 }
 
 #endif

@@ -48,8 +48,8 @@ class ExhibitTest : public test::DemoWindowTest {
     if (!setting.learned) request.session.models = {folder_.file("soft.json"), folder_.file("firm.json")};
     request.session.bus = setting.bus;
     request.session.realtime = false;
-    request.kiosk = true;
-    request.exhibit = setting.times;
+    request.exhibit = true;
+    request.exhibit_times = setting.times;
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
@@ -57,6 +57,17 @@ class ExhibitTest : public test::DemoWindowTest {
     ASSERT_TRUE(shows("1")) << "has learned";
   }
 
+  // The handle of a force device into the block and out again, no faster than a hand.
+  void stroke_device() {
+    for (const int to : {1150, 0}) {
+      ASSERT_TRUE(until([&] {
+        bus_.counts += std::clamp(to - bus_.counts, -50, 50);
+        return bus_.counts == to && app_->session().newest().tick.in_contact == (to > 0);
+      }));
+    }
+  }
+
+  test::FakeHidBus bus_;  // outlives the window, which a failed test leaves open
   std::string pictures_;
 
   // So far under the middle of a block's top, in pixels.
@@ -186,8 +197,11 @@ TEST_F(ExhibitTest, EveryScreenIsDrawnInBothLanguagesAtBothSizes) {
         picture(std::string("guess") + round);
         press(GLFW_KEY_1);
         const auto over = [&] { return state() != State::press; };
-        hold(GLFW_KEY_DOWN, [&] { return over() || app_->session().newest().tick.depth_m > 0.005; });
-        picture(std::string("press") + round);
+        hold(GLFW_KEY_DOWN, [&] {
+          const bool deep = over() || app_->session().newest().tick.depth_m > 0.005;
+          if (deep) picture(std::string("press") + round);
+          return deep;
+        });
         hold(GLFW_KEY_UP, [&] { return over() || !app_->session().newest().tick.in_contact; });
         ASSERT_TRUE(until([&] { return state() == State::reveal; }));
         picture(std::string("reveal") + round);
@@ -262,21 +276,38 @@ TEST_F(ExhibitTest, LanguagesHaveKeysOfTheirOwnAndTheHostsTallyIsHidden) {
   EXPECT_TRUE(says("Kannst du Computer und Block unterscheiden?"));
 }
 
+// Two models make a pair and a catch trial.
 TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
-  test::FakeHidBus bus;
-  open_exhibit({{1.0, 30.0, 2.0}, &bus});
+  open_exhibit({{1.0, 300.0, 2.0}, &bus_});
+  press(GLFW_KEY_Z);
+  ASSERT_TRUE(until([&] { return app_->session().newest().device.may_push(); }));
+  pictures_ = "felt-";
   press(GLFW_KEY_1);
-  ASSERT_EQ(state(), State::press) << "no guess before a hand has felt anything";
-  EXPECT_TRUE(says("feel a difference"));
-  EXPECT_TRUE(app_->view().blind);
-  EXPECT_EQ(app_->view().block_count, 1u);
-  press(GLFW_KEY_D);
-  EXPECT_EQ(state(), State::press) << "both have to be pressed";
-  const std::size_t one = app_->session().models().selected();
-  press(GLFW_KEY_2);
-  if (!game().round().is_catch()) {
-    EXPECT_NE(app_->session().models().selected(), one);
+  bool was_catch = false;
+  for (const char* round : {"1", "2"}) {
+    ASSERT_EQ(state(), State::press) << "no guess before a hand has felt anything";
+    EXPECT_TRUE(says("feel a difference"));
+    EXPECT_TRUE(app_->view().blind);
+    EXPECT_EQ(app_->view().block_count, 1u);
+    stroke_device();
+    press(GLFW_KEY_D);
+    EXPECT_EQ(state(), State::press) << "both have to be pressed";
+    const std::size_t one = app_->session().models().selected();
+    press(GLFW_KEY_2);
+    stroke_device();
+    EXPECT_EQ(app_->session().models().selected() == one, game().round().is_catch());
+    picture(std::string("press") + round);
+    press(game().round().is_catch() ? GLFW_KEY_S : GLFW_KEY_D);
+    ASSERT_EQ(state(), State::reveal);
+    EXPECT_EQ(says("It was a catch"), game().round().is_catch()) << "announced";
+    was_catch = was_catch || game().round().is_catch();
+    picture(std::string("reveal") + round);
+    press(GLFW_KEY_ENTER);
   }
+  EXPECT_TRUE(was_catch);
+  ASSERT_EQ(state(), State::score);
+  EXPECT_TRUE(says("All that you felt was computed"));
+  picture("score");
 }
 
 TEST_F(ExhibitTest, HasOneWayOut) {

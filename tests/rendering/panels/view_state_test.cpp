@@ -44,7 +44,7 @@ TEST(UiScale, FollowsTheEyeAndNotThePixels) {
   EXPECT_NEAR(ui_scale({1920, 1080, 1.0F, 1.0F}, 1.0F), 1.0F, 1e-5F);
   EXPECT_FLOAT_EQ(ui_scale({800, 1050, 1.0F, 1.0F}, 1.0F), usual) << "narrow";
   // The scale goes in steps of 0.04.
-  EXPECT_NEAR(ui_scale({1920, 1080, 1.0F, 1.0F}, kKioskText), 1.5F, 0.021F);
+  EXPECT_NEAR(ui_scale({1920, 1080, 1.0F, 1.0F}, kExhibitText), 1.5F, 0.021F);
 }
 
 TEST(ModelTable, DropsColumnsInAFixedOrder) {

@@ -111,6 +111,32 @@ TEST(Study, StrokesOfTheSceneNeedNoFile) {
   EXPECT_NE(run.out.find("Predicted below the JND"), std::string::npos) << run.out;
 }
 
+TEST(Study, RunsInATerminalThroughADeviceOfTheBridge) {
+  const test::TemporaryFolder folder;
+  const std::string said = folder.file("said"), answers = folder.file("study-S07.csv");
+  const std::string device =
+      "bridge:exec:python3 " + std::string(PALPATE_SOURCE_DIR) + "/assets/examples/bridge/bridge.py";
+  const auto wait = [&](const std::string& words) {
+    return "until grep -q '" + words + "' " + said + "; do sleep 0.1; done; ";
+  };
+  const std::string types = wait("Do you agree") + "echo y; " + wait("learn the task") + "echo; " +
+                            wait("training 1 of") + "echo 1; " + wait("training 2 of") + "echo q";
+  const std::string program =
+      std::string(PALPATE_BINARY) + " study run --subject S07 --device '" + device + "' --out " + folder.path();
+  const auto run = test::run_program({"sh", "-c", ": > " + said + "; (" + types + ") | " + program + " > " + said});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const std::string words = test::read_text(said);
+  EXPECT_EQ(words.find("rehearsal"), std::string::npos) << words;
+  EXPECT_NE(words.find("The session was ended; all answers are stored."), std::string::npos) << words;
+  const auto data = read_study(answers);
+  ASSERT_TRUE(data.ok()) << data.error().message;
+  ASSERT_EQ(data->records.size(), 1u);
+  EXPECT_EQ(data->records[0].device, "bridge");
+  EXPECT_TRUE(data->records[0].rendered);
+  EXPECT_FALSE(data->records[0].answered_second);
+  EXPECT_GT(data->records[0].first_rendered_N, 0.0) << "less than asked for where a busy machine makes it late";
+}
+
 TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);

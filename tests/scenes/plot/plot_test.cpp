@@ -58,6 +58,26 @@ TEST(Plot, HoldsFromThreeTenthsOfANewtonToThreeKilonewtons) {
   }
 }
 
+TEST(Plot, TicsOfManyOrHardlyAnyDecadesAreReadable) {
+  if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
+  const test::TemporaryFolder folder;
+  Plot plot = errors_up_to(1.0);
+  Panel& panel = plot.panels[1];
+  panel.x = {"Centres", "", true, 10.0, 3e6};
+  panel.y = {"Error [JND]", "", true, 0.8, 1.7};
+  ASSERT_TRUE(draw_plots(folder.path(), {plot}).ok());
+  const std::string svg = *read_whole_file(folder.file("errors.svg"));
+  for (const char* tic : {">100<", ">10k<", ">1M<", ">0.8<", ">1.5<"}) {
+    EXPECT_NE(svg.find(tic), std::string::npos) << tic;
+  }
+}
+
+TEST(Plot, ALegendOfTwoLinesHasTwoLinesOfRoom) {
+  Plot plot = errors_up_to(1.0);
+  for (int i = 0; i < 12; ++i) plot.panels[0].series.push_back({"a long name " + std::to_string(i), 0, Mark::line, {}});
+  EXPECT_NE(plot_script(plot)->find("title \" \\n \\n \"\n"), std::string::npos) << *plot_script(plot);
+}
+
 TEST(Plot, ScriptHoldsItsOwnData) {
   const auto script = plot_script(errors_up_to(30.0));
   ASSERT_TRUE(script.ok()) << script.error().message;

@@ -10,7 +10,6 @@ namespace {
 Table example() {
   const double none = std::numeric_limits<double>::quiet_NaN();
   return {"example",
-          "caption",
           false,
           {{"model", "model"}, {"count", "count"}, {"rms_error_N", "RMS [mN]", 1e3}, {"share", "share [%]", 100.0, 2}},
           {{std::string("a,\"b\""), std::uint64_t{12345}, 0.1, 0.99954},
@@ -38,7 +37,6 @@ TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
 
 TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
   const Table table{"example",
-                    "",
                     false,
                     {{"share", "share [%]", 100.0, 1, true}, {"share_low", "", 100.0, 1}, {"share_high", "", 100.0, 1}},
                     {{0.5, 0.25, 0.75}}};
@@ -48,7 +46,7 @@ TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
 }
 
 TEST(Table, ARowWithoutCellsBreaksALine) {
-  EXPECT_EQ(table_csv({"t", "", false, {{"x", ""}}, {{1.0}, {}, {2.0}}}), "x\n1\n\n2\n");
+  EXPECT_EQ(table_csv({"t", false, {{"x", ""}}, {{1.0}, {}, {2.0}}}), "x\n1\n\n2\n");
 }
 
 }  // namespace

@@ -1,0 +1,157 @@
+#include "scenes/cli/fit_output.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "engine/base/text.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr double kSingular = 1e300;
+
+std::string relaxation_text(const std::vector<RelaxationTime>& times) {
+  std::string text;
+  for (const RelaxationTime& time : times) {
+    char one[64];
+    if (time.standard_error_s > 0.0) {
+      std::snprintf(one, sizeof one, "%.3g s +- %.2g", time.time_s, time.standard_error_s);
+    } else {
+      std::snprintf(one, sizeof one, "%.3g s", time.time_s);
+    }
+    text += (text.empty() ? "" : ", ") + std::string(one);
+  }
+  return text.empty() ? "none" : text;
+}
+
+// One row a feature: what the trend's error on strokes left out is with it and
+// without it.
+void print_worth(const std::vector<FeatureWorth>& worth) {
+  if (worth.empty()) return;
+  std::printf("%-32s %-5s %12s %12s   RMS over the JND, strokes left out\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
+  for (const FeatureWorth& one : worth) {
+    std::printf("%-32s %-5s %12.4f %12.4f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
+                one.error_without);
+  }
+  std::fflush(stdout);
+}
+
+std::string strength_text(const StrengthChoice& strength) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%.0f %% of it; RMS over the JND on strokes left out %.4f, %.4f without it",
+                100.0 * strength.strength, strength.error_over_jnd, strength.trend_error_over_jnd);
+  return text;
+}
+
+std::vector<RecordingSurface> surfaces_of(const Provenance& provenance) {
+  if (!provenance.surfaces.empty()) return provenance.surfaces;
+  std::vector<RecordingSurface> as_recorded;
+  for (const std::string& name : provenance.recordings) as_recorded.push_back({name, 0.0, 0.0, 0.0});
+  return as_recorded;
+}
+
+void print_surfaces(const Provenance& provenance) {
+  for (const RecordingSurface& surface : provenance.surfaces) {
+    const std::string error = std::isfinite(surface.standard_error_m)
+                                  ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
+                                  : std::string(" mm (not told)");
+    std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
+              << fixed(1e3 * surface.force_zero_N, 1) << " mN"
+              << (surface.lag_s != 0.0 ? ", force moved back by " + fixed(1e3 * surface.lag_s, 1) + " ms" : "") << ": "
+              << surface.name << "\n";
+  }
+}
+
+nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
+  auto list = nlohmann::ordered_json::array();
+  for (const RecordingSurface& surface : surfaces_of(provenance)) {
+    list.push_back(
+        {{"name", surface.name},
+         {"surface_offset_m", surface.offset_m},
+         {"standard_error_m", std::isfinite(surface.standard_error_m) ? nlohmann::ordered_json(surface.standard_error_m)
+                                                                      : nlohmann::ordered_json(nullptr)},
+         {"told", std::isfinite(surface.standard_error_m)},
+         {"force_zero_N", surface.force_zero_N},
+         {"force_lag_s", surface.lag_s}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json worth_json(const std::vector<FeatureWorth>& worth) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const FeatureWorth& one : worth) {
+    list.push_back({{"name", one.name},
+                    {"taken", one.taken},
+                    {"error_over_jnd_with", one.error_with},
+                    {"error_over_jnd_without", one.error_without}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json strength_json(const std::optional<StrengthChoice>& strength) {
+  if (!strength) return nullptr;
+  return {{"strength", strength->strength},
+          {"smoothing", strength->smoothing},
+          {"error_over_jnd", strength->error_over_jnd},
+          {"trend_error_over_jnd", strength->trend_error_over_jnd}};
+}
+
+}  // namespace
+
+void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
+               const std::string& out) {
+  print_worth(prepared.worth);
+  const Provenance& provenance = fit.data.provenance;
+  std::cout << "model               " << fit.data.name << "\n"
+            << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
+            << "after reduction     " << provenance.samples_after_reduction << "\n";
+  print_surfaces(provenance);
+  std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
+            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
+            << "fit time            " << fixed(seconds, 2) << " s\n"
+            << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
+  // The trend alone solves for no weights; a matrix that is singular has no condition.
+  if (fit.report.columns > 0) {
+    std::cout << "rank                " << fit.report.rank << " of " << fit.report.columns << "\n";
+    if (fit.report.condition < kSingular) std::cout << "condition           " << fit.report.condition << "\n";
+  }
+  for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";
+  std::cout << "written             " << out << "\n";
+}
+
+void print_fit_json(const MethodFit& fit, const PreparedTraining& prepared, const std::string& kernel,
+                    const std::string& weighting, double seconds) {
+  nlohmann::ordered_json features = nlohmann::ordered_json::array();
+  for (const FeatureSpec& spec : fit.data.features) features.push_back(feature_name(spec));
+  const Provenance& provenance = fit.data.provenance;
+  nlohmann::ordered_json times = nlohmann::ordered_json::array();
+  for (const RelaxationTime& time : provenance.relaxation_times) {
+    times.push_back({{"time_s", time.time_s}, {"standard_error_s", time.standard_error_s}});
+  }
+  const nlohmann::ordered_json object = {{"method", fit.data.method},
+                                         {"centres", fit.data.correction->size()},
+                                         {"kernel", kernel},
+                                         {"weighting", weighting},
+                                         {"samples", provenance.samples},
+                                         {"samples_after_reduction", provenance.samples_after_reduction},
+                                         {"fit_seconds", seconds},
+                                         {"training_within_jnd", provenance.training_within_jnd},
+                                         {"name", fit.data.name},
+                                         {"features", features},
+                                         {"feature_worth", worth_json(prepared.worth)},
+                                         {"correction", strength_json(prepared.strength)},
+                                         {"contact_samples", provenance.contact_samples},
+                                         {"relaxation_times", times},
+                                         {"recordings", surfaces_json(provenance)},
+                                         {"condition", fit.report.condition},
+                                         {"rank", fit.report.rank},
+                                         {"smoothing", fit.report.smoothing},
+                                         {"notes", fit.report.notes}};
+  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+}
+
+}  // namespace palpate::cli
