@@ -71,7 +71,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
     wanted.line_up = settings_.line_up;
   request_ = wanted;
-  first_device_ = wanted.device;
+  first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
@@ -204,8 +204,9 @@ void DemoApp::draw() {
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
   const SceneArea& panel = layout.panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {&commands_, [this](const std::string& scene) { switch_to(scene, first_device_); },
-                 [this](const std::string& path) { switch_to(request_.scene, "replay:" + path); }});
+                {&commands_, [this](const std::string& scene) { switch_to(scene, "", first_device_); },
+                 [this](const std::string& path) { switch_to(request_.scene, "", "replay:" + path); },
+                 [this](const std::string& path) { switch_to(request_.scene, path, first_device_); }});
   if (view_.kiosk) {
     exhibit_.draw(*session_, *blocks_, style_, layout);
   } else {

@@ -106,7 +106,7 @@ class DemoApp {
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.
-  void switch_to(const std::string& scene, const std::string& device);
+  void switch_to(const std::string& scene, const std::string& recording, const std::string& device);
   void reopen(const SessionRequest& request);
   void offer(const std::string& path);
   void offer_finished_recording();

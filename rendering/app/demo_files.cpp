@@ -45,10 +45,14 @@ void DemoApp::save_settings() {
   (void)write_settings(settings_file_, settings_);
 }
 
-void DemoApp::switch_to(const std::string& scene, const std::string& device) {
+// Another material: its own models, fitted to it.
+void DemoApp::switch_to(const std::string& scene, const std::string& recording, const std::string& device) {
   next_ = request_;
   next_->scene = scene;
+  next_->recording = recording;
   next_->device = device;
+  next_->models.clear();
+  if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
 }
 
 void DemoApp::reopen(const SessionRequest& request) {
@@ -72,6 +76,8 @@ void DemoApp::reopen(const SessionRequest& request) {
   blocks_->camera().turn(settings_.camera);
   blocks_framed_ = 0;
   stirred_ = true;
+  panel_ = Panel{};  // no curve of the old one
+  toasts_.clear();
   view_.time = CurveTime{};
   view_.time.zero_s = steady_now_s();
 }
@@ -110,8 +116,8 @@ void DemoApp::offer_finished_recording() {
 }
 
 void DemoApp::next_line_up() {
-  if (!session_->scene().material) {
-    notify("this scene has no virtual material to fit models to", false);
+  if (!session_->scene().has_material()) {
+    notify("there is nothing to fit models to: O chooses a material, a recording is one too", false);
     return;
   }
   const std::vector<LineUp>& all = line_ups();
@@ -149,8 +155,8 @@ void DemoApp::record() {
 }
 
 CurveSource DemoApp::curve_source() const {
-  CurveSource source{
-      session_->scene().title, session_->device_name(), session_->reference_words(), view_.time.zero_s, {}};
+  CurveSource source{session_->scene().title, session_->device_name(), session_->reference_words(),
+                     session_->jnd(),         view_.time.zero_s,       {}};
   for (std::size_t i = 0; i < session_->models().size(); ++i) {
     if (session_->models().view(i).state == SlotState::ready)
       source.models.push_back(

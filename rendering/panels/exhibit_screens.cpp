@@ -214,7 +214,7 @@ void Exhibit::draw_score(const Canvas& canvas) {
   for (const ExhibitRound& round : rounds) draw_bar(canvas, round);
   say_quietly(canvas, words()("bars"));
   space(canvas.style, 0.6F);
-  const std::string used_us = number(1e-3 * canvas.session.models().view(rounds.back().second.slot).evaluation_ns);
+  const std::string used_us = number(1e-3 * canvas.session.models().view(rounds.back().second.slot).tick_ns);
   say(game_.felt() ? words()("take_home_felt", used_us)
                    : words()("take_home", number(rounds.back().largest_over_jnd), used_us));
   space(canvas.style, 0.6F);

@@ -42,7 +42,7 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
 void draw_file_list(LiveSession& session, ViewState& view);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
 // What to do with a recording: fit it, replay it.
-void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions);
+void draw_offered_recording(ViewState& view, const OverlayActions& actions);
 // Notices at the top.
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area);
 void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area);

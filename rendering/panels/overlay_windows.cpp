@@ -137,7 +137,7 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
   ImGui::End();
 }
 
-void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions) {
+void draw_offered_recording(ViewState& view, const OverlayActions& actions) {
   if (!view.offered.any()) return;
   const OfferedFile offered = view.offered;
   bool open = true;
@@ -152,10 +152,10 @@ void draw_offered_recording(LiveSession& session, ViewState& view, const Overlay
     ImGui::TextUnformatted(std::filesystem::path(offered.path).filename().c_str());
     for (const std::string& line : offered.words) ImGui::TextDisabled("%s", line.c_str());
     if (ImGui::Button("Fit it, and put it in my hand")) {
-      session.fit_recording(offered.path);
+      actions.fit(offered.path);
       open = false;
     }
-    tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
+    tip("It becomes the material: all models are fitted to it in the background, and you press the best one");
     ImGui::SameLine();
     if (ImGui::Button("Replay it")) {
       open = false;

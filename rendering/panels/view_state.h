@@ -78,6 +78,7 @@ struct ViewState {
   bool details = false;    // of the loop, faults
   bool file_list = false;  // models to load
   CurveTime time;
+  bool verdict = true;         // speed against error; else the error against the force
   bool difference = true;      // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot
