@@ -31,6 +31,7 @@ void DemoApp::use_settings(const DemoRequest& request) {
   view_.block_count = settings_.block_count;
   view_.difference = settings_.difference;
   view_.text_size = settings_.text_size;
+  view_.picker.recent = settings_.recent;
 }
 
 void DemoApp::save_settings() {
@@ -39,6 +40,7 @@ void DemoApp::save_settings() {
   settings_.block_count = view_.block_count;
   settings_.difference = view_.difference;
   settings_.text_size = view_.text_size;
+  settings_.recent = view_.picker.recent;
   if (!session_->line_up().empty()) settings_.line_up = session_->line_up();
   settings_.camera = blocks_->camera().turned();
   // Nobody is there to read of it any more.
@@ -181,6 +183,25 @@ void DemoApp::save_curves() {
     status =
         write_file_atomically(path + ".csv", curve_csv(session_->comparison().history(), source, from_s, to_s), false);
   notify(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
+}
+
+void DemoApp::save_model() {
+  const auto folder = data_folder();
+  if (!folder) {
+    notify(folder.error().message, true);
+    return;
+  }
+  const std::size_t slot = session_->models().selected();
+  std::string path = *folder + "/model" + local_time_text("-%Y%m%d-%H%M%S.json");
+  const Status status = session_->save_model(slot, path);
+  notify(status ? "saved " + session_->models().view(slot).name + " to " + path : status.error().message, !status);
+}
+
+void DemoApp::choose_device() {
+  view_.device_list = !view_.device_list;
+  if (!view_.device_list || looking_.valid()) return;
+  view_.devices.clear();
+  looking_ = std::async(std::launch::async, device_choices);
 }
 
 Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {

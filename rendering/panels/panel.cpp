@@ -87,7 +87,7 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   apply(draw_model_table(errors.models, view.table, style, table), session);
   if (centres > 0.0F) draw_centres(session, errors.models, view);
   if (bins) {
-    section_title(style, view.verdict ? "ERROR AGAINST TIME" : "ERROR AGAINST FORCE");
+    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME" : "ERROR AGAINST FORCE");
     ImGui::SameLine();
     quiet_words(counted_words(errors.models));
     if (view.verdict) {

@@ -101,11 +101,9 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
   }
   if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
     // No fault where nothing that is felt is late.
-    const std::string slow = text_of("%.0f frames a second: the picture is slow, ", recent_fps);
+    const std::string slow = text_of("%.0f frames a second: a slow picture, ", recent_fps);
     if (statistics.missed_deadlines == 0) return {slow + "the force is not affected", false};
-    return {slow + "and the force missed " + std::to_string(statistics.missed_deadlines) + " of " +
-                std::to_string(statistics.ticks) + " deadlines",
-            false};
+    return {slow + std::to_string(statistics.missed_deadlines) + " deadlines missed", false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", recent_fps),

@@ -27,7 +27,7 @@ void draw_block_buttons(ViewState& view) {
     tip("Blocks side by side, each with its own model under the same probe (B)");
   }
   ImGui::SameLine();
-  ImGui::TextDisabled("blocks");
+  ImGui::TextDisabled(view.block_count > 1 ? "blocks, dents x 2" : "blocks");
 }
 
 void draw_title(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
@@ -45,9 +45,15 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
   ImGui::End();
 }
 
-void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (session.mouse() == nullptr || !session.mouse()->hand_is_exploring()) return;
-  const std::string hint = "The hand moves by itself. Move the mouse over the block to press it.";
+// Until it was done: half a newton felt by whoever moves the mouse.
+void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
+  constexpr double kPressed_N = 0.5;
+  if (session.mouse() == nullptr) return;
+  const bool alone = session.mouse()->hand_is_exploring();
+  if (!alone && session.newest().rendered_N > kPressed_N) view.has_pressed = true;
+  if (!alone && view.has_pressed) return;
+  const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
+                                 : "Move down over the block to press: no button, only the way of the mouse.";
   const float line = height_of(style.fonts().body);
   text_at(style.fonts().body,
           {area.at.x + 0.9F * line, area.at.y + 2.6F * height_of(style.fonts().heading) - 0.6F * line},
@@ -220,13 +226,14 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   if (!view.kiosk && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.kiosk) draw_data_warning(session, style, area);
   if (!view.kiosk) draw_title(session, view, style, area);
-  if (!view.kiosk) draw_hint(session, style, area);
+  if (!view.kiosk) draw_hint(session, view, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
   if (!view.kiosk) buttons_height_ = draw_buttons(area, *actions.commands);
   draw_device_words(session, view.offered.any(), style, area);
   draw_toasts(toasts, style, area);
-  draw_file_list(session, view);
+  draw_file_picker(view, actions);
+  draw_device_list(view, actions);
   draw_scene_list(session, view, actions);
   draw_offered_recording(view, actions);
   draw_help(view, style, *actions.commands);

@@ -25,6 +25,7 @@ struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // buttons and the list of keys
   std::function<void(const std::string&)> use_scene;
   std::function<void(const std::string&)> replay, fit;  // of a recording
+  std::function<void(const std::string&)> open, use_device;
 };
 
 // The overlay's sentences; empty when there is nothing to tell.

@@ -8,6 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "models/model/fitted_model.h"
+#include "scenes/live/device_choice.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/local_time.h"
@@ -69,6 +70,17 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 }
 
 }  // namespace
+
+std::vector<DeviceChoice> device_choices() {
+  DeviceRequest request;
+  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
+  std::vector<DeviceChoice> choices;
+  for (DeviceDescription& device : list_devices(request)) {
+    if (device.name.find(':') == std::string::npos)
+      choices.push_back({std::move(device.name), std::move(device.summary), std::move(device.problem)});
+  }
+  return choices;
+}
 
 LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device)
     : request_(request),
@@ -154,7 +166,8 @@ void LiveSession::update_models() {
   const std::vector<std::size_t> ready = models_.update();
   if (ready.empty()) return;
   for (const std::size_t slot : ready) comparison_.begin_slot(slot);
-  publish(models_.view(ready.back()).name + " joined");
+  const std::string& name = models_.view(ready.back()).name;
+  publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
 // All begin to be compared together: the same samples for each.

@@ -38,11 +38,10 @@ TEST(PanelWords, AlarmsThatAreOverAreCounted) {
 TEST(PanelWords, MissedDeadlinesAndSlowPicturesAreNamed) {
   HealthView health;
   EXPECT_FALSE(health_words(health, 20.0).problem) << "nothing that is felt is late";
-  EXPECT_EQ(health_words(health, 20.0).text, "20 frames a second: the picture is slow, the force is not affected");
+  EXPECT_EQ(health_words(health, 20.0).text, "20 frames a second: a slow picture, the force is not affected");
   health.loop.ticks = 5000;
   health.loop.missed_deadlines = 41;
-  EXPECT_EQ(health_words(health, 20.0).text,
-            "20 frames a second: the picture is slow, and the force missed 41 of 5000 deadlines");
+  EXPECT_EQ(health_words(health, 20.0).text, "20 frames a second: a slow picture, 41 deadlines missed");
   health.missed_of_late = 0.025;
   EXPECT_EQ(health_words(health, 20.0).text,
             "2.5 % of the deadlines missed of late: close other programs, or allow real-time priority");
