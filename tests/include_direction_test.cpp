@@ -47,7 +47,7 @@ const std::map<std::string, Names> kRooms = {
     {"scenes/scene", {"models/fit", "scenes/material"}},
     {"scenes/evaluation", {"models/surface"}},
     {"scenes/plot", {"scenes/scene"}},
-    {"scenes/worker", {"scenes/scene"}},
+    {"scenes/worker", {"scenes/scene", "scenes/evaluation"}},
     {"scenes/live", {"scenes/worker", "scenes/evaluation", "scenes/plot", "devices/registry", "engine/import"}},
     {"scenes/report", {"scenes/plot", "scenes/evaluation"}},
     {"scenes/study", {"scenes/worker", "scenes/evaluation", "scenes/plot", "devices/registry"}},

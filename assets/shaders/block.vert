@@ -20,6 +20,8 @@ uniform vec3 light;       // towards it
 uniform float tool_gap;   // metres between the tip and the surface; 0 in contact
 uniform float height;     // metres, of the block
 
+uniform vec3 colour;
+
 out vec3 room_light;
 out float lamp_light;
 out float shadowed;
@@ -61,17 +63,23 @@ void main() {
   // The block stands on something: the last millimetres get little light.
   float standing = 0.62 + 0.38 * smoothstep(0.0, 0.16, up);
   // The hollow's own walls keep light from its middle.
-  float hollow = 1.0 - 0.30 * sunk * sunk * min(dent / tool_radius, 1.0);
+  float hollow = 1.0 - 0.45 * sunk * min(dent / tool_radius, 1.0);
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.45, 0.46, 0.47), 0.5 + 0.5 * n.y);
-  float through = 0.10 * (1.0 - facing) * (0.4 + 0.6 * up);
+  // Light goes in and comes out again where the material is thin, its edges above all and
+  // the wall of the dent, in its own colour: deeper than what the surface sends back.
+  float thin = (1.0 - n.y) * smoothstep(0.2, 1.0, up) + 0.8 * sunk * (1.0 - sunk);
+  float edge = (1.0 - facing) * (1.0 - facing);
+  vec3 own = colour / max(max(colour.r, colour.g), colour.b);
+  vec3 through = (0.22 * thin + 0.10 * (1.0 - facing) * (0.4 + 0.6 * up)) * own * own;
   room_light = (ambient + through) * standing * hollow;
   lamp_light = 0.60 * wrapped * mix(1.0, hollow, 0.5);
   // The tool's shadow falls away from the lamp, sharper and darker the nearer it is.
   fallen = (place.xz + tool_gap * light.xz / light.y) / (tool_radius * 0.95 + 0.8 * tool_gap);
-  shadowed = n.y > 0.2 ? 0.42 / (1.0 + 70.0 * tool_gap) : 0.0;
+  shadowed = n.y > 0.2 ? 0.52 / (1.0 + 70.0 * tool_gap) : 0.0;
   shine = max(dot(2.0 * dot(n, to_eye) * n - to_eye, light), 0.0);
   shine *= shine;
   shine *= shine;
-  shine *= 0.07 * shine;
+  // The highlight slides over the dent; at grazing angles a smooth skin mirrors the room.
+  shine = 0.13 * shine * shine + 0.16 * edge * edge * smoothstep(-0.1, 0.6, n.y);
   gl_Position = view_projection * vec4(world, 1.0);
 }

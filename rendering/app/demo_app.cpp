@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -25,7 +26,7 @@ namespace {
 constexpr double kNsPerS = 1e9;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
-constexpr std::size_t kMostToasts = 4;
+constexpr std::size_t kMostToasts = 3;
 constexpr double kExaggeration = 10.0;
 
 // Where real-time priority was refused, the picture steps back for the force:
@@ -71,7 +72,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
     wanted.line_up = settings_.line_up;
   request_ = wanted;
-  first_device_ = wanted.device;
+  first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
   auto session = LiveSession::open(wanted);
   if (!session) return session.error();
   session_ = std::move(*session);
@@ -139,6 +140,11 @@ void DemoApp::close() {
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
   if (view_.exhibit) return;
   for (const std::string& path : paths) {
+    constexpr std::size_t kRecent = 5;
+    std::vector<std::string>& recent = view_.picker.recent;
+    std::erase(recent, path);
+    recent.insert(recent.begin(), path);
+    if (recent.size() > kRecent) recent.pop_back();
     if (is_offered(path)) {
       offer(path);
     } else {
@@ -156,6 +162,8 @@ void DemoApp::frame() {
   read_notices(now_s);
   offer_finished_recording();
   show_offer();
+  if (looking_.valid() && looking_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    view_.devices = looking_.get();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
@@ -204,8 +212,16 @@ void DemoApp::draw() {
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
   const SceneArea& panel = layout.panel;
   overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {&commands_, [this](const std::string& scene) { switch_to(scene, first_device_); },
-                 [this](const std::string& path) { switch_to(request_.scene, "replay:" + path); }});
+                {&commands_, [this](const std::string& scene) { switch_to(scene, "", first_device_); },
+                 [this](const std::string& path) { switch_to(request_.scene, "", "replay:" + path); },
+                 [this](const std::string& path) { switch_to(request_.scene, path, first_device_); },
+                 [this](const std::string& path) { drop_files({path}); },
+                 [this](const std::string& device) {
+                   first_device_ = device;
+                   next_ = request_;
+                   next_->recording = session_->scene().recording;
+                   next_->device = device;
+                 }});
   if (view_.exhibit) {
     exhibit_.draw(*session_, *blocks_, style_, layout);
   } else {
@@ -238,6 +254,20 @@ void DemoApp::clear_panel() {
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {
+  std::vector<BlockPose> poses = true_poses();
+  const float deepest_m = 0.7F * static_cast<float>(blocks_->geometry().height_m);
+  const auto deeper = [&](float depth_m) {
+    return depth_m > 0.0F ? std::min(kDeeperDents * depth_m, std::max(depth_m, deepest_m)) : depth_m;
+  };
+  if (poses.size() < 2 || view_.exhibit) return poses;
+  for (BlockPose& pose : poses) {
+    pose.tool_m = deeper(pose.tool_m);
+    pose.dent_m = deeper(pose.dent_m);
+  }
+  return poses;
+}
+
+std::vector<BlockPose> DemoApp::true_poses() const {
   const LoopSnapshot& newest = session_->newest();
   BlockPose pose;
   pose.tool_m = static_cast<float>(newest.tick.position_m);
@@ -306,6 +336,7 @@ void DemoApp::notify(std::string text, bool problem) {
     write_to_log(text);
     return;
   }
+  std::erase_if(toasts_, [&](const Toast& toast) { return toast.text == text; });
   toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 

@@ -97,6 +97,7 @@ class DemoApp {
   void clear_panel();
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
+  std::vector<BlockPose> true_poses() const;  // not deeper than they are
   BlockPose reference_pose(BlockPose pose) const;
   SceneArea scene_area() const;
   void use_settings(const DemoRequest& request);
@@ -106,7 +107,7 @@ class DemoApp {
   void notify(std::string text, bool problem);
   void record();
   // Another session in place of this one: a scene, a recording.
-  void switch_to(const std::string& scene, const std::string& device);
+  void switch_to(const std::string& scene, const std::string& recording, const std::string& device);
   void reopen(const SessionRequest& request);
   void offer(const std::string& path);
   void offer_finished_recording();
@@ -114,6 +115,8 @@ class DemoApp {
   void next_line_up();
   double limited_depth_m(double requested_m) const;
   void save_curves();
+  void save_model();
+  void choose_device();
   CurveSource curve_source() const;
   void next_reference();
   void next_dead_man();
@@ -131,10 +134,11 @@ class DemoApp {
   Settings settings_;
   std::string settings_file_;
   SessionRequest request_;
-  std::string first_device_;                      // as the program was asked for it
-  std::optional<SessionRequest> next_;            // what to go on with after this frame
-  std::future<Result<RecordingOffer>> arriving_;  // a file that is read
-  std::string recording_;                         // the file that is being recorded; empty: none
+  std::string first_device_;                        // as the program was asked for it
+  std::optional<SessionRequest> next_;              // what to go on with after this frame
+  std::future<Result<RecordingOffer>> arriving_;    // a file that is read
+  std::future<std::vector<DeviceChoice>> looking_;  // for devices
+  std::string recording_;                           // the file that is being recorded; empty: none
   FrameFigures frames_;
   std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;

@@ -51,8 +51,8 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .on = [this] { return session_->recording().active; },
        .label_on = "Stop recording"},
       {.keys = {GLFW_KEY_SPACE},
-       .label = "Stop",
-       .help = "stop the curves to look back, and go on",
+       .label = "Freeze",
+       .help = "freeze the curves to look back, and go on",
        .run = [this](std::size_t) { pause_or_run(); },
        .on = [this] { return view_.time.paused; },
        .label_on = "Go on"},
@@ -76,6 +76,10 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .label = "View",
        .help = "the difference in its band, or what a hand feels of it",
        .run = [this](std::size_t) { turn(view_.difference); }},
+      {.keys = {GLFW_KEY_E},
+       .label = "Plot",
+       .help = "the error against the time that a model takes, or against the force",
+       .run = [this](std::size_t) { turn(view_.verdict); }},
       {.keys = {GLFW_KEY_F},
        .label = "Reference",
        .help = "choose what the models are compared with",
@@ -86,14 +90,23 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .run = [this](std::size_t) { turn(view_.scene_list); },
        .on = [this] { return view_.scene_list; }},
       {.keys = {GLFW_KEY_M},
-       .label = "Load",
-       .help = "load a model file",
+       .label = "Open",
+       .help = "open a recording, another program's table or a model",
        .run = [this](std::size_t) { turn(view_.file_list); },
        .on = [this] { return view_.file_list; }},
       {.keys = {GLFW_KEY_S},
-       .label = "Save",
+       .label = "Save curves",
        .help = "save what the curves show, as a figure and as data",
        .run = [this](std::size_t) { save_curves(); }},
+      {.keys = {GLFW_KEY_K},
+       .label = "Save model",
+       .help = "save the active model to a file",
+       .run = [this](std::size_t) { save_model(); }},
+      {.keys = {GLFW_KEY_U},
+       .label = "Device",
+       .help = "choose what holds the tool",
+       .run = [this](std::size_t) { choose_device(); },
+       .on = [this] { return view_.device_list; }},
       {.shown = "a row, right button", .help = "renames a model, takes it out"},
       {.shown = "on the curves", .help = "drag zooms, the wheel goes back, double click goes on"},
       {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT},
@@ -107,6 +120,11 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .replay = true,
        .on = [this] { return session_->replay() != nullptr && session_->replay()->paused(); },
        .label_on = "Play"},
+      {.keys = {GLFW_KEY_BACKSPACE},
+       .label = "Back to the hand",
+       .help = "press what was recorded, in place of the replay",
+       .run = [this](std::size_t) { switch_to(request_.scene, session_->scene().recording, first_device_); },
+       .replay = true},
       {.keys = {GLFW_KEY_COMMA},
        .label = "<",
        .help = "one sample back in a recording, which then pauses",
@@ -167,7 +185,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "full screen and back",
        .run = [this](std::size_t) { window_->set_fullscreen(!window_->fullscreen()); }},
       {.keys = {GLFW_KEY_ESCAPE},
-       .help = "closes lists and questions",
+       .help = "closes lists, questions and this",
        .run = [this](std::size_t) { close_windows(); }},
       {.shown = "drop a file", .help = "loads a model; of a recording or another program's table: fits or replays it"},
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
@@ -212,7 +230,7 @@ void DemoApp::seek_replay(double by_s) {
 }
 
 void DemoApp::close_windows() {
-  view_.help = view_.file_list = view_.details = view_.scene_list = false;
+  view_.help = view_.file_list = view_.details = view_.scene_list = view_.device_list = false;
   view_.offered = {};
 }
 

@@ -31,6 +31,7 @@ void DemoApp::use_settings(const DemoRequest& request) {
   view_.block_count = settings_.block_count;
   view_.difference = settings_.difference;
   view_.text_size = settings_.text_size;
+  view_.picker.recent = settings_.recent;
 }
 
 void DemoApp::save_settings() {
@@ -39,16 +40,21 @@ void DemoApp::save_settings() {
   settings_.block_count = view_.block_count;
   settings_.difference = view_.difference;
   settings_.text_size = view_.text_size;
+  settings_.recent = view_.picker.recent;
   if (!session_->line_up().empty()) settings_.line_up = session_->line_up();
   settings_.camera = blocks_->camera().turned();
   // Nobody is there to read of it any more.
   (void)write_settings(settings_file_, settings_);
 }
 
-void DemoApp::switch_to(const std::string& scene, const std::string& device) {
+// Another material: its own models, fitted to it.
+void DemoApp::switch_to(const std::string& scene, const std::string& recording, const std::string& device) {
   next_ = request_;
   next_->scene = scene;
+  next_->recording = recording;
   next_->device = device;
+  next_->models.clear();
+  if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
 }
 
 void DemoApp::reopen(const SessionRequest& request) {
@@ -72,6 +78,8 @@ void DemoApp::reopen(const SessionRequest& request) {
   blocks_->camera().turn(settings_.camera);
   blocks_framed_ = 0;
   stirred_ = true;
+  panel_ = Panel{};  // no curve of the old one
+  toasts_.clear();
   view_.time = CurveTime{};
   view_.time.zero_s = steady_now_s();
 }
@@ -110,8 +118,8 @@ void DemoApp::offer_finished_recording() {
 }
 
 void DemoApp::next_line_up() {
-  if (!session_->scene().material) {
-    notify("this scene has no virtual material to fit models to", false);
+  if (!session_->scene().has_material()) {
+    notify("there is nothing to fit models to: O chooses a material, a recording is one too", false);
     return;
   }
   const std::vector<LineUp>& all = line_ups();
@@ -149,8 +157,8 @@ void DemoApp::record() {
 }
 
 CurveSource DemoApp::curve_source() const {
-  CurveSource source{
-      session_->scene().title, session_->device_name(), session_->reference_words(), view_.time.zero_s, {}};
+  CurveSource source{session_->scene().title, session_->device_name(), session_->reference_words(),
+                     session_->jnd(),         view_.time.zero_s,       {}};
   for (std::size_t i = 0; i < session_->models().size(); ++i) {
     if (session_->models().view(i).state == SlotState::ready)
       source.models.push_back(
@@ -175,6 +183,25 @@ void DemoApp::save_curves() {
     status =
         write_file_atomically(path + ".csv", curve_csv(session_->comparison().history(), source, from_s, to_s), false);
   notify(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
+}
+
+void DemoApp::save_model() {
+  const auto folder = data_folder();
+  if (!folder) {
+    notify(folder.error().message, true);
+    return;
+  }
+  const std::size_t slot = session_->models().selected();
+  std::string path = *folder + "/model" + local_time_text("-%Y%m%d-%H%M%S.json");
+  const Status status = session_->save_model(slot, path);
+  notify(status ? "saved " + session_->models().view(slot).name + " to " + path : status.error().message, !status);
+}
+
+void DemoApp::choose_device() {
+  view_.device_list = !view_.device_list;
+  if (!view_.device_list || looking_.valid()) return;
+  view_.devices.clear();
+  looking_ = std::async(std::launch::async, device_choices);
 }
 
 Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {

@@ -34,6 +34,8 @@ void DemoApp::handle_key_event(int key, int action, int modifiers) {
 
 void DemoApp::handle_keys() {
   if (ImGui::GetIO().WantTextInput) {  // somebody types a name
+    for (const KeyPress& press : keys_)
+      if (press.key == GLFW_KEY_ESCAPE) close_windows();
     keys_.clear();
     down_.clear();
     return;

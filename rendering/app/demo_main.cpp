@@ -46,8 +46,8 @@ int fail(const std::string& message) {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
-  app.add_option("--scene", session.scene, "Scene, see `palpate scenes`; jnd_study measures a hand")
-      ->capture_default_str();
+  app.add_option("--scene", session.scene,
+                 "Scene, see `palpate scenes`; jnd_study measures a hand [silicone_block; of model files their own]");
   app.add_option("--device", session.device, "auto, mouse, hid, hand, replay:REC.csv or bridge:TARGET")
       ->capture_default_str();
   app.add_flag("--bridge-remote", arguments.bridge_remote, "bridge:tcp: may name another computer");
@@ -114,7 +114,8 @@ void run_frames(App& app, double seconds) {
 Status run_study(const Arguments& arguments) {
   StudyRequest request;
   if (arguments.discriminates) {
-    const auto scene = load_scene(arguments.demo.session.scene);
+    const auto scene =
+        load_scene(arguments.demo.session.scene.empty() ? "silicone_block" : arguments.demo.session.scene);
     if (!scene) return scene.error();
     auto strokes = prepare_strokes({*scene, arguments.demo.session.models, arguments.recording});
     if (!strokes) return strokes.error();

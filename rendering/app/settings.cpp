@@ -33,6 +33,8 @@ Result<Settings> read_settings(const std::string& path) {
     settings.difference = json["difference"].get<bool>();
   settings.text_size = field(json, "text_size", 1.0F, kSmallestText, kLargestText);
   if (json.contains("line_up") && json["line_up"].is_string()) settings.line_up = json["line_up"].get<std::string>();
+  for (const Json& one : json.value("recent", Json::array()))
+    if (one.is_string()) settings.recent.push_back(one.get<std::string>());
   settings.camera.yaw_rad = field(json, "camera_yaw_rad", 0.0F, -6.3F, 6.3F);
   settings.camera.pitch_rad = field(json, "camera_pitch_rad", 0.0F, -1.5F, 1.5F);
   settings.camera.distance = field(json, "camera_distance", 1.0F, 0.2F, 5.0F);
@@ -45,6 +47,7 @@ Status write_settings(const std::string& path, const Settings& settings) {
                      {"difference", settings.difference},
                      {"text_size", settings.text_size},
                      {"line_up", settings.line_up},
+                     {"recent", settings.recent},
                      {"camera_yaw_rad", settings.camera.yaw_rad},
                      {"camera_pitch_rad", settings.camera.pitch_rad},
                      {"camera_distance", settings.camera.distance}};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/base/result.h"
 #include "rendering/panels/view_state.h"
@@ -16,7 +17,8 @@ struct Settings {
   std::size_t block_count = 4;
   bool difference = true;
   float text_size = 1.0F;
-  std::string line_up;  // empty: the default
+  std::string line_up;              // empty: the default
+  std::vector<std::string> recent;  // files that were opened, the newest first
   CameraTurn camera;
 };
 

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "rendering/panels/panel_verdict.h"
+
 namespace palpate {
 namespace {
 
@@ -43,7 +45,8 @@ Json model_json(const SlotView& slot) {
           {"within_jnd", has_errors ? Json(slot.errors.within_jnd()) : Json(nullptr)},
           {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N()) : Json(nullptr)},
           {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd()) : Json(nullptr)},
-          {"evaluation_ns", slot.evaluation_ns > 0.0 ? Json(slot.evaluation_ns) : Json(nullptr)}};
+          {"p99_error_over_jnd", has_errors ? Json(slot.quantile.p99()) : Json(nullptr)},
+          {"tick_ns", slot.tick_ns > 0.0 ? Json(slot.tick_ns) : Json(nullptr)}};
 }
 
 }  // namespace
@@ -60,6 +63,7 @@ std::string stats_text(const LiveSession& session, const FrameFigures& frames) {
   const Json all = {{"haptics", haptics_json(session)},
                     {"graphics", graphics_json(frames)},
                     {"models", models},
+                    {"verdict", verdict_words(models_view(session))},
                     {"faults", faults},
                     {"scene", session.scene().name},
                     {"device", session.device_name()},

@@ -4,8 +4,8 @@ namespace palpate {
 
 void CurvePainter::jnd_band(ImU32 colour) const {
   band(
-      colour, [](const CurveColumn& c) { return c.reference ? c.band_low_N : NAN; },
-      [](const CurveColumn& c) { return c.reference ? c.band_high_N : NAN; });
+      colour, [](const CurveColumn& c) { return c.tick.reference_N - c.jnd_N; },
+      [](const CurveColumn& c) { return c.tick.reference_N + c.jnd_N; });
 }
 
 void CurvePainter::troubles(ImU32 late, ImU32 alarm, float size_px) const {

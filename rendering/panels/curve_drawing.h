@@ -49,7 +49,7 @@ void CurvePainter::band(ImU32 colour, Low low, High high) const {
       flush();
       continue;
     }
-    const float x = plot.x_px(column.time_s - zero_s);
+    const float x = plot.x_px(column.tick.loop_time_s - zero_s);
     upper.emplace_back(x, plot.y_px(top));
     lower.emplace_back(x, plot.y_px(bottom));
   }
@@ -68,7 +68,7 @@ void CurvePainter::curve(ImU32 colour, float thickness, Low low, High high) cons
       points.clear();
       continue;
     }
-    const float x = plot.x_px(column.time_s - zero_s);
+    const float x = plot.x_px(column.tick.loop_time_s - zero_s);
     const float y_low = plot.y_px(bottom);
     const float y_high = plot.y_px(top);
     // In the direction of travel: a line that turns on the spot has no width there.

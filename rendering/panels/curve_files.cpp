@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kWidth_px = 900.0, kLeft_px = 60.0, kRight_px = 130.0;
 constexpr double kFigure_jnd = 3.0;
+// Of a ReferenceKind: what reference_N was in that row, which F changes.
+constexpr const char* kReferenceNames[] = {"measured", "truth", "model"};
 
 __attribute__((format(printf, 1, 2))) std::string print(const char* pattern, ...) {
   char text[256];
@@ -81,7 +83,7 @@ std::string curve(const Frame& frame, const CurveColumns& columns, double zero_s
   std::string path;
   bool open = false;
   for (const CurveColumn& column : columns.columns()) {
-    const double x = column.time_s - zero_s;
+    const double x = column.tick.loop_time_s - zero_s;
     if (!column.any || x < frame.x.from || x > frame.x.to) continue;
     const auto y = static_cast<double>(value(column));
     if (std::isnan(y)) {
@@ -98,24 +100,22 @@ std::string curve(const Frame& frame, const CurveColumns& columns, double zero_s
 std::string band(const Frame& frame, const CurveColumns& columns, double zero_s) {
   std::string upper, lower;
   for (const CurveColumn& column : columns.columns()) {
-    const double x = column.time_s - zero_s;
-    if (!column.any || !column.reference || x < frame.x.from || x > frame.x.to) continue;
-    upper += print("%.1f,%.1f ", frame.x_px(x), frame.y_px(static_cast<double>(column.band_high_N)));
-    lower = print("%.1f,%.1f ", frame.x_px(x), frame.y_px(static_cast<double>(column.band_low_N))) + lower;
+    const double x = column.tick.loop_time_s - zero_s;
+    if (!column.any || std::isnan(column.jnd_N) || x < frame.x.from || x > frame.x.to) continue;
+    upper +=
+        print("%.1f,%.1f ", frame.x_px(x), frame.y_px(static_cast<double>(column.tick.reference_N + column.jnd_N)));
+    lower =
+        print("%.1f,%.1f ", frame.x_px(x), frame.y_px(static_cast<double>(column.tick.reference_N - column.jnd_N))) +
+        lower;
   }
   return std::string("<polygon points='") + upper + lower + "' fill='#D5D9DD'/>\n";
-}
-
-float extreme(const CurveColumn& column, std::size_t slot) {
-  return -column.low_over_jnd[slot] > column.high_over_jnd[slot] ? column.low_over_jnd[slot]
-                                                                 : column.high_over_jnd[slot];
 }
 
 std::string names(const Frame& frame, const CurveColumns& columns, const std::vector<CurveModel>& models) {
   std::vector<float> wanted;
   const CurveColumn* last = columns.last();
   for (const CurveModel& model : models) {
-    const float value = last != nullptr ? last->high_N[model.slot] : 0.0F;
+    const float value = last != nullptr ? last->tick.force_N[model.slot] : 0.0F;
     wanted.push_back(static_cast<float>(frame.y_px(std::isnan(value) ? 0.0 : static_cast<double>(value))));
   }
   const std::vector<float> places = spread_labels(wanted, 15.0F, static_cast<float>(frame.top_px),
@@ -144,17 +144,17 @@ std::string curve_svg(const CurveColumns& columns, const CurveSource& source, do
                     "</text>\n";
   svg += axes(force, "Force, N, with one JND to either side") + band(force, columns, source.zero_s);
   const std::string green = hex(kReferenceColour);
-  svg += curve(force, columns, source.zero_s, green, 2.4,
-               [](const CurveColumn& c) { return c.reference ? c.reference_N : std::nanf(""); });
+  svg += curve(force, columns, source.zero_s, green, 2.4, [](const CurveColumn& c) { return c.tick.reference_N; });
   svg += print("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='#D5D9DD'/>\n", kLeft_px, difference.y_px(1.0),
                kWidth_px - kLeft_px - kRight_px, difference.y_px(-1.0) - difference.y_px(1.0));
   svg += axes(difference, "Difference, JND: inside the band a hand cannot tell (seconds below)");
   for (const CurveModel& model : source.models) {
     const std::size_t slot = model.slot;
     svg += curve(force, columns, source.zero_s, hex(model.colour), 1.4,
-                 [slot](const CurveColumn& c) { return c.high_N[slot]; });
-    svg += curve(difference, columns, source.zero_s, hex(model.colour), 1.4,
-                 [slot](const CurveColumn& c) { return extreme(c, slot); });
+                 [slot](const CurveColumn& c) { return c.tick.force_N[slot]; });
+    svg += curve(difference, columns, source.zero_s, hex(model.colour), 1.4, [&, slot](const CurveColumn& c) {
+      return static_cast<float>(c.tick.difference_over_jnd(slot, source.jnd));
+    });
   }
   return svg + names(force, columns, source.models) + "</svg>\n";
 }
@@ -163,13 +163,14 @@ std::string curve_csv(const ForceHistory& history, const CurveSource& source, do
   const auto number = [](float value) {
     return std::isnan(value) ? std::string() : print("%.6g", static_cast<double>(value));
   };
-  std::string csv = std::string("# ") + source.scene + ", " + source.device + "; reference_N: " + source.reference +
-                    "\ntime_s,depth_m,reference_N,rendered_N";
+  std::string csv = std::string("# ") + source.scene + ", " + source.device +
+                    "; now compared with: " + source.reference + "\ntime_s,depth_m,reference,reference_N,rendered_N";
   for (const CurveModel& model : source.models) csv.append(",").append(model.name).append("_N");
   csv += "\n";
   for (std::size_t i = history.first_at(from_s); i < history.size() && history[i].loop_time_s <= to_s; ++i) {
     const HistoryPoint& point = history[i];
-    csv += print("%.6f,", point.loop_time_s - source.zero_s) + number(point.depth_m) + "," + number(point.reference_N) +
+    csv += print("%.6f,", point.loop_time_s - source.zero_s) + number(point.depth_m) + "," +
+           (std::isnan(point.reference_N) ? "" : kReferenceNames[point.reference]) + "," + number(point.reference_N) +
            "," + number(point.rendered_N);
     for (const CurveModel& model : source.models) csv.append(",").append(number(point.force_N[model.slot]));
     csv += "\n";

@@ -22,16 +22,17 @@ struct CurveSource {
   std::string scene;
   std::string device;
   std::string reference;  // in words
-  double zero_s = 0.0;    // loop time of the axis' 0
+  JndLine jnd;
+  double zero_s = 0.0;  // loop time of the axis' 0
   std::vector<CurveModel> models;
 };
 
-// Force with the JND band above, difference in JND below, on white; curves as on the
-// screen, names at their ends.
+// Force with the JND band above, difference in JND below, on white, names at their ends:
+// of every column of the screen one tick, the same for all curves, and a row of the table.
 std::string curve_svg(const CurveColumns& columns, const CurveSource& source, double from_s, double to_s);
 
-// Every tick between the two loop times: time_s,depth_m,reference_N,rendered_N and one
-// column a model, "<name>_N"; a force that is not there is an empty field.
+// Every tick between the two loop times: time_s,depth_m,reference,reference_N,rendered_N
+// and one column a model, "<name>_N"; a force that is not there is an empty field.
 std::string curve_csv(const ForceHistory& history, const CurveSource& source, double from_s, double to_s);
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 
 #include "engine/base/text.h"
 #include "rendering/panels/overlay_parts.h"
+#include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
@@ -93,6 +94,11 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
   const float y = area.at.y + area.size.y - big_number_height(style, lift);
   text_at(big, {corner.x, y}, ink(shown.error_over_jnd > 1.0 ? kAboveJndColour : p.text), shown.number);
   const float beside = corner.x + size.x + 0.7F * line;
+  if (ImGui::IsMouseHoveringRect({corner.x, y}, {area.at.x + area.size.x, corner.y}))
+    ImGui::SetTooltip(
+        "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND):\n"
+        "the active row of the table, over %s",
+        counted_words(models_view(session)).c_str());
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), shown.what);
   text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet), shown.below);
   const float width = 11.0F * line;

@@ -33,16 +33,22 @@ float big_number_height(const UiStyle& style, float lift);
 // colour is from; so far above the lower edge.
 void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift);
 
-// All .json files in these folders, sorted.
-std::vector<std::string> model_files(const std::vector<std::string>& folders);
+// What can be opened in a folder: its folders ("name/"), then its files.
+std::vector<std::string> pickable_files(const std::string& folder);
+
+inline constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
+                                ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
+// The next window: in the middle, and never larger than the whole.
+void begin_in_the_middle();
 
 // Windows in the middle. `offered`: something else is asked there.
 void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area);
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands);
-void draw_file_list(LiveSession& session, ViewState& view);
+void draw_file_picker(ViewState& view, const OverlayActions& actions);
+void draw_device_list(ViewState& view, const OverlayActions& actions);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
 // What to do with a recording: fit it, replay it.
-void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions);
+void draw_offered_recording(ViewState& view, const OverlayActions& actions);
 // Notices at the top.
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area);
 void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area);

@@ -8,9 +8,6 @@
 #include "scenes/scene/scene.h"
 
 namespace palpate::overlay {
-namespace {
-
-// In the middle of the window and never larger than it.
 void begin_in_the_middle() {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float margin = ImGui::GetFontSize();
@@ -18,25 +15,8 @@ void begin_in_the_middle() {
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {all.x - margin, all.y - margin});
 }
 
-constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
-                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
-
-}  // namespace
-
-std::vector<std::string> model_files(const std::vector<std::string>& folders) {
-  std::vector<std::string> files;
-  for (const std::string& folder : folders) {
-    std::error_code missing;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
-      if (entry.path().extension() == ".json") files.push_back(entry.path().string());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 5.2F * height_of(style.fonts().heading);
+  float y = area.at.y + 2.2F * height_of(style.fonts().heading);
   ImFont* font = style.fonts().body;
   const float pad = 0.6F * height_of(font);
   const float wrap = 0.86F * area.size.x;
@@ -137,7 +117,7 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
   ImGui::End();
 }
 
-void draw_offered_recording(LiveSession& session, ViewState& view, const OverlayActions& actions) {
+void draw_offered_recording(ViewState& view, const OverlayActions& actions) {
   if (!view.offered.any()) return;
   const OfferedFile offered = view.offered;
   bool open = true;
@@ -152,10 +132,10 @@ void draw_offered_recording(LiveSession& session, ViewState& view, const Overlay
     ImGui::TextUnformatted(std::filesystem::path(offered.path).filename().c_str());
     for (const std::string& line : offered.words) ImGui::TextDisabled("%s", line.c_str());
     if (ImGui::Button("Fit it, and put it in my hand")) {
-      session.fit_recording(offered.path);
+      actions.fit(offered.path);
       open = false;
     }
-    tip("A model of this recording, fitted in the background with greedy centres, beside the models that are there");
+    tip("It becomes the material: all models are fitted to it in the background, and you press the best one");
     ImGui::SameLine();
     if (ImGui::Button("Replay it")) {
       open = false;
@@ -167,24 +147,6 @@ void draw_offered_recording(LiveSession& session, ViewState& view, const Overlay
   ImGui::PopTextWrapPos();
   ImGui::End();
   if (!open) view.offered = {};
-}
-
-void draw_file_list(LiveSession& session, ViewState& view) {
-  if (!view.file_list) return;
-  begin_in_the_middle();
-  ImGui::Begin("Load a model", &view.file_list, kDialog);
-  ImGui::TextUnformatted("Drop a model file onto the window, or choose one:");
-  const auto assets = find_assets();
-  const std::vector<std::string> files =
-      model_files({assets ? *assets + "/models" : std::string("assets/models"), ".", "build/run"});
-  for (const std::string& file : files) {
-    if (!ImGui::Selectable(file.c_str())) continue;
-    session.load_file(file);
-    view.file_list = false;
-  }
-  if (files.empty())
-    ImGui::TextDisabled("no .json file in assets/models, here or in build/run; `palpate fit` makes one");
-  ImGui::End();
 }
 
 }  // namespace palpate::overlay

@@ -1,13 +1,14 @@
 #include "rendering/panels/panel.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <limits>
 #include <string>
 
 #include "rendering/panels/panel_errors.h"
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel_verdict.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {
@@ -27,20 +28,13 @@ void apply(const TableAction& action, LiveSession& session) {
     case TableAction::Kind::rename:
       session.rename(action.slot, action.name);
       break;
+    case TableAction::Kind::claim:
+      session.claim(action.slot);
+      break;
     case TableAction::Kind::remove:
       session.remove(action.slot);
       break;
   }
-}
-
-std::string bins_words(const ModelsView& models) {
-  const SlotView* active = models.active();
-  if (active == nullptr || active->samples_out_of_domain == 0) return "mean + std, largest, JND line";
-  const auto outside = static_cast<double>(active->samples_out_of_domain);
-  const double share = outside / (outside + static_cast<double>(active->errors.samples()));
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f %% outside the data left out", 100.0 * share);
-  return text;
 }
 
 // How many centres the active model has, or all that have a number of them.
@@ -75,7 +69,8 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("panel", nullptr, kPanelWindow);
   const HealthView health = health_view(session);
-  const ErrorsView errors = errors_view(session);
+  const double until_s = view.time.end_s(std::numeric_limits<double>::infinity());
+  const ErrorsView errors = errors_view(session, until_s);
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // What has a fixed size first; the plots share the rest.
   const float health_height = line * static_cast<float>(health_lines(health, view));
@@ -88,14 +83,18 @@ void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, co
   const float centres = has_centres ? ImGui::GetFrameHeightWithSpacing() : 0.0F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_height - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
-  curves_.draw(force_view(session), view, style, rest * (bins ? 0.32F : 0.48F), rest * (bins ? 0.36F : 0.52F));
+  curves_.draw(force_view(session, until_s), view, style, rest * (bins ? 0.29F : 0.48F), rest * (bins ? 0.33F : 0.52F));
   apply(draw_model_table(errors.models, view.table, style, table), session);
   if (centres > 0.0F) draw_centres(session, errors.models, view);
   if (bins) {
-    section_title(style, "ERROR AGAINST FORCE");
+    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME" : "ERROR AGAINST FORCE");
     ImGui::SameLine();
-    quiet_words(bins_words(errors.models));
-    draw_error_bins(errors, style, rest * 0.32F);
+    quiet_words(counted_words(errors.models));
+    if (view.verdict) {
+      draw_verdict(errors.models, style, rest * 0.37F);
+    } else {
+      draw_error_bins(errors, style, rest * 0.37F);
+    }
   }
   draw_health(health, view, style, frames);
   ImGui::End();

@@ -43,7 +43,7 @@ struct ForceCurves::Scene {
 
   Rgb colour(std::size_t slot) const { return slot_colour(force.models, slot, style.theme()); }
   // Nothing to compare with: what the active model predicts of its own error.
-  bool predicts() const { return std::isnan(force.reference_N) && force.models.active() != nullptr; }
+  bool predicts() const { return !force.models.compared && force.models.active() != nullptr; }
   template <typename Low, typename High>
   void paint_prediction(const CurvePainter& paint_on, Low low, High high) const {
     if (predicts()) paint_on.band(ink(colour(force.models.selected), kPredictedAlpha), low, high);
@@ -99,12 +99,8 @@ ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, c
 }
 
 void ForceCurves::draw_titles_of_force(const Scene& scene) const {
-  const CurveTime& time = scene.view.time;
-  // What stands still is read where it stands.
-  const CurveColumn* last = time.paused ? curves_.last() : nullptr;
-  const double reference_N = !time.paused                         ? scene.force.reference_N
-                             : last != nullptr && last->reference ? static_cast<double>(last->reference_N)
-                                                                  : std::nan("");
+  const HistoryPoint* now = scene.force.models.now;
+  const double reference_N = now != nullptr ? static_cast<double>(now->reference_N) : std::nan("");
   section_title(scene.style, "FORCE");
   ImGui::SameLine();
   if (scene.predicts()) {
@@ -148,9 +144,9 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
   std::vector<Reading> readings;
   const CurveColumn* under = curves_.at(time.hover_s);
   const CurveColumn* last = curves_.last();
-  if (under != nullptr && under->reference)
-    readings.push_back(
-        {"reference  " + at_most_three_decimals(static_cast<double>(under->reference_N)) + " N", kReferenceColour});
+  if (under != nullptr && !std::isnan(under->tick.reference_N))
+    readings.push_back({"reference  " + at_most_three_decimals(static_cast<double>(under->tick.reference_N)) + " N",
+                        kReferenceColour});
   for (std::size_t i = 0; i < scene.force.models.slots.size(); ++i) {
     if (scene.force.models.slots[i]->state != SlotState::ready) continue;
     if (last != nullptr && !std::isnan(value(*last, i)))
@@ -177,17 +173,16 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
       paint_on, [](const CurveColumn& c) { return c.predicted_low_N; },
       [](const CurveColumn& c) { return c.predicted_high_N; });
   paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
-                 [](const CurveColumn& c) { return c.reference ? c.reference_N : NAN; });
+                 [](const CurveColumn& c) { return c.tick.reference_N; });
   scene.for_each_slot([&](std::size_t slot) {
     const bool selected = slot == scene.force.models.selected;
-    paint_on.curve(
-        ink(scene.colour(slot), selected ? 1.0F : scene.faint()), (selected ? kSelectedLine_px : kModelLine_px) * thin,
-        [slot](const CurveColumn& c) { return c.low_N[slot]; },
-        [slot](const CurveColumn& c) { return c.high_N[slot]; });
+    paint_on.curve(ink(scene.colour(slot), selected ? 1.0F : scene.faint()),
+                   (selected ? kSelectedLine_px : kModelLine_px) * thin,
+                   [slot](const CurveColumn& c) { return c.tick.force_N[slot]; });
   });
   paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
   finish_plot(
-      scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.high_N[slot]; }, " N");
+      scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.tick.force_N[slot]; }, " N");
 }
 
 void ForceCurves::draw_difference(const Scene& scene, float height) {

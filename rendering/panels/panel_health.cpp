@@ -100,8 +100,10 @@ HealthWords health_words(const HealthView& health, double recent_fps) {
             true};
   }
   if (recent_fps > 0.0 && recent_fps < kFewFrames_per_s) {
-    // No fault: nothing that is felt is late.
-    return {text_of("%.0f frames a second: the picture is slow, the force is not affected", recent_fps), false};
+    // No fault where nothing that is felt is late.
+    const std::string slow = text_of("%.0f frames a second: a slow picture, ", recent_fps);
+    if (statistics.missed_deadlines == 0) return {slow + "the force is not affected", false};
+    return {slow + std::to_string(statistics.missed_deadlines) + " deadlines missed", false};
   }
   return {text_of("tick p99 %.0f us, late p99 %.0f us", statistics.tick.p99_us, statistics.lateness.p99_us) +
               ", missed " + std::to_string(statistics.missed_deadlines) + text_of(", %.0f fps", recent_fps),

@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-enum Column : int { kName, kForce, kError, kRatio, kWithin, kTime, kCentres, kColumns };
+enum Column : int { kName, kForce, kError, kP99, kWithin, kTime, kCentres, kColumns };
 
 struct Heading {
   const char* text;
@@ -21,28 +21,42 @@ struct Heading {
 };
 constexpr Heading kHeadings[kColumns] = {
     {"model", "Click, or press its number, to make a model the active one.", "      greedy-10 '09", 0},
-    {"N", "Force now, newtons", "12.34", 4},
-    {"mN off", "Error now: model minus reference, millinewtons", "+1234", 1},
-    {"/JND", "Error now over the just noticeable difference; above 1 a hand could tell", "12.34", 5},
+    {"N", "Force at the right edge of the curves, newtons", "12.34", 4},
+    {"mN off", "Model minus reference there, millinewtons", "+1234", 1},
+    {"99 %",
+     "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
+     "Above 1 a hand could tell. The big number and the plot below are this one.",
+     "12.34", 5},
     {"% in JND",
      "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
      "The same samples for all models: those inside the data of each.",
      "100.00", 0},
-    {"ns", "Time of one evaluation, nanoseconds, median of the last second in contact", "12,345", 3},
+    {"ns", "Time of a whole tick of this model alone, nanoseconds, measured when it became ready", "12,345", 3},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2}};
 
-double sort_value(const SlotView& slot, int column) {
+// Of the tick that the curves end with; NaN: none.
+double force_now_N(const ModelsView& models, std::size_t slot) {
+  return models.now != nullptr ? static_cast<double>(models.now->force_N[slot]) : std::nan("");
+}
+double error_now_N(const ModelsView& models, std::size_t slot) {
+  const bool any = models.now != nullptr && !std::isnan(models.now->difference_over_jnd(slot, models.jnd));
+  if (!any) return std::nan("");
+  return models.now->in_contact ? force_now_N(models, slot) - static_cast<double>(models.now->reference_N) : 0.0;
+}
+
+double sort_value(const ModelsView& models, std::size_t index, int column) {
+  const SlotView& slot = *models.slots[index];
   switch (column) {
     case kForce:
-      return slot.force_N;
+      return force_now_N(models, index);
     case kError:
-      return std::abs(slot.error_N);
-    case kRatio:
-      return slot.error_over_jnd;
+      return std::abs(error_now_N(models, index));
+    case kP99:
+      return slot.quantile.p99();
     case kWithin:
       return slot.errors.within_jnd();
     case kTime:
-      return slot.evaluation_ns;
+      return slot.tick_ns;
     case kCentres:
       return slot.centres;
     default:
@@ -56,7 +70,7 @@ std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!sort.rising) std::swap(a, b);
     if (sort.column == kName) return models.slots[a]->name < models.slots[b]->name;
-    return sort_value(*models.slots[a], sort.column) < sort_value(*models.slots[b], sort.column);
+    return sort_value(models, a, sort.column) < sort_value(models, b, sort.column);
   });
   return order;
 }
@@ -112,17 +126,6 @@ std::string format(const char* pattern, double value) {
   return text;
 }
 
-// "33,275"
-std::string grouped(int count) {
-  const std::string digits = std::to_string(count);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
-
 // A menu behind the right button.
 TableAction draw_menu(const ModelsView& models, std::size_t index, TableState& table) {
   TableAction action;
@@ -136,6 +139,8 @@ TableAction draw_menu(const ModelsView& models, std::size_t index, TableState& t
     action = {TableAction::Kind::rename, index, table.name.data()};
     ImGui::CloseCurrentPopup();
   }
+  if (models.slots[index]->foreign && ImGui::Selectable("It is a model of this material: compare it"))
+    action = {TableAction::Kind::claim, index, {}};
   if (ImGui::Selectable("Take it out of the comparison")) action = {TableAction::Kind::remove, index, {}};
   ImGui::EndPopup();
   return action;
@@ -159,12 +164,8 @@ TableAction draw_name(const ModelsView& models, std::size_t index, TableState& t
   tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
-  if (index == models.selected) {
-    list.AddCircleFilled(middle, 0.40F * line, colour);
-    list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
-  } else {
-    list.AddCircleFilled(middle, 0.27F * line, colour);
-  }
+  if (index == models.selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
+  draw_mark(middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
   return action;
 }
 
@@ -178,19 +179,24 @@ void draw_waiting(const SlotView& slot) {
   ImGui::PopClipRect();
 }
 
-void draw_figures(const SlotView& slot, bool compared, const UiStyle& style) {
+void draw_figures(const ModelsView& models, std::size_t index, const UiStyle& style) {
+  const SlotView& slot = *models.slots[index];
   const ImVec4 above = paint(kAboveJndColour);
   const ImVec4 quiet = paint(style.colours().quiet);
-  // A column that is not shown takes no text.
-  const auto cell = [](int column, const std::string& text, const ImVec4* colour = nullptr) {
-    if (ImGui::TableSetColumnIndex(column)) right_aligned(text, colour);
+  // A column that is not shown takes no text; a number that is not there is a dash.
+  const auto cell = [](int column, bool any, const std::string& text, const ImVec4* colour = nullptr) {
+    if (ImGui::TableSetColumnIndex(column)) right_aligned(any ? text : "–", colour);
   };
-  cell(kForce, format("%.2f", slot.force_N));
-  cell(kError, compared ? format("%+.0f", 1e3 * slot.error_N) : "–", &quiet);
-  cell(kRatio, compared ? format("%.2f", slot.error_over_jnd) : "–", slot.error_over_jnd > 1.0 ? &above : nullptr);
-  cell(kWithin, slot.errors.samples() > 0 ? format("%.2f", 100.0 * slot.errors.within_jnd()) : "–");
-  cell(kTime, slot.evaluation_ns > 0.0 ? grouped(static_cast<int>(slot.evaluation_ns)) : "–");
-  cell(kCentres, grouped(slot.centres));
+  const double force_N = force_now_N(models, index);
+  const double error_N = error_now_N(models, index);
+  const double p99 = slot.quantile.p99();
+  const bool any = slot.errors.samples() > 0;
+  cell(kForce, !std::isnan(force_N), format("%.2f", force_N));
+  cell(kError, !std::isnan(error_N), format("%+.0f", 1e3 * error_N), &quiet);
+  cell(kP99, any, jnd_text(p99), p99 > 1.0 ? &above : nullptr);
+  cell(kWithin, any, format("%.2f", 100.0 * slot.errors.within_jnd()));
+  cell(kTime, slot.tick_ns > 0.0, grouped(static_cast<std::uint64_t>(slot.tick_ns)));
+  cell(kCentres, true, grouped(static_cast<std::uint64_t>(slot.centres)));
 }
 
 float column_width(int column) {
@@ -199,6 +205,16 @@ float column_width(int column) {
 }
 
 }  // namespace
+
+std::string counted_words(const ModelsView& models) {
+  const SlotView* active = models.active();
+  if (!models.compared || active == nullptr) return models.compared ? "" : models.off_from;
+  if (active->foreign) return "no truth to compare " + active->name + " with";
+  std::string words = grouped(active->errors.samples()) + " samples in contact since " + models.since;
+  if (active->samples_out_of_domain > 0)
+    words += ", " + grouped(active->samples_out_of_domain) + " outside the data left out";
+  return words;
+}
 
 std::string waiting_words(const SlotView& slot) {
   if (slot.state == SlotState::waiting) return "waits";
@@ -251,7 +267,7 @@ TableAction draw_model_table(const ModelsView& models, TableState& table, const 
     const TableAction done = draw_name(models, index, table, style);
     if (done.kind != TableAction::Kind::none) action = done;
     if (models.slots[index]->state == SlotState::ready) {
-      draw_figures(*models.slots[index], models.compared, style);
+      draw_figures(models, index, style);
     } else {
       draw_waiting(*models.slots[index]);
     }

@@ -12,9 +12,10 @@
 
 namespace palpate {
 
-// What was done to a row; a right click offers to rename it and to take it out.
+// What was done to a row; a right click offers to rename it, to take it out, and to compare
+// a model of something else.
 struct TableAction {
-  enum class Kind { none, select, rename, remove } kind = Kind::none;
+  enum class Kind { none, select, rename, claim, remove } kind = Kind::none;
   std::size_t slot = 0;
   std::string name;
 };
@@ -24,6 +25,9 @@ TableAction draw_model_table(const ModelsView& models, TableState& table, const 
 // within the JND always stay.
 std::vector<int> shown_columns(float room, float (*width)(int column));
 
+// Over which samples figures are made, since when, and what is left out; where there is
+// nothing to compare with, that.
+std::string counted_words(const ModelsView& models);
 // What a row says in place of figures: "waits", "fits 40 %", "failed".
 std::string waiting_words(const SlotView& slot);
 // The tooltip of a row.

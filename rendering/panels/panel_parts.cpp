@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace palpate {
 
@@ -16,6 +17,18 @@ std::string fitting(const std::string& text, float room) {
     if (ImGui::CalcTextSize(shown.c_str()).x <= room) return shown;
   }
   return {};
+}
+
+std::string grouped(std::uint64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
+  return digits;
+}
+
+std::string jnd_text(double error_over_jnd) {
+  char text[32];
+  std::snprintf(text, sizeof text, error_over_jnd < 9.995 ? "%.2f" : "%.0f", error_over_jnd);
+  return text;
 }
 
 void quiet_words(const std::string& text) {
@@ -37,6 +50,12 @@ Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
     if (method_colour(models.slots[i]->method, theme) == hue) ++which;
   }
   return method_colour(method, theme, which);
+}
+
+void draw_mark(const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddCircleFilled(middle, radius, colour);
+  if (paper) list.AddCircleFilled(middle, 0.5F * radius, ink(style.colours().panel));
 }
 
 void tip(const char* text) {

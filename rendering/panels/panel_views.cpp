@@ -36,25 +36,29 @@ bool ModelsView::out_of_domain() const noexcept {
   return in_contact && model != nullptr && model->out_of_domain;
 }
 
-ModelsView models_view(const LiveSession& session) {
+ModelsView models_view(const LiveSession& session, double until_s) {
   ModelsView view;
   for (std::size_t i = 0; i < session.models().size(); ++i) view.slots.push_back(&session.models().view(i));
   view.selected = session.models().selected();
   view.in_contact = session.newest().tick.in_contact;
-  view.compared = !std::isnan(session.comparison().reference_N());
+  const Comparison& comparison = session.comparison();
+  view.compared = session.has_reference(comparison.reference());
+  if (comparison.reference() == ReferenceKind::direct && view.compared) view.reference = *session.models().reference();
+  view.off_from = session.reference_words(true);
+  view.jnd = session.jnd();
+  view.since = comparison.counted_since();
+  view.now = comparison.history().last_until(until_s);
   return view;
 }
 
-ForceView force_view(const LiveSession& session) {
-  return {models_view(session),
-          session.jnd(),
-          &session.comparison().history(),
-          session.comparison().reference_N(),
-          session.reference_words(),
+ForceView force_view(const LiveSession& session, double until_s) {
+  return {models_view(session, until_s), session.jnd(), &session.comparison().history(), session.reference_words(),
           kUsualOverStrongest * session.scene().strongest_press_N};
 }
 
-ErrorsView errors_view(const LiveSession& session) { return {models_view(session), session.jnd()}; }
+ErrorsView errors_view(const LiveSession& session, double until_s) {
+  return {models_view(session, until_s), session.jnd()};
+}
 
 HealthView health_view(const LiveSession& session) {
   HealthView view;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,12 @@ struct ModelsView {
   std::vector<const SlotView*> slots;
   std::size_t selected = 0;
   bool in_contact = false;
-  bool compared = true;  // there is a reference
+  bool compared = true;                     // there is a reference
+  std::size_t reference = kReferenceBlock;  // the slot of it, where it is a model
+  std::string off_from = "the material";    // what errors are off from, in few words
+  std::string since = "the start";          // they count
+  JndLine jnd{};
+  const HistoryPoint* now = nullptr;  // the last tick that the curves show; null: none
 
   // The slots that are not hidden, in order: what keys and tables count.
   std::vector<std::size_t> listed() const;
@@ -43,7 +49,6 @@ struct ForceView {
   ModelsView models;
   JndLine jnd;
   const ForceHistory* history = nullptr;  // never null when filled from a session
-  double reference_N = kNoForce;
   std::string reference_words;
   double usual_force_N = 0.0;  // the axis holds it always, so that it does not jump
 };
@@ -65,9 +70,10 @@ struct HealthView {
   double heat_share = 0.0;  // of the motor's thermal budget
 };
 
-ModelsView models_view(const LiveSession& session);
-ForceView force_view(const LiveSession& session);
-ErrorsView errors_view(const LiveSession& session);
+// `until_s`: loop time at which the curves stand still.
+ModelsView models_view(const LiveSession& session, double until_s = std::numeric_limits<double>::infinity());
+ForceView force_view(const LiveSession& session, double until_s);
+ErrorsView errors_view(const LiveSession& session, double until_s);
 HealthView health_view(const LiveSession& session);
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 
 #include "engine/base/text.h"
 #include "rendering/panels/overlay_parts.h"
+#include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/ui/plot.h"
 
@@ -26,7 +27,7 @@ void draw_block_buttons(ViewState& view) {
     tip("Blocks side by side, each with its own model under the same probe (B)");
   }
   ImGui::SameLine();
-  ImGui::TextDisabled("blocks");
+  ImGui::TextDisabled(view.block_count > 1 ? "blocks, dents x 2" : "blocks");
 }
 
 void draw_title(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
@@ -44,9 +45,15 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
   ImGui::End();
 }
 
-void draw_hint(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  if (session.mouse() == nullptr || !session.mouse()->hand_is_exploring()) return;
-  const std::string hint = "The hand moves by itself. Move the mouse over the block to press it.";
+// Until it was done: half a newton felt by whoever moves the mouse.
+void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
+  constexpr double kPressed_N = 0.5;
+  if (session.mouse() == nullptr) return;
+  const bool alone = session.mouse()->hand_is_exploring();
+  if (!alone && session.newest().rendered_N > kPressed_N) view.has_pressed = true;
+  if (!alone && view.has_pressed) return;
+  const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
+                                 : "Move down over the block to press: no button, only the way of the mouse.";
   const float line = height_of(style.fonts().body);
   text_at(style.fonts().body,
           {area.at.x + 0.9F * line, area.at.y + 2.6F * height_of(style.fonts().heading) - 0.6F * line},
@@ -149,19 +156,23 @@ BigNumber big_number(const ModelsView& models, const JndLine& jnd) {
     return {fixed(100.0 * (*fitting)->progress, 0) + " %", "of the first model, " + (*fitting)->name + ":",
             "until then the true material answers alone", 0.0};
   }
-  const double error = models.compared     ? active->recent_peak_error_over_jnd
-                       : models.in_contact ? active->predicted_error_N / jnd.at(active->force_N)
-                                           : std::nan("");
-  BigNumber big{"–", "of what a hand can notice:", "the error of the active model", error};
-  if (!models.compared) big.below = "predicted for the active model (95 %)";
-  // Two decimals are more than anyone can see change.
-  if (!std::isnan(error))
-    big.number = error < 0.9995 ? at_most_three_decimals(error).substr(0, 4) : at_most_three_decimals(error);
-  return big;
+  const std::string& name = active->name;
+  if (active->foreign) return {"–", "of what a hand can notice:", counted_words(models), 0.0};
+  if (!models.compared) {
+    const double guess = models.in_contact ? active->predicted_error_N / jnd.at(active->force_N) : std::nan("");
+    return {std::isnan(guess) ? "–" : jnd_text(guess),
+            "of what a hand can notice:", name + "'s own guess (95 %); " + models.off_from, guess};
+  }
+  if (models.selected == models.reference)
+    return {"–", "of what a hand can notice:", name + " is what the others are compared with", 0.0};
+  const std::string what = name + " off " + models.off_from;
+  if (active->errors.samples() == 0) return {"–", "of what a hand can notice:", what + ": press to see", 0.0};
+  const double error = active->quantile.p99();
+  return {jnd_text(error), "of what a hand can notice:", what + ", 99 % of the time", error};
 }
 
 std::string empty_scene_words(const LiveSession& session) {
-  if (session.models().size() > 0) return {};
+  if (session.models().size() > 0 || session.replay() != nullptr) return {};
   return "No model yet, and no virtual material stands in for \"" + session.scene().title +
          "\".\nDrop a recording (CSV) here to fit it or to replay it, or a model file (M lists them).\n"
          "O chooses a scene with a material.";
@@ -215,15 +226,16 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   if (!view.exhibit && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.exhibit) draw_data_warning(session, style, area);
   if (!view.exhibit) draw_title(session, view, style, area);
-  if (!view.exhibit) draw_hint(session, style, area);
+  if (!view.exhibit) draw_hint(session, view, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
   if (!view.exhibit) buttons_height_ = draw_buttons(area, *actions.commands);
   draw_device_words(session, view.offered.any(), style, area);
   draw_toasts(toasts, style, area);
-  draw_file_list(session, view);
+  draw_file_picker(view, actions);
+  draw_device_list(view, actions);
   draw_scene_list(session, view, actions);
-  draw_offered_recording(session, view, actions);
+  draw_offered_recording(view, actions);
   draw_help(view, style, *actions.commands);
 }
 

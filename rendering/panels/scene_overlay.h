@@ -24,14 +24,16 @@ namespace palpate {
 struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // buttons and the list of keys
   std::function<void(const std::string&)> use_scene;
-  std::function<void(const std::string&)> replay;
+  std::function<void(const std::string&)> replay, fit;  // of a recording
+  std::function<void(const std::string&)> open, use_device;
 };
 
 // The overlay's sentences; empty when there is nothing to tell.
 std::string data_warning(const ModelsView& models);
 std::string recording_words(const RecordingStatus& recording);
-// The big number and what it is: the recent peak error of the active model over the JND;
-// without a reference the one it predicts; how far the first fit is before there is one.
+// The big number and what it is: the 99 % error of the active model in JND, over the
+// samples that the table is of; without a reference the one it predicts; how far the first
+// fit is before there is one.
 struct BigNumber {
   std::string number = "–";
   std::string what = "of what a hand can notice:";

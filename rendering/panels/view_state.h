@@ -11,6 +11,7 @@
 
 #include "engine/live/time_histogram.h"
 #include "rendering/ui/colours.h"
+#include "scenes/live/device_choice.h"
 
 namespace palpate {
 
@@ -61,6 +62,14 @@ struct OfferedFile {
   bool any() const noexcept { return !path.empty() || !problem.empty(); }
 };
 
+// The file that is looked for.
+struct FilePicker {
+  std::string folder;               // empty: not yet
+  std::vector<std::string> files;   // in it
+  std::array<char, 512> path{};     // that is typed
+  std::vector<std::string> recent;  // opened of late, the newest first
+};
+
 struct ViewState {
   Theme theme = Theme::light;
   bool exhibit = false;
@@ -76,8 +85,13 @@ struct ViewState {
   OfferedFile offered;
   bool help = false;
   bool details = false;    // of the loop, faults
-  bool file_list = false;  // models to load
+  bool file_list = false;  // files to open
+  FilePicker picker;
+  bool device_list = false;
+  std::vector<DeviceChoice> devices;  // empty: not looked for yet
+  bool has_pressed = false;           // the person at the mouse knows how
   CurveTime time;
+  bool verdict = true;         // speed against error; else the error against the force
   bool difference = true;      // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::pair<int, const char*> kKeyNames[] = {{GLFW_KEY_SPACE, "Space"},
                                                      {GLFW_KEY_HOME, "Home"},
+                                                     {GLFW_KEY_BACKSPACE, "Backspace"},
                                                      {GLFW_KEY_ESCAPE, "Esc"},
                                                      {GLFW_KEY_UP, "Up"},
                                                      {GLFW_KEY_DOWN, "Down"},

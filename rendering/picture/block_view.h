@@ -31,6 +31,9 @@ struct BlockPose {
   bool chosen = false;      // the active model
   bool shows_error = true;  // the dent shows the error's colour
 };
+// How much deeper than they are presses are drawn where several blocks make each small; who
+// shows the picture says so.
+inline constexpr float kDeeperDents = 2.0F;
 
 class BlockView {
  public:

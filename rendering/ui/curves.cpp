@@ -16,10 +16,11 @@ float larger(float so_far, float value) noexcept { return value > so_far || std:
 const CurveColumn& empty_column() {
   static const CurveColumn empty = [] {
     CurveColumn column;
-    for (auto* values : {&column.low_N, &column.high_N, &column.low_over_jnd, &column.high_over_jnd,
-                         &column.error_over_jnd, &column.felt_over_jnd}) {
+    for (auto* values : {&column.low_over_jnd, &column.high_over_jnd, &column.error_over_jnd, &column.felt_over_jnd}) {
       values->fill(kNone);
     }
+    column.tick.force_N.fill(kNone);
+    column.tick.reference_N = column.jnd_N = kNone;
     column.predicted_low_N = column.predicted_high_N = column.predicted_over_jnd = kNone;
     return column;
   }();
@@ -78,21 +79,19 @@ bool CurveColumns::scroll(double width_s, double first, std::size_t slots, std::
 
 void CurveColumns::add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
   column.trouble = std::max(column.trouble, point.trouble);
-  column.contact = column.contact || point.in_contact;
-  const double jnd_N = jnd.at(static_cast<double>(point.reference_N));
-  if (!std::isnan(point.reference_N)) {
-    const float low_N = point.reference_N - static_cast<float>(jnd_N);
-    const float high_N = point.reference_N + static_cast<float>(jnd_N);
-    column.band_low_N = column.reference ? std::min(column.band_low_N, low_N) : low_N;
-    column.band_high_N = column.reference ? std::max(column.band_high_N, high_N) : high_N;
-    column.reference_N = point.reference_N;
-    column.reference = true;
-  }
   if (std::isnan(point.reference_N)) add_prediction(point, jnd, column);
-  column.any = true;
-  for (std::size_t i = 0; i < slots_; ++i) {
-    if (!std::isnan(point.force_N[i])) add_model(point, i, jnd_N, column);
+  const auto farthest = [&](const HistoryPoint& tick) {
+    double most = -1.0;
+    for (std::size_t i = 0; i < slots_; ++i) most = std::max(most, std::abs(tick.difference_over_jnd(i, jnd)));
+    return most;
+  };
+  // Of equal ones the last; a comparison with NaN is false.
+  if (!column.any || farthest(point) >= farthest(column.tick)) {
+    column.tick = point;
+    column.jnd_N = static_cast<float>(jnd.at(static_cast<double>(point.reference_N)));
   }
+  column.any = true;
+  for (std::size_t i = 0; i < slots_; ++i) add_model(point, i, jnd, column);
 }
 
 void CurveColumns::add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column) {
@@ -105,13 +104,10 @@ void CurveColumns::add_prediction(const HistoryPoint& point, const JndLine& jnd,
       larger(column.predicted_over_jnd, error_N / static_cast<float>(jnd.at(static_cast<double>(force_N))));
 }
 
-void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column) {
-  const float force_N = point.force_N[slot];
-  column.low_N[slot] = smaller(column.low_N[slot], force_N);
-  column.high_N[slot] = larger(column.high_N[slot], force_N);
-  if (std::isnan(point.reference_N)) return;
-  const double difference = point.in_contact ? static_cast<double>(force_N - point.reference_N) / jnd_N : 0.0;
-  const auto felt = static_cast<float>(felt_[slot].add(point.loop_time_s, difference));
+void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column) {
+  const double difference = point.difference_over_jnd(slot, jnd);
+  if (std::isnan(difference)) return;
+  const auto felt = static_cast<float>(felt_[slot].add(point.time_s, difference));
   column.low_over_jnd[slot] = smaller(column.low_over_jnd[slot], static_cast<float>(difference));
   column.high_over_jnd[slot] = larger(column.high_over_jnd[slot], static_cast<float>(difference));
   column.felt_over_jnd[slot] = larger(column.felt_over_jnd[slot], felt);
@@ -122,10 +118,11 @@ void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, double
 void CurveColumns::find_highest() {
   highest_force_N_ = highest_error_ = highest_felt_ = 0.0F;
   for (const CurveColumn& column : columns_) {
-    if (column.reference) highest_force_N_ = std::max(highest_force_N_, column.band_high_N);
+    // A comparison with NaN is false.
+    if (column.tick.reference_N + column.jnd_N > highest_force_N_)
+      highest_force_N_ = column.tick.reference_N + column.jnd_N;
     for (std::size_t i = 0; i < slots_; ++i) {
-      // A comparison with NaN is false.
-      if (column.high_N[i] > highest_force_N_) highest_force_N_ = column.high_N[i];
+      if (column.tick.force_N[i] > highest_force_N_) highest_force_N_ = column.tick.force_N[i];
       if (column.error_over_jnd[i] > highest_error_) highest_error_ = column.error_over_jnd[i];
       if (column.felt_over_jnd[i] > highest_felt_) highest_felt_ = column.felt_over_jnd[i];
     }

@@ -15,22 +15,19 @@
 namespace palpate {
 
 struct CurveColumn {
-  double time_s = 0.0;  // of its middle, loop time
-  bool any = false;     // has ticks
-  bool reference = false;
-  bool contact = false;
+  double time_s = 0.0;                      // of its middle, loop time
+  bool any = false;                         // has ticks
   TickTrouble trouble = TickTrouble::none;  // the worst
-  float reference_N = 0.0F;                 // the last one
-  float band_low_N = 0.0F;                  // reference -/+ JND, outermost
-  float band_high_N = 0.0F;
+  // The tick in which a model is farthest from the reference: one moment for all that is
+  // drawn and read of forces, so that no figure shows a difference that never was.
+  HistoryPoint tick;
+  float jnd_N = 0.0F;  // there; NaN: no reference
   // Without a reference: the active model's force -/+ its predicted error (95 %),
   // outermost, and that error over the JND; NaN: none.
   float predicted_low_N = 0.0F;
   float predicted_high_N = 0.0F;
   float predicted_over_jnd = 0.0F;
   // Of each model; NaN: no force, or nothing to compare it with.
-  std::array<float, kMaxModels> low_N{};
-  std::array<float, kMaxModels> high_N{};
   // (model - reference) / JND, signed; 0 out of contact.
   std::array<float, kMaxModels> low_over_jnd{};
   std::array<float, kMaxModels> high_over_jnd{};
@@ -46,8 +43,6 @@ class CurveColumns {
   // many ticks as are new.
   void gather(const ForceHistory& history, const JndLine& jnd, std::size_t slots, double from_s, double to_s,
               std::size_t count);
-  // For when slots change their meaning.
-  void forget() { columns_.clear(); }
 
   const std::vector<CurveColumn>& columns() const noexcept { return columns_; }
   // The column of a time; null: none, or one without ticks.
@@ -62,7 +57,7 @@ class CurveColumns {
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
   void add(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
-  void add_model(const HistoryPoint& point, std::size_t slot, double jnd_N, CurveColumn& column);
+  void add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column);
   void add_prediction(const HistoryPoint& point, const JndLine& jnd, CurveColumn& column);
   void find_highest();
 

@@ -72,16 +72,21 @@ double Plot::x_at(float px) const noexcept {
 
 bool Plot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }
 
+double Plot::shown(double value) const noexcept {
+  if (axes_.decades) return std::pow(10.0, std::round(value));
+  return std::abs(value) < 1e-9 ? 0.0 : value;
+}
+
 void Plot::draw_y_axis() const {
   const Range& y_range = axes_.y;
   const float line = ImGui::GetFontSize();
   char text[48];
   const int rows = std::max(1, static_cast<int>((high_.y - low_.y) / (1.7F * line)));
-  const double y_step = tick_step(y_range.to - y_range.from, rows);
+  const double y_step = axes_.decades ? 1.0 : tick_step(y_range.to - y_range.from, rows);
   for (double y = std::ceil(y_range.from / y_step - 1e-9) * y_step; y <= y_range.to + 1e-9 * y_step; y += y_step) {
     list_->AddLine({low_.x, std::round(y_px(y))}, {high_.x, std::round(y_px(y))}, ink(style_.colours().grid));
     const bool last = y + y_step > y_range.to + 1e-9 * y_step;
-    std::snprintf(text, sizeof text, "%g%s%s", std::abs(y) < 1e-9 ? 0.0 : y, last && *axes_.y_unit != '\0' ? " " : "",
+    std::snprintf(text, sizeof text, "%g%s%s", shown(y), last && *axes_.y_unit != '\0' ? " " : "",
                   last ? axes_.y_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     list_->AddText({low_.x - size.x - 0.3F * line, y_px(y) - 0.55F * line}, ink(style_.colours().quiet), text);
@@ -93,13 +98,12 @@ void Plot::draw_x_axis() const {
   const float line = ImGui::GetFontSize();
   char text[48];
   const int columns = std::max(1, static_cast<int>(width() / (4.0F * line)));
-  const double x_step = tick_step(x_range.to - x_range.from, columns);
+  const double x_step = axes_.decades ? 1.0 : tick_step(x_range.to - x_range.from, columns);
   for (double x = std::ceil(x_range.from / x_step - 1e-9) * x_step; x <= x_range.to + 1e-9 * x_step; x += x_step) {
     list_->AddLine({std::round(x_px(x)), low_.y}, {std::round(x_px(x)), high_.y}, ink(style_.colours().grid));
     if (!axes_.x_numbers) continue;
     const bool last = x + x_step > x_range.to + 1e-9 * x_step;
-    std::snprintf(text, sizeof text, "%.7g%s%s", std::abs(x) < 1e-9 ? 0.0 : x, last ? " " : "",
-                  last ? axes_.x_unit : "");
+    std::snprintf(text, sizeof text, "%.7g%s%s", shown(x), last ? " " : "", last ? axes_.x_unit : "");
     const ImVec2 size = ImGui::CalcTextSize(text);
     const float at = std::clamp(x_px(x) - 0.5F * size.x, low_.x - 1.5F * line, high_.x + 0.6F * line - size.x);
     list_->AddText({at, high_.y + 0.15F * line}, ink(style_.colours().quiet), text);

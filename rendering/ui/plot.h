@@ -31,6 +31,7 @@ struct PlotAxes {
   const char* y_unit = "";
   bool x_numbers = false;   // whether to label the x axis
   float right_room = 0.6F;  // for labels beside the frame, in heights of a line
+  bool decades = false;     // the values are logarithms; the numbers are not
 };
 
 class Plot {
@@ -61,6 +62,7 @@ class Plot {
   void caption(const std::string& text, float x, float y, ImU32 colour) const;
 
  private:
+  double shown(double value) const noexcept;  // by a number on an axis
   void draw_y_axis() const;
   void draw_x_axis() const;
 

@@ -1,6 +1,8 @@
 // How well the models of a session agree with their reference: the errors, the
 // curves and the dents, from the loop's snapshots.
 //
+// One evaluation, from one kind of sample: a tick that took a sample, in contact, of
+// models and reference that are there. Curves, table, plots and saved files are made of it.
 // Errors count only after the filters have seen one sample out of contact: filters
 // that begin in the middle of a press have not the state of its beginning.
 // Thread guarantee: one thread.
@@ -9,12 +11,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "engine/live/live_tick.h"
 #include "engine/tick/jnd.h"
 #include "scenes/live/dent.h"
-#include "scenes/live/evaluation_time.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/felt_error.h"
 #include "scenes/live/force_history.h"
@@ -26,7 +28,7 @@ namespace palpate {
 enum class ReferenceKind : std::uint8_t {
   measured,  // the force in the recording that is replayed
   truth,     // of the scene's virtual material under the same tool
-  direct,    // the direct interpolant, all sites
+  direct,    // a model: the direct interpolant, all sites; of files without one, the first
 };
 inline constexpr std::array<ReferenceKind, 3> kReferenceKinds{ReferenceKind::measured, ReferenceKind::truth,
                                                               ReferenceKind::direct};
@@ -48,18 +50,20 @@ class Comparison {
   void add(const LoopSnapshot& snapshot, TickTrouble trouble);
   // After them, once a frame: what the views say of the newest one.
   void show(const LoopSnapshot& newest);
-  // Forgets the errors so far; curves stay.
-  void forget_errors();
+  // Forgets the errors so far, and why, in words: "voxel joined"; curves stay.
+  void forget_errors(std::string why);
+  // Since when the figures count: "the start", "voxel joined".
+  const std::string& counted_since() const noexcept { return since_; }
 
  private:
   struct Figures {
-    EvaluationTime time;
     Dent dent;
     FeltError felt;
     double felt_over_jnd = 0.0;  // in the last snapshot; 0 without a comparison
   };
-  // `index`: the slot's model in the set that made the snapshot.
-  void add_to_slot(std::size_t index, std::size_t slot, const LoopSnapshot& snapshot, double reference_N);
+  // Everything that is said of a tick is made from its point.
+  HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set) const;
+  void count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set);
   double reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept;
   void fit_slots();
 
@@ -67,9 +71,11 @@ class Comparison {
   JndLine jnd_;
   ReferenceKind reference_ = ReferenceKind::direct;
   double reference_N_ = kNoForce;
-  std::vector<Figures> figures_;      // by slot
+  std::vector<Figures> figures_;  // by slot
+  std::string since_ = "the start";
   bool seen_out_of_contact_ = false;  // since the filters started
   double last_loop_time_s_ = 0.0;
+  TickTrouble trouble_ = TickTrouble::none;  // since the last sample
   ForceHistory history_;
 };
 

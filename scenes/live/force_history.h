@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/tick/haptics_tick.h"
+#include "engine/tick/jnd.h"
 #include "scenes/live/fault_log.h"
 
 namespace palpate {
@@ -17,15 +18,23 @@ inline constexpr double kHistory_s = 120.0;
 
 struct HistoryPoint {
   double loop_time_s = 0.0;  // steady clock
+  double time_s = 0.0;       // the device's: of a recording that is stepped, its own
   float depth_m = 0.0F;
   float reference_N = 0.0F;  // NaN: none
   float rendered_N = 0.0F;
   float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
+  std::uint8_t reference = 0;      // which it was, a ReferenceKind
   bool in_contact = false;
+  bool counts = true;          // in contact: among the samples that figures are made of
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickTrouble trouble = TickTrouble::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
+  std::uint16_t foreign = 0;                // bits by slot: models with nothing to compare with
+
+  // (model - reference) / JND: what curves and figures are made of. 0 in the air, NaN where
+  // there is nothing to compare.
+  double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept;
 };
 
 class ForceHistory {
@@ -40,6 +49,8 @@ class ForceHistory {
   }
   // The first point at `loop_time_s` or later; size() when there is none. O(log).
   std::size_t first_at(double loop_time_s) const noexcept;
+  // The last point up to `loop_time_s`; null: there is none.
+  const HistoryPoint* last_until(double loop_time_s) const noexcept;
   void append(const HistoryPoint& point);
 
  private:

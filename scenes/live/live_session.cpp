@@ -1,9 +1,14 @@
 #include "scenes/live/live_session.h"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "devices/registry/device_registry.h"
 #include "engine/base/text.h"
+#include "engine/recording/recording.h"
+#include "models/model/fitted_model.h"
+#include "scenes/live/device_choice.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/local_time.h"
@@ -31,7 +36,51 @@ WrittenForce written(ReferenceKind kind) {
   return WrittenForce::model;
 }
 
+constexpr const char* kDefaultScene = "silicone_block";
+constexpr std::string_view kReplay = "replay:";
+
+// A recording that is named or replayed is the material: nothing else is true of it.
+Status take_recording(const SessionRequest& request, Scene& scene) {
+  scene.recording = request.recording;
+  if (request.device.rfind(kReplay, 0) == 0) scene.recording = request.device.substr(kReplay.size());
+  if (scene.recording.empty()) return {};
+  const Result<Recording> recording = read_recording(scene.recording);
+  if (!recording) return recording.error();
+  scene.material.reset();
+  scene.title = recording->name;
+  scene.description = "The material of " + scene.recording + "; models are fitted to it.";
+  double largest_N = 0.0;
+  for (const RecordingRow& row : recording->rows) largest_N = std::max(largest_N, row.force_N);
+  constexpr double kPressed = 0.8;  // of the largest: a hand goes beyond what it aims at
+  if (largest_N > 0.0) scene.strongest_press_N = kPressed * largest_N;
+  return {};
+}
+
+// Files alone, in a scene that nobody named: they say what they are of, and nothing that is
+// here is its truth.
+void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& scene) {
+  const auto is_file = [](const SlotPlan& plan) { return plan.origin == ModelOrigin::file; };
+  if (static_cast<std::size_t>(std::count_if(plans.begin(), plans.end(), is_file)) != files) return;
+  std::erase_if(plans, [&](const SlotPlan& plan) { return !is_file(plan); });
+  const Provenance& from = plans.front().loaded->data().provenance;
+  if (auto own = load_scene(from.scene)) scene = std::move(*own);
+  scene.material.reset();
+  scene.title = plan_name(plans.front()) + ": a model";
+  scene.description = "Fitted to " + (from.recordings.empty() ? "" : from.recordings.front()) + " in " + scene.name;
+}
+
 }  // namespace
+
+std::vector<DeviceChoice> device_choices() {
+  DeviceRequest request;
+  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
+  std::vector<DeviceChoice> choices;
+  for (DeviceDescription& device : list_devices(request)) {
+    if (device.name.find(':') == std::string::npos)
+      choices.push_back({std::move(device.name), std::move(device.summary), std::move(device.problem)});
+  }
+  return choices;
+}
 
 LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device)
     : request_(request),
@@ -43,12 +92,15 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
       buffer_(kSnapshotsAtOnce) {}
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
-  Result<Scene> scene = load_scene(request.scene);
+  Result<Scene> scene = load_scene(request.scene.empty() ? kDefaultScene : request.scene);
   if (!scene) return scene.error();
-  const LineUp* line_up = request.models.empty() && scene->material ? find_line_up(request.line_up) : nullptr;
-  const Result<std::vector<SlotPlan>> plans =
+  if (const Status status = take_recording(request, *scene); !status) return status.error();
+  const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
+  Result<std::vector<SlotPlan>> plans =
       plan_slots(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
   if (!plans) return plans.error();
+  if (request.scene.empty() && !request.models.empty() && scene->recording.empty())
+    take_provenance(*plans, request.models.size(), *scene);
   DeviceRequest device_request;
   device_request.seed = request.seed + 1;  // other gestures than those of the training recording
   device_request.hand.strongest_press_N = scene->strongest_press_N;
@@ -78,9 +130,9 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
   if (std::string note = device_->note(); !note.empty()) notices_.add(std::move(note), false);
-  if (Status status = models_.start(plans); !status) return status;
+  if (Status status = models_.start(plans, !request_.scene.empty()); !status) return status;
   // The material answers from the first tick on, before there is any model of it.
-  if (truth_ != nullptr) publish();
+  if (truth_ != nullptr) publish("the start");
   return loop_->start();
 }
 
@@ -97,7 +149,7 @@ void LiveSession::update() {
   // Before models change, so that they know the motion up to now.
   read_snapshots();
   update_models();
-  if (surface_.update(models_)) comparison_.forget_errors();
+  if (surface_.update(models_)) comparison_.forget_errors("the surface was found");
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
@@ -114,12 +166,13 @@ void LiveSession::update_models() {
   const std::vector<std::size_t> ready = models_.update();
   if (ready.empty()) return;
   for (const std::size_t slot : ready) comparison_.begin_slot(slot);
-  publish();
+  const std::string& name = models_.view(ready.back()).name;
+  publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
 // All begin to be compared together: the same samples for each.
-void LiveSession::publish() {
-  comparison_.forget_errors();
+void LiveSession::publish(std::string why) {
+  comparison_.forget_errors(std::move(why));
   auto set = models_.make_set(device_->sensor(), truth_);
   history_.recall(set->tick);
   loop_->publish_models(std::move(set));
@@ -128,16 +181,21 @@ void LiveSession::publish() {
 
 void LiveSession::remove(std::size_t slot) {
   models_.remove(slot);
-  publish();
+  publish(models_.view(slot).name + " was taken out");
+}
+
+void LiveSession::claim(std::size_t slot) {
+  models_.claim(slot);
+  comparison_.forget_errors(models_.view(slot).name + " joined");
 }
 
 void LiveSession::use_line_up(const std::string& name) {
   const LineUp* line_up = find_line_up(name);
-  if (line_up == nullptr || !scene_.material) return;
+  if (line_up == nullptr || !scene_.has_material()) return;
   const auto plans = plan_slots(scene_, line_up->models, false);
   if (!plans) return;
   request_.line_up = name;
-  if (models_.use_plans(*plans)) publish();
+  if (models_.use_plans(*plans)) publish("other models are shown");
 }
 
 void LiveSession::read_snapshots() {
@@ -191,7 +249,7 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
     case ReferenceKind::truth:
       return truth_ != nullptr;
     case ReferenceKind::direct:
-      return models_.direct().has_value();
+      return models_.reference().has_value();
   }
   return false;
 }
@@ -200,20 +258,27 @@ void LiveSession::use_reference(ReferenceKind kind) {
   if (has_reference(kind)) comparison_.use_reference(kind);
 }
 
-std::string LiveSession::reference_words() const {
+std::string LiveSession::reference_words(bool brief) const {
+  const std::string model = has_reference(ReferenceKind::direct) ? models_.view(*models_.reference()).name : "";
   switch (comparison_.reference()) {
     case ReferenceKind::measured:
-      return replay() != nullptr ? "force in the recording" : "measured force of the real block";
+      if (replay() != nullptr) return brief ? "the recording" : "as recorded in " + replay()->recording().name;
+      return brief ? "the real block" : "measured force of the real block";
     case ReferenceKind::truth:
-      return "true force of the virtual material, " + *scene_.material;
+      return brief ? "the material" : "true force of the virtual material, " + *scene_.material;
     case ReferenceKind::direct:
-      return has_reference(ReferenceKind::direct) ? "direct interpolant" : "no reference";
+      if (model.empty()) return "no truth to compare with";
+      if (brief) return model;
+      if (scene_.material) return "direct interpolant";
+      return (scene_.recording.empty() ? "no truth to compare with: difference from "
+                                       : "best model of the recording, ") +
+             model;
   }
   return {};
 }
 
 void LiveSession::reset_figures() {
-  comparison_.forget_errors();
+  comparison_.forget_errors("they were cleared");
   faults_.acknowledge();
   ++acknowledged_;
   send_controls();
@@ -233,7 +298,7 @@ std::string LiveSession::device_words() const {
 }
 
 void LiveSession::move_surface(bool moved) {
-  if (surface_.move(moved)) comparison_.forget_errors();
+  if (surface_.move(moved)) comparison_.forget_errors("the surface moved");
 }
 
 bool LiveSession::renders_force() const noexcept { return is_felt(*device_); }

@@ -30,7 +30,8 @@ namespace palpate {
 class HidBus;
 
 struct SessionRequest {
-  std::string scene = "silicone_block";
+  std::string scene;      // empty: silicone, or of model files alone what they were fitted for
+  std::string recording;  // this is the material; empty: one that the device replays, or the scene's
   std::string device = "auto";
   std::vector<std::string> models;  // methods or model files; empty: the line-up
   std::string line_up;              // of line_ups(); empty, or not of the scene's: the scene's default
@@ -66,7 +67,8 @@ class LiveSession {
   const ModelSlots& models() const noexcept { return models_; }
   void select(std::size_t slot);  // makes its model the active one; ignored unless ready
   void load_file(const std::string& path) { models_.load_file(path); }
-  void fit_recording(const std::string& path) { models_.fit_recording(path); }
+  Status save_model(std::size_t slot, const std::string& path) const { return models_.save(slot, path); }
+  void claim(std::size_t slot);  // see ModelSlots
   void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
   void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
   void remove(std::size_t slot);
@@ -79,8 +81,9 @@ class LiveSession {
   const Comparison& comparison() const noexcept { return comparison_; }
   bool has_reference(ReferenceKind kind) const noexcept;
   void use_reference(ReferenceKind kind);  // forgets the errors; ignored without one
-  // "true force of the virtual silicone", "force in the recording", ...
-  std::string reference_words() const;
+  // "true force of the virtual silicone", "as recorded in foam", ...; `brief`: what
+  // errors are off from, in few words.
+  std::string reference_words(bool brief = false) const;
   // Forgets errors so far and alarms that are over; curves stay.
   void reset_figures();
 
@@ -121,7 +124,7 @@ class LiveSession {
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);
   Status begin(const std::vector<SlotPlan>& plans);
   void update_models();
-  void publish();
+  void publish(std::string why);
   void read_snapshots();
   void check_faults();
   void save_fault_ticks();

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
@@ -14,6 +15,12 @@ namespace {
 // The job of a file that has no slot yet.
 constexpr std::size_t kNoSlot = static_cast<std::size_t>(-1);
 
+std::string recordings_of(const FittedModel& model) {
+  std::string names;
+  for (const std::string& name : model.data().provenance.recordings) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 }  // namespace
 
 struct ModelSlots::Slot {
@@ -23,7 +30,7 @@ struct ModelSlots::Slot {
   std::shared_ptr<const FittedModel> model;  // null until ready
   bool hidden = false;
   bool removed = false;
-  bool wanted = false;  // becomes the active one when it is ready
+  bool claimed = false;  // of a file: somebody said that it is of this material
 
   bool takes_part() const { return model != nullptr && !hidden; }
   bool is(const SlotPlan& other) const {
@@ -44,19 +51,25 @@ ModelSlots::ModelSlots(const Scene& scene, std::uint64_t seed, Notices& notices)
 
 ModelSlots::~ModelSlots() = default;
 
-Status ModelSlots::start(const std::vector<SlotPlan>& plans) {
+Status ModelSlots::start(const std::vector<SlotPlan>& plans, bool claimed) {
   for (const SlotPlan& plan : plans) {
-    auto slot = std::make_unique<Slot>();
-    slot->view.name = distinct_name(plan_name(plan), nullptr);
-    slot->view.method = plan_method(plan);
-    slot->view.takes_centres = plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres);
-    slot->plan = plan;
-    slot->asked_centres = plan.centres;
-    slots_.push_back(std::move(slot));
-    worker_->add_job(slots_.size() - 1, plan);
+    add_slot(plan).claimed = claimed;
+    worker_->add_job(slots_.size() - 1, plan, slots_.size() == 1);
   }
   outstanding_ = slots_.size();
   return worker_->start();
+}
+
+ModelSlots::Slot& ModelSlots::add_slot(const SlotPlan& plan) {
+  slots_.push_back(std::make_unique<Slot>());
+  Slot& slot = *slots_.back();
+  slot.view.name = distinct_name(plan_name(plan), &slot);
+  slot.view.method = plan_method(plan);
+  slot.view.takes_centres = plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres);
+  slot.view.paper = plan.paper;
+  slot.plan = plan;
+  slot.asked_centres = plan.centres;
+  return slot;
 }
 
 void ModelSlots::cancel() noexcept { worker_->cancel(); }
@@ -91,11 +104,40 @@ bool ModelSlots::add_file(FinishedModel& finished) {
     notices_.add(finished.problem, true);
     return false;
   }
-  slots_.push_back(std::make_unique<Slot>());
-  slots_.back()->plan = finished.plan;
+  Slot& slot = add_slot(finished.plan);
   join(slots_.size() - 1, finished);
-  notices_.add("loaded " + slots_.back()->view.name + " from " + finished.plan.path, false);
+  notices_.add("loaded " + slot.view.name + " from " + finished.plan.path +
+                   (slot.view.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+               false);
   return true;
+}
+
+// A truth is one of a material: a model of something else is not wrong where it differs.
+// A recording was named together with the models that are held against it.
+bool ModelSlots::is_foreign(const Slot& slot) const {
+  if (!scene_.material || slot.claimed || slot.plan.origin != ModelOrigin::file) return false;
+  const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
+  return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
+    const std::string start = *scene_.material + "_";  // as the rig names its own
+    return name.rfind(start, 0) != 0 || name.find_first_not_of("0123456789", start.size()) != std::string::npos;
+  });
+}
+
+Status ModelSlots::save(std::size_t slot, const std::string& path) const {
+  if (slot >= slots_.size() || slots_[slot]->model == nullptr) return Error{"there is no model to save yet"};
+  return save_model(path, slots_[slot]->model->data(), false);
+}
+
+std::optional<std::size_t> ModelSlots::reference() const noexcept {
+  if (direct_) return direct_;
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i]->plan.origin != ModelOrigin::file) return std::nullopt;
+    if (!slots_[i]->takes_part()) continue;
+    if (first) return first;
+    first = i;
+  }
+  return std::nullopt;
 }
 
 bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
@@ -113,23 +155,23 @@ bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
   slot.view.state = slot.hidden ? SlotState::hidden : SlotState::ready;
   slot.view.progress = 1.0;
   slot.view.centres = slot.model->centre_count();
+  slot.view.tick_ns = finished.tick_ns;
+  slot.view.foreign = is_foreign(slot);
   if (slot.plan.origin != ModelOrigin::position) {
     slot.view.method = slot.model->method();
-    std::string name = slot.plan.origin == ModelOrigin::recording ? plan_name(slot.plan) : slot.model->name();
+    std::string name = slot.model->name();
     if (slot.plan.paper) name += kPaperMark;
     slot.view.name = distinct_name(name, &slot);
   }
   if (!direct_ && slot.view.method == "direct" && !slot.plan.paper) direct_ = index;
   if (slot.hidden) return true;
-  if (first || slot.wanted || (index == 0 && !user_chose_)) selected_ = index;
-  slot.wanted = false;
+  if (first || (index == 0 && !user_chose_)) selected_ = index;
   return true;
 }
 
 bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
   for (const auto& slot : slots_) {
-    const bool own = slot->plan.origin == ModelOrigin::file || slot->plan.origin == ModelOrigin::recording;
-    slot->hidden = slot->removed || !own;
+    slot->hidden = slot->removed || slot->plan.origin != ModelOrigin::file;
   }
   std::optional<std::size_t> first;
   for (const SlotPlan& plan : plans) {
@@ -137,16 +179,10 @@ bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
     auto index = static_cast<std::size_t>(same - slots_.begin());
     if (same == slots_.end()) {
       if (!has_room("show " + plan_name(plan))) continue;
-      slots_.push_back(std::make_unique<Slot>());
-      Slot& slot = *slots_.back();
-      slot.plan = plan;
-      slot.asked_centres = plan.centres;
-      slot.view.name = distinct_name(plan_name(plan), nullptr);
-      slot.view.method = plan_method(plan);
-      slot.view.takes_centres = plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres);
+      add_slot(plan);
       index = slots_.size() - 1;
       ++outstanding_;
-      worker_->add_job(index, plan);
+      worker_->add_job(index, plan, !first);
     }
     slots_[index]->hidden = false;
     if (!first) first = index;
@@ -201,19 +237,6 @@ void ModelSlots::refit(std::size_t index, int centres) {
   worker_->add_job(index, slot.plan);
 }
 
-void ModelSlots::fit_recording(const std::string& path) {
-  if (!has_room("fit " + path)) return;
-  slots_.push_back(std::make_unique<Slot>());
-  Slot& slot = *slots_.back();
-  slot.plan.origin = ModelOrigin::recording;
-  slot.plan.path = path;
-  slot.view.name = distinct_name(plan_name(slot.plan), &slot);
-  slot.view.method = plan_method(slot.plan);
-  slot.wanted = true;
-  ++outstanding_;
-  worker_->add_job(slots_.size() - 1, slot.plan);
-}
-
 double ModelSlots::trained_depth_m() const noexcept {
   double depth_m = std::numeric_limits<double>::infinity();
   for (const auto& slot : slots_) {
@@ -246,8 +269,8 @@ std::unique_ptr<LiveModels> ModelSlots::make_set(const SensorSpec& sensor, std::
   }
   auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
   next->selected = static_cast<std::uint32_t>(set.place_of(selected_).value_or(0));
-  if (const auto place = direct_ ? set.place_of(*direct_) : std::nullopt) {
-    next->written_model = static_cast<std::uint32_t>(*place);
+  if (const auto model = this->reference(); model && set.place_of(*model)) {
+    next->written_model = static_cast<std::uint32_t>(*set.place_of(*model));
   }
   sets_.push_back(std::move(set));
   return next;

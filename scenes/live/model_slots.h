@@ -44,8 +44,9 @@ class ModelSlots {
   // Interrupts fits.
   ~ModelSlots();
 
-  // A slot for each plan. Errors: no thread.
-  Status start(const std::vector<SlotPlan>& plans);
+  // A slot for each plan. `claimed`: files among them are of this material, whoever asked
+  // for both says so. Errors: no thread.
+  Status start(const std::vector<SlotPlan>& plans, bool claimed);
   // Interrupts fits; does not wait.
   void cancel() noexcept;
   // Once a frame: what the worker has finished. Returns the slots whose models
@@ -56,6 +57,7 @@ class ModelSlots {
   std::unique_ptr<LiveModels> make_set(const SensorSpec& sensor, std::shared_ptr<ReferenceForce> reference);
   // The set that made `snapshot`; null: none, or one of long ago.
   const PublishedSet* set_of(const LoopSnapshot& snapshot) const noexcept;
+  const PublishedSet* newest_set() const noexcept { return sets_.empty() ? nullptr : &sets_.back(); }
   // Which model of the newest set is active.
   void write_selection(LoopControls& controls) const;
 
@@ -71,8 +73,11 @@ class ModelSlots {
   // The slot of the active model, as asked for; the force fades to it.
   std::size_t selected() const noexcept { return selected_; }
   bool select(std::size_t slot);  // false, and ignored: not ready
-  // The first slot of the direct interpolant that is ready.
-  std::optional<std::size_t> direct() const noexcept { return direct_; }
+  // What models are compared with where there is no truth: the first direct interpolant
+  // that is ready; of files alone, of which none is one, the first of several.
+  std::optional<std::size_t> reference() const noexcept;
+  // It is a model of what is pressed, whatever its file says.
+  void claim(std::size_t slot) noexcept { view(slot).foreign = false; }
 
   // Shows the models of these plans and hides all others but those of files and
   // recordings; what is not there yet is fitted. What is active stays so if it is shown,
@@ -85,8 +90,8 @@ class ModelSlots {
   // Fits a model anew with so many centres, in the background; ignored for one that has
   // no number of centres or comes from a file.
   void refit(std::size_t slot, int centres);
-  // Fits a recording in the background into a new slot, which becomes the active one.
-  void fit_recording(const std::string& path);
+  // Errors: not ready, as save_model.
+  Status save(std::size_t slot, const std::string& path) const;
   // Greatest depth that all shown models were trained with, metres; infinite without any.
   double trained_depth_m() const noexcept;
 
@@ -100,6 +105,8 @@ class ModelSlots {
   struct Slot;
 
   void show_progress();
+  Slot& add_slot(const SlotPlan& plan);
+  bool is_foreign(const Slot& slot) const;
   bool add_file(FinishedModel& finished);
   bool join(std::size_t index, FinishedModel& finished);
   bool has_room(const std::string& what);

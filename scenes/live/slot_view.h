@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scenes/evaluation/error_figures.h"
+#include "scenes/live/error_quantile.h"
 
 namespace palpate {
 
@@ -24,19 +25,21 @@ struct SlotView {
   SlotState state = SlotState::waiting;
   double progress = 0.0;  // of the fit, 0..1
   std::string problem;    // when failed
-  // In the newest tick; 0 until ready.
-  double force_N = 0.0;
-  double error_N = 0.0;  // signed, model - reference; 0 out of contact or without reference
-  double error_over_jnd = 0.0;
+  // Of another material than the one that is pressed, as far as anybody knows: there is
+  // nothing to compare it with.
+  bool foreign = false;
+  double force_N = 0.0;  // in the newest tick; 0 until ready
   bool out_of_domain = false;
   // Of the force, 95 % (models/model); NaN: unknown. All there is without a reference.
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
-  double evaluation_ns = 0.0;  // median over about the last second in contact
-  bool refitting = false;      // with another number of centres; the old one is there until then
+  double tick_ns = 0.0;    // a whole tick of this model alone, measured when it became ready
+  bool refitting = false;  // with another number of centres; the old one is there until then
   bool takes_centres = false;
+  bool paper = false;  // by the recipe of 2009
   // Since the last reset, over samples in contact and inside the data of all models
   // that are compared: the same samples for each.
   ErrorFigures errors;
+  ErrorQuantile quantile;                   // of the same samples
   std::uint64_t samples_out_of_domain = 0;  // left out for being outside the data of one
   // For drawing. Depth of the dent: the tool's while it presses, behind it the
   // surface's slow return, which follows the model's own relaxation times.

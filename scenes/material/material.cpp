@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "scenes/material/button_block.h"
 #include "scenes/material/friction_block.h"
 #include "scenes/material/layered_block.h"
 #include "scenes/material/maxwell_block.h"
@@ -44,6 +45,9 @@ constexpr std::array kMaterials = {
              .make_block = &make<SpongeBlock>,
              .force_range_N = 25.0,
              .hand = {.strongest_press_N = 14.0}},
+    Material{.name = "button",
+             .summary = "rubber dome that snaps through: a click, another way back, a floor",
+             .make_block = &make<ButtonBlock>},
     Material{.name = "maxwell",
              .summary = "springs and dashpots, two relaxations with known times",
              .make_block = &make_maxwell<kMaxwell>},

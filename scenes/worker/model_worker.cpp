@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
 #include "engine/recording/recording.h"
 #include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
+#include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"
 
@@ -39,6 +41,25 @@ double expected_cost_s(const SlotPlan& plan) {
   if (plan.centres > 0) request.centres = plan.centres;
   return expected_seconds(request) + (plan.paper ? 0.0 : kChoosesFeatures_s) +
          (plan.origin == ModelOrigin::position ? kOwnPreparation_s : 0.0);
+}
+
+// Strokes into what it was trained on, the same for every model: half a second of contact
+// and more makes a median, and takes some milliseconds.
+double tick_ns(const std::shared_ptr<const FittedModel>& model) {
+  std::size_t feature = 0;
+  const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
+  SensorSpec sensor;
+  sensor.has_velocity = true;
+  TimingSample sample;
+  for (int i = 0; i < 1024; ++i) {
+    const double phase = 0.01 * i;
+    ToolSample tool;
+    tool.time_s = 1e-3 * i;
+    tool.position_m = 0.5 * depth_m * (1.02 - std::cos(phase));
+    tool.velocity_m_per_s = 5.0 * depth_m * std::sin(phase);
+    sample.add(tool);
+  }
+  return time_model(model, sensor, sample).tick.median_ns;
 }
 
 }  // namespace
@@ -74,16 +95,16 @@ Status ModelWorker::start() {
   return {};
 }
 
-void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan) {
+void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan, bool at_once) {
   const std::lock_guard lock(mutex_);
   if (plan.origin == ModelOrigin::file && plan.loaded == nullptr) {
-    files_.push_back({job_id, plan});
+    files_.push_back({job_id, plan, 0.0});
   } else {
     std::erase_if(jobs_, [&](const Job& other) { return other.job_id == job_id; });
-    const auto slower = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) {
-      return expected_cost_s(other.plan) > expected_cost_s(plan);
-    });
-    jobs_.insert(slower, {job_id, plan});
+    const double cost_s = at_once ? -1.0 : expected_cost_s(plan);
+    const auto slower =
+        std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) { return other.cost_s > cost_s; });
+    jobs_.insert(slower, {job_id, plan, cost_s});
   }
   wake_.notify_all();
 }
@@ -114,6 +135,7 @@ std::optional<ModelWorker::Job> ModelWorker::next_job() {
 void ModelWorker::work() {
   while (const std::optional<Job> job = next_job()) {
     FinishedModel model = make(*job);
+    if (model.model != nullptr) model.tick_ns = tick_ns(model.model);
     const std::lock_guard lock(mutex_);
     finished_.push_back(std::move(model));
   }
@@ -128,6 +150,7 @@ void ModelWorker::read_files() {
     files_.pop_front();
     lock.unlock();
     FinishedModel model = make(job);
+    if (model.model != nullptr) model.tick_ns = tick_ns(model.model);
     lock.lock();
     finished_.push_back(std::move(model));
   }
@@ -168,6 +191,12 @@ FitControl ModelWorker::control(double from, double to) {
 
 Status ModelWorker::prepare_recording() {
   if (recording_ != nullptr) return {};
+  if (!scene_.recording.empty()) {
+    Result<Recording> recording = read_recording(scene_.recording);
+    if (!recording) return recording.error();
+    recording_ = std::make_shared<const Recording>(std::move(*recording));
+    return {};
+  }
   if (!scene_.material) return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
   RigSettings settings;
   settings.material = *scene_.material;
@@ -188,21 +217,6 @@ Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const Tra
   return {};
 }
 
-// All as `palpate fit` does it by itself.
-Result<ModelData> ModelWorker::fit_recording(const SlotPlan& plan) {
-  Result<Recording> recording = read_recording(plan.path);
-  if (!recording) return recording.error();
-  MotionSource source({{plan.path, std::make_shared<const Recording>(std::move(*recording))}});
-  Result<PreparedTraining> prepared = prepare_training(source, training_request(scene_), control(0.0, kPrepared));
-  if (!prepared) return prepared.error();
-  MethodRequest request;
-  request.method = plan.method;
-  request.seed = seed_;
-  Result<MethodFit> fitted = fit_method(*prepared, request, control(kPrepared, 1.0));
-  if (!fitted) return fitted.error();
-  return std::move(fitted->data);
-}
-
 Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
                                           const FitControl& control) {
   std::optional<NestedFit>& nested = nested_[{request.method, paper}];
@@ -217,7 +231,6 @@ Result<MethodFit> ModelWorker::fit_nested(const PreparedTraining& prepared, cons
 }
 
 Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
-  if (plan.origin == ModelOrigin::recording) return fit_recording(plan);
   std::optional<PreparedTraining> of_position;
   const bool position = plan.origin == ModelOrigin::position;
   std::optional<PreparedTraining>& prepared = position ? of_position : plan.paper ? prepared_as_paper_ : prepared_;

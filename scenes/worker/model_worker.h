@@ -1,7 +1,7 @@
-// A worker thread that makes the models of a session ready, the quickest first:
-// files are read, methods are fitted to a virtual recording of the scene's
-// material, the one that `palpate synth` with the same seed writes, with the
-// code of `palpate fit`: the same bits.
+// A worker thread that makes the models of a session ready, the one that was asked for
+// first at once and the rest the quickest first: files are read, methods are fitted to the
+// recording that is the material, or to a virtual one of the scene's material, the one that
+// `palpate synth` with the same seed writes, with the code of `palpate fit`: the same bits.
 //
 // Asked for another number of centres than before (a slider), it chooses centres for the
 // largest number once; each number after that takes milliseconds (models/fit/nested_fit.h)
@@ -40,6 +40,7 @@ struct FinishedModel {
   SlotPlan plan;
   std::shared_ptr<const FittedModel> model;  // null: `problem` says why
   std::string problem;
+  double tick_ns = 0.0;  // a whole tick of this model alone (scenes/evaluation/model_timing.h)
 };
 
 // For threads that must never hold up graphics or haptics: of this thread and those
@@ -57,8 +58,8 @@ class ModelWorker {
   // What is asked for before this is made the quickest first. Errors: no thread.
   Status start();
   // `job_id`: comes back with the model. One that is asked for again before it was begun
-  // is made once, as asked last. Files do not wait behind fits.
-  void add_job(std::size_t job_id, const SlotPlan& plan);
+  // is made once, as asked last. Files do not wait behind fits; `at_once`: before all others.
+  void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
   // What was finished since the last call.
   std::vector<FinishedModel> read_finished();
 
@@ -76,6 +77,7 @@ class ModelWorker {
   struct Job {
     std::size_t job_id = 0;
     SlotPlan plan;
+    double cost_s = 0.0;  // expected; below 0: at once
   };
   void work();
   void read_files();
@@ -85,7 +87,6 @@ class ModelWorker {
   Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
                                const FitControl& control);
   Status prepare_recording();
-  Result<ModelData> fit_recording(const SlotPlan& plan);
   Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
   FitControl control(double from, double to);
 

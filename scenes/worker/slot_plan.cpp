@@ -45,7 +45,7 @@ std::optional<SlotPlan> plan_method_of(std::string asked) {
 
 Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
   if (auto plan = plan_method_of(asked)) {
-    if (!scene.material) return needs_files(scene);
+    if (!scene.has_material()) return needs_files(scene);
     return std::move(*plan);
   }
   std::error_code missing;
@@ -67,7 +67,6 @@ std::string plan_name(const SlotPlan& plan) {
     }
     case ModelOrigin::position:
       return "position only";
-    case ModelOrigin::recording:
     case ModelOrigin::file:
       return std::filesystem::path(plan.path).stem().string();
   }
@@ -83,7 +82,7 @@ const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
       {"Ladder",
        "few centres beside many: the paper's recipe with 10 centres, and this program's own",
-       {"paper:random-10", "greedy", "paper:greedy-10", "paper:kdtree-10", "voxel", "direct", "trend"}},
+       {"greedy", "paper:random-10", "paper:greedy-10", "paper:kdtree-10", "voxel", "direct", "trend"}},
       {"2009",
        "the paper's recipe: few centres, the grid and all sites",
        {"paper:random-10", "paper:kdtree-10", "paper:greedy-10", "paper:voxel", "paper:direct"}},
@@ -106,8 +105,6 @@ std::string plan_method(const SlotPlan& plan) {
       return plan.method->name;
     case ModelOrigin::position:
       return "position";
-    case ModelOrigin::recording:
-      return plan.method->name;
     case ModelOrigin::file:
       return {};
   }
@@ -118,17 +115,19 @@ Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<s
                                          bool position_only) {
   std::vector<SlotPlan> plans;
   // Nothing to fit to, and nothing asked for: a session that waits for a file.
-  if (models.empty() && !scene.material) return plans;
+  if (models.empty() && !scene.has_material()) return plans;
   for (const std::string& asked : models.empty() ? scene.default_models : models) {
     Result<SlotPlan> plan = plan_one(scene, asked);
     if (!plan) return plan.error();
     plans.push_back(std::move(*plan));
   }
-  if (position_only && scene.material) plans.push_back({ModelOrigin::position, &kGreedyMethod, "", nullptr});
+  if (position_only && scene.has_material()) plans.push_back({ModelOrigin::position, &kGreedyMethod, "", nullptr});
   const bool has_direct = std::any_of(plans.begin(), plans.end(), [](const SlotPlan& plan) {
     return plan.origin == ModelOrigin::method && plan.method == &kDirectMethod && !plan.paper;
   });
-  if (scene.material && !has_direct) plans.push_back({ModelOrigin::method, &kDirectMethod, "", nullptr});
+  const bool fits =
+      std::any_of(plans.begin(), plans.end(), [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
+  if ((scene.material || fits) && !has_direct) plans.push_back({ModelOrigin::method, &kDirectMethod, "", nullptr});
   if (plans.size() <= kMaxModels) return plans;
   return Error{"found " + std::to_string(plans.size()) + " models, the direct reference included, expected at most " +
                std::to_string(kMaxModels) + "; leave some out"};

@@ -14,9 +14,8 @@
 namespace palpate {
 
 enum class ModelOrigin : std::uint8_t {
-  method,     // fitted to a virtual recording of the scene's material
-  position,   // likewise, to the depth alone
-  recording,  // likewise, to a recording
+  method,    // fitted to a recording of the scene's material
+  position,  // likewise, to the depth alone
   file,
 };
 
@@ -26,7 +25,7 @@ inline constexpr int kMostCentres = 200;
 struct SlotPlan {
   ModelOrigin origin = ModelOrigin::method;
   const Method* method = &kGreedyMethod;                // of a fit
-  std::string path;                                     // of a file, a recording
+  std::string path;                                     // of a file
   std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file that has been read already
   int centres = 0;                                      // of a method that takes them; 0: as many as it takes by itself
   bool paper = false;                                   // by the paper's own recipe: 50 mN steps, rows weighted 1/f

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <set>
 
+#include "engine/live/pacer.h"
 #include "engine/recording/recording.h"
+#include "rendering/panels/overlay_parts.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {
@@ -84,6 +86,14 @@ TEST_F(DemoCommandsTest, ClosingWhileRecordingLeavesTheFileWhole) {
   EXPECT_GT(recording->rows.size(), 300u);
 }
 
+TEST_F(DemoCommandsTest, TheFilePickerListsFoldersAndWhatCanBeOpened) {
+  std::filesystem::create_directory(folder_.file("lab"));
+  for (const char* name : {"b.csv", "a.json", ".hidden.csv", "picture.png"}) folder_.with_file(name, "x");
+  EXPECT_EQ(overlay::pickable_files(folder_.path()),
+            (std::vector<std::string>{"lab/", "a.json", "b.csv", "firm.json", "soft.json"}));
+  EXPECT_TRUE(overlay::pickable_files(folder_.file("nowhere")).empty());
+}
+
 TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
   open("hand");
   press(GLFW_KEY_T);
@@ -110,7 +120,7 @@ TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
     glfwSetWindowSize(app_->window().handle(), width, height);
     frames(8);
-    for (const char* name : {"Keys", "Load a model", "buttons", "title"}) {
+    for (const char* name : {"Keys", "Open a file", "buttons", "title"}) {
       const ImGuiWindow* window = ImGui::FindWindowByName(name);
       ASSERT_NE(window, nullptr) << name;
       EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
@@ -130,6 +140,50 @@ TEST_F(DemoCommandsTest, SavesWhatTheCurvesShow) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
     figures += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
   EXPECT_EQ(figures, 2u);
+}
+
+TEST_F(DemoCommandsTest, SavesTheModelInTheHand) {
+  open("hand");
+  press(GLFW_KEY_K);
+  ASSERT_TRUE(told("saved soft to "));
+  std::size_t models = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
+    models += load_model(entry.path().string()).ok() ? 1 : 0;
+  EXPECT_EQ(models, 1u);
+}
+
+// The recording stays what is pressed; nothing of the replay stays.
+TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
+  const std::string replayed = folder_.file("strokes.csv");
+  ASSERT_TRUE(write_recording(replayed, test::example_recording(2000, 1000.0), {}, false).ok());
+  open("replay:" + replayed);
+  EXPECT_EQ(app_->session().reference_words(), "as recorded in strokes");
+  frames(60);
+  const std::size_t shown = app_->session().comparison().history().size();
+  press(GLFW_KEY_BACKSPACE);
+  EXPECT_EQ(app_->session().replay(), nullptr);
+  EXPECT_EQ(app_->session().scene().title, "strokes");
+  EXPECT_EQ(app_->session().scene().recording, replayed);
+  EXPECT_LT(app_->session().comparison().history().size(), shown) << "curves of the old session are gone";
+  for (std::size_t i = 0; i < app_->session().models().size(); ++i)
+    EXPECT_EQ(app_->session().models().view(i).errors.samples(), 0u);
+}
+
+TEST_F(DemoCommandsTest, TheSameNoticeStandsThereOnce) {
+  open("hand");
+  for (int i = 0; i < 3; ++i) press(GLFW_KEY_D);
+  EXPECT_EQ(app_->toasts().size(), 1u);
+}
+
+TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
+  open("mouse");
+  frames(5);
+  EXPECT_FALSE(app_->view().has_pressed);
+  app_->session().mouse()->set_target(-0.004, steady_now_s());
+  frames(20);
+  EXPECT_FALSE(app_->view().has_pressed) << "above the block there is nothing to feel";
+  app_->session().mouse()->set_target(0.005, steady_now_s());
+  EXPECT_TRUE(until([&] { return app_->view().has_pressed; }));
 }
 
 TEST_F(DemoCommandsTest, StandsStillAsAWholeAndSaysWhatItShows) {

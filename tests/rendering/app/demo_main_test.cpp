@@ -81,7 +81,7 @@ TEST_F(DemoMain, RunsForItsSecondsAndWritesStatsAndPicture) {
   for (const char* key : {"p50", "p99", "max"}) EXPECT_TRUE(json["graphics"]["frame_ms"].contains(key));
   EXPECT_TRUE(json.at("models").is_array());
   for (const auto& model : json["models"]) {
-    for (const char* key : {"name", "within_jnd", "evaluation_ns"}) EXPECT_TRUE(model.contains(key));
+    for (const char* key : {"name", "within_jnd", "p99_error_over_jnd", "tick_ns"}) EXPECT_TRUE(model.contains(key));
   }
   EXPECT_TRUE(json.at("faults").is_array());
   std::ifstream png(picture, std::ios::binary);

@@ -3,6 +3,8 @@
 
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
+#include "rendering/panels/panel_parts.h"
+#include "rendering/panels/panel_verdict.h"
 #include "rendering/panels/scene_overlay.h"
 
 namespace palpate {
@@ -36,7 +38,10 @@ TEST(PanelWords, AlarmsThatAreOverAreCounted) {
 TEST(PanelWords, MissedDeadlinesAndSlowPicturesAreNamed) {
   HealthView health;
   EXPECT_FALSE(health_words(health, 20.0).problem) << "nothing that is felt is late";
-  EXPECT_EQ(health_words(health, 20.0).text, "20 frames a second: the picture is slow, the force is not affected");
+  EXPECT_EQ(health_words(health, 20.0).text, "20 frames a second: a slow picture, the force is not affected");
+  health.loop.ticks = 5000;
+  health.loop.missed_deadlines = 41;
+  EXPECT_EQ(health_words(health, 20.0).text, "20 frames a second: a slow picture, 41 deadlines missed");
   health.missed_of_late = 0.025;
   EXPECT_EQ(health_words(health, 20.0).text,
             "2.5 % of the deadlines missed of late: close other programs, or allow real-time priority");
@@ -79,22 +84,71 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
 }
 
-TEST(PanelWords, TheBigNumberSaysWhatItIs) {
+// One number: the table's, of the same samples, and of whom and than what it is.
+TEST(PanelWords, TheBigNumberIsTheTablesAndSaysOfWhom) {
   SlotView greedy = ready_slot("greedy-100");
-  greedy.recent_peak_error_over_jnd = 0.25;
   ModelsView models{{&greedy}, 0, true};
+  EXPECT_EQ(big_number(models, {}).number, "–");
+  EXPECT_EQ(big_number(models, {}).below, "greedy-100 off the material: press to see");
+  for (int i = 0; i < 1000; ++i) {
+    greedy.errors.add(1.0 + 0.25 * JndLine{}.at(1.0), 1.0, false, {});
+    greedy.quantile.add(0.25);
+  }
   EXPECT_EQ(big_number(models, {}).number, "0.25");
-  EXPECT_EQ(big_number(models, {}).below, "the error of the active model");
-  // Nothing to compare with: what the model predicts of itself, of 0.13 N at 1 N.
+  EXPECT_EQ(big_number(models, {}).number, jnd_text(greedy.quantile.p99()));
+  EXPECT_EQ(big_number(models, {}).below, "greedy-100 off the material, 99 % of the time");
+  models.in_contact = false;
+  EXPECT_EQ(big_number(models, {}).number, "0.25") << "in the air it says the same";
+  EXPECT_EQ(counted_words(models), "1,000 samples in contact since the start");
+  models.reference = 0;
+  EXPECT_EQ(big_number(models, {}).number, "–") << "it is the reference";
+}
+
+TEST(PanelWords, WithoutATruthTheBigNumberSaysSo) {
+  SlotView greedy = ready_slot("greedy-100");
+  ModelsView models{{&greedy}, 0, true};
+  // What the model predicts of itself, of 0.13 N at 1 N.
   models.compared = false;
+  models.off_from = "no truth to compare with";
   EXPECT_EQ(big_number(models, {}).number, "–") << "it does not know";
   greedy.force_N = 1.0;
   greedy.predicted_error_N = 0.5 * JndLine{}.at(1.0);
   EXPECT_EQ(big_number(models, {}).number, "0.50");
-  EXPECT_EQ(big_number(models, {}).below, "predicted for the active model (95 %)");
+  EXPECT_EQ(big_number(models, {}).below, "greedy-100's own guess (95 %); no truth to compare with");
   models.in_contact = false;
   EXPECT_EQ(big_number(models, {}).number, "–");
   EXPECT_EQ(big_number({}, {}).number, "–");
+  models.compared = true;
+  greedy.foreign = true;
+  EXPECT_EQ(big_number(models, {}).below, "no truth to compare greedy-100 with");
+}
+
+SlotView judged_slot(const char* name, double share, double tick_ns) {
+  SlotView slot = ready_slot(name);
+  slot.tick_ns = tick_ns;
+  for (int i = 0; i < 1000; ++i) {
+    const double ratio = i < 1000.0 * share ? 0.5 : 2.0;
+    slot.errors.add(1.0 + ratio * JndLine{}.at(1.0), 1.0, false, {});
+    slot.quantile.add(ratio);
+  }
+  return slot;
+}
+
+TEST(PanelWords, TheVerdictIsOneSentenceFromTheTablesNumbers) {
+  const SlotView greedy = judged_slot("greedy-100", 1.0, 612.0);
+  const SlotView direct = judged_slot("direct", 0.999, 3900.0);
+  const SlotView random = judged_slot("random-10 '09", 0.4, 330.0);
+  ModelsView models{{&random, &direct, &greedy}, 0, true};
+  EXPECT_EQ(verdict_words(models),
+            "greedy-100: 100 % unnoticeable at 0.61 us a tick; direct the same at 3.9 us; random-10 '09 40 %");
+  models.slots = {&random};
+  EXPECT_EQ(verdict_words(models), "None is unnoticeable. random-10 '09: 40 % unnoticeable at 0.33 us a tick");
+  const SlotView fresh = ready_slot("fresh");
+  models.slots = {&fresh};
+  EXPECT_EQ(verdict_words(models), "Press the block: the verdict comes with the first samples in contact.");
+  models.compared = false;
+  models.off_from = "no truth to compare with";
+  EXPECT_EQ(verdict_words(models), "no truth to compare with");
 }
 
 TEST(PanelWords, BeforeTheFirstModelTheFitIsTheNumber) {

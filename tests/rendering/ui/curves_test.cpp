@@ -16,7 +16,7 @@ ForceHistory example() {
   ForceHistory history;
   for (int i = 0; i < 1000; ++i) {
     HistoryPoint point;
-    point.loop_time_s = 100.0 + 1e-3 * i;
+    point.loop_time_s = point.time_s = 100.0 + 1e-3 * i;
     point.in_contact = true;
     point.reference_N = 1.0F;
     point.force_N.fill(kNone);
@@ -38,10 +38,10 @@ TEST(CurveColumns, LoseNoPeakAndKeepGapsOpen) {
   int ready = 0;
   for (const CurveColumn& column : curves.columns()) {
     if (!column.any) continue;
-    EXPECT_FLOAT_EQ(column.low_N[0], 1.1F);
-    EXPECT_FLOAT_EQ(column.band_high_N, 1.0F + static_cast<float>(jnd.at(1.0)));
-    if (!std::isnan(column.low_N[1])) ++ready;
-    EXPECT_EQ(std::isnan(column.low_N[1]), std::isnan(column.error_over_jnd[1]));
+    EXPECT_FLOAT_EQ(column.low_over_jnd[0], static_cast<float>(0.1 / jnd.at(1.0)));
+    EXPECT_FLOAT_EQ(column.jnd_N, static_cast<float>(jnd.at(1.0)));
+    if (!std::isnan(column.tick.force_N[1])) ++ready;
+    EXPECT_EQ(std::isnan(column.tick.force_N[1]), std::isnan(column.error_over_jnd[1]));
   }
   EXPECT_NEAR(ready, 25, 1);
 }
@@ -60,8 +60,8 @@ TEST(CurveColumns, StandOnAGridOfTheirOwnSoThatCurvesDoNotShimmer) {
   };
   const CurveColumn peak = find(one, 100.33);
   ASSERT_TRUE(peak.any);
-  EXPECT_FLOAT_EQ(peak.high_N[0], 3.0F);
-  EXPECT_FLOAT_EQ(find(other, 100.33).high_N[0], 3.0F);
+  EXPECT_FLOAT_EQ(peak.tick.force_N[0], 3.0F);
+  EXPECT_FLOAT_EQ(find(other, 100.33).tick.force_N[0], 3.0F);
 }
 
 // Frame after frame, as the window does it, and all at once.
@@ -86,7 +86,7 @@ TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
     EXPECT_EQ(a.any, b.any) << i;
     EXPECT_DOUBLE_EQ(a.time_s, b.time_s);
     if (!a.any || i == 0) continue;  // the first may have lost its beginning with the history
-    EXPECT_EQ(a.high_N[0], b.high_N[0]) << i;
+    EXPECT_EQ(a.tick.loop_time_s, b.tick.loop_time_s) << i;
     EXPECT_NEAR(a.felt_over_jnd[0], b.felt_over_jnd[0], 1e-5F) << i;
   }
 }
@@ -118,7 +118,7 @@ TEST(CurveColumns, WithoutAReferenceHaveTheBandThatTheActiveModelPredicts) {
   ForceHistory history;
   for (int i = 0; i < 1000; ++i) {
     HistoryPoint point;
-    point.loop_time_s = 100.0 + 1e-3 * i;
+    point.loop_time_s = point.time_s = 100.0 + 1e-3 * i;
     point.in_contact = i < 500;
     point.reference_N = kNone;
     point.force_N.fill(kNone);

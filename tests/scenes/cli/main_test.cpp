@@ -48,7 +48,7 @@ TEST(Main, ScenesListsEveryScene) {
   const auto run = run_palpate({"scenes"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(run.err, "");
-  for (const char* name : {"silicone_block", "foam_block", "elastic_block", "stiff_block", "skin"}) {
+  for (const char* name : {"silicone_block", "button", "foam_block", "elastic_block", "stiff_block", "skin"}) {
     EXPECT_TRUE(contains(run.out, name)) << run.out;
   }
 }

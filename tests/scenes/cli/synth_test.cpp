@@ -103,9 +103,10 @@ TEST(Synth, WrongUsageEndsWithTwoAndLeavesNoFile) {
   }
   EXPECT_TRUE(folder.entries().empty());
   const auto unknown = run_palpate({"synth", "--material", "jelly", "--out", out});
-  EXPECT_NE(unknown.err.find(
-                "known: silicone, tissue, softening, layered, friction, sponge, maxwell, foam, elastic, stiff, gel"),
-            std::string::npos);
+  EXPECT_NE(
+      unknown.err.find(
+          "known: silicone, tissue, softening, layered, friction, sponge, button, maxwell, foam, elastic, stiff, gel"),
+      std::string::npos);
 }
 
 }  // namespace

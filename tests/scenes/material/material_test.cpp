@@ -8,9 +8,10 @@ namespace {
 TEST(Material, UnknownNameIsRefusedWithTheKnownOnes) {
   const Result<Material> found = find_material("jelly");
   ASSERT_FALSE(found.ok());
-  EXPECT_EQ(found.error().message,
-            "unknown material 'jelly'; known: silicone, tissue, softening, layered, friction, sponge, maxwell, foam, "
-            "elastic, stiff, gel");
+  EXPECT_EQ(
+      found.error().message,
+      "unknown material 'jelly'; known: silicone, tissue, softening, layered, friction, sponge, button, maxwell, foam, "
+      "elastic, stiff, gel");
 }
 
 TEST(Material, HeldForceRisesWithDepthForEveryMaterial) {

@@ -63,7 +63,9 @@ TEST(Rig, EveryMaterialIsPressedAsHardAsItsHandAims) {
         contact += truth.position_m > 0.0;
       }
       EXPECT_GT(strongest_N, 5.0 / 6.0 * material.hand.strongest_press_N) << material.name;
-      EXPECT_LT(strongest_N, 7.8 / 6.0 * material.hand.strongest_press_N) << material.name;
+      // What has snapped through arrives at the floor with speed.
+      const double beyond = material.name == "button" ? 8.4 / 6.0 : 7.8 / 6.0;
+      EXPECT_LT(strongest_N, beyond * material.hand.strongest_press_N) << material.name;
       EXPECT_LT(strongest_N, material.force_range_N) << material.name;
       EXPECT_GT(static_cast<double>(contact), 0.6 * static_cast<double>(rig.truth.size()));
       EXPECT_LT(static_cast<double>(contact), 0.9 * static_cast<double>(rig.truth.size()));
@@ -273,9 +275,10 @@ TEST(Rig, RefusesNonsense) {
     const Result<RigRecording> result = record(settings);
     return result.ok() ? std::string("accepted") : result.error().message;
   };
-  EXPECT_EQ(message([](RigSettings& s) { s.material = "Silicone"; }),
-            "unknown material 'Silicone'; known: silicone, tissue, softening, layered, friction, sponge, maxwell, "
-            "foam, elastic, stiff, gel");
+  EXPECT_EQ(
+      message([](RigSettings& s) { s.material = "Silicone"; }),
+      "unknown material 'Silicone'; known: silicone, tissue, softening, layered, friction, sponge, button, maxwell, "
+      "foam, elastic, stiff, gel");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 9.9; }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 20001.0; }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = std::nan(""); }), "the rate must be 10 to 20000 Hz");

@@ -12,8 +12,8 @@ using test::TemporaryFolder;
 TEST(Scene, EveryShippedSceneReads) {
   const auto names = scene_names();
   ASSERT_TRUE(names.ok());
-  EXPECT_EQ(*names, (std::vector<std::string>{"elastic_block", "foam_block", "jnd_study", "silicone_block", "skin",
-                                              "stiff_block"}));
+  EXPECT_EQ(*names, (std::vector<std::string>{"button", "elastic_block", "foam_block", "jnd_study", "silicone_block",
+                                              "skin", "stiff_block"}));
   for (const std::string& name : *names) {
     const auto scene = load_scene(name);
     ASSERT_TRUE(scene.ok()) << scene.error().message;
@@ -44,9 +44,10 @@ TEST(Scene, UnknownNameListsTheKnownOnes) {
   for (const std::string name : {"rubber", "", "../scenes/skin", "skin.json"}) {
     const auto scene = load_scene(name);
     ASSERT_FALSE(scene.ok());
-    EXPECT_EQ(scene.error().message, "unknown scene \"" + name +
-                                         "\"; known scenes: elastic_block, foam_block, jnd_study, silicone_block, "
-                                         "skin, stiff_block");
+    EXPECT_EQ(scene.error().message,
+              "unknown scene \"" + name +
+                  "\"; known scenes: button, elastic_block, foam_block, jnd_study, silicone_block, "
+                  "skin, stiff_block");
   }
 }
 

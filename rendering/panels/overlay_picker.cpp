@@ -1,0 +1,108 @@
+// Files to open: a folder at a time, a path to type, and what was opened of late.
+#include <algorithm>
+#include <filesystem>
+
+#include "rendering/panels/overlay_parts.h"
+#include "rendering/panels/panel_parts.h"
+
+namespace palpate::overlay {
+namespace {
+
+namespace fs = std::filesystem;
+
+void go_to(FilePicker& picker, const fs::path& folder) {
+  picker.folder = folder.string();
+  picker.files = pickable_files(picker.folder);
+}
+
+// A folder is gone to, a file is opened; whether it was that.
+bool pick(FilePicker& picker, const std::string& path, const OverlayActions& actions) {
+  std::error_code missing;
+  if (fs::is_directory(path, missing)) {
+    go_to(picker, path);
+    return false;
+  }
+  actions.open(path);
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> pickable_files(const std::string& folder) {
+  std::vector<std::string> folders, files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::string ending = entry->path().extension().string();
+    std::error_code unknown;
+    if (name.front() == '.') continue;
+    if (entry->is_directory(unknown)) {
+      folders.push_back(name + "/");
+    } else if (ending == ".json" || ending == ".csv" || ending == ".tsv" || ending == ".txt" || ending == ".dat") {
+      files.push_back(name);
+    }
+  }
+  std::sort(folders.begin(), folders.end());
+  std::sort(files.begin(), files.end());
+  folders.insert(folders.end(), files.begin(), files.end());
+  return folders;
+}
+
+void draw_file_picker(ViewState& view, const OverlayActions& actions) {
+  FilePicker& picker = view.picker;
+  if (!view.file_list) {
+    picker.folder.clear();
+    return;
+  }
+  std::error_code error;
+  if (picker.folder.empty()) go_to(picker, fs::current_path(error));
+  const ImVec2 all = ImGui::GetIO().DisplaySize;
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float width = std::min(0.85F * all.x, 44.0F * ImGui::GetFontSize());
+  begin_in_the_middle();
+  ImGui::Begin("Open a file", &view.file_list, kDialog);
+  bool done = false;
+  ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
+  ImGui::SetNextItemWidth(width);
+  if (ImGui::InputText("##path", picker.path.data(), picker.path.size(), ImGuiInputTextFlags_EnterReturnsTrue))
+    done = pick(picker, picker.path.data(), actions);
+  for (const std::string& file : std::vector<std::string>(picker.recent))
+    if (ImGui::Selectable(("opened of late: " + fs::path(file).filename().string() + "###" + file).c_str()))
+      done = pick(picker, file, actions);
+  ImGui::TextUnformatted(fitting(picker.folder, width).c_str());
+  tip(picker.folder.c_str());
+  ImGui::BeginChild("files", {width, std::min(14.0F * line, 0.5F * all.y)}, true);
+  std::string chosen;
+  if (ImGui::Selectable("../")) chosen = fs::path(picker.folder).parent_path().string();
+  for (const std::string& name : picker.files)
+    if (ImGui::Selectable(name.c_str())) chosen = (fs::path(picker.folder) / name).string();
+  if (picker.files.empty()) ImGui::TextDisabled("nothing here that can be opened");
+  ImGui::EndChild();
+  ImGui::End();
+  if (!chosen.empty())
+    done = pick(picker, chosen.back() == '/' ? chosen.substr(0, chosen.size() - 1) : chosen, actions);
+  if (done) view.file_list = false;
+}
+
+// What can hold the tool, and why it cannot.
+void draw_device_list(ViewState& view, const OverlayActions& actions) {
+  if (!view.device_list) return;
+  begin_in_the_middle();
+  ImGui::Begin("Device", &view.device_list, kDialog);
+  if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
+  for (const DeviceChoice& device : view.devices) {
+    const bool usable = device.problem.empty();
+    if (ImGui::Selectable((device.name + "###" + device.name).c_str(), false,
+                          usable ? 0 : ImGuiSelectableFlags_Disabled)) {
+      actions.use_device(device.name);
+      view.device_list = false;
+    }
+    ImGui::SameLine(8.0F * ImGui::GetFontSize());
+    ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());
+    ImGui::TextDisabled("%s", usable ? device.summary.c_str() : device.problem.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
+}  // namespace palpate::overlay
