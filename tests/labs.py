@@ -2,24 +2,31 @@
 """Every set of recordings that there is, fitted and replayed: the bench that decides about the fit.
 
   python3 tests/labs.py [--palpate build/palpate] [--recordings DIR ...] [--models NAME ...]
-                        [--sets WORD ...] [--no-virtual] [--json FILE] [--against FILE]
+                        [--sets WORD ...] [--no-virtual] [--json FILE] [--against FILE] [--write]
 
 Recorded sets first (every folder of ../shared/data and ../shared/labs, when they are there, with
-train*.csv and test*.csv; or of other folders), then the virtual materials. Columns: share [%] of the samples in contact within the JND, as recorded (surface moved)
-for 0 N and every model; then, of the last model, the 99 % and the worst error in JND as recorded,
-how much of the test the 95 % bound held, and the seconds of its fit. --json keeps the figures, --against
-prints what changed since such a file. Minutes on two cores.
+train*.csv and test*.csv; or of other folders), then the virtual materials, all from positions alone: the
+accelerometer column of the virtual rig is left out. Columns: share [%] of the samples in contact
+within the JND, as recorded (surface moved), for 0 N and every model; then, of the last model, the 99 % and
+the worst error in JND as recorded, how much of the test the 95 % bound held, and the seconds of its
+fit. --json keeps the figures, --against prints what changed since such a file. --write puts the table
+into README.md, with what a report says of the silicone and its figure. Minutes on two cores.
 """
 import argparse
 import concurrent.futures
+import csv
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
+import textwrap
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+BEGIN, END = "<!-- results: python3 tests/labs.py --models recipe trend greedy --write -->", "<!-- end of results -->"
+FIGURE = "assets/figures/speed_error.png"
 MODELS = {"trend": ["--method", "trend"],
           "recipe": ["--method", "greedy", "--reduction", "force", "--weighting", "relative", "--relaxation", "auto"],
           "direct": ["--method", "direct"], "voxel": ["--method", "voxel"], "random": ["--method", "random"],
@@ -44,6 +51,19 @@ def run(palpate, *arguments):
     return done.stdout.decode()
 
 
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def share_of_nothing(path, surface_m):
+    """Share of the samples in contact within the JND of a model that always says 0 N. In contact
+    is what lies behind the surface, or has a force that a hand notices (CONTRACT.md)."""
+    forces = [(float(row["position_m"]), abs(float(row["force_N"]))) for row in rows_of(path)]
+    within = [force <= 0.065 + 0.0633 * force for position, force in forces if position > surface_m or force > 0.065]
+    return 100 * sum(within) / max(1, len(within))
+
+
 def of_model(options, folder, key, train, tests):
     palpate = options.palpate
     name, model = key
@@ -55,10 +75,11 @@ def of_model(options, folder, key, train, tests):
         found = json.loads(run(palpate, "replay", "--recording", *tests, "--model", path, "--json"))
     except RuntimeError as error:
         return key, {"error": str(error)}
+    surface_m = json.loads(path.read_text()).get("surface_position_m", 0.0)
     figures = []
-    for one in found if isinstance(found, list) else [found]:
+    for test, one in zip(tests, found if isinstance(found, list) else [found]):
         entry = one["models"][0]
-        figures.append({"share": 100 * entry["within_jnd"], "moved": 100 * entry["surface_moved"]["within_jnd"],
+        figures.append({"nothing": share_of_nothing(test, surface_m), "share": 100 * entry["within_jnd"], "moved": 100 * entry["surface_moved"]["within_jnd"],
                         "p99": entry["p99_error_over_jnd"], "worst": entry["max_error_over_jnd"],
                         "held": 100 * (entry["predicted_error"]["bound_95_held"] or 0),
                         "offset_m": one["surface_offset_m"]})
@@ -94,6 +115,12 @@ def virtual(options, folder):
         paths = [folder / f"{material}_{seed}.csv" for seed in (1, 2)]
         for path, seed, seconds in zip(paths, (1, 2), (41.499, 45.272)):
             run(options.palpate, "synth", "--material", material, "--seed", seed, "--seconds", seconds, "--out", path)
+            rows = rows_of(path)
+            with open(path, "w", newline="") as file:
+                kept = [column for column in rows[0] if column != "acceleration_m_per_s2"]
+                plain = csv.DictWriter(file, fieldnames=kept, extrasaction="ignore", lineterminator="\n")
+                plain.writeheader()
+                plain.writerows(rows)
         yield material, paths[:1], paths[1:]
 
 
@@ -107,20 +134,36 @@ def share(one):
 
 def table(names, results, models):
     last = models[-1]
-    lines = ["| | " + " | ".join(models) + " | 99 % up to [JND] | worst [JND] | bound held | fit [s] |",
-             "|---|" + "---:|" * (len(models) + 4)]
+    lines = ["| | 0 N | " + " | ".join(models) + " | 99 % up to [JND] | worst [JND] | bound held | fit [s] |",
+             "|---|" + "---:|" * (len(models) + 5)]
     for name in names:
         entries = [results[name, model] for model in models]
         seconds = f"{entries[-1]['seconds']:.2f}" if "seconds" in entries[-1] else ""
-        lines.append(f"| {name} | " + " | ".join(cells(entry, share) for entry in entries) + " | "
+        lines.append(f"| {name} | " + cells(entries[-1], lambda one: f"{one['nothing']:.1f}") + " | "
+                     + " | ".join(cells(entry, share) for entry in entries) + " | "
                      + " | ".join(cells(entries[-1], lambda one, key=key, digits=digits: f"{one[key]:{digits}}")
                                   for key, digits in (("p99", ".2f"), ("worst", ".2f"), ("held", ".1f")))
                      + f" | {seconds} |")
+    lines.append("")
     for model in models:
         values = [one["share"] for name in names for one in results[name, model].get("tests", [])]
         moved = [max(one["share"], one["moved"]) for name in names for one in results[name, model].get("tests", [])]
-        lines.append(f"mean of {model}: {sum(values) / len(values):.2f} as recorded, {sum(moved) / len(moved):.2f} moved ({len(values)} tests)")
+        lines.append(f"Mean of {model}: {sum(values) / len(values):.2f} % as recorded, "
+                     f"{sum(moved) / len(moved):.2f} % moved ({len(values)} tests).")
     return lines
+
+
+def front_page(options, folder, lines):
+    """The table, what a report says of the silicone, and its figure, into README.md."""
+    report = folder / "report"
+    run(options.palpate, "report", "--train", folder / "silicone_1.csv", "--test", folder / "silicone_2.csv", "--out", report)
+    answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
+    shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
+    text = "\n".join([*lines, "", *textwrap.wrap("The report on the silicone: " + answer, 90), "",
+                      f"![Time of a whole tick against error on the virtual silicone: the 2009 recipe hollow, Palpate filled]({FIGURE})"])
+    readme = ROOT / "README.md"
+    before, rest = readme.read_text().split(BEGIN)
+    readme.write_text(before + BEGIN + "\n" + text + "\n" + END + rest.split(END)[1])
 
 
 def main():
@@ -133,6 +176,7 @@ def main():
     parser.add_argument("--fit", default="", help="more options of every fit, e.g. '--surface recorded'")
     parser.add_argument("--json")
     parser.add_argument("--against")
+    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(2) as pool:
         folder = pathlib.Path(scratch)
@@ -141,8 +185,10 @@ def main():
         jobs = [pool.submit(of_model, options, folder, (name, model), train, tests)
                 for name, train, tests in sets for model in options.models]
         results = dict(job.result() for job in jobs)
-    names = [name for name, _, _ in sets]
-    print("\n".join(table(names, results, options.models)))
+        lines = table([name for name, _, _ in sets], results, options.models)
+        print("\n".join(lines))
+        if options.write:
+            front_page(options, folder, lines)
     for key, entry in results.items():
         if "error" in entry:
             print(f"{' '.join(key)}: {entry['error']}")

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/recording/press_direction.h"
+#include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/check/recording_measures.h"
 #include "models/surface/force_lag.h"
@@ -250,6 +251,11 @@ void Checker::check_surface() {
         words("the force sensor carries %.3g g: in free air its force follows the acceleration",
               1e3 * surface_.tool_mass_kg),
         "");
+  }
+  const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
+  if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > std::max(JndLine{}.at(0.0), 5.0 * noise_N_)) {
+    add("adhesion", Severity::note, pull_N,
+        words("the material pulls at the tool by up to %.3g N: a fit learns it, and renders it", pull_N), "");
   }
   if (std::isfinite(surface_.offset_drift_error_m) &&
       std::abs(surface_.offset_drift_m) > std::max(kSurfaceDrift_m, 3.0 * surface_.offset_drift_error_m)) {

@@ -94,6 +94,22 @@ TEST(CheckRecording, FindsEachFault) {
   }
 }
 
+// On retreat 0.3 N more pull than the material's own force, over its last millimetre.
+TEST(CheckRecording, TellsThatTheMaterialPulls) {
+  Recording sticky = silicone();
+  EXPECT_EQ(find(check_recording(sticky, kSilicone), "adhesion"), nullptr);
+  double before_m = 0.0;
+  each(sticky, [&](RecordingRow& row) {
+    if (row.position_m < before_m && row.position_m > 0.0 && row.position_m < 1e-3) row.force_N -= 0.3;
+    before_m = row.position_m;
+  });
+  const RecordingCheck check = check_recording(sticky, kSilicone);
+  const Finding* const finding = find(check, "adhesion");
+  ASSERT_NE(finding, nullptr) << all_of(check);
+  EXPECT_NEAR(finding->value, 0.3, 0.1);
+  EXPECT_STREQ(check.verdict(), "usable") << all_of(check);
+}
+
 // A block pressed from 3 mm to 8 mm and back, without ever letting go.
 TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
   Recording recording;
