@@ -11,6 +11,7 @@
 #include "engine/recording/recording.h"
 #include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
+#include "models/solve/lapack.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"
 
@@ -244,5 +245,7 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
+
+void prepare_to_fit() { prepare_blas(); }
 
 }  // namespace palpate
