@@ -12,49 +12,22 @@ namespace {
 // What each role is called. A column whose whole name is one of the words claims its
 // role most strongly, then one that has it among its words, then one that has it
 // inside a word (German compounds: "Standardkraft").
-constexpr std::array<std::string_view, 18> kTimeWords = {
-    "time",    "t",      "zeit",   "temps", "timestamp", "stamp",     "seconds",  "secs",        "elapsed",
-    "x_value", "millis", "micros", "clock", "uhrzeit",   "pruefzeit", "testzeit", "zeitstempel", "datetime"};
-constexpr std::array<std::string_view, 25> kPositionWords = {"position",
-                                                             "pos",
-                                                             "weg",
-                                                             "displacement",
-                                                             "disp",
-                                                             "depth",
-                                                             "extension",
-                                                             "stroke",
-                                                             "crosshead",
-                                                             "travel",
-                                                             "compression",
-                                                             "indentation",
-                                                             "penetration",
-                                                             "allongement",
-                                                             "traversenweg",
-                                                             "standardweg",
-                                                             "verschiebung",
-                                                             "eindringtiefe",
-                                                             "tiefe",
-                                                             "deplacement",
-                                                             "height",
-                                                             "encoder",
-                                                             "x",
-                                                             "y",
-                                                             "z"};
-constexpr std::array<std::string_view, 12> kForceWords = {"force", "f",  "kraft", "load",   "last",     "fn",
-                                                          "fx",    "fy", "fz",    "charge", "loadcell", "newton"};
+constexpr std::string_view kTimeWords =
+    "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit "
+    "testzeit zeitstempel datetime";
+constexpr std::string_view kPositionWords =
+    "position pos weg displacement disp depth extension stroke crosshead travel compression indentation "
+    "penetration allongement traversenweg standardweg verschiebung eindringtiefe tiefe deplacement height encoder "
+    "x y z";
+constexpr std::string_view kForceWords = "force f kraft load last fn fx fy fz charge loadcell newton";
 // Columns that are something else, whatever other word stands in their name.
-constexpr std::array<std::string_view, 32> kOtherWords = {
-    "torque",       "moment",     "temperature", "temp",    "voltage",
-    "current",      "status",     "velocity",    "speed",   "geschwindigkeit",
-    "acceleration", "accel",      "stress",      "strain",  "spannung",
-    "dehnung",      "seq",        "index",       "id",      "frame",
-    "cycle",        "zyklus",     "tx",          "ty",      "tz",
-    "mx",           "my",         "mz",          "comment", "rate",
-    "volt",         "orientation"};
+constexpr std::string_view kOtherWords =
+    "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel "
+    "stress strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt "
+    "orientation";
 // Second choice: what was asked for and not measured, what is not the raw value.
 // Times that begin anew: "Cycle Elapsed Time" beside "Total Time".
-constexpr std::array<std::string_view, 10> kSecondWords = {"target",  "desired", "setpoint",  "soll", "sollwert",
-                                                           "command", "cmd",     "reference", "raw",  "cycle"};
+constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
 
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
@@ -99,24 +72,18 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
-template <std::size_t N>
-bool holds(const std::array<std::string_view, N>& list, std::string_view word) {
-  return std::find(list.begin(), list.end(), word) != list.end();
+bool any_word_in(std::string_view list, const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return is_word_of(list, word); });
 }
 
-template <std::size_t N>
-bool any_word_in(const std::array<std::string_view, N>& list, const std::vector<std::string>& words) {
-  return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return holds(list, word); });
-}
-
-template <std::size_t N>
-int name_claim(const std::array<std::string_view, N>& list, const std::string& name,
-               const std::vector<std::string>& words) {
+int name_claim(std::string_view list, const std::string& name, const std::vector<std::string>& words) {
   // An axis alone may be anything along it.
-  if (holds(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
+  if (is_word_of(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
   if (any_word_in(list, words)) return kOneWord;
-  for (const std::string& word : words) {
-    for (const std::string_view known : list) {
+  while (!list.empty()) {
+    const std::string_view known = list.substr(0, list.find(' '));
+    list.remove_prefix(std::min(known.size() + 1, list.size()));
+    for (const std::string& word : words) {
       // Shorter ones stand in words that have nothing to do with them.
       if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known))) {
         return kInsideWord;

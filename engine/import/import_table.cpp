@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/import/row_splitter.h"
 #include "engine/import/table_number.h"
 #include "engine/recording/press_direction.h"
 #include "engine/recording/recording_rules.h"
@@ -35,6 +34,8 @@ std::string short_number(double value) {
   return text;
 }
 
+constexpr auto kNoColumn = static_cast<std::size_t>(-1);
+
 class Importer {
  public:
   Importer(const ForeignText& text, std::string label, const ImportRequest& request)
@@ -59,9 +60,10 @@ class Importer {
   Status find_unit_of(std::size_t role);
   Status find_time_unit();
   bool parse_time(std::string_view field, TableTime& time) const;
+  void split(std::string_view line);
   bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
   bool is_bad_row(std::string_view line);
-  Error explain_row(std::string_view line, std::uint64_t number) const;
+  Error explain_row(std::string_view line, std::uint64_t number);
   Status check_size(const RecordingRow& row, std::uint64_t line) const;
   Status add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
   Status read_rows();
@@ -76,7 +78,7 @@ class Importer {
   std::vector<ForeignColumn> header_;
   std::array<std::size_t, kRoles> index_{};
   std::array<double, kRoles> to_si_{1.0, 1.0, 1.0};
-  RowSplitter splitter_{Delimiter::comma};
+  std::vector<std::string_view> row_;
   std::array<std::string_view, kRoles> fields_;
   bool clock_ = false;
   bool has_date_ = false;
@@ -133,7 +135,7 @@ Status Importer::find_columns() {
   const auto choice = choose_columns(header_, request_.columns, has_header, !request_.rate_Hz);
   if (!choice) return fail(choice.error().message);
   for (std::size_t role = 0; role < kRoles; ++role) {
-    index_[role] = choice->column[role].value_or(RowSplitter::kNoColumn);
+    index_[role] = choice->column[role].value_or(kNoColumn);
     if (!choice->column[role]) continue;
     table_.columns[role] = {index_[role] + 1, has_header ? header_[index_[role]].header : "", "",
                             choice->guessed[role]};
@@ -186,7 +188,7 @@ Status Importer::find_time_unit() {
   std::vector<double> steps;
   TableTime last;
   for (std::size_t row = 0; row < kTimeUnitRows && !rest.empty(); ++row) {
-    splitter_.split(next_line(rest), index_, fields_);
+    split(next_line(rest));
     TableTime time;
     if (row == 0) {
       clock_ = !parse_number_time(fields_[0], table_.layout.decimal, time) && parse_clock_time(fields_[0], time);
@@ -237,8 +239,14 @@ Status Importer::find_time_unit() {
   return {};
 }
 
+// The fields that are wanted, empty where they are missing.
+void Importer::split(std::string_view line) {
+  split_table_fields(line, table_.layout.delimiter, row_);
+  for (std::size_t i = 0; i < kRoles; ++i) fields_[i] = index_[i] < row_.size() ? row_[index_[i]] : std::string_view();
+}
+
 bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& row) {
-  splitter_.split(line, index_, fields_);
+  split(line);
   if (!request_.rate_Hz && !parse_time(fields_[0], time)) return false;
   const char decimal = table_.layout.decimal;
   if (!parse_table_number(fields_[1], decimal, row.position_m) ||
@@ -252,7 +260,7 @@ bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& r
 
 // A line that should have been a row: there are digits where its numbers should be.
 bool Importer::is_bad_row(std::string_view line) {
-  splitter_.split(line, index_, fields_);
+  split(line);
   const auto has_digit = [](std::string_view field) {
     return field.find_first_of("0123456789") != std::string_view::npos;
   };
@@ -260,18 +268,16 @@ bool Importer::is_bad_row(std::string_view line) {
 }
 
 // The row that could not be read.
-Error Importer::explain_row(std::string_view line, std::uint64_t number) const {
-  RowSplitter splitter(table_.layout.delimiter);
-  std::array<std::string_view, kRoles> fields;
-  splitter.split(line, index_, fields);
+Error Importer::explain_row(std::string_view line, std::uint64_t number) {
+  split(line);
   for (std::size_t role = 0; role < kRoles; ++role) {
-    if (index_[role] == RowSplitter::kNoColumn) continue;
+    if (index_[role] == kNoColumn) continue;
     TableTime time;
     double value = 0.0;
     const bool good =
-        role == 0 ? parse_time(fields[0], time) : parse_table_number(fields[role], table_.layout.decimal, value);
+        role == 0 ? parse_time(fields_[0], time) : parse_table_number(fields_[role], table_.layout.decimal, value);
     if (good) continue;
-    const std::string_view field = trimmed(fields[role]);
+    const std::string_view field = trimmed(fields_[role]);
     const std::string found =
         field.empty() ? "an empty field" : std::string("\"").append(printable(text_.to_utf8(field))).append("\"");
     return fail_at(number,
@@ -417,7 +423,6 @@ Result<ImportedTable> Importer::run() {
   if (!layout) return fail(layout.error().message);
   table_.layout = std::move(*layout);
   table_.encoding = text_.encoding();
-  splitter_ = RowSplitter(table_.layout.delimiter);
   read_labview_head();
   if (const Status status = find_columns(); !status) return status.error();
   if (!request_.rate_Hz) {

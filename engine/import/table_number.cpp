@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <system_error>
@@ -71,17 +72,6 @@ bool skip_one_of(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-// Days since 1970 of the proleptic Gregorian calendar. Source: Hinnant (2021),
-// "chrono-compatible low-level date algorithms", days_from_civil.
-std::int64_t days_since_1970(int year, int month, int day) {
-  const int y = month <= 2 ? year - 1 : year;
-  const int era = (y >= 0 ? y : y - 399) / 400;
-  const int year_of_era = y - era * 400;
-  const int day_of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  const int day_of_era = year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year;
-  return static_cast<std::int64_t>(era) * 146097 + day_of_era - 719468;
-}
-
 // A date at the start of `text`, which loses it. Only the difference between rows
 // counts, so that of 3/5/2024 either reading will do.
 bool parse_date(std::string_view& text, std::int64_t& days) {
@@ -99,7 +89,8 @@ bool parse_date(std::string_view& text, std::int64_t& days) {
   if (separator == '/' && parts[2] > 12) std::swap(parts[1], parts[2]);
   if (parts[1] > 12) std::swap(parts[1], parts[2]);
   if (parts[0] < 32 || parts[1] < 1 || parts[1] > 12 || parts[2] < 1 || parts[2] > 31) return false;
-  days = days_since_1970(parts[0], parts[1], parts[2]);
+  // Days since 1970; the library's calendar takes the 31st of every month.
+  days = (std::chrono::sys_days(std::chrono::year(parts[0]) / parts[1] / 1).time_since_epoch()).count() + parts[2] - 1;
   text = rest;
   return true;
 }

@@ -10,90 +10,32 @@ namespace {
 constexpr double kGramForce_N = 9.80665e-3;  // standard gravity
 constexpr double kPoundForce_N = 4.4482216152605;
 
-struct Spelling {
-  std::string_view text;
+struct SpelledUnit {
   Unit unit;
+  std::string_view spellings;  // between blanks
 };
 
-constexpr Unit kSecond{"s", Quantity::time, 1.0};
-constexpr Unit kMillisecond{"ms", Quantity::time, 1e-3};
-constexpr Unit kMicrosecond{"us", Quantity::time, 1e-6};
-constexpr Unit kNanosecond{"ns", Quantity::time, 1e-9};
-constexpr Unit kMinute{"min", Quantity::time, 60.0};
-constexpr Unit kMetre{"m", Quantity::length, 1.0};
-constexpr Unit kCentimetre{"cm", Quantity::length, 1e-2};
-constexpr Unit kMillimetre{"mm", Quantity::length, 1e-3};
-constexpr Unit kMicrometre{"um", Quantity::length, 1e-6};
-constexpr Unit kNanometre{"nm", Quantity::length, 1e-9};
-constexpr Unit kInch{"inch", Quantity::length, 25.4e-3};
-constexpr Unit kNewton{"N", Quantity::force, 1.0};
-constexpr Unit kMillinewton{"mN", Quantity::force, 1e-3};
-constexpr Unit kMicronewton{"uN", Quantity::force, 1e-6};
-constexpr Unit kCentinewton{"cN", Quantity::force, 1e-2};
-constexpr Unit kKilonewton{"kN", Quantity::force, 1e3};
-constexpr Unit kGram{"g", Quantity::force, kGramForce_N};
-constexpr Unit kKilogram{"kg", Quantity::force, 1e3 * kGramForce_N};
-constexpr Unit kPound{"lbf", Quantity::force, kPoundForce_N};
-
 // The micro sign is U+00B5 or, in some fonts' files, the Greek U+03BC.
-constexpr std::array kSpellings = {
-    Spelling{"s", kSecond},
-    Spelling{"sec", kSecond},
-    Spelling{"secs", kSecond},
-    Spelling{"second", kSecond},
-    Spelling{"seconds", kSecond},
-    Spelling{"Sek", kSecond},
-    Spelling{"Sekunden", kSecond},
-    Spelling{"ms", kMillisecond},
-    Spelling{"msec", kMillisecond},
-    Spelling{"millis", kMillisecond},
-    Spelling{"millisecond", kMillisecond},
-    Spelling{"milliseconds", kMillisecond},
-    Spelling{"us", kMicrosecond},
-    Spelling{"\xC2\xB5s", kMicrosecond},
-    Spelling{"\xCE\xBCs", kMicrosecond},
-    Spelling{"usec", kMicrosecond},
-    Spelling{"micros", kMicrosecond},
-    Spelling{"microseconds", kMicrosecond},
-    Spelling{"ns", kNanosecond},
-    Spelling{"nsec", kNanosecond},
-    Spelling{"nanoseconds", kNanosecond},
-    Spelling{"min", kMinute},
-    Spelling{"minutes", kMinute},
-    Spelling{"m", kMetre},
-    Spelling{"meter", kMetre},
-    Spelling{"meters", kMetre},
-    Spelling{"metre", kMetre},
-    Spelling{"metres", kMetre},
-    Spelling{"cm", kCentimetre},
-    Spelling{"mm", kMillimetre},
-    Spelling{"millimeter", kMillimetre},
-    Spelling{"millimeters", kMillimetre},
-    Spelling{"um", kMicrometre},
-    Spelling{"\xC2\xB5m", kMicrometre},
-    Spelling{"\xCE\xBCm", kMicrometre},
-    Spelling{"micron", kMicrometre},
-    Spelling{"microns", kMicrometre},
-    Spelling{"nm", kNanometre},
-    Spelling{"inch", kInch},
-    Spelling{"inches", kInch},
-    Spelling{"N", kNewton},
-    Spelling{"newton", kNewton},
-    Spelling{"newtons", kNewton},
-    Spelling{"mN", kMillinewton},
-    Spelling{"uN", kMicronewton},
-    Spelling{"\xC2\xB5N", kMicronewton},
-    Spelling{"\xCE\xBCN", kMicronewton},
-    Spelling{"cN", kCentinewton},
-    Spelling{"kN", kKilonewton},
-    Spelling{"g", kGram},
-    Spelling{"gf", kGram},
-    Spelling{"gram", kGram},
-    Spelling{"grams", kGram},
-    Spelling{"kg", kKilogram},
-    Spelling{"kgf", kKilogram},
-    Spelling{"lbf", kPound},
-    Spelling{"lb", kPound},
+constexpr std::array kUnits = {
+    SpelledUnit{{"s", Quantity::time, 1.0}, "s sec secs second seconds Sek Sekunden"},
+    SpelledUnit{{"ms", Quantity::time, 1e-3}, "ms msec millis millisecond milliseconds"},
+    SpelledUnit{{"us", Quantity::time, 1e-6}, "us \xC2\xB5s \xCE\xBCs usec micros microseconds"},
+    SpelledUnit{{"ns", Quantity::time, 1e-9}, "ns nsec nanoseconds"},
+    SpelledUnit{{"min", Quantity::time, 60.0}, "min minutes"},
+    SpelledUnit{{"m", Quantity::length, 1.0}, "m meter meters metre metres"},
+    SpelledUnit{{"cm", Quantity::length, 1e-2}, "cm"},
+    SpelledUnit{{"mm", Quantity::length, 1e-3}, "mm millimeter millimeters"},
+    SpelledUnit{{"um", Quantity::length, 1e-6}, "um \xC2\xB5m \xCE\xBCm micron microns"},
+    SpelledUnit{{"nm", Quantity::length, 1e-9}, "nm"},
+    SpelledUnit{{"inch", Quantity::length, 25.4e-3}, "inch inches"},
+    SpelledUnit{{"N", Quantity::force, 1.0}, "N newton newtons"},
+    SpelledUnit{{"mN", Quantity::force, 1e-3}, "mN"},
+    SpelledUnit{{"uN", Quantity::force, 1e-6}, "uN \xC2\xB5N \xCE\xBCN"},
+    SpelledUnit{{"cN", Quantity::force, 1e-2}, "cN"},
+    SpelledUnit{{"kN", Quantity::force, 1e3}, "kN"},
+    SpelledUnit{{"g", Quantity::force, kGramForce_N}, "g gf gram grams"},
+    SpelledUnit{{"kg", Quantity::force, 1e3 * kGramForce_N}, "kg kgf"},
+    SpelledUnit{{"lbf", Quantity::force, kPoundForce_N}, "lbf lb"},
 };
 
 constexpr std::string_view kOpening = "[(<{";
@@ -133,17 +75,26 @@ std::string lower_ascii(std::string_view text) {
   return lower;
 }
 
+bool is_word_of(std::string_view list, std::string_view word) {
+  if (word.empty() || word.find(' ') != std::string_view::npos) return false;
+  for (std::size_t at = 0; (at = list.find(word, at)) != std::string_view::npos; ++at) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || list[at - 1] == ' ') && (end == list.size() || list[end] == ' ')) return true;
+  }
+  return false;
+}
+
 std::optional<Unit> find_unit(std::string_view text) {
   text = without_brackets(text);
   if (text.empty()) return std::nullopt;
-  for (const Spelling& spelling : kSpellings) {
-    if (spelling.text == text) return spelling.unit;
+  for (const SpelledUnit& one : kUnits) {
+    if (is_word_of(one.spellings, text)) return one.unit;
   }
   // "MN" might be meganewtons and "NM" a torque: too much to guess.
   const std::string lower = lower_ascii(text);
   if (lower == "mn" || lower == "nm" || lower == "m") return std::nullopt;
-  for (const Spelling& spelling : kSpellings) {
-    if (lower_ascii(spelling.text) == lower) return spelling.unit;
+  for (const SpelledUnit& one : kUnits) {
+    if (is_word_of(lower_ascii(one.spellings), lower)) return one.unit;
   }
   return std::nullopt;
 }

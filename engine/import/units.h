@@ -17,6 +17,9 @@ struct Unit {
   double to_si = 1.0;  // s, m or N for one of it
 };
 
+// Whether `list`, words between blanks, has this one.
+bool is_word_of(std::string_view list, std::string_view word);
+
 // The unit called `text`: exact case first ("mN" is not "MN"), then any case where
 // only one thing can be meant ("MM", "Sec"). Grams count as the force of their weight.
 std::optional<Unit> find_unit(std::string_view text);

@@ -54,55 +54,23 @@ double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
   return 0.0;
 }
 
-std::string_view feature_kind_name(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::depth:
-      return "depth";
-    case FeatureKind::velocity:
-      return "velocity";
-    case FeatureKind::lowpass_velocity:
-      return "lowpass_velocity";
-    case FeatureKind::maxwell_branch:
-      return "maxwell_branch";
-    case FeatureKind::maxwell_spectrum:
-      return "maxwell_spectrum";
-    case FeatureKind::stops:
-      return "stops";
-    case FeatureKind::creep:
-      return "creep";
-    case FeatureKind::surface_lag:
-      return "surface_lag";
-  }
-  return "depth";
-}
-
 std::string feature_name(const FeatureSpec& spec) {
-  const auto first_to_last = [&](auto&& constant) {
-    const std::string first = four_digits(constant(spec.parts[0]));
-    if (spec.part_count <= 1) return first;
-    return first + "-" + four_digits(constant(spec.parts[spec.part_count - 1]));
-  };
-  const std::string time = four_digits(spec.relaxation_time_s);
-  switch (spec.kind) {
-    case FeatureKind::depth:
-      return "feature_depth_m";
-    case FeatureKind::velocity:
-      return "feature_velocity_m_per_s";
-    case FeatureKind::lowpass_velocity:
-      return "feature_lowpass_velocity_" + time + "s_m_per_s";
-    case FeatureKind::maxwell_branch:
-      return "feature_maxwell_branch_" + time + "s_N";
-    case FeatureKind::maxwell_spectrum:
-      return "feature_maxwell_spectrum_" +
-             first_to_last([](const FeaturePart& part) { return part.relaxation_time_s; }) + "s_N";
-    case FeatureKind::stops:
-      return "feature_stops_" + first_to_last([](const FeaturePart& part) { return 1e3 * part.threshold_m; }) + "mm_N";
-    case FeatureKind::creep:
-      return "feature_creep_" + first_to_last([](const FeaturePart& part) { return part.relaxation_time_s; }) + "s_N";
-    case FeatureKind::surface_lag:
-      return "feature_surface_lag_m";
+  std::string name("feature_");
+  name.append(feature_kind_name(spec.kind));
+  if (has_parts(spec.kind)) {
+    const bool stops = spec.kind == FeatureKind::stops;
+    const auto constant = [&](const FeaturePart& part) {
+      return four_digits(stops ? 1e3 * part.threshold_m : part.relaxation_time_s);
+    };
+    name.append("_").append(constant(spec.parts[0]));
+    if (spec.part_count > 1) name.append("-").append(constant(spec.parts[spec.part_count - 1]));
+    return name.append(stops ? "mm_N" : "s_N");
   }
-  return {};
+  if (has_time(spec.kind)) {
+    const bool lowpass = spec.kind == FeatureKind::lowpass_velocity;
+    return name.append("_").append(four_digits(spec.relaxation_time_s)).append(lowpass ? "s_m_per_s" : "s_N");
+  }
+  return name.append(spec.kind == FeatureKind::velocity ? "_m_per_s" : "_m");
 }
 
 FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)

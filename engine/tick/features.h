@@ -93,6 +93,12 @@ inline constexpr std::array kFeatureKinds{
     FeatureKind::depth,          FeatureKind::velocity,         FeatureKind::lowpass_velocity,
     FeatureKind::maxwell_branch, FeatureKind::maxwell_spectrum, FeatureKind::stops,
     FeatureKind::creep,          FeatureKind::surface_lag};
+// In model files and column names, in the order of the kinds.
+inline constexpr std::array<std::string_view, kFeatureKinds.size()> kFeatureKindNames{
+    "depth", "velocity", "lowpass_velocity", "maxwell_branch", "maxwell_spectrum", "stops", "creep", "surface_lag"};
+constexpr std::string_view feature_kind_name(FeatureKind kind) noexcept {
+  return kFeatureKindNames[static_cast<std::size_t>(kind)];
+}
 
 // g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
 // u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
@@ -156,7 +162,6 @@ double branch_clock(double slowing, double surface_m, double reference_depth_m) 
 // Where the surface lies on the axis of position_m: what the depth feature says.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
 
-std::string_view feature_kind_name(FeatureKind kind);
 // Column name with unit, e.g. "depth_m", "lowpass_velocity_0.17s_m_per_s".
 std::string feature_name(const FeatureSpec& spec);
 

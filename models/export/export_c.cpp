@@ -194,7 +194,7 @@ Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request) 
           "void palpate_reset(void);\nint palpate_out_of_domain(void);\n");
   out.add(kMotionC);
   out.count(kMotionOperations);
-  if (Status status = write_features(out, data.features); !status) return status.error();
+  write_features(out, data.features);
   write_trend(out, data.trend, data.features);
   if (Status status = write_correction(out, data.correction); !status) return status.error();
   write_trust(out, data.cover);

@@ -35,8 +35,7 @@ struct ExportedC {
   TickOperations operations;
 };
 
-// `data` must pass validate_model. Errors: a kind of feature or correction that has no
-// C text yet.
+// `data` must pass validate_model. Errors: a kind of correction that has no C text yet.
 Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request);
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "models/export/feature_c.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 namespace palpate {
@@ -220,37 +221,10 @@ std::string emit_bristles(CText& out, const FeatureSpec& spec, std::size_t index
   return text;
 }
 
-struct FeatureRow {
-  FeatureKind kind;
-  FeatureEmitter emit;
-};
-// The table of kinds that can be exported: one line each.
-constexpr FeatureRow kFeatureRows[] = {
-    {FeatureKind::depth, emit_depth},
-    {FeatureKind::velocity, emit_velocity},
-    {FeatureKind::lowpass_velocity, emit_lowpass},
-    {FeatureKind::maxwell_branch, emit_maxwell},
-    {FeatureKind::maxwell_spectrum, emit_spectrum},
-    {FeatureKind::stops, emit_bristles},
-    {FeatureKind::creep, emit_bristles},
-    {FeatureKind::surface_lag, emit_surface_lag},
-};
-
-FeatureEmitter emitter_of(FeatureKind kind) {
-  for (const FeatureRow& row : kFeatureRows) {
-    if (row.kind == kind) return row.emit;
-  }
-  return nullptr;
-}
-
-Error no_emitter(const FeatureSpec& spec) {
-  std::string known;
-  for (const FeatureRow& row : kFeatureRows) {
-    known += (known.empty() ? "" : ", ") + std::string(feature_kind_name(row.kind));
-  }
-  return {"feature of kind " + std::string(feature_kind_name(spec.kind)) + " cannot be exported, expected " + known +
-          "; fit with --features and these kinds"};
-}
+// In the order of the kinds.
+constexpr FeatureEmitter kEmitters[] = {emit_depth,    emit_velocity, emit_lowpass,  emit_maxwell,
+                                        emit_spectrum, emit_bristles, emit_bristles, emit_surface_lag};
+static_assert(std::size(kEmitters) == kFeatureKinds.size());
 
 // The last feature of that kind, as C text; 0 when there is none.
 std::string feature_of(const std::vector<FeatureSpec>& features, FeatureKind kind) {
@@ -276,7 +250,7 @@ bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
 }  // namespace
 
-Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
+void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(kFeatureHelpersC);
   if (has_splines(features)) out.add(kSplineC);
   if (std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) { return has_filter(spec.kind); })) {
@@ -288,10 +262,8 @@ Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
   }
   std::string body;
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const FeatureEmitter emit = emitter_of(features[i].kind);
-    if (emit == nullptr) return no_emitter(features[i]);
     out.add("\n/* " + feature_name(features[i]) + " */\n");
-    body += emit(out, features[i], i);
+    body += kEmitters[static_cast<std::size_t>(features[i].kind)](out, features[i], i);
   }
   const auto lag = std::find_if(features.begin(), features.end(),
                                 [](const FeatureSpec& spec) { return spec.kind == FeatureKind::surface_lag; });
@@ -303,7 +275,6 @@ Status write_features(CText& out, const std::vector<FeatureSpec>& features) {
       "  real s;\n  depth_m = larger(R(0.0), position_estimate_m - SURFACE_POSITION_M);\n  s = " +
       std::string(lags ? "first ? depth_m : surface_above(step_s)" : "depth_m") + ";\n  (void)s;\n" + body +
       "  last_depth_m = depth_m;\n  surface_m = s;\n}\n");
-  return {};
 }
 
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "models/export/c_text.h"
 #include "models/model/trend.h"
@@ -13,8 +12,8 @@
 namespace palpate {
 
 // "static void update_features(real step_s, int first)": from the motion estimate to
-// value[]. Errors: a kind without an emitter; names it and those that have one.
-Status write_features(CText& out, const std::vector<FeatureSpec>& features);
+// value[].
+void write_features(CText& out, const std::vector<FeatureSpec>& features);
 
 // "static real trend_of(void)": newtons, from value[].
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features);

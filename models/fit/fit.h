@@ -82,7 +82,7 @@ Eigen::VectorXd site_thresholds(const PreparedTraining& prepared);
 
 // Errors: the method cannot be fitted to these sites (says why); interrupted.
 // The same prepared training and request give the same bits. `base`: the fit of the
-// same prepared training, kernel and solver by the method's base (methods.h), when
+// same prepared training and kernel by the method's base (methods.h), when
 // there is one already, which then is not fitted again.
 Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodRequest& request,
                              const FitControl& control = {}, const MethodFit* base = nullptr);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -71,55 +70,16 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
   return Outcome::failed;
 }
 
-bool solve_by_truncation(const ProjectedKernel& kernel, Solution& out) {
-  const Eigen::Index count = kernel.data().size();
-  // The tail's directions get an eigenvalue above all others, and are left out.
-  Eigen::MatrixXd vectors = kernel.matrix(10.0 * kernel.mean_eigenvalue() * static_cast<double>(count), 0.0);
-  Eigen::VectorXd values;
-  const BlasThreads threads(thread_count());
-  if (!symmetric_eigen(vectors, values)) return false;
-  const Eigen::Index rank = count - kernel.tail_rank();
-  out.u = Eigen::VectorXd::Zero(count);
-  if (rank == 0) return true;
-  const Eigen::VectorXd z = vectors.leftCols(rank).transpose() * kernel.data();
-  // Ascending eigenvalues: `cut` is how many small ones are dropped.
-  double dropped = 0.0;
-  double best = std::numeric_limits<double>::infinity();
-  Eigen::Index best_cut = rank;
-  for (Eigen::Index cut = 1; cut <= rank; ++cut) {
-    dropped += z[cut - 1] * z[cut - 1];
-    if (cut < rank && values[cut] <= kernel.smallest_smoothing()) continue;
-    const auto freedom = static_cast<double>(cut);
-    const double criterion = static_cast<double>(count) * dropped / (freedom * freedom);
-    if (criterion < best) {
-      best = criterion;
-      best_cut = cut;
-      out.residual_squared = dropped;
-    }
-  }
-  const Eigen::Index kept = rank - best_cut;
-  const Eigen::VectorXd shares = z.tail(kept).cwiseQuotient(values.segment(best_cut, kept));
-  out.u = vectors.middleCols(best_cut, kept) * shares;
-  out.rank = kept + kernel.tail_rank();
-  out.criterion = best;
-  out.condition = kept > 0 ? values[rank - 1] / values[best_cut] : 1.0;
-  return true;
-}
-
 Result<Solution> solve(const Sites& sites, const DirectOptions& options, const ProjectedKernel& kernel,
                        const FitControl& control) {
   Solution solution;
   const Error failed{"the kernel matrix could not be factorised; check the recording for extreme values"};
-  if (options.solver == DirectSolver::truncated_svd) {
-    if (!solve_by_truncation(kernel, solution)) return failed;
-    return solution;
-  }
   const std::optional<double> given =
       options.smoothing || options.kernel != KernelKind::cubic ? options.smoothing : sites.smoothing;
   double smoothing = given.value_or(0.0);
   double criterion = 0.0;
   if (!given) {
-    const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel, options.by_group);
+    const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel);
     if (!choice) return choice.error();
     smoothing = choice->smoothing;
     criterion = choice->criterion;
@@ -170,7 +130,6 @@ namespace {
 Result<FittedCorrection> direct_correction(const MethodTask& task, const FitControl& control) {
   DirectOptions options;
   options.kernel = task.request.kernel;
-  options.solver = task.request.solver;
   auto fitted = fit_direct(task.sites, options, control);
   if (!fitted) return fitted.error();
   return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
@@ -183,7 +142,7 @@ const Method kDirectMethod{
     .name = "direct",
     .label = "direct",
     .colour = kNeutralColour,
-    .takes = kTakesKernel | kTakesSolver,
+    .takes = kTakesKernel,
     .expected_seconds = [](const MethodRequest&) { return 3.0; },
     .fit = direct_correction,
 };

@@ -1,4 +1,4 @@
-#include "models/fit/fit_greedy.h"
+#include "models/fit/choose_centres.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,9 @@
 #include <vector>
 
 #include "engine/base/random_stream.h"
-#include "models/fit/methods.h"
-#include "models/model/rbf/rbf_correction.h"
 #include "models/solve/candidate_gains.h"
 #include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
-#include "models/solve/solve_weights.h"
 
 namespace palpate {
 namespace {
@@ -23,8 +20,8 @@ namespace {
 // its site, or -1 when no candidate is of use.
 class Selection {
  public:
-  Selection(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
-      : gains_(sites, options.kernel), basis_(sites, options.kernel, options.centres), left_(std::move(distinct)) {}
+  Selection(const Sites& sites, const MethodRequest& request, std::vector<Eigen::Index> distinct)
+      : gains_(sites, request.kernel), basis_(sites, request.kernel, request.centres), left_(std::move(distinct)) {}
   virtual ~Selection() = default;
   virtual Eigen::Index next() = 0;
 
@@ -49,8 +46,8 @@ class Selection {
 
 class RandomSubsets final : public Selection {
  public:
-  RandomSubsets(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
-      : Selection(sites, options, std::move(distinct)), candidates_(options.candidates), random_(options.seed) {}
+  RandomSubsets(const Sites& sites, const MethodRequest& request, std::vector<Eigen::Index> distinct)
+      : Selection(sites, request, std::move(distinct)), candidates_(request.candidates), random_(request.seed) {}
 
   Eigen::Index next() override {
     // A subset without use is followed by another, a few times.
@@ -82,10 +79,10 @@ class RandomSubsets final : public Selection {
 
 class AllSites final : public Selection {
  public:
-  AllSites(const Sites& sites, const GreedyOptions& options, std::vector<Eigen::Index> distinct)
-      : Selection(sites, options, std::move(distinct)),
+  AllSites(const Sites& sites, const MethodRequest& request, std::vector<Eigen::Index> distinct)
+      : Selection(sites, request, std::move(distinct)),
         row_scale_(sites.row_scale),
-        product_(options.kernel, gains_.points()) {
+        product_(request.kernel, gains_.points()) {
     gains_.update(left_, basis_);
   }
 
@@ -132,16 +129,16 @@ bool select(Selection& selection, Eigen::Index count, const FitControl& control,
 
 }  // namespace
 
-Result<CentreSequence> choose_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
+Result<CentreSequence> choose_greedy(const Sites& sites, const MethodRequest& request, const FitControl& control) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   const BlasThreads one_thread(1);
   std::vector<Eigen::Index> distinct = distinct_sites(sites);
   const auto available = static_cast<Eigen::Index>(distinct.size());
-  GreedyOptions clamped = options;
-  clamped.centres = std::clamp<Eigen::Index>(options.centres, 0, available);
+  MethodRequest clamped = request;
+  clamped.centres = static_cast<int>(std::clamp<Eigen::Index>(request.centres, 0, available));
   std::vector<Eigen::Index> chosen;
   bool finished = false;
-  if (options.candidates <= 0 || options.candidates >= available) {
+  if (request.candidates <= 0 || request.candidates >= available) {
     AllSites selection(sites, clamped, std::move(distinct));
     finished = select(selection, clamped.centres, control, chosen);
   } else {
@@ -153,40 +150,12 @@ Result<CentreSequence> choose_greedy(const Sites& sites, const GreedyOptions& op
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
     centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);
   CentreSequence sequence = CentreSequence::growing(std::move(centres));
-  if (sequence.most < options.centres) {
+  if (sequence.most < request.centres) {
     sequence.shortage =
-        clamped.centres < options.centres ? "there are no more distinct sites" : "no other site lowers the error";
+        clamped.centres < request.centres ? "there are no more distinct sites" : "no other site lowers the error";
   }
   return sequence;
 }
-
-Result<FittedRbf> fit_greedy(const Sites& sites, const GreedyOptions& options, const FitControl& control) {
-  const auto sequence = choose_greedy(sites, options, control);
-  if (!sequence) return sequence.error();
-  auto fitted = solve_largest(sites, options.kernel, *sequence, options.centres);
-  if (!control.may_continue(1.0)) return interrupted();
-  return fitted;
-}
-
-namespace {
-
-GreedyOptions options_of(const MethodRequest& request) {
-  return {request.kernel, request.centres, request.candidates, request.seed};
-}
-
-Result<CentreSequence> greedy_sequence(const MethodTask& task, const FitControl& control) {
-  return choose_greedy(task.sites, options_of(task.request), control);
-}
-
-Result<FittedCorrection> greedy_correction(const MethodTask& task, const FitControl& control) {
-  const MethodRequest& request = task.request;
-  auto fitted = fit_greedy(task.sites, options_of(request), control);
-  if (!fitted) return fitted.error();
-  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
-                          std::to_string(request.centres)};
-}
-
-}  // namespace
 
 const Method kGreedyMethod{
     .name = "greedy",
@@ -198,8 +167,9 @@ const Method kGreedyMethod{
           const double hundreds = 0.01 * request.centres;
           return 0.1 + (0.05 + 0.001 * request.candidates) * hundreds * hundreds;
         },
-    .fit = greedy_correction,
-    .choose = greedy_sequence,
+    .fit = fit_chosen,
+    .choose = [](const MethodTask& task,
+                 const FitControl& control) { return choose_greedy(task.sites, task.request, control); },
 };
 
 }  // namespace palpate

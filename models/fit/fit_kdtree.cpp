@@ -1,4 +1,4 @@
-#include "models/fit/fit_kdtree.h"
+#include "models/fit/choose_centres.h"
 
 #include <algorithm>
 #include <array>
@@ -9,13 +9,10 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
-#include "models/fit/methods.h"
-#include "models/model/rbf/rbf_correction.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
 #include "models/solve/site_tree.h"
-#include "models/solve/solve_weights.h"
 
 namespace palpate {
 namespace {
@@ -155,7 +152,7 @@ Eigen::VectorXd excess_of(const GrowingFit& fit, const Sites& sites, const Eigen
 
 }  // namespace
 
-Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
+Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const MethodRequest& request,
                                      const FitControl& control) {
   if (const Status status = validate_sites(sites); !status) return status.error();
   if (jnd_N.size() != sites.count() || !jnd_N.allFinite() || !(jnd_N.minCoeff() > 0.0))
@@ -163,8 +160,8 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
                  std::to_string(sites.count()) + " thresholds above 0 N"};
   const BlasThreads one_thread(1);
   SiteTree tree(sites.points);
-  const Eigen::Index most = std::max<Eigen::Index>(1, std::min(options.centres, sites.count()));
-  GrowingFit fit(sites, options.kernel, most);
+  const Eigen::Index most = std::max<Eigen::Index>(1, std::min<Eigen::Index>(request.centres, sites.count()));
+  GrowingFit fit(sites, request.kernel, most);
   CentreSequence sequence;
   sequence.pool.resize(sites.dimension(), 2 * most - 1);
   std::vector<std::size_t> of_leaf;  // its column
@@ -192,35 +189,10 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
     fit.set(sequence.pool.middleCols(before, 2), {lower, upper});
   }
   sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.stays.size()));
-  sequence.most = options.centres > 0 ? tree.leaf_count() : 0;
-  if (sequence.most < options.centres) sequence.shortage = "no leaf can be split further";
+  sequence.most = request.centres > 0 ? tree.leaf_count() : 0;
+  if (sequence.most < request.centres) sequence.shortage = "no leaf can be split further";
   return sequence;
 }
-
-Result<FittedRbf> fit_kdtree(const Sites& sites, const Eigen::VectorXd& jnd_N, const KdTreeOptions& options,
-                             const FitControl& control) {
-  const auto sequence = choose_kdtree(sites, jnd_N, options, control);
-  if (!sequence) return sequence.error();
-  auto fitted = solve_largest(sites, options.kernel, *sequence, options.centres);
-  if (!control.may_continue(1.0)) return interrupted();
-  return fitted;
-}
-
-namespace {
-
-Result<CentreSequence> kdtree_sequence(const MethodTask& task, const FitControl& control) {
-  return choose_kdtree(task.sites, task.jnd_N, {task.request.kernel, task.request.centres}, control);
-}
-
-Result<FittedCorrection> kdtree_correction(const MethodTask& task, const FitControl& control) {
-  const MethodRequest& request = task.request;
-  auto fitted = fit_kdtree(task.sites, task.jnd_N, {request.kernel, request.centres}, control);
-  if (!fitted) return fitted.error();
-  return FittedCorrection{std::make_shared<const RbfCorrection>(std::move(fitted->function)), std::move(fitted->report),
-                          std::to_string(request.centres)};
-}
-
-}  // namespace
 
 const Method kKdTreeMethod{
     .name = "kdtree",
@@ -232,8 +204,9 @@ const Method kKdTreeMethod{
           const double hundreds = 0.01 * request.centres;
           return 0.1 + 0.01 * hundreds * hundreds * hundreds;
         },
-    .fit = kdtree_correction,
-    .choose = kdtree_sequence,
+    .fit = fit_chosen,
+    .choose = [](const MethodTask& task,
+                 const FitControl& control) { return choose_kdtree(task.sites, task.jnd_N, task.request, control); },
 };
 
 }  // namespace palpate

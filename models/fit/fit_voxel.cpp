@@ -109,7 +109,7 @@ const Method kVoxelMethod{
     .name = "voxel",
     .label = "voxel",
     .colour = 0x56B4E9,
-    .takes = kTakesGrid | kTakesKernel | kTakesSolver,
+    .takes = kTakesGrid | kTakesKernel,
     .base = &kDirectMethod,
     .expected_seconds = [](const MethodRequest&) { return 0.2; },
     .fit = fit_voxel,

@@ -38,16 +38,13 @@ struct Method;
 PALPATE_METHODS(PALPATE_DECLARE_METHOD)
 #undef PALPATE_DECLARE_METHOD
 
-enum class DirectSolver { cholesky, truncated_svd };
-
 // What is asked of a method; it looks at what its row says it takes.
 struct MethodRequest {
   const Method* method = &kGreedyMethod;
   int centres = 100;
   int candidates = 100;  // per greedy step; 0: every site
   KernelKind kernel = KernelKind::cubic;
-  DirectSolver solver = DirectSolver::cholesky;
-  std::vector<int> grid;  // nodes per feature; empty: 25 for depth, 11 for the others (in 4-D)
+  std::vector<int> grid{};  // nodes per feature; empty: 25 for depth, 11 for the others (in 4-D)
   std::uint64_t seed = 1;
 };
 
@@ -72,8 +69,7 @@ enum MethodOption : unsigned {
   kTakesCandidates = 1U << 1,
   kTakesGrid = 1U << 2,
   kTakesKernel = 1U << 3,
-  kTakesSolver = 1U << 4,
-  kTakesSeed = 1U << 5,
+  kTakesSeed = 1U << 4,
 };
 
 // Black on white and white on black: the colour of whatever has no hue of its own.

@@ -57,8 +57,7 @@ FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) c
 Result<FittedRbf> NestedWeights::solve(Eigen::Index count) const {
   const BlasThreads one_thread(1);
   const std::vector<Eigen::Index> columns = sequence_.columns_of(std::clamp<Eigen::Index>(count, 0, most()));
-  return solve_folded(folded_for(columns), kernel_, sequence_.pool(Eigen::all, columns), Ridge::by_evidence,
-                      kDefaultTruncation);
+  return solve_folded(folded_for(columns), kernel_, sequence_.pool(Eigen::all, columns));
 }
 
 Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const MethodRequest& request,

@@ -32,7 +32,7 @@ class NestedWeights {
                                     const FitControl& control = {});
 
   Eigen::Index most() const { return sequence_.most; }
-  // solve_weights(..., Ridge::by_evidence) for `count` centres, clamped to 0 to most().
+  // solve_weights for `count` centres, clamped to 0 to most().
   // Errors: the decomposition did not converge.
   Result<FittedRbf> solve(Eigen::Index count) const;
 

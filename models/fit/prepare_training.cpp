@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "models/fit/choose_centres.h"
 #include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
-#include "models/fit/fit_random.h"
 #include "models/solve/solve_weights.h"
 #include "models/surface/surface_registration.h"
 #include "models/training/relaxation_times.h"
@@ -94,13 +94,12 @@ void release_one_sided(PreparedTraining& prepared, const RbfEvaluator& model, co
 // The centres of the quick fit stay, and so they are chosen once.
 Status find_sides(PreparedTraining& prepared, const Eigen::VectorXd& base_N) {
   const Eigen::Index n = prepared.sites.count();
-  RandomOptions quick;
-  quick.centres = std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4));
+  MethodRequest quick;
+  quick.centres = static_cast<int>(std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4)));
   const auto sequence = choose_random(prepared.sites, quick);
   if (!sequence) return sequence.error();
-  RepeatedSolve quick_fit(prepared.sites, quick.kernel, sequence->centres_of(sequence->most));
   for (int pass = 0; pass < kOneSidedPasses; ++pass) {
-    const auto fitted = quick_fit.solve();
+    const auto fitted = solve_weights(prepared.sites, quick.kernel, sequence->pool);
     if (!fitted) return fitted.error();
     release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
   }

@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/tick/lanes.h"
-
 namespace palpate {
 namespace {
 
@@ -18,83 +16,20 @@ constexpr double kOuterToInner = 3.0;
 constexpr double kFirstCoverRadius = 0.03;
 constexpr double kCoverGrowth = 1.25;
 
-// One coordinate of as many points as are looked at together.
-struct alignas(sizeof(V4)) Row {
-  V4 first = V4{} + HUGE_VAL;
-  V4 second = V4{} + HUGE_VAL;
-
-  void set(std::size_t lane, double value) {
-    // Not `(lane < kLanes ? first : second)[...]`: GCC 12 with sanitizers forgets that index.
-    if (lane < kLanes) {
-      first[lane] = value;
-    } else {
-      second[lane - kLanes] = value;
-    }
-  }
-};
-constexpr std::size_t kTogether = 2 * kLanes;
-
-// Whether one of the points is near x, the newest first.
-PALPATE_INLINE bool near_one_of(const std::vector<Row>& rows, std::size_t dimension, const double* x,
-                                double squared) noexcept {
-  for (std::size_t end = rows.size(); end > 0; end -= dimension) {
-    const Row* row = rows.data() + end - dimension;
-    V4 first{};
-    V4 second{};
-    for (std::size_t k = 0; k < dimension; ++k) {
-      const V4 a = x[k] - row[k].first;
-      const V4 b = x[k] - row[k].second;
-      first += a * a;
-      second += b * b;
-    }
-    const V4 least = first < second ? first : second;
-    if (std::min(std::min(least[0], least[1]), std::min(least[2], least[3])) <= squared) return true;
-  }
-  return false;
-}
-
-bool near_one_narrow(const std::vector<Row>& rows, std::size_t dimension, const double* x, double squared) noexcept {
-  return near_one_of(rows, dimension, x, squared);
-}
-
-#ifdef __x86_64__
-[[gnu::target("avx2")]] bool near_one_wide(const std::vector<Row>& rows, std::size_t dimension, const double* x,
-                                           double squared) noexcept {
-  return near_one_of(rows, dimension, x, squared);
-}
-const auto kNearOne = has_wide_lanes() ? &near_one_wide : &near_one_narrow;
-#else
-const auto kNearOne = &near_one_narrow;
-#endif
-
-// Points of which one may be near another.
-class Crowd {
- public:
-  explicit Crowd(Eigen::Index dimension) : dimension_(static_cast<std::size_t>(dimension)) {}
-
-  void add(const double* x) {
-    if (count_ % kTogether == 0) rows_.resize(rows_.size() + dimension_);
-    for (std::size_t k = 0; k < dimension_; ++k) rows_[rows_.size() - dimension_ + k].set(count_ % kTogether, x[k]);
-    ++count_;
-  }
-
-  bool is_near(const double* x, double squared) const { return kNearOne(rows_, dimension_, x, squared); }
-
- private:
-  std::size_t dimension_;
-  std::size_t count_ = 0;
-  std::vector<Row> rows_;
-};
-
 std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
   std::vector<Eigen::Index> kept;
-  Crowd crowd(sites.rows());
+  const auto is_near = [&](const double* x, Eigen::Index other) {
+    const double* point = sites.col(other).data();
+    double squared = 0.0;
+    for (Eigen::Index k = 0; k < sites.rows(); ++k) squared += (x[k] - point[k]) * (x[k] - point[k]);
+    return squared <= radius * radius;
+  };
   for (Eigen::Index i = 0; i < sites.cols(); ++i) {
+    const double* x = sites.col(i).data();
     // Sites come in the order of time: what covers one is most often new.
-    if (crowd.is_near(sites.col(i).data(), radius * radius)) continue;
+    if (std::any_of(kept.rbegin(), kept.rend(), [&](Eigen::Index other) { return is_near(x, other); })) continue;
     if (static_cast<Eigen::Index>(kept.size()) == kMaximumCoverPoints) return {};
     kept.push_back(i);
-    crowd.add(sites.col(i).data());
   }
   return kept;
 }

@@ -3,7 +3,7 @@
 // on |model - material|. f: the model's force; distance: from the nearest training
 // data in the normalised feature space (domain_guard.h). The shape follows the errors
 // on strokes (recordings) left out of the fit, the scale is split-conformal: the
-// quantile of the normalised errors there (models/fit/calibrate_bound.h).
+// quantile of the normalised errors there (models/fit/decide_strength.h).
 // Sources: Vovk, Gammerman & Shafer (2005), "Algorithmic learning in a random world";
 // Lei, G'Sell, Rinaldo, Tibshirani & Wasserman (2018), section 5.2 (locally weighted).
 // Thread guarantee: value type; `at` is wait-free.

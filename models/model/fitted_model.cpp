@@ -19,98 +19,75 @@ Error wrong(const std::string& field, const std::string& found, const std::strin
   return {field + ": found " + found + ", expected " + expected};
 }
 
-Status validate_vector(const Eigen::VectorXd& values, const std::string& field, Eigen::Index expected) {
-  if (values.size() != expected) {
-    return wrong(field, std::to_string(values.size()) + " values", std::to_string(expected) + ", one per feature");
+// The first of all that is wrong.
+class Check {
+ public:
+  void that(bool good, const std::string& field, const std::string& found, const std::string& expected) {
+    if (!good && status_) status_ = wrong(field, found, expected);
   }
-  if (!values.allFinite()) return wrong(field, "a non-finite number", "finite numbers");
-  return {};
+  void positive(const std::string& field, double value) {
+    that(value > 0.0 && std::isfinite(value), field, std::to_string(value), "a positive number");
+  }
+  void not_negative(const std::string& field, double value) {
+    that(value >= 0.0 && std::isfinite(value), field, std::to_string(value), "0 or more");
+  }
+  void finite(const std::string& field, bool good) { that(good, field, "a non-finite number", "finite numbers"); }
+  void per_feature(const std::string& field, const Eigen::VectorXd& values, Eigen::Index count) {
+    that(values.size() == count, field, std::to_string(values.size()) + " values",
+         std::to_string(count) + ", one per feature");
+    finite(field, values.allFinite());
+  }
+  void drive(const std::string& field, const DriveCurve& curve) {
+    // Of a branch that relaxes at once the curve may be large, but it is a force.
+    const auto is_force = [](double value_N) { return std::abs(value_N) <= 1e9; };
+    positive(field + ".reference_depth_m", curve.reference_depth_m);
+    that(std::all_of(curve.coefficient_N.begin(), curve.coefficient_N.end(), is_force) &&
+             std::all_of(curve.knot_N.begin(), curve.knot_N.end(), is_force),
+         field, "a number that is no force", "at most 1e9 N");
+  }
+  const Status& status() const { return status_; }
+
+ private:
+  Status status_;
+};
+
+void check_feature(Check& check, const FeatureSpec& spec) {
+  if (has_time(spec.kind)) check.positive("features.relaxation_time_s", spec.relaxation_time_s);
+  check.drive("features.drive", spec.drive);
+  check.that(std::abs(spec.slowing) <= kMostSlowing, "features.slowing", std::to_string(spec.slowing),
+             "a number from -20 to 20");
+  check.that(std::isfinite(spec.surface_position_m), "features.surface_position_m",
+             std::to_string(spec.surface_position_m), "a finite number");
+  if (!has_parts(spec.kind)) return;
+  const bool fits = spec.part_count >= 1 && spec.part_count <= kMaxFeatureParts;
+  check.that(fits, "features.parts", std::to_string(spec.part_count) + " parts", "1 to 8");
+  for (std::size_t p = 0; fits && p < spec.part_count; ++p) {
+    const FeaturePart& part = spec.parts[p];
+    if (is_bristle(spec.kind)) check.positive("features.parts.threshold_m", part.threshold_m);
+    if (spec.kind != FeatureKind::stops) check.positive("features.parts.relaxation_time_s", part.relaxation_time_s);
+    check.drive("features.parts.drive", part.drive);
+  }
 }
 
-Status validate_positive(const std::string& field, double value) {
-  if (value > 0.0 && std::isfinite(value)) return {};
-  return wrong(field, std::to_string(value), "a positive number");
+void check_trend(Check& check, const Trend& trend) {
+  const auto finite = [](const auto& values) {
+    return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  };
+  check.positive("trend.reference_depth_m", trend.reference_depth_m);
+  check.finite("trend", finite(trend.elastic_N) && finite(trend.elastic_knot_N) && finite(trend.viscosity_Ns_per_m) &&
+                            finite(trend.thinning_Ns_per_m));
+  check.positive("trend.thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s);
+  check.not_negative("trend.velocity_limit_m_per_s", trend.velocity_limit_m_per_s);
 }
 
-Status validate_not_negative(const std::string& field, double value) {
-  if (value >= 0.0 && std::isfinite(value)) return {};
-  return wrong(field, std::to_string(value), "0 or more");
-}
-
-// Of a branch that relaxes at once the curve may be large, but it is a force.
-bool is_force(double value_N) { return std::abs(value_N) <= 1e9; }
-
-Status validate_drive(const std::string& field, const DriveCurve& drive) {
-  if (Status status = validate_positive(field + ".reference_depth_m", drive.reference_depth_m); !status) return status;
-  if (std::all_of(drive.coefficient_N.begin(), drive.coefficient_N.end(), is_force) &&
-      std::all_of(drive.knot_N.begin(), drive.knot_N.end(), is_force)) {
-    return {};
-  }
-  return wrong(field, "a number that is no force", "at most 1e9 N");
-}
-
-Status validate_features(const std::vector<FeatureSpec>& features) {
-  if (features.empty() || features.size() > kMaxFeatures) {
-    return wrong("features", std::to_string(features.size()) + " features", "1 to 8");
-  }
-  for (const FeatureSpec& spec : features) {
-    if (has_time(spec.kind)) {
-      if (Status status = validate_positive("features.relaxation_time_s", spec.relaxation_time_s); !status)
-        return status;
-    }
-    if (Status status = validate_drive("features.drive", spec.drive); !status) return status;
-    if (!(std::abs(spec.slowing) <= kMostSlowing)) {
-      return wrong("features.slowing", std::to_string(spec.slowing), "a number from -20 to 20");
-    }
-    if (!std::isfinite(spec.surface_position_m)) {
-      return wrong("features.surface_position_m", std::to_string(spec.surface_position_m), "a finite number");
-    }
-    if (!has_parts(spec.kind)) continue;
-    if (spec.part_count < 1 || spec.part_count > kMaxFeatureParts) {
-      return wrong("features.parts", std::to_string(spec.part_count) + " parts", "1 to 8");
-    }
-    for (std::size_t p = 0; p < spec.part_count; ++p) {
-      const FeaturePart& part = spec.parts[p];
-      if (is_bristle(spec.kind)) {
-        if (Status status = validate_positive("features.parts.threshold_m", part.threshold_m); !status) return status;
-      }
-      if (spec.kind != FeatureKind::stops) {
-        const Status status = validate_positive("features.parts.relaxation_time_s", part.relaxation_time_s);
-        if (!status) return status;
-      }
-      if (Status status = validate_drive("features.parts.drive", spec.parts[p].drive); !status) return status;
-    }
-  }
-  return {};
-}
-
-Status validate_trend(const Trend& trend) {
-  if (Status status = validate_positive("trend.reference_depth_m", trend.reference_depth_m); !status) return status;
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (!std::all_of(trend.elastic_N.begin(), trend.elastic_N.end(), finite) ||
-      !std::all_of(trend.elastic_knot_N.begin(), trend.elastic_knot_N.end(), finite) ||
-      !std::all_of(trend.viscosity_Ns_per_m.begin(), trend.viscosity_Ns_per_m.end(), finite) ||
-      !std::all_of(trend.thinning_Ns_per_m.begin(), trend.thinning_Ns_per_m.end(), finite)) {
-    return wrong("trend", "a non-finite number", "finite numbers");
-  }
-  if (Status status = validate_positive("trend.thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s); !status)
-    return status;
-  return validate_not_negative("trend.velocity_limit_m_per_s", trend.velocity_limit_m_per_s);
-}
-
-Status validate_cover(const DomainCover& cover, Eigen::Index dimension) {
-  if (cover.points.rows() != dimension || cover.points.cols() < 1) {
-    return wrong("domain.points",
-                 std::to_string(cover.points.cols()) + " points of " + std::to_string(cover.points.rows()) + " values",
-                 "at least one point of " + std::to_string(dimension) + " values");
-  }
-  if (!cover.points.allFinite()) return wrong("domain.points", "a non-finite number", "finite numbers");
-  if (!(cover.inner_radius >= 0.0) || !(cover.outer_radius > cover.inner_radius) ||
-      !std::isfinite(cover.outer_radius)) {
-    return wrong("domain radii", std::to_string(cover.inner_radius) + " and " + std::to_string(cover.outer_radius),
-                 "0 <= inner < outer");
-  }
-  return {};
+void check_cover(Check& check, const DomainCover& cover, Eigen::Index dimension) {
+  check.that(cover.points.rows() == dimension && cover.points.cols() >= 1, "domain.points",
+             std::to_string(cover.points.cols()) + " points of " + std::to_string(cover.points.rows()) + " values",
+             "at least one point of " + std::to_string(dimension) + " values");
+  check.finite("domain.points", cover.points.allFinite());
+  check.that(cover.inner_radius >= 0.0 && cover.outer_radius > cover.inner_radius && std::isfinite(cover.outer_radius),
+             "domain radii", std::to_string(cover.inner_radius) + " and " + std::to_string(cover.outer_radius),
+             "0 <= inner < outer");
 }
 
 // A part of the force that is beyond this multiple of the largest forces that the file names
@@ -146,36 +123,33 @@ Status validate_forces(const ModelData& data) {
 }  // namespace
 
 Status validate_model(const ModelData& data) {
-  if (Status status = validate_features(data.features); !status) return status;
   const auto n = static_cast<Eigen::Index>(data.features.size());
-  for (const auto& [values, field] :
-       {std::pair{&data.offset, "normalisation.offset"}, std::pair{&data.scale, "normalisation.scale"},
-        std::pair{&data.lower, "domain.lower"}, std::pair{&data.upper, "domain.upper"}}) {
-    if (Status status = validate_vector(*values, field, n); !status) return status;
+  Check check;
+  check.that(n >= 1 && n <= static_cast<Eigen::Index>(kMaxFeatures), "features", std::to_string(n) + " features",
+             "1 to 8");
+  for (const FeatureSpec& spec : data.features) check_feature(check, spec);
+  check.per_feature("normalisation.offset", data.offset, n);
+  check.per_feature("normalisation.scale", data.scale, n);
+  check.per_feature("domain.lower", data.lower, n);
+  check.per_feature("domain.upper", data.upper, n);
+  check.that((data.scale.array() > 0.0).all(), "normalisation.scale", "0 or less", "positive numbers");
+  check_trend(check, data.trend);
+  check_cover(check, data.cover, n);
+  if (const auto& bound = data.error_bound) {
+    for (const double value : {bound->floor_N, bound->per_force, bound->per_distance_N})
+      check.not_negative("error_bound", value);
   }
-  if (!(data.scale.array() > 0.0).all()) return wrong("normalisation.scale", "0 or less", "positive numbers");
-  if (Status status = validate_trend(data.trend); !status) return status;
-  if (Status status = validate_cover(data.cover, n); !status) return status;
-  if (data.error_bound) {
-    for (const double value :
-         {data.error_bound->floor_N, data.error_bound->per_force, data.error_bound->per_distance_N}) {
-      if (Status status = validate_not_negative("error_bound", value); !status) return status;
-    }
+  if (const auto& sensor = data.sensor) {
+    for (const double value : {sensor->encoder_step_m, sensor->position_noise_m}) check.not_negative("sensor", value);
   }
-  if (data.sensor) {
-    for (const double value : {data.sensor->encoder_step_m, data.sensor->position_noise_m}) {
-      if (Status status = validate_not_negative("sensor", value); !status) return status;
-    }
-  }
-  for (const auto& [value, field] :
-       {std::pair{data.correction_limit_N, "correction_limit_N"}, std::pair{data.largest_force_N, "largest_force_N"},
-        std::pair{data.jnd.offset_N, "jnd.offset_N"}, std::pair{data.jnd.weber_fraction, "jnd.weber_fraction"}}) {
-    if (Status status = validate_not_negative(field, value); !status) return status;
-  }
-  if (!(data.lowest_force_N <= 0.0) || !std::isfinite(data.lowest_force_N)) {
-    return wrong("lowest_force_N", std::to_string(data.lowest_force_N), "0 or less");
-  }
-  if (data.correction == nullptr) return wrong("model", "no correction", "centres, a grid, or the trend alone");
+  check.not_negative("correction_limit_N", data.correction_limit_N);
+  check.not_negative("largest_force_N", data.largest_force_N);
+  check.not_negative("jnd.offset_N", data.jnd.offset_N);
+  check.not_negative("jnd.weber_fraction", data.jnd.weber_fraction);
+  check.that(data.lowest_force_N <= 0.0 && std::isfinite(data.lowest_force_N), "lowest_force_N",
+             std::to_string(data.lowest_force_N), "0 or less");
+  check.that(data.correction != nullptr, "model", "no correction", "centres, a grid, or the trend alone");
+  if (!check.status()) return check.status();
   if (Status status = data.correction->validate(static_cast<int>(n)); !status) return status;
   return validate_forces(data);
 }

@@ -53,7 +53,7 @@ Eigen::Index widest_dimension(const Eigen::MatrixXd& points, const std::vector<E
 NearestDistance::NearestDistance(const Eigen::MatrixXd& points)
     : stride_(whole_vectors(static_cast<std::size_t>(points.cols()))),
       dimension_(static_cast<int>(points.rows())),
-      nearest_(simd::nearest_function(dimension_)) {
+      nearest_(simd::nearest_loops(dimension_).nearest) {
   assert(points.cols() >= 1);
   auto memory = aligned_array<float>(stride_ * static_cast<std::size_t>(points.rows()));
   fill_rows(points, all_of(points), stride_, memory.get());
@@ -75,8 +75,7 @@ NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
     : centre_(aligned_array<double>(kMaxFeatures)),
       split_coordinate_(aligned_array<std::int32_t>(simd::kNearLeaves)),
       split_at_(aligned_array<float>(simd::kNearLeaves)),
-      leaf_(simd::leaf_function(static_cast<int>(points.rows()))),
-      near_(simd::near_function(static_cast<int>(points.rows()))) {
+      loops_(simd::nearest_loops(static_cast<int>(points.rows()))) {
   const Eigen::VectorXd centre = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   const Eigen::MatrixXd about = points.colwise() - centre;
   std::copy(centre.begin(), centre.end(), centre_.get());

@@ -43,9 +43,9 @@ class NearPoints {
   NearPoints(const Eigen::MatrixXd& points, double radius);
 
   // The leaf of x, for `found`.
-  const float* leaf(const double* x) const noexcept { return leaf_(tree_, x); }
+  const float* leaf(const double* x) const noexcept { return loops_.leaf(tree_, x); }
   // True: some point is no further than the radius. False: the distance has to say.
-  bool found(const double* x, const float* leaf_of_x) const noexcept { return near_(tree_, leaf_of_x, x); }
+  bool found(const double* x, const float* leaf_of_x) const noexcept { return loops_.near(tree_, leaf_of_x, x); }
 
  private:
   void split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> part, std::size_t node,
@@ -57,8 +57,7 @@ class NearPoints {
   std::shared_ptr<float[]> split_at_;
   std::shared_ptr<float[]> leaves_;
   simd::NearTree tree_;
-  simd::LeafFunction leaf_ = nullptr;
-  simd::NearFunction near_ = nullptr;
+  simd::NearestLoops loops_;
 };
 
 }  // namespace palpate

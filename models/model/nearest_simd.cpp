@@ -115,28 +115,12 @@ bool near_point(const NearTree& tree, const float* leaf_of_x, const double* x) n
 }
 
 template <int... kIndex>
-NearestFunction pick_nearest(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr NearestFunction kTable[] = {&nearest<kIndex + 1>...};
+NearestLoops pick_loops(int dimension, std::integer_sequence<int, kIndex...>) {
+  static constexpr NearestLoops kTable[] = {{&nearest<kIndex + 1>, &leaf_of<kIndex + 1>, &near_point<kIndex + 1>}...};
   return kTable[dimension - 1];
 }
 
-template <int... kIndex>
-NearFunction pick_near(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr NearFunction kTable[] = {&near_point<kIndex + 1>...};
-  return kTable[dimension - 1];
-}
-
-template <int... kIndex>
-LeafFunction pick_leaf(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr LeafFunction kTable[] = {&leaf_of<kIndex + 1>...};
-  return kTable[dimension - 1];
-}
-
-using NearestDimensions = std::make_integer_sequence<int, 8>;
-
-NearestFunction get_nearest(int dimension) { return pick_nearest(dimension, NearestDimensions{}); }
-LeafFunction get_leaf(int dimension) { return pick_leaf(dimension, NearestDimensions{}); }
-NearFunction get_near(int dimension) { return pick_near(dimension, NearestDimensions{}); }
+NearestLoops get_loops(int dimension) { return pick_loops(dimension, std::make_integer_sequence<int, 8>{}); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace palpate::simd
@@ -145,13 +129,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::simd {
 
-HWY_EXPORT(get_nearest);
-HWY_EXPORT(get_leaf);
-HWY_EXPORT(get_near);
+HWY_EXPORT(get_loops);
 
-NearestFunction nearest_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_nearest)(dimension); }
-LeafFunction leaf_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_leaf)(dimension); }
-NearFunction near_function(int dimension) { return HWY_DYNAMIC_DISPATCH(get_near)(dimension); }
+NearestLoops nearest_loops(int dimension) { return HWY_DYNAMIC_DISPATCH(get_loops)(dimension); }
 
 }  // namespace palpate::simd
 #endif

@@ -46,9 +46,12 @@ using LeafFunction = const float* (*)(const NearTree& tree, const double* x) noe
 // Whether a point of that leaf is within r. Not so what is no number.
 using NearFunction = bool (*)(const NearTree& tree, const float* leaf_of_x, const double* x) noexcept;
 
+struct NearestLoops {
+  NearestFunction nearest = nullptr;
+  LeafFunction leaf = nullptr;
+  NearFunction near = nullptr;
+};
 // For dimensions 1 to 8.
-NearestFunction nearest_function(int dimension);
-LeafFunction leaf_function(int dimension);
-NearFunction near_function(int dimension);
+NearestLoops nearest_loops(int dimension);
 
 }  // namespace palpate::simd

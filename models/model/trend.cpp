@@ -16,24 +16,11 @@ double elastic_force_N(const Trend& trend, double u) noexcept {
 TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto index = static_cast<std::uint8_t>(i);
-    switch (specs[i].kind) {
-      case FeatureKind::depth:
-        depth = index;
-        break;
-      case FeatureKind::velocity:
-        velocity = index;
-        break;
-      case FeatureKind::maxwell_branch:
-      case FeatureKind::maxwell_spectrum:
-      case FeatureKind::stops:
-      case FeatureKind::creep:
-        force[force_count++] = index;
-        break;
-      case FeatureKind::lowpass_velocity:
-        break;  // the paper's features carry no stiffness
-      case FeatureKind::surface_lag:
-        break;  // the branches follow it
-    }
+    // The paper's low-pass features carry no stiffness, and a surface_lag is what the branches follow.
+    const FeatureKind kind = specs[i].kind;
+    if (kind == FeatureKind::depth) depth = index;
+    if (kind == FeatureKind::velocity) velocity = index;
+    if (is_branch(kind) || is_bristle(kind)) force[force_count++] = index;
   }
 }
 

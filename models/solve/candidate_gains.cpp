@@ -4,14 +4,14 @@
 #include <array>
 
 #include "engine/base/parallel.h"
-#include "models/solve/inner_products_simd.h"
+#include "models/solve/lapack.h"
 
 namespace palpate {
 namespace {
 
 // Sites at a time: they share the products with the directions that the furthest behind of
 // them lacks.
-constexpr Eigen::Index kGroup = simd::kProductColumns;
+constexpr Eigen::Index kGroup = 4;
 // Rows at a time: a group's columns stay in the first-level cache, that block of the
 // directions in the second.
 constexpr Eigen::Index kRows = 512;
@@ -74,10 +74,7 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
     constexpr auto kVector = static_cast<Eigen::Index>(simd::kSimdPad);
     return std::min(sites_.count(), (sites_.count() * part / kParts + kVector - 1) / kVector * kVector);
   };
-  const simd::ScaleColumnFunction scale_column = simd::scale_column_function();
   const auto directions = basis.columns_and_residual();
-  const auto direction_stride = static_cast<std::size_t>(directions.outerStride());
-  const simd::InnerProductsFunction inner_products = simd::inner_products_function();
   parallel_for(kParts, [&](int part) {
     std::vector<Sums>& mine = sums[static_cast<std::size_t>(part)];
     for (Eigen::Index group = 0; group < groups; ++group) {
@@ -95,14 +92,11 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
           centres.col(j) = sites_.points.col(sites[static_cast<std::size_t>(group * kGroup + j)]);
         kernel_matrix(kernel_, points_, centres.leftCols(size), memory.topLeftCorner(rows, size), row);
         Sums& sum = mine[static_cast<std::size_t>(group)];
-        for (Eigen::Index j = 0; j < size; ++j) {
-          scale_column(memory.col(j).data(), sites_.row_scale.data() + row, static_cast<std::size_t>(rows),
-                       &sum.length_squared[j]);
-        }
-        inner_products(&directions.coeffRef(row, known_to(group)), direction_stride,
-                       static_cast<std::size_t>(sum.shares.cols()), memory.data(),
-                       static_cast<std::size_t>(memory.outerStride()), static_cast<std::size_t>(rows),
-                       sum.shares.data());
+        auto columns = memory.topLeftCorner(rows, size);
+        columns.array().colwise() *= sites_.row_scale.segment(row, rows).array();
+        sum.length_squared.head(size) += columns.colwise().squaredNorm().transpose();
+        multiply(columns, true, directions.block(row, known_to(group), rows, sum.shares.cols()), false, 1.0, 1.0,
+                 sum.shares.topRows(size));
       }
     }
   });

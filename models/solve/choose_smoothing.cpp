@@ -111,7 +111,7 @@ SmoothingChoice search(double unit, double smallest, const Criterion& criterion,
 
 }  // namespace
 
-Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, bool by_group) {
+Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel) {
   const Sites subset = even_subset(sites, kSmoothingSubset);
   const ProjectedKernel projected(subset, kernel);
   const double unit = projected.mean_eigenvalue();
@@ -122,7 +122,7 @@ Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, 
   if (smoother.empty()) return SmoothingChoice{smallest, 0.0, false};
   const BlasThreads one_thread(1);
   SmoothingChoice choice{0.0, kInfinity, false};
-  if (by_group && smoother.has_groups()) {
+  if (smoother.has_groups()) {
     choice = search(unit, smallest, [&](double s) { return smoother.by_group(s); });
     choice.by_group = true;
   }

@@ -35,6 +35,6 @@ struct SmoothingChoice {
 inline constexpr Eigen::Index kSmoothingSubset = 1000;
 
 // Errors: the eigendecomposition did not converge. Deterministic. Off the tick.
-Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel, bool by_group);
+Result<SmoothingChoice> choose_smoothing(const Sites& sites, KernelKind kernel);
 
 }  // namespace palpate

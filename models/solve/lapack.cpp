@@ -52,19 +52,14 @@ std::recursive_mutex& blas_mutex() {
   return mutex;
 }
 
-// OpenBLAS takes a processor that is newer than itself for a Prescott of 2004, which
-// makes fits two to three times slower (0.3.21 of Debian 12 on a Xeon of 2023). Then it
-// chooses again, with the variable of its manual set meanwhile. Before main, so that no
-// other thread computes; nothing is done when the user has set the variable, or when the
-// processor is known.
-bool choose_blas_core() {
+// With the variable of OpenBLAS's manual set meanwhile.
+void choose_blas_core() {
 #ifdef __x86_64__
   constexpr const char* kVariable = "OPENBLAS_CORETYPE";
-  if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr)
-    return false;
-  if (std::getenv(kVariable) != nullptr || std::string_view(openblas_get_corename()) != "Prescott") return false;
+  if (openblas_get_corename == nullptr || gotoblas_dynamic_quit == nullptr || gotoblas_dynamic_init == nullptr) return;
+  if (std::getenv(kVariable) != nullptr || std::string_view(openblas_get_corename()) != "Prescott") return;
   __builtin_cpu_init();
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return false;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return;
   const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                     __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
                     __builtin_cpu_supports("avx512cd");
@@ -72,13 +67,8 @@ bool choose_blas_core() {
   gotoblas_dynamic_quit();
   gotoblas_dynamic_init();
   unsetenv(kVariable);
-  return true;
-#else
-  return false;
 #endif
 }
-
-[[maybe_unused]] const bool kBlasCoreChosen = choose_blas_core();
 
 int to_int(Eigen::Index value) { return static_cast<int>(value); }
 
@@ -99,7 +89,8 @@ BlasThreads::~BlasThreads() {
   if (before_ > 0 && openblas_get_num_threads() != before_) openblas_set_num_threads(before_);
 }
 
-void end_idle_blas_threads() {
+void prepare_blas() {
+  choose_blas_core();
   if (openblas_set_num_threads == nullptr || blas_thread_shutdown_ == nullptr) return;
   openblas_set_num_threads(1);
   blas_thread_shutdown_();  // starts them again when more are asked for

@@ -31,11 +31,13 @@ class BlasThreads {
   int before_ = 0;
 };
 
-// Ends the threads that OpenBLAS has started with the program, which spin on the other
-// cores for some 30 ms whether anything is computed or not. From then on products are on
-// one thread, but within BlasThreads. For programs, at their beginning: in a library the
-// setting would be that of whoever loads it.
-void end_idle_blas_threads();
+// For programs, at the beginning of main, before another thread computes; not in a library,
+// whose user owns these settings. OpenBLAS takes a processor that is newer than itself for a
+// Prescott of 2004, which makes fits two to three times slower (0.3.21 of Debian 12 on a Xeon
+// of 2023): then it chooses again, unless OPENBLAS_CORETYPE says which. And the threads that it
+// has started with the program end, which spin on the other cores for some 30 ms whether
+// anything is computed or not; from then on products are on one thread, but within BlasThreads.
+void prepare_blas();
 
 // c = alpha op(a) op(b) + beta c, op being the transpose where asked.
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,

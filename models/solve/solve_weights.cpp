@@ -1,21 +1,24 @@
 #include "models/solve/solve_weights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <string>
 #include <utility>
 
+#include "engine/base/parallel.h"
+#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/lapack.h"
 #include "models/solve/penalised_weights.h"
-#include "models/solve/row_folder.h"
 
 namespace palpate {
 namespace {
 
-// With 100 centres 84 MB.
-constexpr Eigen::Index kMostKeptSites = 100000;
+// Rounding in the triangle is about 1e-14 of the largest singular value for a
+// thousand columns; what lies two decades above is still data.
+constexpr double kTruncation = 1e-12;
 
 // The ridge of the largest evidence, see solve_weights.h. `s`: the singular
 // values that count, descending; `z`: the data's shares along them; `rest`: the
@@ -52,94 +55,72 @@ bool sites_decide(double lambda, double largest, double rows, double unknowns) {
   return rows >= kRowsEach * unknowns && lambda < kNoiseRules * largest * largest;
 }
 
-// False when the iteration did not converge. `triangle`: [R z; 0 rho].
-bool scale_triangle(const Eigen::MatrixXd& triangle, ScaledTriangle& scaled) {
-  const Eigen::Index n = triangle.cols() - 1;
-  Eigen::MatrixXd r = triangle.topLeftCorner(n, n);
-  Eigen::VectorXd& scale = scaled.scale;
-  scale = r.colwise().stableNorm().transpose();
-  // A column of next to nothing (the kernel of a centre on top of every site)
-  // is not scaled up: it would need a weight of 1e20 to matter.
-  scale = (scale.array() > 1e-20 * scale.maxCoeff()).select(scale, std::max(scale.maxCoeff(), 1e-300));
-  r.array().rowwise() /= scale.transpose().array();
-  return svd(std::move(r), scaled.parts);
-}
+// The rows are folded in two halves, one thread each. Fixed, not the number of
+// cores, so that the result is the same everywhere.
+constexpr int kHalves = 2;
 
-struct SmallSolution {
-  Eigen::VectorXd unknowns;
-  double ridge = 0.0;  // of the square of the largest singular value
-  double residual_squared = 0.0;
-  Eigen::Index rank = 0;
-  double condition = 0.0;
+// What the rows so far have become.
+struct HalfOfRows {
+  Eigen::MatrixXd triangle;
+  Eigen::VectorXd data;       // Q^T f along the triangle's rows
+  double rest_squared = 0.0;  // of Q^T f, beyond them
 };
 
-// The triangle is [R z; 0 rho]: minimises |R x - z|^2 + rho^2, and the ridge. `scaled`: of R.
-SmallSolution solve_triangle(const Eigen::MatrixXd& triangle, const ScaledTriangle& scaled, double truncation,
-                             Ridge ridge, double rows) {
-  const Eigen::Index n = triangle.cols() - 1;
-  const Svd& parts = scaled.parts;
-  SmallSolution out;
-  const double smallest = truncation * parts.s[0];
-  out.rank = (parts.s.array() > smallest && parts.s.array() > 0.0).count();
-  Eigen::VectorXd z = parts.u.transpose() * triangle.col(n).head(n);
-  const double rho = triangle(n, n);
-  const double rest = rho * rho + z.tail(n - out.rank).squaredNorm();
-  const Eigen::ArrayXd kept = parts.s.head(out.rank);
-  double lambda = ridge == Ridge::by_evidence ? ridge_by_evidence(kept, z.head(out.rank), rest, rows) : 0.0;
-  if (lambda > 0.0 && sites_decide(lambda, kept[0], rows, static_cast<double>(n))) lambda = 0.0;
-  out.ridge = lambda > 0.0 ? lambda / (kept[0] * kept[0]) : 0.0;
-  const Eigen::ArrayXd left = lambda / (kept.square() + lambda);
-  out.residual_squared = rest + (left * z.head(out.rank).array()).square().sum();
-  z.head(out.rank).array() *= kept / (kept.square() + lambda);
-  out.unknowns = parts.vt.topRows(out.rank).transpose() * z.head(out.rank);
-  out.unknowns.array() /= scaled.scale.array();
-  out.condition = parts.s[n - 1] > 0.0 ? parts.s[0] / parts.s[n - 1] : 1e300;
-  return out;
-}
-
-// What a solution of the triangle says of the sites it came from.
-FittedRbf fitted_from(const SmallSolution& solution, const FoldedRows& folded, KernelKind kernel,
-                      const Eigen::MatrixXd& centres, Ridge ridge) {
-  FittedRbf fitted;
-  fitted.function = {kernel, centres, solution.unknowns.head(centres.cols()),
-                     solution.unknowns.tail(solution.unknowns.size() - centres.cols())};
-  if (ridge == Ridge::by_evidence) {
-    fitted.function.weights *= folded.strength;
-    fitted.function.tail *= folded.strength;
-  }
-  FitReport& report = fitted.report;
-  report.centres_asked = report.centres_used = centres.cols();
-  report.columns = solution.unknowns.size();
-  report.rank = solution.rank;
-  report.condition = solution.condition;
-  report.smoothing = solution.ridge;
-  report.residual_rms = std::sqrt(solution.residual_squared / static_cast<double>(folded.sites));
-  if (report.rank < report.columns)
-    report.notes.push_back("the data determine " + std::to_string(report.rank) + " of " +
-                           std::to_string(report.columns) + " unknowns; the rest took the shortest solution");
-  return fitted;
-}
-
-Error not_converged() {
-  return Error{"the singular value decomposition did not converge; check the recording for extreme values"};
-}
-
-// Without the triangle.
-FoldedRows counted(const Sites& sites) {
-  FoldedRows folded;
-  folded.sites = sites.count();
-  folded.rows = (sites.row_scale.array() > 0.0).count();
-  folded.smoothing = sites.smoothing;
-  folded.strength = sites.strength;
-  return folded;
+// Replaces the triangle by that of `rows`, which has it on top, and the data likewise.
+void factorise(Eigen::MatrixXd& rows, Eigen::VectorXd& data, HalfOfRows& folded) {
+  const Eigen::Index columns = rows.cols();
+  const Eigen::MatrixXd factors = qr_in_place(rows);
+  apply_transposed_q(rows, factors, data);
+  folded.triangle = rows.topRows(columns).triangularView<Eigen::Upper>();
+  folded.data = data.head(columns);
+  folded.rest_squared += data.tail(data.size() - columns).squaredNorm();
 }
 
 }  // namespace
 
 bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
                FoldedRows& folded) {
-  folded = counted(sites);
-  return RowFolder(sites, kernel, centres).fold(control, false, folded.triangle);
+  folded.sites = sites.count();
+  folded.rows = (sites.row_scale.array() > 0.0).count();
+  folded.smoothing = sites.smoothing;
+  folded.strength = sites.strength;
+  const PointArrays points(sites.points);
+  const Eigen::Index tail = tail_size(tail_degree(kernel), sites.dimension());
+  const Eigen::Index columns = centres.cols() + tail;
+  const Eigen::Index block_rows = std::max<Eigen::Index>(1024, (2 * columns + 9) / 8 * 8);
+  const Eigen::Index blocks = (sites.count() + block_rows - 1) / block_rows;
+  std::array<HalfOfRows, kHalves> halves;
+  parallel_for(kHalves, [&](int half) {
+    HalfOfRows& mine = halves[static_cast<std::size_t>(half)];
+    mine = {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
+    for (Eigen::Index block = blocks * half / kHalves; block < blocks * (half + 1) / kHalves; ++block) {
+      const Eigen::Index first = block * block_rows;
+      const Eigen::Index rows = std::min(block_rows, sites.count() - first);
+      Eigen::MatrixXd rows_of_block(rows, columns);
+      kernel_matrix(kernel, points, centres, rows_of_block.leftCols(centres.cols()), first);
+      rows_of_block.rightCols(tail) = tail_matrix(tail_degree(kernel), sites.points.middleCols(first, rows));
+      rows_of_block.array().colwise() *= sites.row_scale.segment(first, rows).array();
+      Eigen::MatrixXd stack(columns + rows, columns);
+      stack << mine.triangle, rows_of_block;
+      Eigen::VectorXd data(columns + rows);
+      data << mine.data, sites.target_N.segment(first, rows).cwiseProduct(sites.row_scale.segment(first, rows));
+      factorise(stack, data, mine);
+    }
+  });
+  if (!control.may_continue(0.7)) return false;
+  Eigen::MatrixXd stack(2 * columns, columns);
+  stack << halves[0].triangle, halves[1].triangle;
+  Eigen::VectorXd data(2 * columns);
+  data << halves[0].data, halves[1].data;
+  HalfOfRows both;
+  both.rest_squared = halves[0].rest_squared + halves[1].rest_squared;
+  factorise(stack, data, both);
+  Eigen::MatrixXd& triangle = folded.triangle;
+  triangle = Eigen::MatrixXd::Zero(columns + 1, columns + 1);
+  triangle.topLeftCorner(columns, columns) = both.triangle;
+  triangle.col(columns).head(columns) = both.data;
+  triangle(columns, columns) = std::sqrt(both.rest_squared);
+  return true;
 }
 
 Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
@@ -149,68 +130,59 @@ Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres) {
                std::to_string(sites.points.rows()) + " finite ones, as the sites have"};
 }
 
-Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres, Ridge ridge,
-                               double truncation) {
-  if (ridge == Ridge::by_evidence && folded.smoothing && kernel == KernelKind::cubic) {
-    return penalised_weights(folded, kernel, centres);
-  }
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  if (folded.smoothing && kernel == KernelKind::cubic) return penalised_weights(folded, kernel, centres);
   const BlasThreads one_thread(1);
-  ScaledTriangle scaled;
-  if (!scale_triangle(folded.triangle, scaled)) return not_converged();
-  const SmallSolution solution =
-      solve_triangle(folded.triangle, scaled, truncation, ridge, static_cast<double>(folded.rows));
-  return fitted_from(solution, folded, kernel, centres, ridge);
+  const Eigen::Index n = folded.triangle.cols() - 1;
+  Eigen::MatrixXd r = folded.triangle.topLeftCorner(n, n);
+  Eigen::VectorXd scale = r.colwise().stableNorm().transpose();
+  // A column of next to nothing (the kernel of a centre on top of every site)
+  // is not scaled up: it would need a weight of 1e20 to matter.
+  scale = (scale.array() > 1e-20 * scale.maxCoeff()).select(scale, std::max(scale.maxCoeff(), 1e-300));
+  r.array().rowwise() /= scale.transpose().array();
+  Svd parts;
+  if (!svd(std::move(r), parts))
+    return Error{"the singular value decomposition did not converge; check the recording for extreme values"};
+  const double smallest = kTruncation * parts.s[0];
+  const Eigen::Index rank = (parts.s.array() > smallest && parts.s.array() > 0.0).count();
+  Eigen::VectorXd z = parts.u.transpose() * folded.triangle.col(n).head(n);
+  const double rho = folded.triangle(n, n);
+  const double rest = rho * rho + z.tail(n - rank).squaredNorm();
+  const Eigen::ArrayXd kept = parts.s.head(rank);
+  const auto rows = static_cast<double>(folded.rows);
+  double lambda = ridge_by_evidence(kept, z.head(rank), rest, rows);
+  if (lambda > 0.0 && sites_decide(lambda, kept[0], rows, static_cast<double>(n))) lambda = 0.0;
+  const Eigen::ArrayXd left = lambda / (kept.square() + lambda);
+  const double residual_squared = rest + (left * z.head(rank).array()).square().sum();
+  z.head(rank).array() *= kept / (kept.square() + lambda);
+  Eigen::VectorXd unknowns = parts.vt.topRows(rank).transpose() * z.head(rank);
+  unknowns.array() /= scale.array();
+  FittedRbf fitted;
+  fitted.function = {kernel, centres, folded.strength * unknowns.head(centres.cols()),
+                     folded.strength * unknowns.tail(n - centres.cols())};
+  FitReport& report = fitted.report;
+  report.centres_asked = report.centres_used = centres.cols();
+  report.columns = n;
+  report.rank = rank;
+  report.condition = parts.s[n - 1] > 0.0 ? parts.s[0] / parts.s[n - 1] : 1e300;
+  report.smoothing = lambda > 0.0 ? lambda / (kept[0] * kept[0]) : 0.0;
+  report.residual_rms = std::sqrt(residual_squared / static_cast<double>(folded.sites));
+  if (rank < n)
+    report.notes.push_back("the data determine " + std::to_string(rank) + " of " + std::to_string(n) +
+                           " unknowns; the rest took the shortest solution");
+  return fitted;
 }
 
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                const FitControl& control, Ridge ridge, double truncation) {
+                                const FitControl& control) {
   if (const Status status = validate_centres(sites, centres); !status) return status.error();
   if (!control.may_continue(0.0)) return interrupted();
   const BlasThreads one_thread(1);
   FoldedRows folded;
   if (!fold_rows(sites, kernel, centres, control, folded)) return interrupted();
-  auto fitted = solve_folded(folded, kernel, centres, ridge, truncation);
+  auto fitted = solve_folded(folded, kernel, centres);
   if (!control.may_continue(1.0)) return interrupted();
   return fitted;
-}
-
-Result<FittedRbf> solve_largest(const Sites& sites, KernelKind kernel, const CentreSequence& sequence,
-                                Eigen::Index asked, const FitControl& control) {
-  auto fitted = solve_weights(sites, kernel, sequence.centres_of(sequence.most), control, Ridge::by_evidence);
-  if (!fitted) return fitted;
-  fitted->report.centres_asked = asked;
-  if (!sequence.shortage.empty()) {
-    fitted->report.notes.push_back("only " + std::to_string(sequence.most) + " centres: " + sequence.shortage);
-  }
-  return fitted;
-}
-
-struct RepeatedSolve::Factors {
-  RowFolder folder;
-  ScaledTriangle scaled;
-};
-
-RepeatedSolve::RepeatedSolve(const Sites& sites, KernelKind kernel, Eigen::MatrixXd centres)
-    : sites_(sites), kernel_(kernel), centres_(std::move(centres)) {}
-
-RepeatedSolve::~RepeatedSolve() = default;
-
-Result<FittedRbf> RepeatedSolve::solve() {
-  const BlasThreads one_thread(1);
-  FoldedRows folded = counted(sites_);
-  const bool keeps = sites_.count() <= kMostKeptSites;
-  if (factors_ != nullptr && keeps) {
-    factors_->folder.fold_again(folded.triangle);
-  } else {
-    if (const Status status = validate_centres(sites_, centres_); !status) return status.error();
-    auto factors = std::make_unique<Factors>(Factors{RowFolder(sites_, kernel_, centres_), {}});
-    factors->folder.fold({}, keeps, folded.triangle);
-    if (!scale_triangle(folded.triangle, factors->scaled)) return not_converged();
-    factors_ = std::move(factors);
-  }
-  const SmallSolution solution = solve_triangle(folded.triangle, factors_->scaled, kDefaultTruncation,
-                                                Ridge::by_evidence, static_cast<double>(folded.rows));
-  return fitted_from(solution, folded, kernel_, centres_, Ridge::by_evidence);
 }
 
 }  // namespace palpate

@@ -1,7 +1,7 @@
 // Weights and tail for given centres, by weighted least squares:
 //   minimise sum_i row_scale_i^2 (f_i - h(x_i))^2
 // through the singular value decomposition of the matrix with its columns
-// scaled to length 1; singular values below `truncation` times the largest are
+// scaled to length 1; singular values below 1e-12 times the largest are
 // dropped, so that the shortest solution is taken where the data do not decide
 // (more centres than sites, coinciding centres, a constant feature).
 //
@@ -11,7 +11,7 @@
 //
 // Where unknowns outnumber what the sites can tell (clusters of sites, noise),
 // least squares turns noise into weights without bound, and the values between
-// the sites with them. Ridge::by_evidence adds lambda |y|^2, y the unknowns of
+// the sites with them. So there is a ridge, lambda |y|^2, y the unknowns of
 // the scaled columns, with the lambda that makes the data most probable when
 // noise and unknowns are normal: with singular values s_i and z = U^T S f it
 // minimises
@@ -24,20 +24,14 @@
 // "Bayesian interpolation", for the evidence.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
-#include "models/solve/centre_sequence.h"
 #include "models/solve/fit_report.h"
 #include "models/training/sites.h"
 
 namespace palpate {
-
-// Rounding in the triangle is about 1e-14 of the largest singular value for a
-// thousand columns; what lies two decades above is still data.
-inline constexpr double kDefaultTruncation = 1e-12;
 
 // What is left of the sites once their rows are folded: all that weights need.
 struct FoldedRows {
@@ -51,49 +45,19 @@ struct FoldedRows {
   double strength = 1.0;
 };
 
-// False if cancelled. `sites` and `centres` must fit together.
+// Block after block of each half of the rows, then both. False if cancelled. `sites` and `centres` must fit together.
 bool fold_rows(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres, const FitControl& control,
                FoldedRows& folded);
 // Those of validate_sites; centres that are not points as the sites are.
 Status validate_centres(const Sites& sites, const Eigen::MatrixXd& centres);
 
-enum class Ridge { none, by_evidence };
-
 // solve_weights without its first step.
-Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres, Ridge ridge,
-                               double truncation);
+Result<FittedRbf> solve_folded(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres);
 
 // `centres`: d x n, any points, n may be 0. Errors: those of validate_sites; a
 // wrong centre size; the decomposition did not converge; interrupted.
 // Deterministic; uses two threads. Off the tick.
 Result<FittedRbf> solve_weights(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres,
-                                const FitControl& control = {}, Ridge ridge = Ridge::none,
-                                double truncation = kDefaultTruncation);
-// solve_weights by evidence, again and again while the targets of the sites change and all
-// else stays: the rows are factored once and kept, unless they are very many.
-class RepeatedSolve {
- public:
-  // `sites` outlives this.
-  RepeatedSolve(const Sites& sites, KernelKind kernel, Eigen::MatrixXd centres);
-  ~RepeatedSolve();
-  RepeatedSolve(const RepeatedSolve&) = delete;
-  RepeatedSolve& operator=(const RepeatedSolve&) = delete;
-
-  // For the targets as they are now. Errors as of solve_weights.
-  Result<FittedRbf> solve();
-
- private:
-  struct Factors;
-
-  const Sites& sites_;
-  KernelKind kernel_;
-  Eigen::MatrixXd centres_;
-  std::unique_ptr<Factors> factors_;
-};
-
-// By evidence, for all centres of the sequence; `asked`: how many were wanted. The
-// report notes what is missing.
-Result<FittedRbf> solve_largest(const Sites& sites, KernelKind kernel, const CentreSequence& sequence,
-                                Eigen::Index asked, const FitControl& control = {});
+                                const FitControl& control = {});
 
 }  // namespace palpate

@@ -14,6 +14,7 @@
 #include "rendering/app/study_app.h"
 #include "scenes/scene/user_folders.h"
 #include "scenes/study/prepare_strokes.h"
+#include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {
@@ -173,6 +174,7 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     palpate::ignore_broken_pipes();
+    palpate::prepare_to_fit();
     const palpate::StopListener listener;
     return palpate::run_program(argc, argv);
   } catch (const std::exception& error) {

@@ -43,7 +43,6 @@ struct FitArguments {
   std::string surface = "auto";
   std::string grid;
   std::string scene = "silicone_block";
-  std::string solver = "cholesky";
   std::uint64_t seed = 1;
   std::string out;
   bool force = false;
@@ -63,8 +62,7 @@ struct MethodOnly {
 constexpr MethodOnly kMethodOnly[] = {{"--centres", kTakesCentres},
                                       {"--candidates", kTakesCandidates},
                                       {"--grid", kTakesGrid},
-                                      {"--kernel", kTakesKernel},
-                                      {"--solver", kTakesSolver}};
+                                      {"--kernel", kTakesKernel}};
 
 // "25x11x11x11" as whole numbers of at least 2; empty when it is anything else.
 std::vector<int> parse_grid(const std::string& text) {
@@ -132,7 +130,6 @@ MethodRequest method_request(const FitArguments& arguments) {
   request.centres = arguments.centres;
   request.candidates = arguments.candidates == "all" ? 0 : std::stoi(arguments.candidates);
   request.kernel = *kernel_from_name(arguments.kernel);
-  request.solver = arguments.solver == "tsvd" ? DirectSolver::truncated_svd : DirectSolver::cholesky;
   request.grid = parse_grid(arguments.grid);
   request.seed = arguments.seed;
   return request;
@@ -293,10 +290,6 @@ void add_fit(CLI::App& app, Verbs& verbs) {
                    "Nodes of the grid per feature [25x11x11x11], of " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));
   verb->add_option("--scene", arguments->scene, "Scene whose features and JND line count")->capture_default_str();
-  verb->add_option("--solver", arguments->solver,
-                   "Cholesky, or the paper's truncated SVD, of " + methods_that_take(kTakesSolver))
-      ->check(CLI::IsMember({"cholesky", "tsvd"}))
-      ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Of " + methods_that_take(kTakesSeed))->capture_default_str();
   verb->add_option("--out", arguments->out, "Model file to write")->type_name("JSON");
   verb->add_flag("--force", arguments->force, "Replace an existing file");

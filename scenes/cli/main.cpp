@@ -142,7 +142,7 @@ void keep_freed_memory() {
 int main(int argc, char** argv) {
   try {
     palpate::own_signals();
-    palpate::end_idle_blas_threads();
+    palpate::prepare_blas();
     palpate::cli::keep_freed_memory();
     return palpate::cli::run_program(argc, argv);
   } catch (const std::bad_alloc&) {

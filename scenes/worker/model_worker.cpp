@@ -13,6 +13,7 @@
 #include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
 #include "scenes/evaluation/model_timing.h"
+#include "models/solve/lapack.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"
 
@@ -257,5 +258,7 @@ Result<ModelData> ModelWorker::fit(const SlotPlan& plan) {
   if (!own && plan.centres == 0) bases_.insert_or_assign(plan.method, *fitted);
   return std::move(fitted->data);
 }
+
+void prepare_to_fit() { prepare_blas(); }
 
 }  // namespace palpate

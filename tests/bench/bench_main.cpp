@@ -28,6 +28,7 @@
 
 #include "engine/base/parallel.h"
 #include "models/model/rbf/rbf_simd.h"
+#include "models/solve/lapack.h"
 #include "tests/bench/bench_report.h"
 
 namespace {
@@ -54,6 +55,7 @@ void add_peer_context() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  palpate::prepare_blas();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::AddCustomContext("cpu", cpu_name());

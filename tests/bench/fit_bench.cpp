@@ -8,34 +8,32 @@
 #include <utility>
 
 #include "models/fit/fit_direct.h"
-#include "models/fit/fit_greedy.h"
-#include "models/fit/fit_kdtree.h"
-#include "models/fit/fit_random.h"
 #include "models/fit/nested_fit.h"
 #include "models/model/grid/voxel_lookup.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"
 #include "tests/bench/bench_queries.h"
+#include "tests/support/fit_centres.h"
 
 namespace palpate::bench {
 namespace {
 
-constexpr Eigen::Index kCentres = 100;
+constexpr int kCentres = 100;
 
 using Fit = std::function<Result<FittedRbf>(const Sites&, const Eigen::VectorXd& jnd_N)>;
 
 Result<FittedRbf> random_fit(const Sites& sites, const Eigen::VectorXd&) {
-  return fit_random(sites, {KernelKind::cubic, kCentres, 1});
+  return test::fit_random(sites, {.centres = kCentres});
 }
 
 Result<FittedRbf> kdtree_fit(const Sites& sites, const Eigen::VectorXd& jnd_N) {
-  return fit_kdtree(sites, jnd_N, {KernelKind::cubic, kCentres});
+  return test::fit_kdtree(sites, jnd_N, {.centres = kCentres});
 }
 
-Fit greedy_fit(Eigen::Index candidates, Eigen::Index centres = kCentres) {
+Fit greedy_fit(int candidates, int centres = kCentres) {
   return [=](const Sites& sites, const Eigen::VectorXd&) {
-    return fit_greedy(sites, {KernelKind::cubic, centres, candidates, 1});
+    return test::fit_greedy(sites, {.centres = centres, .candidates = candidates});
   };
 }
 
@@ -45,7 +43,7 @@ constexpr int kMostCentres = 200;
 
 void slider_all(benchmark::State& state) {
   for (auto _ : state) {
-    const auto chosen = choose_greedy(recorded_sites(), {KernelKind::cubic, kMostCentres, 100, 1});
+    const auto chosen = choose_greedy(recorded_sites(), {.centres = kMostCentres});
     const auto nested = NestedWeights::fold(recorded_sites(), KernelKind::cubic, *chosen);
     for (Eigen::Index count = 1; count <= nested->most(); ++count) benchmark::DoNotOptimize(nested->solve(count));
   }

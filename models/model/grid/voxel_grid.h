@@ -1,8 +1,6 @@
 // A rectilinear grid of precomputed forces, interpolated linearly in each of
-// its d dimensions.
-//
-// Thread guarantee: immutable once filled; `evaluate` is wait-free and allocates
-// nothing.
+// its d dimensions (voxel_lookup.h).
+// Thread guarantee: a value type.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +17,6 @@ struct VoxelGrid {
   std::vector<double> values_N;
 
   std::size_t node_count() const noexcept { return values_N.size(); }
-  // `x`: d values; outside the grid the nearest point of its box counts.
-  double evaluate(const double* x) const noexcept;
 };
 
 // Errors: names the array, what was found and what was expected.

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <limits>
-#include <string>
 
 namespace palpate {
 namespace {
@@ -31,43 +28,21 @@ VoxelLookup::VoxelLookup(const VoxelGrid& grid)
       dimension_(static_cast<int>(grid.nodes.size())) {
   assert(validate_voxel_grid(grid, dimension_).ok());
   std::size_t stride = 1;
-  for (std::size_t k = grid.nodes.size(); k-- > 0; stride *= grid.nodes[k].size())
-    axes_[k] = make_axis(grid.nodes[k], stride);
-}
-
-VoxelLookup::Axis VoxelLookup::make_axis(const std::vector<double>& nodes, std::size_t stride) {
-  constexpr double kMostIntervals = 4096;
-  Axis axis;
-  axis.low = nodes.front();
-  axis.high = nodes.back();
-  axis.stride = stride;
-  double shortest = axis.high - axis.low;
-  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    shortest = std::min(shortest, nodes[i + 1] - nodes[i]);
-    axis.nodes.push_back({nodes[i], 1.0 / (nodes[i + 1] - nodes[i])});
+  for (std::size_t k = grid.nodes.size(); k-- > 0; stride *= grid.nodes[k].size()) {
+    const std::vector<double>& nodes = grid.nodes[k];
+    axes_[k] = {nodes, {}, stride};
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+      axes_[k].reciprocal_width.push_back(1.0 / (nodes[i + 1] - nodes[i]));
+    }
   }
-  axis.nodes.push_back({std::numeric_limits<double>::infinity(), 0.0});
-  const double extent = axis.high - axis.low;
-  const double intervals = std::clamp(std::ceil(extent / shortest), 1.0, kMostIntervals);
-  axis.intervals_per_unit = intervals / extent;
-  std::size_t cell = 0;
-  for (double i = 0; i <= intervals; ++i) {  // one more than needed, for x = high
-    const double start = axis.low + i / axis.intervals_per_unit;
-    while (cell + 2 < nodes.size() && nodes[cell + 1] <= start) ++cell;
-    // Rounding may put x just below `start` into this interval.
-    axis.cell_at.push_back(static_cast<std::uint32_t>(cell > 0 && !(nodes[cell] < start) ? cell - 1 : cell));
-  }
-  return axis;
 }
 
 VoxelLookup::Place VoxelLookup::locate(const Axis& axis, double x) noexcept {
-  const double inside = x > axis.low ? std::min(x, axis.high) : axis.low;  // NaN: low
-  std::size_t cell = axis.cell_at[static_cast<std::size_t>((inside - axis.low) * axis.intervals_per_unit)];
-  // One step, without a branch that half of the queries would mispredict; more
-  // only where the table is too coarse.
-  cell += axis.nodes[cell + 1].at <= inside ? 1 : 0;
-  while (axis.nodes[cell + 1].at <= inside) ++cell;
-  return {cell * axis.stride, (inside - axis.nodes[cell].at) * axis.nodes[cell].reciprocal_width};
+  const std::vector<double>& nodes = axis.nodes;
+  const double inside = x > nodes.front() ? std::min(x, nodes.back()) : nodes.front();  // NaN: the lower edge
+  const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, inside);
+  const auto cell = static_cast<std::size_t>(above - nodes.begin()) - 1;
+  return {cell * axis.stride, (inside - nodes[cell]) * axis.reciprocal_width[cell]};
 }
 
 template <int kDimension>
@@ -86,24 +61,11 @@ double VoxelLookup::interpolate(const double* x) const noexcept {
 }
 
 VoxelLookup::Interpolate VoxelLookup::pick(int dimension) {
-  switch (dimension) {
-    case 1:
-      return &VoxelLookup::interpolate<1>;
-    case 2:
-      return &VoxelLookup::interpolate<2>;
-    case 3:
-      return &VoxelLookup::interpolate<3>;
-    case 4:
-      return &VoxelLookup::interpolate<4>;
-    case 5:
-      return &VoxelLookup::interpolate<5>;
-    case 6:
-      return &VoxelLookup::interpolate<6>;
-    case 7:
-      return &VoxelLookup::interpolate<7>;
-    default:
-      return &VoxelLookup::interpolate<8>;
-  }
+  static constexpr Interpolate kTable[] = {&VoxelLookup::interpolate<1>, &VoxelLookup::interpolate<2>,
+                                           &VoxelLookup::interpolate<3>, &VoxelLookup::interpolate<4>,
+                                           &VoxelLookup::interpolate<5>, &VoxelLookup::interpolate<6>,
+                                           &VoxelLookup::interpolate<7>, &VoxelLookup::interpolate<8>};
+  return kTable[dimension - 1];
 }
 
 }  // namespace palpate

@@ -13,7 +13,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -31,7 +30,6 @@ struct KernelFacts {
   const char* name;
   int tail_degree;           // of the polynomial tail that goes with it
   double definiteness_sign;  // +1 or -1: sign * phi is conditionally positive definite
-  double (*value)(double r) noexcept;
   // For exported C, of `squared`, the squared distance.
   const char* c_text;
 };
@@ -39,20 +37,16 @@ struct KernelFacts {
 // One row a kind, in the order of the kinds. A new kernel is a kind and a row here, and its
 // vector form in rbf_simd.cpp; and data: its name in assets/formats/model.schema.json.
 inline constexpr std::array<KernelFacts, kKernelKinds.size()> kKernels = {{
-    {"cubic", 1, 1.0, [](double r) noexcept { return r * r * r; }, "squared * SQRT(squared)"},
-    {"linear", 0, -1.0, [](double r) noexcept { return r; }, "SQRT(squared)"},
-    {"thin-plate", 1, 1.0, [](double r) noexcept { return r > 0.0 ? r * r * std::log(r) : 0.0; },
-     "R(0.5) * squared * logarithm(squared)"},
-    {"quintic", 2, -1.0, [](double r) noexcept { return r * r * r * r * r; }, "squared * squared * SQRT(squared)"},
+    {"cubic", 1, 1.0, "squared * SQRT(squared)"},
+    {"linear", 0, -1.0, "SQRT(squared)"},
+    {"thin-plate", 1, 1.0, "R(0.5) * squared * logarithm(squared)"},
+    {"quintic", 2, -1.0, "squared * squared * SQRT(squared)"},
 }};
 
 constexpr const KernelFacts& kernel_facts(KernelKind kind) noexcept { return kKernels[static_cast<std::size_t>(kind)]; }
 constexpr int tail_degree(KernelKind kind) noexcept { return kernel_facts(kind).tail_degree; }
 constexpr double definiteness_sign(KernelKind kind) noexcept { return kernel_facts(kind).definiteness_sign; }
 constexpr std::string_view kernel_name(KernelKind kind) noexcept { return kernel_facts(kind).name; }
-
-// phi(r) for one r >= 0, in plain scalar code: the reference for the vector form.
-inline double kernel_value(KernelKind kind, double r) noexcept { return kernel_facts(kind).value(r); }
 
 // The kernel of that name, or nothing when there is none.
 constexpr std::optional<KernelKind> kernel_from_name(std::string_view name) noexcept {

@@ -35,7 +35,7 @@ RbfEvaluator::RbfEvaluator(const RbfFunction& function)
     : centres_(function.centres),
       tail_(function.tail.begin(), function.tail.end()),
       dimension_(function.dimension()),
-      evaluate_(simd::evaluate_function(function.kernel, function.dimension())) {
+      evaluate_(simd::kernel_loops(function.kernel, function.dimension()).evaluate) {
   assert(validate_rbf_function(function).ok());
   auto weights = aligned_array<double>(centres_.view().padded);
   for (Eigen::Index j = 0; j < function.weights.size(); ++j) weights[j] = simd::without_denormals(function.weights[j]);
@@ -58,7 +58,7 @@ void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<
                    Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row) {
   assert(first_row % static_cast<Eigen::Index>(simd::kSimdPad) == 0);
   assert(first_row + out.rows() <= points.count() && out.cols() == centres.cols());
-  const simd::ColumnFunction column = simd::column_function(kind, points.view().dimension);
+  const simd::ColumnFunction column = simd::kernel_loops(kind, points.view().dimension).column;
   simd::Points rows = points.view();
   rows.coordinates += first_row;
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
@@ -66,7 +66,7 @@ void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<
 }
 
 KernelProduct::KernelProduct(KernelKind kind, const PointArrays& points)
-    : points_(points), product_(simd::product_function(kind, points.view().dimension)) {}
+    : points_(points), product_(simd::kernel_loops(kind, points.view().dimension).product) {}
 
 Eigen::VectorXd KernelProduct::multiply(const Eigen::VectorXd& v) const {
   // Tiles of the lower triangle; a tile's rows, columns and vectors fit in the

@@ -1,6 +1,5 @@
 #include "models/model/rbf/rbf_function.h"
 
-#include <cmath>
 #include <string>
 
 #include "engine/tick/features.h"
@@ -23,20 +22,6 @@ Status validate_rbf_function(const RbfFunction& function) {
   if (!function.centres.allFinite() || !function.weights.allFinite() || !function.tail.allFinite())
     return Error{"centres, weights and tail must be finite numbers"};
   return {};
-}
-
-double rbf_value(const RbfFunction& function, const double* x) noexcept {
-  const int dimension = function.dimension();
-  double sum = tail_value(function.tail.data(), tail_degree(function.kernel), dimension, x);
-  for (Eigen::Index j = 0; j < function.centre_count(); ++j) {
-    double squared = 0.0;
-    for (int k = 0; k < dimension; ++k) {
-      const double difference = x[k] - function.centres(k, j);
-      squared += difference * difference;
-    }
-    sum += function.weights[j] * kernel_value(function.kernel, std::sqrt(squared));
-  }
-  return sum;
 }
 
 }  // namespace palpate

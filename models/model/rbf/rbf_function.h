@@ -1,7 +1,6 @@
 // A fitted radial basis function, as data.
 //   h(x) = sum_j w_j phi(|x - q_j|) + sum_k d_k g_k(x)
-// `RbfEvaluator` (models/model/rbf/rbf_evaluate.h) computes it fast; rbf_value computes
-// it plainly, in one obvious loop, as the reference.
+// `RbfEvaluator` (models/model/rbf/rbf_evaluate.h) computes it.
 // Source: Hoever & Harders (2009), eq. 2.
 #pragma once
 
@@ -24,8 +23,5 @@ struct RbfFunction {
 
 // Checks sizes and finiteness. Errors: says which array is wrong and how.
 Status validate_rbf_function(const RbfFunction& function);
-
-// h(x) in newtons. `x`: d values. Any thread, wait-free, O(n).
-double rbf_value(const RbfFunction& function, const double* x) noexcept;
 
 }  // namespace palpate

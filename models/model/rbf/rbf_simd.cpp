@@ -263,65 +263,25 @@ void product(const Points& points, size_t row_begin, size_t row_end, size_t colu
 }
 
 template <KernelKind kKind, int... kIndex>
-EvaluateFunction pick_evaluate(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr EvaluateFunction kTable[] = {&evaluate<kKind, kIndex + 1>...};
+KernelLoops pick_loops(int dimension, std::integer_sequence<int, kIndex...>) {
+  static constexpr KernelLoops kTable[] = {
+      {&evaluate<kKind, kIndex + 1>, &column<kKind, kIndex + 1>, &product<kKind, kIndex + 1>}...};
   return kTable[dimension - 1];
 }
 
-template <KernelKind kKind, int... kIndex>
-ColumnFunction pick_column(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr ColumnFunction kTable[] = {&column<kKind, kIndex + 1>...};
-  return kTable[dimension - 1];
-}
-
-template <KernelKind kKind, int... kIndex>
-ProductFunction pick_product(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr ProductFunction kTable[] = {&product<kKind, kIndex + 1>...};
-  return kTable[dimension - 1];
-}
-
-using Dimensions = std::make_integer_sequence<int, 8>;
-
-EvaluateFunction get_evaluate(KernelKind kind, int dimension) {
+KernelLoops get_loops(KernelKind kind, int dimension) {
+  using Dimensions = std::make_integer_sequence<int, 8>;
   switch (kind) {
     case KernelKind::cubic:
-      return pick_evaluate<KernelKind::cubic>(dimension, Dimensions{});
+      return pick_loops<KernelKind::cubic>(dimension, Dimensions{});
     case KernelKind::linear:
-      return pick_evaluate<KernelKind::linear>(dimension, Dimensions{});
+      return pick_loops<KernelKind::linear>(dimension, Dimensions{});
     case KernelKind::thin_plate:
-      return pick_evaluate<KernelKind::thin_plate>(dimension, Dimensions{});
+      return pick_loops<KernelKind::thin_plate>(dimension, Dimensions{});
     case KernelKind::quintic:
-      return pick_evaluate<KernelKind::quintic>(dimension, Dimensions{});
+      return pick_loops<KernelKind::quintic>(dimension, Dimensions{});
   }
-  return nullptr;
-}
-
-ColumnFunction get_column(KernelKind kind, int dimension) {
-  switch (kind) {
-    case KernelKind::cubic:
-      return pick_column<KernelKind::cubic>(dimension, Dimensions{});
-    case KernelKind::linear:
-      return pick_column<KernelKind::linear>(dimension, Dimensions{});
-    case KernelKind::thin_plate:
-      return pick_column<KernelKind::thin_plate>(dimension, Dimensions{});
-    case KernelKind::quintic:
-      return pick_column<KernelKind::quintic>(dimension, Dimensions{});
-  }
-  return nullptr;
-}
-
-ProductFunction get_product(KernelKind kind, int dimension) {
-  switch (kind) {
-    case KernelKind::cubic:
-      return pick_product<KernelKind::cubic>(dimension, Dimensions{});
-    case KernelKind::linear:
-      return pick_product<KernelKind::linear>(dimension, Dimensions{});
-    case KernelKind::thin_plate:
-      return pick_product<KernelKind::thin_plate>(dimension, Dimensions{});
-    case KernelKind::quintic:
-      return pick_product<KernelKind::quintic>(dimension, Dimensions{});
-  }
-  return nullptr;
+  return {};
 }
 
 double get_refined_root(double squared, double estimate, int terms) {
@@ -340,21 +300,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace palpate::simd {
 
-HWY_EXPORT(get_evaluate);
-HWY_EXPORT(get_column);
-HWY_EXPORT(get_product);
+HWY_EXPORT(get_loops);
 HWY_EXPORT(get_refined_root);
 HWY_EXPORT(get_target);
 
-EvaluateFunction evaluate_function(KernelKind kind, int dimension) {
-  return HWY_DYNAMIC_DISPATCH(get_evaluate)(kind, dimension);
-}
-ColumnFunction column_function(KernelKind kind, int dimension) {
-  return HWY_DYNAMIC_DISPATCH(get_column)(kind, dimension);
-}
-ProductFunction product_function(KernelKind kind, int dimension) {
-  return HWY_DYNAMIC_DISPATCH(get_product)(kind, dimension);
-}
+KernelLoops kernel_loops(KernelKind kind, int dimension) { return HWY_DYNAMIC_DISPATCH(get_loops)(kind, dimension); }
 
 double refined_root(double squared, double estimate, int terms) {
   return HWY_DYNAMIC_DISPATCH(get_refined_root)(squared, estimate, terms);

@@ -44,10 +44,13 @@ using ColumnFunction = void (*)(const Points& points, std::size_t count, const d
 using ProductFunction = void (*)(const Points& points, std::size_t row_begin, std::size_t row_end,
                                  std::size_t column_begin, std::size_t column_end, const double* v, double* y) noexcept;
 
+struct KernelLoops {
+  EvaluateFunction evaluate = nullptr;
+  ColumnFunction column = nullptr;
+  ProductFunction product = nullptr;
+};
 // The loops for this kernel and dimension (1 to 8) on the chosen target.
-EvaluateFunction evaluate_function(KernelKind kind, int dimension);
-ColumnFunction column_function(KernelKind kind, int dimension);
-ProductFunction product_function(KernelKind kind, int dimension);
+KernelLoops kernel_loops(KernelKind kind, int dimension);
 
 // sqrt(squared) from an estimate of 1/sqrt(squared), as the loops take some of
 // their roots: with 3 terms from one good to 14 bits (AVX-512), with 4 from one

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "models/fit/calibrate_bound.h"
+#include "models/fit/decide_strength.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

@@ -1,17 +1,20 @@
-#include "models/fit/fit_greedy.h"
+#include "models/fit/choose_centres.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
 #include <limits>
 
-#include "models/fit/fit_random.h"
 #include "models/solve/solve_weights.h"
+#include "tests/support/fit_centres.h"
+#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
 namespace {
 
+using test::fit_greedy;
+using test::fit_random;
 using test::smooth_sites;
 
 // Section 4.2.3 to the letter: tries every site by solving the least squares
@@ -44,7 +47,7 @@ Eigen::MatrixXd brute_force_centres(const Sites& sites, KernelKind kernel, int c
 TEST(FitGreedy, AllSitesEqualsBruteForceForwardSelection) {
   const Sites sites = smooth_sites(2, 60, 0.05, 1);
   for (const KernelKind kernel : kKernelKinds) {
-    const auto fitted = fit_greedy(sites, {.kernel = kernel, .centres = 12, .candidates = 0});
+    const auto fitted = fit_greedy(sites, {.centres = 12, .candidates = 0, .kernel = kernel});
     ASSERT_TRUE(fitted.ok());
     EXPECT_EQ(fitted->function.centres, brute_force_centres(sites, kernel, 12)) << kernel_name(kernel);
   }
@@ -91,7 +94,7 @@ TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
 
 TEST(FitGreedy, DegenerateDataHaveADefinedOutcome) {
   for (const int candidates : {0, 5}) {
-    const GreedyOptions options{.centres = 30, .candidates = candidates};
+    const MethodRequest options{.centres = 30, .candidates = candidates};
     const std::vector<Sites> all = test::degenerate_sites();
     const Sites& zero = all.front();
     const Sites& one = all.back();

@@ -1,12 +1,15 @@
-#include "models/fit/fit_random.h"
+#include "models/fit/choose_centres.h"
 
 #include <gtest/gtest.h>
 
+#include "tests/support/fit_centres.h"
+#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
 namespace {
 
+using test::fit_random;
 using test::smooth_sites;
 
 bool same_function(const RbfFunction& a, const RbfFunction& b) {

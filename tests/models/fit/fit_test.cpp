@@ -193,32 +193,6 @@ TEST(Fit, EveryKernelWeightingAndReduction) {
   }
 }
 
-// Both solve the same regularised problem in different ways: the forces agree
-// within the noise of a force sensor, 10 mN.
-TEST(Fit, TruncatedSvdAgreesWithCholeskyWithinTheNoise) {
-  Recording recording = test::example_recording(800, 250.0);
-  test::Numbers numbers(4);
-  for (RecordingRow& row : recording.rows) {
-    if (row.position_m > 0.0) row.force_N += 0.01 * numbers.next();
-  }
-  const auto prepared = prepare({recording}, request_for(test::paper_features()));
-  ASSERT_TRUE(prepared.ok());
-  MethodRequest asked;
-  asked.method = &kDirectMethod;
-  const auto cholesky = fit_method(*prepared, asked);
-  asked.solver = DirectSolver::truncated_svd;
-  const auto tsvd = fit_method(*prepared, asked);
-  ASSERT_TRUE(cholesky.ok() && tsvd.ok());
-  const FittedModel a(cholesky->data);
-  const FittedModel b(tsvd->data);
-  double squares = 0.0;
-  for (const auto& x : prepared->evaluation_features) {
-    const double difference_N = a.evaluate(x.data()).force_N - b.evaluate(x.data()).force_N;
-    squares += difference_N * difference_N;
-  }
-  EXPECT_LT(std::sqrt(squares / static_cast<double>(prepared->evaluation_features.size())), 0.01);
-}
-
 TEST(Fit, EachRefusalSaysWhy) {
   const Recording recording = test::example_recording(1000, 1000.0);
   EXPECT_EQ(prepare({constant(50, -1e-3, 0.0)}, request_for(test::paper_features())).error().message,

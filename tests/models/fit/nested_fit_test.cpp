@@ -4,16 +4,18 @@
 
 #include <cmath>
 
-#include "models/fit/fit_greedy.h"
-#include "models/fit/fit_kdtree.h"
-#include "models/fit/fit_random.h"
 #include "models/model/fitted_model.h"
+#include "tests/support/fit_centres.h"
 #include "tests/support/fitting.h"
+#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
 namespace {
 
+using test::fit_greedy;
+using test::fit_kdtree;
+using test::fit_random;
 using test::smooth_sites;
 
 // The largest difference of two functions' values at the sites.
@@ -53,7 +55,7 @@ TEST(NestedFit, GivesEveryDirectGreedyFit) {
     ASSERT_TRUE(chosen.ok());
     const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
     ASSERT_TRUE(nested.ok());
-    for (const Eigen::Index count : {0, 1, 4, 7, 25, 40}) {
+    for (const int count : {0, 1, 4, 7, 25, 40}) {
       expect_direct(*nested, count, fit_greedy(sites, {.centres = count, .candidates = 30}), sites);
     }
   }
@@ -62,12 +64,12 @@ TEST(NestedFit, GivesEveryDirectGreedyFit) {
 TEST(NestedFit, GivesEveryDirectRandomFitForEveryKernel) {
   const Sites sites = penalised_sites();
   for (const KernelKind kernel : kKernelKinds) {
-    const auto chosen = choose_random(sites, {kernel, 30, 2});
+    const auto chosen = choose_random(sites, {.centres = 30, .kernel = kernel, .seed = 2});
     ASSERT_TRUE(chosen.ok());
     const auto nested = NestedWeights::fold(sites, kernel, *chosen);
     ASSERT_TRUE(nested.ok());
-    for (const Eigen::Index count : {3, 18, 30}) {
-      expect_direct(*nested, count, fit_random(sites, {kernel, count, 2}), sites);
+    for (const int count : {3, 18, 30}) {
+      expect_direct(*nested, count, fit_random(sites, {.centres = count, .kernel = kernel, .seed = 2}), sites);
     }
   }
 }
@@ -79,7 +81,7 @@ TEST(NestedFit, GivesEveryDirectKdTreeFit) {
     ASSERT_TRUE(chosen.ok());
     const auto nested = NestedWeights::fold(sites, KernelKind::cubic, *chosen);
     ASSERT_TRUE(nested.ok());
-    for (const Eigen::Index count : {0, 1, 2, 3, 17, 40}) {
+    for (const int count : {0, 1, 2, 3, 17, 40}) {
       expect_direct(*nested, count, fit_kdtree(sites, jnd_N, {.centres = count}), sites);
     }
   }

@@ -102,7 +102,9 @@ TEST(FittedModel, IsItsEquation) {
       const double trend_N = data.trend.at(x.data(), data.features);
       const RbfFunction* rbf = rbf_of(data.correction);
       const VoxelGrid* grid = grid_of(data.correction);
-      const double h_N = rbf ? RbfEvaluator(*rbf).evaluate(u.data()) : grid ? grid->evaluate(u.data()) : 0.0;
+      const double h_N = rbf    ? RbfEvaluator(*rbf).evaluate(u.data())
+                         : grid ? VoxelLookup(*grid).evaluate(u.data())
+                                : 0.0;
       const double correction_N =
           std::clamp(h_N - (data.corrects_trend ? 0.0 : trend_N), -data.correction_limit_N, data.correction_limit_N);
       const double expected_N =

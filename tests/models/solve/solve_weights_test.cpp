@@ -5,7 +5,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "models/fit/fit_random.h"
+#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -62,12 +62,14 @@ TEST(SolveWeights, ReproducesAPolynomialOfTheTailExactly) {
   }
 }
 
-TEST(SolveWeights, InterpolatesWhenThereAreAsManyUnknownsAsSites) {
+// From so few sites a force cannot be told from noise: the ridge is at its largest, 1e-5 of
+// the square of the largest singular value, and takes a share of forces of up to 5 N.
+TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheRidge) {
   const Sites sites = smooth_sites(3, 40, 0.0, 2);
   const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
   ASSERT_TRUE(fitted.ok());
   EXPECT_EQ(fitted->report.rank, 40);
-  EXPECT_LE(worst_error(fitted->function, sites), 1e-9);
+  EXPECT_LE(worst_error(fitted->function, sites), 0.1);
 }
 
 TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
@@ -91,22 +93,27 @@ TEST(SolveWeights, TheEvidenceKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
     sites.target_N[i] = base.target_N[i % 40] + 0.01 * std::sin(1e3 * static_cast<double>(i));
   }
   const Sites truth = smooth_sites(3, 200, 0.0, 99);
-  const auto least_squares = solve_weights(sites, KernelKind::cubic, base.points);
-  const auto evident = solve_weights(sites, KernelKind::cubic, base.points, {}, Ridge::by_evidence);
-  ASSERT_TRUE(least_squares.ok() && evident.ok());
-  EXPECT_GT(worst_error(least_squares->function, truth), 100.0);
+  const Eigen::MatrixXd matrix = naive_matrix(sites, KernelKind::cubic, base.points);
+  const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+  const Eigen::VectorXd plain = matrix.bdcSvd(Eigen::ComputeThinU | Eigen::ComputeThinV).solve(data);
+  const RbfFunction least_squares{KernelKind::cubic, base.points, plain.head(40), plain.tail(4)};
+  const auto evident = solve_weights(sites, KernelKind::cubic, base.points);
+  ASSERT_TRUE(evident.ok());
+  EXPECT_GT(worst_error(least_squares, truth), 100.0);
   EXPECT_LT(worst_error(evident->function, truth), 2.0);  // 40 places for a cube of forces up to 5 N
   EXPECT_GT(evident->report.smoothing, 0.0);
-  EXPECT_LT(evident->report.residual_rms, 1.1 * least_squares->report.residual_rms);
+  EXPECT_LT(evident->report.residual_rms, 1.1 * (matrix * plain - data).norm() / std::sqrt(240.0));
 }
 
 // Plenty of sites, hardly any noise: the ridge costs nothing.
 TEST(SolveWeights, TheEvidenceLeavesAGoodFitAlone) {
   const Sites sites = smooth_sites(3, 2000, 0.001, 1);
-  const auto least_squares = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100));
-  const auto evident = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100), {}, Ridge::by_evidence);
-  ASSERT_TRUE(least_squares.ok() && evident.ok());
-  EXPECT_LT(evident->report.residual_rms, 1.01 * least_squares->report.residual_rms);
+  const Eigen::MatrixXd matrix = naive_matrix(sites, KernelKind::cubic, sites.points.leftCols(100));
+  const Eigen::VectorXd data = sites.target_N.cwiseProduct(sites.row_scale);
+  const Eigen::VectorXd plain = matrix.bdcSvd(Eigen::ComputeThinU | Eigen::ComputeThinV).solve(data);
+  const auto evident = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(100));
+  ASSERT_TRUE(evident.ok());
+  EXPECT_LT(evident->report.residual_rms, 1.01 * (matrix * plain - data).norm() / std::sqrt(2000.0));
 }
 
 TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
@@ -164,24 +171,6 @@ TEST(SolveWeights, CanBeInterrupted) {
       solve_weights(sites, KernelKind::cubic, sites.points, FitControl{[](double) { return false; }});
   ASSERT_FALSE(fitted.ok());
   EXPECT_EQ(fitted.error().message, "interrupted");
-}
-
-// Rows that were kept and rows that are folded anew differ by rounding alone.
-TEST(RepeatedSolve, GivesTheWeightsOfEveryTarget) {
-  Sites sites = smooth_sites(3, 2500, 0.01, 4);
-  const Eigen::MatrixXd centres = sites.points.leftCols(30);
-  RepeatedSolve repeated(sites, KernelKind::cubic, centres);
-  for (int pass = 0; pass < 3; ++pass) {
-    const auto expected = solve_weights(sites, KernelKind::cubic, centres, {}, Ridge::by_evidence);
-    const auto found = repeated.solve();
-    ASSERT_TRUE(found.ok() && expected.ok());
-    for (Eigen::Index i = 0; i < sites.count(); ++i) {
-      const double* x = sites.points.col(i).data();
-      ASSERT_NEAR(rbf_value(found->function, x), rbf_value(expected->function, x), 1e-10) << pass;
-    }
-    EXPECT_NEAR(found->report.residual_rms, expected->report.residual_rms, 1e-11);
-    sites.target_N = sites.target_N.array().square() - 0.1 * pass;
-  }
 }
 
 TEST(DistinctSites, KeepsTheFirstOfEachPoint) {

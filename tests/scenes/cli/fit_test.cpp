@@ -121,7 +121,6 @@ TEST_F(FitVerb, RefusesAnOptionThatTheMethodHasNoUseFor) {
   expect_refused(fit({"--candidates", "20"}, "random"), 2, "--candidates: not taken by method random, only by greedy");
   expect_refused(fit({"--centres", "20"}, "trend"), 2,
                  "--centres: not taken by method trend, only by random, kdtree, greedy");
-  expect_refused(fit({"--solver", "tsvd"}, "kdtree"), 2, "only by direct, voxel");
 }
 
 TEST_F(FitVerb, EveryOptionHasAUse) {
@@ -144,7 +143,6 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
     option.push_back("--force");
     expect_model(fit(option));
   }
-  expect_model(fit({"--solver", "tsvd", "--reduction", "force", "--force"}, "direct"));
   expect_model(fit({"--grid", "4x3x3x3", "--features", "scene", "--force"}, "voxel"));
   EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
 }
@@ -173,7 +171,6 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
   expect_refused(fit({"--kernel", "gauss"}), 2, "cubic,linear,thin-plate,quintic");
   expect_refused(fit({"--weighting", "x"}), 2, "jnd,relative,none");
   expect_refused(fit({"--reduction", "x"}), 2, "coverage,force,none");
-  expect_refused(fit({"--solver", "x"}), 2, "cholesky,tsvd");
   expect_refused(fit({"--centres", "0"}), 2, "2000");
   expect_refused(fit({"--centres", "100000"}), 2, "2000");
   for (const char* features : {"auto", "depth"}) {

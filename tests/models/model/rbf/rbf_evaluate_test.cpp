@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/plain_rbf.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

@@ -1,0 +1,40 @@
+// Kernels and functions in one obvious loop: the reference for the vector form.
+#pragma once
+
+#include <cmath>
+
+#include "models/model/rbf/polynomial_tail.h"
+#include "models/model/rbf/rbf_function.h"
+
+namespace palpate {
+
+inline double kernel_value(KernelKind kind, double r) {
+  switch (kind) {
+    case KernelKind::cubic:
+      return r * r * r;
+    case KernelKind::linear:
+      return r;
+    case KernelKind::thin_plate:
+      return r > 0.0 ? r * r * std::log(r) : 0.0;
+    case KernelKind::quintic:
+      return r * r * r * r * r;
+  }
+  return std::nan("");
+}
+
+// h(x) in newtons.
+inline double rbf_value(const RbfFunction& function, const double* x) {
+  const int dimension = function.dimension();
+  double sum = tail_value(function.tail.data(), tail_degree(function.kernel), dimension, x);
+  for (Eigen::Index j = 0; j < function.centre_count(); ++j) {
+    double squared = 0.0;
+    for (int k = 0; k < dimension; ++k) {
+      const double difference = x[k] - function.centres(k, j);
+      squared += difference * difference;
+    }
+    sum += function.weights[j] * kernel_value(function.kernel, std::sqrt(squared));
+  }
+  return sum;
+}
+
+}  // namespace palpate
