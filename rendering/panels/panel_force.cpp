@@ -21,8 +21,13 @@ constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
 constexpr float kLabelRoom = 7.4F;  // for names beside the curves, in heights of a line
 
-// Towards a nice number above what is shown, and never down while somebody looks.
-double eased_scale(double scale, double wanted) { return scale + 0.25 * std::max(0.0, round_up(wanted) - scale); }
+// Towards a nice number above what is shown; down only from what is much too large, for an
+// axis that moves under somebody's eyes is not read.
+double eased_scale(double scale, double wanted) {
+  const double target = round_up(wanted);
+  if (target > scale) return scale + 0.25 * (target - scale);
+  return scale > 2.0 * target ? scale + 0.05 * (target - scale) : scale;
+}
 
 // Within about a second: names do not change places at every tick.
 float eased(float& place, float wanted) {
