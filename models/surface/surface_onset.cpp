@@ -42,6 +42,8 @@ constexpr double kBall = 1.5;
 constexpr double kLinearDrop = 2.5;
 constexpr double kClearDrop = 6.0;
 constexpr double kFormError = 0.5;
+// Residuals of twice the noise are no noise.
+constexpr double kMisfit = 4.0;
 // Force begins with this many rows on end beyond the noise.
 constexpr std::size_t kForceRun = 3;
 
@@ -186,6 +188,10 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
     onset.standard_error_m = std::max(kOnsetFloor_m, std::sqrt(2.0 * variance / chosen.curvature));
     const bool clear = drop > kClearDrop || drop < -kClearDrop;
     if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * (linear.at_m - ball.at_m));
+    // Neither law holds: what they say between the air and the first force is a guess.
+    if (variance > kMisfit * force_noise_N * force_noise_N) {
+      onset.standard_error_m = std::hypot(onset.standard_error_m, onset.at_m - touches.front().first_force_m);
+    }
   }
   return onset;
 }

@@ -1,52 +1,36 @@
 #include "rendering/app/demo_app.h"
 
-#include <epoxy/gl.h>
-// After epoxy, which brings OpenGL's functions.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <utility>
 
 #include "engine/live/pacer.h"
 #include "rendering/app/screenshot.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/panels/panel_views.h"
+#include "scenes/scene/assets.h"
+#include "scenes/scene/local_time.h"
 #include "scenes/scene/user_folders.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kNsPerS = 1e9;
 constexpr double kToast_s = 6.0;
 constexpr double kProblemToast_s = 12.0;
 constexpr std::size_t kMostToasts = 3;
-constexpr double kExaggeration = 10.0;
 
 // Where real-time priority was refused, the picture steps back for the force:
 // that needs no privilege.
 void yield_to_haptics(const RtStatus& granted) {
   constexpr int kPictureNice = 5;
   if (!granted.realtime) setpriority(PRIO_PROCESS, 0, kPictureNice);
-}
-
-// ImGui counts down from the top, OpenGL up from the bottom.
-Viewport pixels_of(const SceneArea& area) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const ImVec2 scale = io.DisplayFramebufferScale;
-  const auto whole = [](float value) { return static_cast<int>(std::round(value)); };
-  Viewport part;
-  part.x = whole(area.at.x * scale.x);
-  part.y = whole((io.DisplaySize.y - area.at.y - area.size.y) * scale.y);
-  part.width = whole((area.at.x + area.size.x) * scale.x) - part.x;
-  part.height = whole((io.DisplaySize.y - area.at.y) * scale.y) - part.y;
-  return part;
 }
 
 }  // namespace
@@ -68,9 +52,9 @@ Status DemoApp::set_up(const DemoRequest& request) {
     if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
   }
   if (const auto folder = data_folder()) wanted.data_folder = *folder;
-  use_settings(request);
-  if (!settings_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
-    wanted.line_up = settings_.line_up;
+  files_.use_settings(view_.exhibit ? "" : request.settings_file);
+  if (!files_.settings().line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
+    wanted.line_up = files_.settings().line_up;
   request_ = wanted;
   first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
   auto session = LiveSession::open(wanted);
@@ -86,14 +70,14 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
-  blocks_->camera().turn(settings_.camera);
+  blocks_->camera().turn(files_.settings().camera);
   if (view_.exhibit) {
     if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   }
   commands_ = make_commands();
   listen();
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
-  if (!request.recording.empty()) offer(request.recording);
+  if (!request.recording.empty()) files_.offer(request.recording);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
   return {};
@@ -123,7 +107,7 @@ void DemoApp::listen() {
 DemoApp::~DemoApp() {
   // A fit that cannot be stopped at once is not waited for in sight.
   if (window_ != nullptr) glfwHideWindow(window_->handle());
-  save_settings();
+  if (blocks_ != nullptr && session_ != nullptr) files_.save_settings(*session_, blocks_->camera().turned());
   session_.reset();
   blocks_.reset();
 }
@@ -139,18 +123,42 @@ void DemoApp::close() {
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
   if (view_.exhibit) return;
-  for (const std::string& path : paths) {
-    constexpr std::size_t kRecent = 5;
-    std::vector<std::string>& recent = view_.picker.recent;
-    std::erase(recent, path);
-    recent.insert(recent.begin(), path);
-    if (recent.size() > kRecent) recent.pop_back();
-    if (is_offered(path)) {
-      offer(path);
+  for (const std::string& path : paths) files_.open(path, *session_);
+}
+
+void DemoApp::handle_key_event(int key, int action, int modifiers) {
+  stirred_ = true;
+  if (view_.exhibit && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
+  input_.add_key(key, action, modifiers);
+}
+
+void DemoApp::handle_keys() {
+  const std::vector<KeyPress> keys = input_.take_keys();
+  const auto escape = [](const KeyPress& press) { return press.key == GLFW_KEY_ESCAPE; };
+  if (ImGui::GetIO().WantTextInput) {  // somebody types a name
+    if (std::any_of(keys.begin(), keys.end(), escape)) close_windows();
+    input_.let_go();
+    return;
+  }
+  input_.run_held(commands_);
+  for (const KeyPress& press : keys) {
+    if (view_.exhibit) {
+      handle_exhibit_key(press);
     } else {
-      session_->load_file(path);
+      DemoInput::run(press, commands_, session_->replay() != nullptr);
     }
   }
+  // The next visitor finds it as new.
+  if (view_.exhibit && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
+}
+
+void DemoApp::handle_exhibit_key(const KeyPress& press) {
+  const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
+  const bool chord = control && (press.modifiers & GLFW_MOD_SHIFT) != 0;
+  if (chord && press.key == GLFW_KEY_Q) close();
+  if (chord && press.key == GLFW_KEY_T) exhibit_.show_host(!exhibit_.shows_host());
+  if (press.key == GLFW_KEY_Z && session_->newest().device.zeroing == Zeroing::needed) session_->start_zeroing();
+  if (!control && !press.again) exhibit_.press_key(press.key, *session_);
 }
 
 SceneArea DemoApp::scene_area() const { return lay_out(ImGui::GetIO().DisplaySize).scene; }
@@ -160,10 +168,7 @@ void DemoApp::frame() {
   const double now_s = steady_now_s();
   session_->update();
   read_notices(now_s);
-  offer_finished_recording();
-  show_offer();
-  if (looking_.valid() && looking_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-    view_.devices = looking_.get();
+  files_.update(*session_);
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
@@ -174,153 +179,11 @@ void DemoApp::frame() {
     draw_again();
   }
   handle_keys();
-  if (whole) handle_mouse();
+  if (whole) input_.handle_mouse(*session_, *blocks_, overlay_, view_, scene_area());
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
-}
-
-// Text and curves are much of a frame's work where the processor draws, and nobody reads
-// sixty numbers a second: the probe moves in every frame, the panel some twenty times a second.
-// What somebody does is answered at once.
-bool DemoApp::panel_is_due(double now_s) const {
-  constexpr double kPanelEvery_s = 0.045;
-  const UiSize size = window_->ui_size();
-  return stirred_ || now_s - panel_drawn_s_ >= kPanelEvery_s || ImGui::GetIO().WantCaptureMouse ||
-         size.width != panel_drawn_in_.x || size.height != panel_drawn_in_.y;
-}
-
-void DemoApp::draw_again() {
-  draw_blocks();
-  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
-  const Viewport part = pixels_of(panel);
-  drawn_panel_.copy(part.x, part.y);
-  ui_->draw_again(panel.at, {panel.at.x + panel.size.x, panel.at.y + panel.size.y});
-}
-
-void DemoApp::draw() {
-  stirred_ = false;
-  panel_drawn_s_ = steady_now_s();
-  panel_drawn_in_ = {window_->ui_size().width, window_->ui_size().height};
-  style_.update(window_->ui_size(), view_.exhibit ? kExhibitText : view_.text_size, view_.theme);
-  ui_->begin_frame();
-  wheel_ = ImGui::GetIO().MouseWheel;  // the frame's end clears it
-  draw_blocks();
-  clear_panel();
-  const SceneArea area = scene_area();
-  const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
-  const SceneArea& panel = layout.panel;
-  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {&commands_, [this](const std::string& scene) { switch_to(scene, "", first_device_); },
-                 [this](const std::string& path) { switch_to(request_.scene, "", "replay:" + path); },
-                 [this](const std::string& path) { switch_to(request_.scene, path, first_device_); },
-                 [this](const std::string& path) { drop_files({path}); },
-                 [this](const std::string& device) {
-                   first_device_ = device;
-                   next_ = request_;
-                   next_->recording = session_->scene().recording;
-                   next_->device = device;
-                 }});
-  if (view_.exhibit) {
-    exhibit_.draw(*session_, *blocks_, style_, layout);
-  } else {
-    panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
-  }
-  ui_->end_frame();
-  const Viewport part = pixels_of(panel);
-  drawn_panel_.take(part.x, part.y, part.width, part.height);
-}
-
-void DemoApp::draw_blocks() {
-  const SceneArea area = scene_area();
-  const Viewport viewport = pixels_of(area);
-  const std::vector<BlockPose> poses = block_poses();
-  // More models become ready: more blocks.
-  if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
-  blocks_framed_ = poses.size();
-  blocks_->draw(poses, viewport, view_.theme);
-}
-
-// Clearing costs less than filling a rectangle, where the processor draws.
-void DemoApp::clear_panel() {
-  const Viewport part = pixels_of(lay_out(ImGui::GetIO().DisplaySize).panel);
-  const Rgb& panel = style_.colours().panel;
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(part.x, part.y, part.width, part.height);
-  glClearColor(panel.r, panel.g, panel.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
-  glDisable(GL_SCISSOR_TEST);
-}
-
-std::vector<BlockPose> DemoApp::block_poses() const {
-  std::vector<BlockPose> poses = true_poses();
-  const float deepest_m = 0.7F * static_cast<float>(blocks_->geometry().height_m);
-  const auto deeper = [&](float depth_m) {
-    return depth_m > 0.0F ? std::min(kDeeperDents * depth_m, std::max(depth_m, deepest_m)) : depth_m;
-  };
-  if (poses.size() < 2 || view_.exhibit) return poses;
-  for (BlockPose& pose : poses) {
-    pose.tool_m = deeper(pose.tool_m);
-    pose.dent_m = deeper(pose.dent_m);
-  }
-  return poses;
-}
-
-std::vector<BlockPose> DemoApp::true_poses() const {
-  const LoopSnapshot& newest = session_->newest();
-  BlockPose pose;
-  pose.tool_m = static_cast<float>(newest.tick.position_m);
-  const ModelsView models = models_view(*session_);
-  const double reference_N = session_->comparison().reference_N();
-  std::vector<BlockPose> poses;
-  for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
-    if (slot == kReferenceBlock) {
-      poses.push_back(reference_pose(pose));
-      continue;
-    }
-    const SlotView& model = *models.slots[slot];
-    pose.dent_m = static_cast<float>(model.dent_m);
-    pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
-    const bool exaggerated = view_.exaggerated && !view_.exhibit && std::isfinite(reference_N);
-    const double shown_N = exaggerated ? reference_N + kExaggeration * (model.force_N - reference_N) : model.force_N;
-    pose.force_N = static_cast<float>(std::max(0.0, shown_N));
-    pose.arrow = view_.exhibit ? method_colour(model.method, view_.theme) : slot_colour(models, slot, view_.theme);
-    pose.chosen = slot == models.selected;
-    if (view_.blind) pose.arrow = palette(view_.theme).text;
-    pose.shows_error = !view_.blind;
-    poses.push_back(pose);
-  }
-  // Before the first model is ready: a block nobody has a model of yet.
-  if (poses.empty()) {
-    pose.dent_m = std::max(0.0F, pose.tool_m);
-    pose.shows_error = false;
-    poses.push_back(pose);
-  }
-  return poses;
-}
-
-// What the others are compared with; it gives way as the active model does.
-BlockPose DemoApp::reference_pose(BlockPose pose) const {
-  const SlotView* active = models_view(*session_).active();
-  const double reference_N = session_->comparison().reference_N();
-  pose.dent_m = active != nullptr ? static_cast<float>(active->dent_m) : std::max(0.0F, pose.tool_m);
-  pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
-  pose.arrow = kReferenceColour;
-  pose.chosen = pose.shows_error = false;
-  return pose;
-}
-
-void DemoApp::count_frame(double now_s) {
-  frames_.times.add(static_cast<std::int64_t>((now_s - last_frame_s_) * kNsPerS));
-  frames_.seconds += now_s - last_frame_s_;
-  ++frames_.frames;
-  ++frames_this_second_;
-  last_frame_s_ = now_s;
-  if (now_s - second_began_s_ < 1.0) return;
-  frames_.recent_fps = static_cast<double>(frames_this_second_) / (now_s - second_began_s_);
-  frames_this_second_ = 0;
-  second_began_s_ = now_s;
 }
 
 void DemoApp::read_notices(double now_s) {
@@ -333,11 +196,74 @@ void DemoApp::read_notices(double now_s) {
 
 void DemoApp::notify(std::string text, bool problem) {
   if (view_.exhibit) {  // not for visitors
-    write_to_log(text);
+    DemoFiles::write_to_log(text);
     return;
   }
   std::erase_if(toasts_, [&](const Toast& toast) { return toast.text == text; });
   toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
+}
+
+// Another material: its own models, fitted to it.
+void DemoApp::switch_to(const std::string& scene, const std::string& recording, const std::string& device) {
+  next_ = request_;
+  next_->scene = scene;
+  next_->recording = recording;
+  next_->device = device;
+  next_->models.clear();
+  if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
+}
+
+void DemoApp::reopen(const SessionRequest& request) {
+  SessionRequest wanted = request;
+  toasts_.clear();
+  // A device belongs to one session at a time.
+  session_.reset();
+  auto session = LiveSession::open(wanted);
+  if (!session) {
+    notify(session.error().message, true);
+    wanted = request_;
+    session = LiveSession::open(wanted);
+  }
+  if (!session) {  // not even what was there: the device has gone
+    wanted.device = "mouse";
+    session = LiveSession::open(wanted);
+  }
+  request_ = wanted;
+  session_ = std::move(*session);
+  auto blocks = BlockView::create(session_->scene());
+  if (blocks) blocks_ = std::move(*blocks);
+  blocks_->camera().turn(files_.settings().camera);
+  blocks_framed_ = 0;
+  stirred_ = true;
+  panel_ = Panel{};  // no curve of the old one
+  view_.time = CurveTime{};
+  view_.force_scale_N = view_.error_scale = 1.0;
+  view_.time.zero_s = steady_now_s();
+}
+
+void DemoApp::next_line_up() {
+  if (!session_->scene().has_material()) {
+    notify("there is nothing to fit models to: O chooses a material, a recording is one too", false);
+    return;
+  }
+  const std::vector<LineUp>& all = line_ups();
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
+  const LineUp& next = at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1);
+  session_->use_line_up(next.name);
+  request_.line_up = next.name;
+  request_.models.clear();
+  notify(std::string(next.name) + ": " + next.help, false);
+}
+
+Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
+  const auto assets = find_assets();
+  if (!assets) return assets.error();
+  auto languages = read_exhibit_words(*assets + "/exhibit");
+  if (!languages) return languages.error();
+  const auto folder = data_folder();
+  exhibit_.set_up(std::move(*languages), folder ? *folder + local_time_text("/exhibit-%Y%m%d.txt") : "", times);
+  return {};
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {

@@ -1,19 +1,18 @@
 // The window program without its command line: a session, a window, and one
-// frame after the other.
+// frame after the other. Keys and mouse are demo_input.h, files demo_files.h.
 //
 // Thread guarantee: main thread only.
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/app/settings.h"
+#include "rendering/app/demo_files.h"
+#include "rendering/app/demo_input.h"
 #include "rendering/app/window.h"
-#include "rendering/panels/curve_files.h"
 #include "rendering/panels/exhibit.h"
 #include "rendering/panels/panel.h"
 #include "rendering/panels/scene_overlay.h"
@@ -22,7 +21,6 @@
 #include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
-#include "scenes/live/recording_offer.h"
 
 namespace palpate {
 
@@ -71,24 +69,15 @@ class DemoApp {
   DemoApp() = default;
   Status set_up(const DemoRequest& request);
   void listen();
-  struct KeyPress {
-    int key = 0;  // GLFW's
-    int modifiers = 0;
-    bool again = false;  // the keyboard repeats it
-  };
   std::vector<WindowCommand> make_commands();
   void handle_keys();
-  void handle_key(const KeyPress& press);
-  void run_held();
+  void handle_exhibit_key(const KeyPress& press);
   void close_windows();
-  void nudge_tool(double by_m);
   void select_listed(std::size_t number);
   void pause_or_run();
   void next_block_count();
   void scroll_curves(double by_s);
   void seek_replay(double by_s);
-  void handle_mouse();
-  void move_tool_to_mouse();
   void read_notices(double now_s);
   bool panel_is_due(double now_s) const;
   void draw();        // all of it
@@ -100,24 +89,12 @@ class DemoApp {
   std::vector<BlockPose> true_poses() const;  // not deeper than they are
   BlockPose reference_pose(BlockPose pose) const;
   SceneArea scene_area() const;
-  void use_settings(const DemoRequest& request);
-  void save_settings();
   Status set_up_exhibit(const ExhibitTimes& times);
-  void write_to_log(const std::string& text) const;
   void notify(std::string text, bool problem);
-  void record();
   // Another session in place of this one: a scene, a recording.
   void switch_to(const std::string& scene, const std::string& recording, const std::string& device);
   void reopen(const SessionRequest& request);
-  void offer(const std::string& path);
-  void offer_finished_recording();
-  void show_offer();
   void next_line_up();
-  double limited_depth_m(double requested_m) const;
-  void save_curves();
-  void save_model();
-  void choose_device();
-  CurveSource curve_source() const;
   void next_reference();
   void next_dead_man();
 
@@ -131,32 +108,25 @@ class DemoApp {
   SceneOverlay overlay_;
   Exhibit exhibit_{1};
   ViewState view_;
-  Settings settings_;
-  std::string settings_file_;
+  DemoInput input_;
+  DemoFiles files_{view_, [this](std::string text, bool problem) { notify(std::move(text), problem); }};
   SessionRequest request_;
-  std::string first_device_;                        // as the program was asked for it
-  std::optional<SessionRequest> next_;              // what to go on with after this frame
-  std::future<Result<RecordingOffer>> arriving_;    // a file that is read
-  std::future<std::vector<DeviceChoice>> looking_;  // for devices
-  std::string recording_;                           // the file that is being recorded; empty: none
+  std::string first_device_;            // as the program was asked for it
+  std::optional<SessionRequest> next_;  // what to go on with after this frame
   FrameFigures frames_;
   std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
-  std::vector<KeyPress> keys_;  // since the last frame
-  std::vector<int> down_;       // keys that are held
   double frame_began_s_ = 0.0;
   double frame_s_ = 0.0;       // since the frame before, at most a tenth of a second
   double last_frame_s_ = 0.0;  // its end
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
-  float wheel_ = 0.0F;  // of the mouse, in this frame
   Backdrop drawn_panel_;
   double panel_drawn_s_ = 0.0;
   ImVec2 panel_drawn_in_{0.0F, 0.0F};  // a window of this size
   bool stirred_ = true;                // somebody did something since the panel was drawn
-  bool orbiting_ = false;
-  bool leaving_ = false;  // an exhibit's only way out
+  bool leaving_ = false;               // an exhibit's only way out
 };
 
 }  // namespace palpate

@@ -32,7 +32,8 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.shown = "right button", .help = "turns the view"},
       {.keys = {GLFW_KEY_DOWN, GLFW_KEY_UP},
        .help = "press deeper, and let go",
-       .run = [this](std::size_t key) { nudge_tool((key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s * frame_s_); },
+       .run =
+           [this](std::size_t key) { nudge_tool(*session_, (key == 0 ? 1.0 : -1.0) * kKeySpeed_m_per_s * frame_s_); },
        .when = When::held},
       {.keys = {GLFW_KEY_1, GLFW_KEY_2, GLFW_KEY_3, GLFW_KEY_4, GLFW_KEY_5, GLFW_KEY_6, GLFW_KEY_7, GLFW_KEY_8,
                 GLFW_KEY_9},
@@ -47,7 +48,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.keys = {GLFW_KEY_R},
        .label = "Record",
        .help = "record this session to a file that `palpate fit` reads",
-       .run = [this](std::size_t) { record(); },
+       .run = [this](std::size_t) { files_.record(*session_); },
        .on = [this] { return session_->recording().active; },
        .label_on = "Stop recording"},
       {.keys = {GLFW_KEY_SPACE},
@@ -97,15 +98,19 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.keys = {GLFW_KEY_S},
        .label = "Save curves",
        .help = "save what the curves show, as a figure and as data",
-       .run = [this](std::size_t) { save_curves(); }},
+       .run = [this](std::size_t) { files_.save_curves(*session_, panel_.columns()); }},
       {.keys = {GLFW_KEY_K},
        .label = "Save model",
        .help = "save the active model to a file",
-       .run = [this](std::size_t) { save_model(); }},
+       .run = [this](std::size_t) { files_.save_model(*session_); }},
       {.keys = {GLFW_KEY_U},
        .label = "Device",
        .help = "choose what holds the tool",
-       .run = [this](std::size_t) { choose_device(); },
+       .run =
+           [this](std::size_t) {
+             turn(view_.device_list);
+             if (view_.device_list) files_.look_for_devices();
+           },
        .on = [this] { return view_.device_list; }},
       {.shown = "a row, right button", .help = "renames a model, takes it out"},
       {.shown = "on the curves", .help = "drag zooms, the wheel goes back, double click goes on"},
@@ -189,12 +194,6 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .run = [this](std::size_t) { close_windows(); }},
       {.shown = "drop a file", .help = "loads a model; of a recording or another program's table: fits or replays it"},
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
-}
-
-void DemoApp::nudge_tool(double by_m) {
-  ToolInput* tool = session_->mouse();
-  const double at_m = session_->newest().tick.position_m;
-  if (tool != nullptr && (by_m < 0.0 || limited_depth_m(at_m + by_m) > at_m)) tool->nudge(by_m, steady_now_s());
 }
 
 void DemoApp::select_listed(std::size_t number) {

@@ -1,29 +1,52 @@
-// What the window does with files, settings and sessions.
+#include "rendering/app/demo_files.h"
+
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
-#include "rendering/app/demo_app.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/panels/panel_views.h"
-#include "scenes/scene/assets.h"
+#include "scenes/live/live_session.h"
 #include "scenes/scene/local_time.h"
 #include "scenes/scene/user_folders.h"
-#include "scenes/worker/slot_plan.h"
 
 namespace palpate {
+namespace {
 
-void DemoApp::use_settings(const DemoRequest& request) {
-  settings_file_ = request.settings_file;
-  if (settings_file_.empty() || view_.exhibit) return;
-  auto settings = read_settings(settings_file_);
+template <typename T>
+bool is_there(const std::future<T>& future) {
+  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+CurveSource curve_source(const LiveSession& session, double zero_s) {
+  CurveSource source{
+      session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
+  const ModelsView models = models_view(session);
+  for (std::size_t i = 0; i < models.slots.size(); ++i) {
+    if (models.slots[i]->state == SlotState::ready)
+      source.models.push_back({i, models.slots[i]->name, slot_colour(models, i, Theme::light)});
+  }
+  return source;
+}
+
+}  // namespace
+
+std::string DemoFiles::folder() {
+  auto folder = data_folder();
+  if (folder) return *folder;
+  notify_(folder.error().message, true);
+  return {};
+}
+
+void DemoFiles::use_settings(const std::string& file) {
+  settings_file_ = file;
+  if (file.empty()) return;
+  auto settings = read_settings(file);
   if (!settings) {
-    notify(settings.error().message, true);
+    notify_(settings.error().message, true);
     return;
   }
   settings_ = *settings;
@@ -34,80 +57,28 @@ void DemoApp::use_settings(const DemoRequest& request) {
   view_.picker.recent = settings_.recent;
 }
 
-void DemoApp::save_settings() {
-  if (settings_file_.empty() || view_.exhibit || blocks_ == nullptr) return;
+void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& camera) {
+  if (settings_file_.empty()) return;
   settings_.theme = view_.theme;
   settings_.block_count = view_.block_count;
   settings_.difference = view_.difference;
   settings_.text_size = view_.text_size;
   settings_.recent = view_.picker.recent;
-  if (!session_->line_up().empty()) settings_.line_up = session_->line_up();
-  settings_.camera = blocks_->camera().turned();
+  if (!session.line_up().empty()) settings_.line_up = session.line_up();
+  settings_.camera = camera;
   // Nobody is there to read of it any more.
   (void)write_settings(settings_file_, settings_);
 }
 
-// Another material: its own models, fitted to it.
-void DemoApp::switch_to(const std::string& scene, const std::string& recording, const std::string& device) {
-  next_ = request_;
-  next_->scene = scene;
-  next_->recording = recording;
-  next_->device = device;
-  next_->models.clear();
-  if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
-}
-
-void DemoApp::reopen(const SessionRequest& request) {
-  SessionRequest wanted = request;
-  // A device belongs to one session at a time.
-  session_.reset();
-  auto session = LiveSession::open(wanted);
-  if (!session) {
-    notify(session.error().message, true);
-    wanted = request_;
-    session = LiveSession::open(wanted);
+void DemoFiles::update(const LiveSession& session) {
+  if (is_there(arriving_)) {
+    const Result<RecordingOffer> offered = arriving_.get();
+    view_.offered =
+        offered ? OfferedFile{offered->path, offered->words, {}} : OfferedFile{{}, {}, offered.error().message};
   }
-  if (!session) {  // not even what was there: the device has gone
-    wanted.device = "mouse";
-    session = LiveSession::open(wanted);
-  }
-  request_ = wanted;
-  session_ = std::move(*session);
-  auto blocks = BlockView::create(session_->scene());
-  if (blocks) blocks_ = std::move(*blocks);
-  blocks_->camera().turn(settings_.camera);
-  blocks_framed_ = 0;
-  stirred_ = true;
-  panel_ = Panel{};  // no curve of the old one
-  toasts_.clear();
-  view_.time = CurveTime{};
-  view_.time.zero_s = steady_now_s();
-}
-
-// A large file takes a while to read, in which the picture goes on. The last one counts.
-void DemoApp::offer(const std::string& path) {
-  const auto folder = data_folder();
-  if (!folder) {
-    notify(folder.error().message, true);
-    return;
-  }
-  arriving_ = std::async(std::launch::async, [path, folder = *folder] { return offer_recording(path, folder); });
-  notify("reading " + path, false);
-}
-
-void DemoApp::show_offer() {
-  if (!arriving_.valid() || arriving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  const Result<RecordingOffer> offered = arriving_.get();
-  if (offered) {
-    view_.offered = {offered->path, offered->words, {}};
-  } else {
-    view_.offered = {{}, {}, offered.error().message};
-  }
-}
-
-// Recorded and on the disk: what now?
-void DemoApp::offer_finished_recording() {
-  const RecordingStatus status = session_->recording();
+  if (is_there(looking_)) view_.devices = looking_.get();
+  // Recorded and on the disk: what now?
+  const RecordingStatus status = session.recording();
   if (status.active || status.saving) {
     recording_ = status.path;
   } else if (!recording_.empty()) {
@@ -117,107 +88,73 @@ void DemoApp::offer_finished_recording() {
   }
 }
 
-void DemoApp::next_line_up() {
-  if (!session_->scene().has_material()) {
-    notify("there is nothing to fit models to: O chooses a material, a recording is one too", false);
-    return;
+void DemoFiles::open(const std::string& path, LiveSession& session) {
+  constexpr std::size_t kRecent = 5;
+  std::vector<std::string>& recent = view_.picker.recent;
+  std::erase(recent, path);
+  recent.insert(recent.begin(), path);
+  if (recent.size() > kRecent) recent.pop_back();
+  if (is_offered(path)) {
+    offer(path);
+  } else {
+    session.load_file(path);
   }
-  const std::vector<LineUp>& all = line_ups();
-  const auto at =
-      std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
-  const LineUp& next = at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1);
-  session_->use_line_up(next.name);
-  request_.line_up = next.name;
-  request_.models.clear();
-  notify(std::string(next.name) + ": " + next.help, false);
 }
 
-// As deep as there are data, and softly a little beyond.
-double DemoApp::limited_depth_m(double requested_m) const {
-  constexpr double kMargin = 0.08;  // of that depth
-  const double known_m = session_->models().trained_depth_m();
-  if (requested_m <= known_m) return requested_m;
-  const double margin_m = kMargin * known_m;
-  return known_m + margin_m * (1.0 - std::exp((known_m - requested_m) / margin_m));
+// A large file takes a while to read, in which the picture goes on. The last one counts.
+void DemoFiles::offer(const std::string& path) {
+  const std::string into = folder();
+  if (into.empty()) return;
+  arriving_ = std::async(std::launch::async, [path, into] { return offer_recording(path, into); });
+  notify_("reading " + path, false);
 }
 
-void DemoApp::record() {
-  if (session_->recording().active) {
-    session_->stop_recording();
+void DemoFiles::record(LiveSession& session) {
+  if (session.recording().active) {
+    session.stop_recording();
     return;
   }
-  const auto folder = data_folder();
-  if (!folder) {
-    notify(folder.error().message, true);
-    return;
-  }
-  const std::string path = *folder + local_time_text("/session-%Y%m%d-%H%M%S.csv");
-  const Status status = session_->start_recording(path);
-  notify(status ? "recording to " + path : status.error().message, !status);
-}
-
-CurveSource DemoApp::curve_source() const {
-  CurveSource source{session_->scene().title, session_->device_name(), session_->reference_words(),
-                     session_->jnd(),         view_.time.zero_s,       {}};
-  for (std::size_t i = 0; i < session_->models().size(); ++i) {
-    if (session_->models().view(i).state == SlotState::ready)
-      source.models.push_back(
-          {i, session_->models().view(i).name, slot_colour(models_view(*session_), i, Theme::light)});
-  }
-  return source;
+  const std::string into = folder();
+  if (into.empty()) return;
+  const std::string path = into + local_time_text("/session-%Y%m%d-%H%M%S.csv");
+  const Status status = session.start_recording(path);
+  notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
 // What the curves show now, as a figure and as data.
-void DemoApp::save_curves() {
-  const auto folder = data_folder();
-  if (!folder) {
-    notify(folder.error().message, true);
-    return;
-  }
-  const std::string path = *folder + local_time_text("/curves-%Y%m%d-%H%M%S");
+void DemoFiles::save_curves(const LiveSession& session, const CurveColumns& columns) {
+  const std::string into = folder();
+  if (into.empty()) return;
+  const std::string path = into + local_time_text("/curves-%Y%m%d-%H%M%S");
   const double to_s = view_.time.end_s(steady_now_s());
   const double from_s = to_s - view_.time.shown_s;
-  const CurveSource source = curve_source();
-  Status status = write_file_atomically(path + ".svg", curve_svg(panel_.columns(), source, from_s, to_s), false);
+  const CurveSource source = curve_source(session, view_.time.zero_s);
+  Status status = write_file_atomically(path + ".svg", curve_svg(columns, source, from_s, to_s), false);
   if (status)
     status =
-        write_file_atomically(path + ".csv", curve_csv(session_->comparison().history(), source, from_s, to_s), false);
-  notify(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
+        write_file_atomically(path + ".csv", curve_csv(session.comparison().history(), source, from_s, to_s), false);
+  notify_(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
 }
 
-void DemoApp::save_model() {
-  const auto folder = data_folder();
-  if (!folder) {
-    notify(folder.error().message, true);
-    return;
-  }
-  const std::size_t slot = session_->models().selected();
-  std::string path = *folder + "/model" + local_time_text("-%Y%m%d-%H%M%S.json");
-  const Status status = session_->save_model(slot, path);
-  notify(status ? "saved " + session_->models().view(slot).name + " to " + path : status.error().message, !status);
+void DemoFiles::save_model(const LiveSession& session) {
+  const std::string into = folder();
+  if (into.empty()) return;
+  const std::size_t slot = session.models().selected();
+  const std::string path = into + local_time_text("/model-%Y%m%d-%H%M%S.json");
+  const Status status = session.save_model(slot, path);
+  notify_(status ? "saved " + session.models().view(slot).name + " to " + path : status.error().message, !status);
 }
 
-void DemoApp::choose_device() {
-  view_.device_list = !view_.device_list;
-  if (!view_.device_list || looking_.valid()) return;
+void DemoFiles::look_for_devices() {
+  if (looking_.valid()) return;
   view_.devices.clear();
   looking_ = std::async(std::launch::async, device_choices);
 }
 
-Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
-  const auto assets = find_assets();
-  if (!assets) return assets.error();
-  auto languages = read_exhibit_words(*assets + "/exhibit");
-  if (!languages) return languages.error();
-  const auto folder = data_folder();
-  exhibit_.set_up(std::move(*languages), folder ? *folder + local_time_text("/exhibit-%Y%m%d.txt") : "", times);
-  return {};
-}
-
-void DemoApp::write_to_log(const std::string& text) const {
-  const auto folder = data_folder();
-  if (!folder) return;
-  std::ofstream(*folder + "/exhibit.log", std::ios::app) << local_time_text("%Y-%m-%d %H:%M:%S ") << text << '\n';
+void DemoFiles::write_to_log(const std::string& text) {
+  const auto into = data_folder();
+  if (!into) return;
+  std::ofstream(*into + "/exhibit.log", std::ios::app) << local_time_text("%Y-%m-%d %H:%M:%S ") << text << '\n';
 }
 
 }  // namespace palpate

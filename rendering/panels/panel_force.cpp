@@ -21,10 +21,18 @@ constexpr double kDifference_jnd = 3.0;
 constexpr float kPredictedAlpha = 0.28F;
 constexpr float kLabelRoom = 7.4F;  // for names beside the curves, in heights of a line
 
-// Towards a nice number above what is shown, quickly up, slowly down.
+// Towards a nice number above what is shown; down only from what is much too large, for an
+// axis that moves under somebody's eyes is not read.
 double eased_scale(double scale, double wanted) {
   const double target = round_up(wanted);
-  return scale + (target > scale ? 0.25 : 0.03) * (target - scale);
+  if (target > scale) return scale + 0.25 * (target - scale);
+  return scale > 2.0 * target ? scale + 0.05 * (target - scale) : scale;
+}
+
+// Within about a second: names do not change places at every tick.
+float eased(float& place, float wanted) {
+  place = place == 0.0F ? wanted : place + 0.05F * (wanted - place);
+  return place;
 }
 
 // "voxel" of "voxel-25x11x11x11": what there is room for beside a curve.
@@ -150,8 +158,8 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
   for (std::size_t i = 0; i < scene.force.models.slots.size(); ++i) {
     if (scene.force.models.slots[i]->state != SlotState::ready) continue;
     if (last != nullptr && !std::isnan(value(*last, i)))
-      labels.push_back(
-          {short_name(*scene.force.models.slots[i]), scene.colour(i), plot.y_px(static_cast<double>(value(*last, i)))});
+      labels.push_back({short_name(*scene.force.models.slots[i]), scene.colour(i),
+                        eased(label_px_[unit[1] == 'N' ? 0 : 1][i], plot.y_px(static_cast<double>(value(*last, i))))});
     if (under != nullptr && !std::isnan(value(*under, i)))
       readings.push_back({scene.force.models.slots[i]->name + "  " +
                               at_most_three_decimals(static_cast<double>(value(*under, i))) + unit,

@@ -4,6 +4,8 @@
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
+#include <array>
+
 #include "rendering/panels/panel_views.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/ui/curves.h"
@@ -29,7 +31,8 @@ class ForceCurves {
   void finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
                    const char* unit);
   CurveColumns curves_;
-  bool hovered_ = false;  // in this frame
+  std::array<std::array<float, kMaxModels>, 2> label_px_{};  // of both plots; 0: not yet
+  bool hovered_ = false;                                     // in this frame
 };
 
 }  // namespace palpate

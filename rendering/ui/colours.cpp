@@ -41,7 +41,9 @@ Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
   constexpr std::array<float, 4> kShades{-0.42F, 0.45F, -0.66F, 0.25F};
   const Rgb colour = method_colour(method, theme);
   if (which == 0) return colour;
-  const float shade = kShades[(which - 1) % kShades.size()] * (colour == Rgb(0.0F) ? -1.0F : 1.0F);
+  // Away from the background first.
+  const bool turned = colour == Rgb(0.0F) || (theme == Theme::dark && colour != Rgb(1.0F));
+  const float shade = kShades[(which - 1) % kShades.size()] * (turned ? -1.0F : 1.0F);
   return glm::mix(colour, Rgb(shade < 0.0F ? 0.0F : 1.0F), std::abs(shade));
 }
 

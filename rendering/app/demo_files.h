@@ -1,0 +1,60 @@
+// What the window does with files and devices: its settings, what is dropped and what is
+// saved. Whatever comes of it is told by `notify`.
+//
+// Thread guarantee: main thread only; slow work goes on beside it.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "rendering/app/settings.h"
+#include "rendering/panels/curve_files.h"
+#include "rendering/panels/view_state.h"
+#include "scenes/live/device_choice.h"
+#include "scenes/live/recording_offer.h"
+
+namespace palpate {
+
+class LiveSession;
+
+class DemoFiles {
+ public:
+  using Notify = std::function<void(std::string text, bool problem)>;
+  // `view` outlives this.
+  DemoFiles(ViewState& view, Notify notify) : view_(view), notify_(std::move(notify)) {}
+
+  // Of this file; empty: nothing is remembered.
+  void use_settings(const std::string& file);
+  void save_settings(const LiveSession& session, const CameraTurn& camera);
+  const Settings& settings() const noexcept { return settings_; }
+
+  // Once a frame: what has been read, found or recorded meanwhile.
+  void update(const LiveSession& session);
+  // A model (.json) is loaded; all else is offered to be fitted or replayed, as a
+  // recording or as another program's table.
+  void open(const std::string& path, LiveSession& session);
+  void offer(const std::string& path);
+  void record(LiveSession& session);
+  void save_curves(const LiveSession& session, const CurveColumns& columns);
+  void save_model(const LiveSession& session);
+  void look_for_devices();
+  // For the host of an exhibit.
+  static void write_to_log(const std::string& text);
+
+ private:
+  // Where files go; empty, and told: nowhere.
+  std::string folder();
+
+  ViewState& view_;
+  Notify notify_;
+  Settings settings_;
+  std::string settings_file_;
+  std::future<Result<RecordingOffer>> arriving_;    // a file that is read
+  std::future<std::vector<DeviceChoice>> looking_;  // for devices
+  std::string recording_;                           // the file that is being recorded; empty: none
+};
+
+}  // namespace palpate
