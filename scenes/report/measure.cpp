@@ -19,6 +19,7 @@ constexpr std::size_t kSmallestRecording = 1000;  // rows; less is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 constexpr double kPrepareSeconds = 1.0;           // about, of a recipe
 constexpr double kEvaluateSeconds = 0.1;          // a model
+constexpr double kMostNodes = 1e7;                // of a grid; a fit refuses more
 
 // One progress for a job of many unequal parts, in expected seconds.
 class Progress {
@@ -59,6 +60,12 @@ struct Preparations {
   PreparedTraining palpate;
   const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
 };
+
+// The recordings may support other features than the scene has.
+MethodRequest with_grid_for(MethodRequest request, const PreparedTraining& prepared) {
+  if (!request.grid.empty()) request.grid.resize(prepared.common.features.size(), request.grid.back());
+  return request;
+}
 
 struct Fitted {
   std::shared_ptr<const FittedModel> model;
@@ -135,10 +142,7 @@ class Measurement {
       if (!wanted[i] || plan.recipe == Recipe::nothing) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
       const auto start = std::chrono::steady_clock::now();
-      MethodRequest request = plan.request;
-      // The recordings may support other features than the scene has.
-      if (!request.grid.empty())
-        request.grid.resize(prepared.of(plan.recipe).common.features.size(), request.grid.back());
+      const MethodRequest request = with_grid_for(plan.request, prepared.of(plan.recipe));
       auto one = fit_method(prepared.of(plan.recipe), request,
                             progress_.next(plan.request.method->expected_seconds(plan.request)),
                             base == bases.end() ? nullptr : &base->second.first);
@@ -157,6 +161,7 @@ class Measurement {
     for (const std::size_t index : fold.train) training.push_back(recordings_.all[index]);
     auto prepared = prepare(training, recordings_.at_own_surface ? Surface::recorded : Surface::automatic);
     if (!prepared) return prepared.error();
+    drop_large_grids(prepared->palpate);
     if (data_.worth.empty()) remember(*prepared, training);
     const auto fitted = fit(*prepared, std::vector<bool>(data_.models.size(), true));
     if (!fitted) return fitted.error();
@@ -175,6 +180,19 @@ class Measurement {
       if (const Status status = evaluate_test(*recordings_.all[index]); !status) return status;
     }
     return {};
+  }
+
+  // Known only now: how many features a grid has.
+  void drop_large_grids(const PreparedTraining& prepared) {
+    for (std::size_t i = data_.models.size(); i-- > 0;) {
+      double nodes = 1.0;
+      for (const int size : with_grid_for(data_.models[i].plan.request, prepared).grid) nodes *= size;
+      if (nodes <= kMostNodes) continue;
+      const auto at = static_cast<std::ptrdiff_t>(i);
+      data_.models.erase(data_.models.begin() + at);
+      recorded_.erase(recorded_.begin() + at);
+      moved_.erase(moved_.begin() + at);
+    }
   }
 
   void remember(const Preparations& prepared, const std::vector<SharedRecording>& training) {

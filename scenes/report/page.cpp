@@ -143,7 +143,7 @@ std::string notes_html(const ReportData& data) {
   const Evidence& errors = data.models[data.choice.chosen].errors;
   notes.push_back("Chosen on " + data.choice.chosen_on +
                   (data.choice.tied.size() > 1
-                       ? ", where " + std::to_string(data.choice.tied.size()) + " models are tied: the cheapest."
+                       ? ", where " + std::to_string(data.choice.tied.size()) + " models are tied: the smallest."
                        : "."));
   if (data.folds > 0)
     notes.push_back("No test recording: " + std::to_string(data.folds) + "-fold cross-validation over the training.");
