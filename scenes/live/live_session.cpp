@@ -123,6 +123,7 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   comparison_.use_reference(device_->measures_force() ? ReferenceKind::measured
                             : truth_ != nullptr       ? ReferenceKind::truth
                                                       : ReferenceKind::direct);
+  if (replay() != nullptr) comparison_.begins_at(replay()->recording().rows.front().time_s);
   LoopSettings settings;
   settings.rehearse_ns = kRehearse_ns;
   settings.realtime = request_.realtime;
