@@ -48,7 +48,7 @@ std::string time_words(const SlotView& slot) {
 std::string verdict_words(const ModelsView& models) {
   const std::vector<std::size_t> slots = judged(models);
   if (!models.compared) return models.off_from;
-  if (slots.empty()) return "Press the block: the verdict comes with the first samples in contact.";
+  if (slots.empty()) return "The verdict comes with the first samples in contact.";
   const auto share = [&](std::size_t slot) { return models.slots[slot]->errors.within_jnd(); };
   const auto time = [&](std::size_t slot) { return models.slots[slot]->tick_ns; };
   const std::size_t best = *std::min_element(slots.begin(), slots.end(), [&](std::size_t a, std::size_t b) {

@@ -166,7 +166,7 @@ BigNumber big_number(const ModelsView& models, const JndLine& jnd) {
   if (models.selected == models.reference)
     return {"–", "of what a hand can notice:", name + " is what the others are compared with", 0.0};
   const std::string what = name + " off " + models.off_from;
-  if (active->errors.samples() == 0) return {"–", "of what a hand can notice:", what + ": press to see", 0.0};
+  if (active->errors.samples() == 0) return {"–", "of what a hand can notice:", what + ": from the next touch on", 0.0};
   const double error = active->quantile.p99();
   return {jnd_text(error), "of what a hand can notice:", what + ", 99 % of the time", error};
 }

@@ -9,6 +9,8 @@ namespace {
 
 // A longer gap between snapshots is a stall, in which the picture stood still.
 constexpr double kLongestStep_s = 0.1;
+// A tick takes several samples of a quick recording.
+constexpr double kBeginning_s = 0.05;
 
 }  // namespace
 
@@ -40,7 +42,8 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
   const PublishedSet* set = slots_.set_of(snapshot);
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
-  if (snapshot.restarted || set == nullptr) seen_out_of_contact_ = false;
+  if (snapshot.restarted || set == nullptr)
+    seen_out_of_contact_ = set != nullptr && snapshot.tick.time_s < begins_at_s_ + kBeginning_s;
   if (set != nullptr && !snapshot.tick.in_contact) seen_out_of_contact_ = true;
   HistoryPoint point = point_of(snapshot, set);
   point.trouble = trouble_ = std::max(trouble_, trouble);

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ class Comparison {
   // One point a tick of the last minutes.
   const ForceHistory& history() const noexcept { return history_; }
 
+  // Device time at which a recording begins: whoever replays from there on has seen all of it.
+  void begins_at(double time_s) noexcept { begins_at_s_ = time_s; }
   // A slot's model became ready.
   void begin_slot(std::size_t slot);
   // Every snapshot in order, with what the fault log says of it.
@@ -74,6 +77,7 @@ class Comparison {
   std::vector<Figures> figures_;  // by slot
   std::string since_ = "the start";
   bool seen_out_of_contact_ = false;  // since the filters started
+  double begins_at_s_ = -std::numeric_limits<double>::infinity();
   double last_loop_time_s_ = 0.0;
   TickTrouble trouble_ = TickTrouble::none;  // since the last sample
   ForceHistory history_;

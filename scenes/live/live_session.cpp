@@ -123,6 +123,7 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   comparison_.use_reference(device_->measures_force() ? ReferenceKind::measured
                             : truth_ != nullptr       ? ReferenceKind::truth
                                                       : ReferenceKind::direct);
+  if (replay() != nullptr) comparison_.begins_at(replay()->recording().rows.front().time_s);
   LoopSettings settings;
   settings.rehearse_ns = kRehearse_ns;
   settings.realtime = request_.realtime;
@@ -262,7 +263,9 @@ std::string LiveSession::reference_words(bool brief) const {
   const std::string model = has_reference(ReferenceKind::direct) ? models_.view(*models_.reference()).name : "";
   switch (comparison_.reference()) {
     case ReferenceKind::measured:
-      if (replay() != nullptr) return brief ? "the recording" : "as recorded in " + replay()->recording().name;
+      if (replay() != nullptr)
+        return brief ? "the recording"
+                     : "as recorded in " + replay()->recording().name + (models_.fits() ? ", fitted to it" : "");
       return brief ? "the real block" : "measured force of the real block";
     case ReferenceKind::truth:
       return brief ? "the material" : "true force of the virtual material, " + *scene_.material;

@@ -128,11 +128,16 @@ Status ModelSlots::save(std::size_t slot, const std::string& path) const {
   return save_model(path, slots_[slot]->model->data(), false);
 }
 
+bool ModelSlots::fits() const noexcept {
+  return std::any_of(slots_.begin(), slots_.end(),
+                     [](const auto& slot) { return slot->plan.origin != ModelOrigin::file; });
+}
+
 std::optional<std::size_t> ModelSlots::reference() const noexcept {
   if (direct_) return direct_;
+  if (fits()) return std::nullopt;
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (slots_[i]->plan.origin != ModelOrigin::file) return std::nullopt;
     if (!slots_[i]->takes_part()) continue;
     if (first) return first;
     first = i;

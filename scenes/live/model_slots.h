@@ -76,6 +76,8 @@ class ModelSlots {
   // What models are compared with where there is no truth: the first direct interpolant
   // that is ready; of files alone, of which none is one, the first of several.
   std::optional<std::size_t> reference() const noexcept;
+  // Whether any is fitted here, to the material itself.
+  bool fits() const noexcept;
   // It is a model of what is pressed, whatever its file says.
   void claim(std::size_t slot) noexcept { view(slot).foreign = false; }
 

@@ -89,7 +89,7 @@ TEST(PanelWords, TheBigNumberIsTheTablesAndSaysOfWhom) {
   SlotView greedy = ready_slot("greedy-100");
   ModelsView models{{&greedy}, 0, true};
   EXPECT_EQ(big_number(models, {}).number, "–");
-  EXPECT_EQ(big_number(models, {}).below, "greedy-100 off the material: press to see");
+  EXPECT_EQ(big_number(models, {}).below, "greedy-100 off the material: from the next touch on");
   for (int i = 0; i < 1000; ++i) {
     greedy.errors.add(1.0 + 0.25 * JndLine{}.at(1.0), 1.0, false, {});
     greedy.quantile.add(0.25);
@@ -145,7 +145,7 @@ TEST(PanelWords, TheVerdictIsOneSentenceFromTheTablesNumbers) {
   EXPECT_EQ(verdict_words(models), "None is unnoticeable. random-10 '09: 40 % unnoticeable at 0.33 us a tick");
   const SlotView fresh = ready_slot("fresh");
   models.slots = {&fresh};
-  EXPECT_EQ(verdict_words(models), "Press the block: the verdict comes with the first samples in contact.");
+  EXPECT_EQ(verdict_words(models), "The verdict comes with the first samples in contact.");
   models.compared = false;
   models.off_from = "no truth to compare with";
   EXPECT_EQ(verdict_words(models), "no truth to compare with");

@@ -331,7 +331,7 @@ TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   request.device = "replay:" + path;
   const Session replayed = must(LiveSession::open(request));
   EXPECT_EQ(replayed->scene().title, "mine");
-  EXPECT_EQ(replayed->reference_words(), "as recorded in mine");
+  EXPECT_EQ(replayed->reference_words(), "as recorded in mine, fitted to it");
   ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->models().all_settled(); }));
   ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->models().view(0).errors.samples() > 1000; }));
   EXPECT_LT(replayed->models().view(0).quantile.p99(), 1.0);
