@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/import/import_words.h"
 #include "engine/import/table_number.h"
-#include "engine/recording/press_direction.h"
 #include "engine/recording/recording_rules.h"
 
 namespace palpate {
@@ -19,21 +17,6 @@ namespace {
 constexpr std::int64_t kHalfDay_s = 43200;
 // Of the first rows, to see what unit the time is in.
 constexpr std::size_t kTimeUnitRows = 200;
-constexpr std::array<Unit, 4> kTimeUnits = {{{"s", Quantity::time, 1.0},
-                                             {"ms", Quantity::time, 1e-3},
-                                             {"us", Quantity::time, 1e-6},
-                                             {"ns", Quantity::time, 1e-9}}};
-
-std::string count_of(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 constexpr auto kNoColumn = static_cast<std::size_t>(-1);
 
 class Importer {
@@ -64,12 +47,9 @@ class Importer {
   bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
   bool is_bad_row(std::string_view line);
   Error explain_row(std::string_view line, std::uint64_t number);
-  Status check_size(const RecordingRow& row, std::uint64_t line) const;
   Status add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
   Status read_rows();
-  Error time_fault(std::uint64_t line, double time_s, double last_time_s) const;
   void describe_time();
-  void advise_flips();
 
   const ForeignText& text_;
   std::string label_;
@@ -218,22 +198,23 @@ Status Importer::find_time_unit() {
     std::nth_element(steps.begin(), middle, steps.end());
     step = *middle;
   }
-  std::vector<const Unit*> possible;
-  for (const Unit& candidate : kTimeUnits) {
+  std::vector<Unit> possible;
+  for (const char* name : {"s", "ms", "us", "ns"}) {
+    const Unit candidate = *find_unit(name);
     const double rate_Hz = 1.0 / (step * candidate.to_si);
     const bool in_range =
         rate_Hz >= kMinimumRate_Hz * (1.0 - kRateTolerance) && rate_Hz <= kMaximumRate_Hz * (1.0 + kRateTolerance);
-    if (step > 0.0 && in_range) possible.push_back(&candidate);
+    if (step > 0.0 && in_range) possible.push_back(candidate);
   }
   if (possible.size() != 1) {
     const std::string choices = possible.empty()
                                     ? "s, ms, us or ns"
-                                    : std::string(possible[0]->name) + " or --units " + std::string(possible[1]->name);
+                                    : std::string(possible[0].name) + " or --units " + std::string(possible[1].name);
     return fail("found no unit of the time" + quoted_name(0) + " and steps of " + short_number(step) +
                 "; add --units " + choices + ", or --rate HZ if the rows are evenly spaced");
   }
-  to_si_[0] = possible.front()->to_si;
-  column.unit = std::string(possible.front()->name);
+  to_si_[0] = possible.front().to_si;
+  column.unit = std::string(possible.front().name);
   note("the header has no unit of the time: taken as " + column.unit + ", the only one in which its steps of " +
        short_number(step) + " are a rate of 10 Hz to 20 kHz");
   return {};
@@ -261,10 +242,8 @@ bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& r
 // A line that should have been a row: there are digits where its numbers should be.
 bool Importer::is_bad_row(std::string_view line) {
   split(line);
-  const auto has_digit = [](std::string_view field) {
-    return field.find_first_of("0123456789") != std::string_view::npos;
-  };
-  return has_digit(fields_[1]) && has_digit(fields_[2]);
+  constexpr const char* kDigits = "0123456789";
+  return fields_[1].find_first_of(kDigits) < fields_[1].size() && fields_[2].find_first_of(kDigits) < fields_[2].size();
 }
 
 // The row that could not be read.
@@ -288,34 +267,6 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) {
   return fail_at(number, "found a row that cannot be read; remove it");
 }
 
-Status Importer::check_size(const RecordingRow& row, std::uint64_t line) const {
-  const bool position_ok = std::abs(row.position_m) <= kMaximumPosition_m;
-  if (position_ok && std::abs(row.force_N) <= kMaximumForce_N) return {};
-  const std::size_t role = position_ok ? 2 : 1;
-  return fail_at(line, std::string("found a ") + kRoleNames[role] + " of " +
-                           short_number(position_ok ? row.force_N : row.position_m) + (position_ok ? " N" : " m") +
-                           " (column " + std::to_string(index_[role] + 1) + quoted_name(role) + " in " +
-                           table_.columns[role].unit + "), expected at most " + (position_ok ? "1000000 N" : "1 m") +
-                           "; check the unit and give it with --units " + (position_ok ? "mN" : "mm") +
-                           ", or choose another column");
-}
-
-Error Importer::time_fault(std::uint64_t line, double time_s, double last_time_s) const {
-  const std::string what =
-      time_s == last_time_s ? "found the time of the row before once more"
-                            : "found a time " + short_number(last_time_s - time_s) + " s before that of the row above";
-  // The rate of the rows up to here, which is the best that is known of them.
-  const std::size_t rows = table_.recording.rows.size();
-  const std::string rate = rows > 2 && last_time_s > 0.0
-                               ? short_number(std::round(static_cast<double>(rows - 1) / last_time_s))
-                               : std::string("HZ");
-  const std::string advice =
-      time_s == last_time_s
-          ? "if the rows are evenly spaced, add --rate " + rate + " (the mean rate so far), or remove the repeated row"
-          : "split the file there, or sort its rows; if the rows are evenly spaced, add --rate " + rate;
-  return fail_at(line, what + quoted_name(0) + ", expected later times in every row; " + advice);
-}
-
 Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
   if (request_.rate_Hz) {
     row.time_s = static_cast<double>(table_.recording.rows.size()) / *request_.rate_Hz;
@@ -333,7 +284,9 @@ Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRo
     row.time_s = since_first();
     note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
   }
-  if (started_ && !(row.time_s > last_time_s_)) return time_fault(line, row.time_s, last_time_s_);
+  if (started_ && !(row.time_s > last_time_s_)) {
+    return fail_at(line, time_fault_words(quoted_name(0), row.time_s, last_time_s_, table_.recording.rows.size()));
+  }
   started_ = true;
   last_time_s_ = row.time_s;
   return {};
@@ -380,7 +333,11 @@ Status Importer::read_rows() {
     footer_line = 0;
     if (request_.flip_position) row.position_m = -row.position_m;
     if (request_.flip_force) row.force_N = -row.force_N;
-    if (const Status status = check_size(row, number); !status) return status;
+    const bool position_fits = std::abs(row.position_m) <= kMaximumPosition_m;
+    if (!position_fits || !(std::abs(row.force_N) <= kMaximumForce_N)) {
+      const std::size_t role = position_fits ? 2 : 1;
+      return fail_at(number, size_fault_words(row, table_.columns[role], role, quoted_name(role)));
+    }
     if (const Status status = add_time(time, number, row); !status) return status;
     rows.push_back(row);
   }
@@ -402,22 +359,6 @@ void Importer::describe_time() {
   if (start_s != 0.0) note("time began at " + short_number(start_s) + " s and begins at 0 now");
 }
 
-void Importer::advise_flips() {
-  const PressDirection direction = find_press_direction(table_.recording.rows);
-  if (!direction.known || !direction.certain) return;
-  const std::string forces = std::string(" (") + short_number(direction.shallow_force_N) +
-                             " N in the air or at the surface, " + short_number(direction.deep_force_N) +
-                             " N at the deepest)";
-  if (direction.position_flipped) {
-    note("the force grows while the position falls" + forces +
-         ": position must be positive inside the block; import again with --flip position");
-  }
-  if (direction.force_flipped) {
-    note("the force is negative in contact" + forces +
-         ": it must be positive when the block pushes the tool out; import again with --flip force");
-  }
-}
-
 Result<ImportedTable> Importer::run() {
   auto layout = find_table_layout(text_.text(), request_.layout);
   if (!layout) return fail(layout.error().message);
@@ -437,7 +378,7 @@ Result<ImportedTable> Importer::run() {
                 std::to_string(kRecordingMinimumRows) + "; record for longer");
   }
   describe_time();
-  advise_flips();
+  for (const std::string& advice : flip_advice(table_.recording.rows)) note(advice);
   table_.layout.names.clear();
   table_.layout.units.clear();
   table_.recording.name = std::filesystem::path(label_).stem().string();

@@ -1,8 +1,11 @@
 #include "engine/import/import_words.h"
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/recording/press_direction.h"
 
 namespace palpate {
 
@@ -38,6 +41,58 @@ std::vector<std::string> import_origin(const std::string& file, const ImportRequ
   }
   for (const std::string& flip : flipped_roles(request)) comments.push_back(flip + ": sign turned round");
   return comments;
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string count_of(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string time_fault_words(const std::string& quoted_name, double time_s, double last_time_s, std::size_t rows) {
+  const std::string what =
+      time_s == last_time_s ? "found the time of the row before once more"
+                            : "found a time " + short_number(last_time_s - time_s) + " s before that of the row above";
+  // The rate of the rows up to here, which is the best that is known of them.
+  const std::string rate = rows > 2 && last_time_s > 0.0
+                               ? short_number(std::round(static_cast<double>(rows - 1) / last_time_s))
+                               : std::string("HZ");
+  const std::string advice =
+      time_s == last_time_s
+          ? "if the rows are evenly spaced, add --rate " + rate + " (the mean rate so far), or remove the repeated row"
+          : "split the file there, or sort its rows; if the rows are evenly spaced, add --rate " + rate;
+  return what + quoted_name + ", expected later times in every row; " + advice;
+}
+
+std::string size_fault_words(const RecordingRow& row, const ImportedColumn& column, std::size_t role,
+                             const std::string& quoted_name) {
+  const bool force = role == 2;
+  return std::string("found a ") + kRoleNames[role] + " of " + short_number(force ? row.force_N : row.position_m) +
+         (force ? " N" : " m") + " (column " + std::to_string(column.number) + quoted_name + " in " + column.unit +
+         "), expected at most " + (force ? "1000000 N" : "1 m") + "; check the unit and give it with --units " +
+         (force ? "mN" : "mm") + ", or choose another column";
+}
+
+std::vector<std::string> flip_advice(const std::vector<RecordingRow>& rows) {
+  std::vector<std::string> advice;
+  const PressDirection direction = find_press_direction(rows);
+  if (!direction.known || !direction.certain) return advice;
+  const std::string forces = std::string(" (") + short_number(direction.shallow_force_N) +
+                             " N in the air or at the surface, " + short_number(direction.deep_force_N) +
+                             " N at the deepest)";
+  if (direction.position_flipped) {
+    advice.push_back("the force grows while the position falls" + forces +
+                     ": position must be positive inside the block; import again with --flip position");
+  }
+  if (direction.force_flipped) {
+    advice.push_back("the force is negative in contact" + forces +
+                     ": it must be positive when the block pushes the tool out; import again with --flip force");
+  }
+  return advice;
 }
 
 }  // namespace palpate

@@ -22,4 +22,16 @@ std::vector<std::string> flipped_roles(const ImportRequest& request);
 std::vector<std::string> import_origin(const std::string& file, const ImportRequest& request,
                                        const ImportedTable& table);
 
+// "1.5", to six digits; "3 rows".
+std::string short_number(double value);
+std::string count_of(std::uint64_t count, const char* what);
+// What is wrong with a row, and what to do. `quoted_name`: of its column, with a blank before,
+// or empty. A time that is not later than the last, in a table of so many rows:
+std::string time_fault_words(const std::string& quoted_name, double time_s, double last_time_s, std::size_t rows);
+// A position (role 1) or a force (2) that no recording has.
+std::string size_fault_words(const RecordingRow& row, const ImportedColumn& column, std::size_t role,
+                             const std::string& quoted_name);
+// Which signs are the wrong way round, as far as the rows tell.
+std::vector<std::string> flip_advice(const std::vector<RecordingRow>& rows);
+
 }  // namespace palpate
