@@ -24,7 +24,8 @@ void estimate_drift(SurfaceEstimate& estimate, const std::vector<SurfaceRow>& ro
   if (touches.size() < 2) return;
   const Onset first = find_onset(rows, {touches.front()}, zero_N, force_noise_N);
   const Onset last = find_onset(rows, {touches.back()}, zero_N, force_noise_N);
-  estimate.offset_drift_error_m = std::hypot(first.standard_error_m, last.standard_error_m);
+  estimate.offset_drift_error_m =
+      std::hypot(std::hypot(first.standard_error_m, last.standard_error_m), std::hypot(first.misfit_m, last.misfit_m));
   const double drift_m = last.at_m - first.at_m;
   if (std::abs(drift_m) > kSignificantErrors * estimate.offset_drift_error_m) estimate.offset_drift_m = drift_m;
 }
@@ -60,7 +61,8 @@ SurfaceEstimate estimate_surface(const std::vector<SurfaceRow>& rows, double for
   for (std::size_t i = touches.front().begin; i < touches.front().end; ++i) {
     speed_m_per_s = std::max(speed_m_per_s, rows[i].motion.velocity_m_per_s);
   }
-  onset.standard_error_m = std::hypot(onset.standard_error_m, lag_error_s * speed_m_per_s);
+  estimate.law_error_m = std::hypot(onset.standard_error_m, lag_error_s * speed_m_per_s);
+  onset.standard_error_m = std::hypot(estimate.law_error_m, onset.misfit_m);
   if (kSignificantErrors * onset.standard_error_m > kWidestSurface_m) return estimate;
   estimate.raw_offset_m = onset.at_m;
   estimate.standard_error_m = onset.standard_error_m;

@@ -36,6 +36,7 @@ struct SurfaceEstimate {
   double offset_m = 0.0;
   double raw_offset_m = 0.0;
   double standard_error_m = 0.0;  // infinite where the surface cannot be told
+  double law_error_m = 0.0;       // the part of it that two like touches do not share
   // To be subtracted from force_N.
   double force_zero_N = 0.0;
   double force_zero_error_N = 0.0;  // standard error; infinite without free air

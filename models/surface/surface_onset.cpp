@@ -190,7 +190,7 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
     if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * (linear.at_m - ball.at_m));
     // Neither law holds: what they say between the air and the first force is a guess.
     if (variance > kMisfit * force_noise_N * force_noise_N) {
-      onset.standard_error_m = std::hypot(onset.standard_error_m, onset.at_m - touches.front().first_force_m);
+      onset.misfit_m = std::abs(onset.at_m - touches.front().first_force_m);
     }
   }
   return onset;

@@ -20,6 +20,7 @@ struct Touch {
 struct Onset {
   double at_m = 0.0;
   double standard_error_m = 0.0;  // infinite where there is no minimum
+  double misfit_m = 0.0;          // a further error, where the force follows neither law
 };
 
 // `zero_N`: what the force sensor reads in air. `threshold_N`: beyond its noise. Of touches

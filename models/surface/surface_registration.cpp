@@ -87,7 +87,7 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
 Located unless_onsets_agree(Located place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
   if (!own.told() || !first.told()) return place;
   const double apart_m = own.raw_offset_m - first.raw_offset_m;
-  const double error_m = std::hypot(own.standard_error_m, first.standard_error_m);
+  const double error_m = std::hypot(own.law_error_m, first.law_error_m);
   const double off_m = std::abs(place.at - apart_m);
   if (std::abs(apart_m) <= std::max(kLeastOffset_m, kSignificantErrors * error_m) &&
       off_m > kSignificantErrors * std::hypot(error_m, place.standard_error)) {

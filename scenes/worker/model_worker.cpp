@@ -12,8 +12,8 @@
 #include "engine/recording/recording.h"
 #include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
-#include "scenes/evaluation/model_timing.h"
 #include "models/solve/lapack.h"
+#include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"
 

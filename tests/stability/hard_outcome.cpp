@@ -7,12 +7,6 @@
 
 namespace palpate {
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
-
 HardCaseResult refused(HardCaseResult result, const std::string& message) {
   result.safe = true;
   result.outcome = "refused: " + message;

@@ -9,9 +9,6 @@
 
 namespace palpate {
 
-// "3.2e-05"
-std::string short_number(double value);
-
 HardCaseResult refused(HardCaseResult result, const std::string& message);
 
 class OutcomeCounter {

@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <utility>
 
@@ -15,6 +16,13 @@
 
 namespace palpate {
 namespace {
+
+// "3.2e-05"
+std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
+}
 
 using Points = Eigen::MatrixXd;
 
@@ -91,7 +99,7 @@ std::vector<SiteCase> site_cases() {
     for (Eigen::Index i = 0; i < p.cols(); ++i) p.col(i) = p.col(i % 40) + 1e-9 * p.col(i);
   }));
   for (const double width : {1e-7, 1e-5, 1e-3})
-    cases.push_back(make_case("clusters " + short_number(width) + " apart", [width](Points& p) {
+    cases.push_back(make_case("clusters " + two_digits(width) + " apart", [width](Points& p) {
       for (Eigen::Index i = 0; i < p.cols(); ++i) p.col(i) = p.col(i % 40) + width * p.col(i);
     }));
   cases.push_back(make_case("on a line", [](Points& p) {
@@ -162,7 +170,7 @@ std::string compare_with_reference(const SiteCase& one, double smoothing, const 
   Svd parts;
   if (!svd(saddle_matrix(one.sites, 0.0).cast<double>(), parts)) return {};
   std::string text =
-      "; saddle matrix of condition " + short_number(parts.s[0] / std::max(parts.s[parts.s.size() - 1], 1e-300));
+      "; saddle matrix of condition " + two_digits(parts.s[0] / std::max(parts.s[parts.s.size() - 1], 1e-300));
   Long matrix = saddle_matrix(one.sites, smoothing);
   Long right = Long::Zero(matrix.rows(), 1);
   right.topRows(n) = one.sites.target_N.cast<long double>();
@@ -187,7 +195,7 @@ std::string compare_with_reference(const SiteCase& one, double smoothing, const 
     }
     worst = std::max(worst, std::abs(static_cast<double>(sum) - values[i]) / JndLine{}.at(static_cast<double>(sum)));
   }
-  return text + ", " + short_number(worst) + " JND from its solution in long double";
+  return text + ", " + two_digits(worst) + " JND from its solution in long double";
 }
 
 HardCaseResult evaluate_site_case(const SiteCase& one, const Method& method) {
