@@ -232,6 +232,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
   const char* asked = std::getenv("PALPATE_VISITORS");
   const int visitors = asked != nullptr ? std::atoi(asked) : 3;
   open_exhibit({});
+  frames(60);  // the camera eases to where it stays
   const ImVec2 home = block(0, 0.0F);
   double first_MB = 0.0;
   for (int i = 0; i < visitors; ++i) {
