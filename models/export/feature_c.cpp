@@ -290,6 +290,9 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
     coefficients_of("elastic_knot", trend.elastic_knot_N);
     elastic = "rising_spline(elastic, " + count + ", elastic_knot, " + std::to_string(kDriveKnots) + ", u)";
   }
+  if (trend.preload_N != 0.0) {
+    elastic = "(u > R(0.0) ? " + out.number(trend.preload_N) + " : R(0.0)) + " + elastic;
+  }
   coefficients_of("viscosity", trend.viscosity_Ns_per_m);
   coefficients_of("thinning", trend.thinning_Ns_per_m);
   const std::string limit = out.number(trend.velocity_limit_m_per_s);

@@ -134,6 +134,7 @@ Result<CentreSequence> choose_greedy(const Sites& sites, const MethodRequest& re
   const BlasThreads one_thread(1);
   std::vector<Eigen::Index> distinct = distinct_sites(sites);
   const auto available = static_cast<Eigen::Index>(distinct.size());
+  const Eigen::Index first = distinct.front();
   MethodRequest clamped = request;
   clamped.centres = static_cast<int>(std::clamp<Eigen::Index>(request.centres, 0, available));
   std::vector<Eigen::Index> chosen;
@@ -146,6 +147,7 @@ Result<CentreSequence> choose_greedy(const Sites& sites, const MethodRequest& re
     finished = select(selection, clamped.centres, control, chosen);
   }
   if (!finished) return interrupted();
+  if (chosen.empty() && clamped.centres > 0) chosen.push_back(first);  // a model file holds one centre at least
   Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
     centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);

@@ -82,6 +82,26 @@ TEST_F(RealAccuracy, PressOnItsSecondCycle) {
   }
 }
 
+// As many test machines record: begun and ended at a preload of 3 N, and depth counted from there.
+TEST_F(RealAccuracy, PressThatCountsDepthFromItsPreload) {
+  const auto from_preload = [](const char* file) {
+    Recording cut = *real_recording(file);
+    const auto loaded = [](const RecordingRow& row) { return row.force_N > 3.0; };
+    cut.rows.erase(cut.rows.begin(), std::find_if(cut.rows.begin(), cut.rows.end(), loaded));
+    cut.rows.erase(std::find_if(cut.rows.rbegin(), cut.rows.rend(), loaded).base(), cut.rows.end());
+    const double zero_m = cut.rows.front().position_m;
+    for (RecordingRow& row : cut.rows) row.position_m -= zero_m;
+    return std::make_shared<const Recording>(std::move(cut));
+  };
+  const PreparedTraining prepared =
+      prepare({from_preload("ur3e_press_mit/train_cycle1.csv")}, default_request("silicone_block"));
+  EXPECT_GT(prepared.common.trend.preload_N, 1.0);
+  const ErrorSummary summary =
+      evaluate_moved(*from_preload("ur3e_press_mit/test_cycle2.csv"), {fit(prepared, &kGreedyMethod)}).front();
+  std::cout << test::figures("cycle 2", summary) << "\n";
+  EXPECT_GE(summary.within_jnd, 0.97);  // 0.92 by a trend that begins at 0 N
+}
+
 TEST_F(RealAccuracy, EcoflexFromPositionAlone) {
   for (const std::string thinner : {"0T", "100T"}) {
     const PreparedTraining prepared =

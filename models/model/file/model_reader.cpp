@@ -59,7 +59,7 @@ class ModelReader : private JsonFields {
     data_.corrects_trend = boolean(top, "corrects_trend");
     data_.correction_limit_N = number(top, "correction_limit_N", Sign::kNotNegative);
     data_.largest_force_N = number(top, "largest_force_N", Sign::kNotNegative);
-    if (top.value->contains("lowest_force_N")) data_.lowest_force_N = number(top, "lowest_force_N");
+    if (optional_member(top, "lowest_force_N").value != nullptr) data_.lowest_force_N = number(top, "lowest_force_N");
     const JsonNode jnd = member(top, "jnd", "an object with offset_N and weber_fraction");
     data_.jnd.offset_N = number(jnd, "offset_N", Sign::kPositive);
     data_.jnd.weber_fraction = number(jnd, "weber_fraction", Sign::kNotNegative);
@@ -190,6 +190,7 @@ class ModelReader : private JsonFields {
 
   void read_trend(const JsonNode& node) {
     data_.trend.reference_depth_m = number(node, "reference_depth_m", Sign::kPositive);
+    if (optional_member(node, "preload_N").value != nullptr) data_.trend.preload_N = number(node, "preload_N");
     coefficients(node, "elastic_N", data_.trend.elastic_N);
     data_.trend.has_elastic_knots = optional_member(node, "elastic_knot_N").value != nullptr;
     if (data_.trend.has_elastic_knots) coefficients(node, "elastic_knot_N", data_.trend.elastic_knot_N);
