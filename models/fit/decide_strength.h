@@ -17,7 +17,7 @@ namespace palpate {
 // in reserve, since a new recording differs from the training more than
 // its strokes among themselves. Away from the data the bound grows by at least a
 // quarter of the largest force per unit of normalised distance, whether strokes that
-// were left out had been there or not.
+// were left out had been there or not. No bound is below 10 mN.
 // Nothing when there are fewer than 50 predictions. Pure.
 std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& predictions, double inner_radius,
                                           const JndLine& jnd, double largest_force_N);
