@@ -11,7 +11,6 @@
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/lapack.h"
 #include "models/solve/projected_kernel.h"
-#include "models/solve/refined_solve.h"
 
 namespace palpate {
 namespace {
@@ -19,9 +18,6 @@ namespace {
 // Of the fit, for its progress.
 constexpr double kFactorisingFrom = 0.25;
 constexpr double kFactorised = 0.95;
-// A factor in single precision and what it takes to refine it is quicker from 1,000 sites
-// on, by a quarter at 1,500.
-constexpr Eigen::Index kRefinedSites = 1500;
 
 struct Solution {
   Eigen::VectorXd u;
@@ -40,20 +36,6 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
     return !cancelled;
   };
-  const auto take = [&](double condition) {
-    out.smoothing = smoothing;
-    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
-    out.condition = condition;
-    out.rank = kernel.data().size();
-    return Outcome::solved;
-  };
-  if (kernel.data().size() >= kRefinedSites) {
-    if (auto refined = solve_refined(kernel, smoothing, may_continue)) {
-      out.u = std::move(refined->u);
-      return take(refined->condition);
-    }
-    if (cancelled) return Outcome::cancelled;
-  }
   // A matrix that rounding made indefinite gets ten times the smoothing.
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
     Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
@@ -65,7 +47,11 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     Eigen::VectorXd u = kernel.data();
     cholesky_solve(matrix, u);
     out.u = kernel.project(u);
-    return take(cholesky_condition(matrix, norm));
+    out.smoothing = smoothing;
+    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
+    out.condition = cholesky_condition(matrix, norm);
+    out.rank = u.size();
+    return Outcome::solved;
   }
   return Outcome::failed;
 }
