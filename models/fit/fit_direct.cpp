@@ -24,7 +24,6 @@ struct Solution {
   double smoothing = 0.0;
   double residual_squared = 0.0;  // of the scaled rows
   double condition = 0.0;
-  double criterion = 0.0;
   Eigen::Index rank = 0;
 };
 
@@ -63,12 +62,10 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
   const std::optional<double> given =
       options.smoothing || options.kernel != KernelKind::cubic ? options.smoothing : sites.smoothing;
   double smoothing = given.value_or(0.0);
-  double criterion = 0.0;
   if (!given) {
-    const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel);
+    const Result<double> choice = choose_smoothing(sites, options.kernel);
     if (!choice) return choice.error();
-    smoothing = choice->smoothing;
-    criterion = choice->criterion;
+    smoothing = *choice;
   }
   if (!control.may_continue(0.2)) return interrupted();
   switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
@@ -79,7 +76,6 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
     case Outcome::solved:
       break;
   }
-  solution.criterion = criterion;
   return solution;
 }
 
@@ -107,7 +103,6 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   report.condition = solution->condition;
   report.residual_rms = std::sqrt(solution->residual_squared / static_cast<double>(sites.count()));
   report.smoothing = solution->smoothing;
-  report.criterion = solution->criterion;
   return fitted;
 }
 

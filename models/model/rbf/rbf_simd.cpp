@@ -107,25 +107,17 @@ void column(const Points& points, size_t count, const double* centre, double* ou
   std::copy(last, last + (count - i), out + i);
 }
 
-template <KernelKind kKind, int... kIndex>
-KernelLoops pick_loops(int dimension, std::integer_sequence<int, kIndex...>) {
-  static constexpr KernelLoops kTable[] = {{&evaluate<kKind, kIndex + 1>, &column<kKind, kIndex + 1>}...};
-  return kTable[dimension - 1];
+// Of kernel k and dimension d + 1 in place 8 k + d.
+template <int... kIndex>
+KernelLoops pick_loops(size_t place, std::integer_sequence<int, kIndex...>) {
+  static constexpr KernelLoops kTable[] = {{&evaluate<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,
+                                            &column<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>}...};
+  return kTable[place];
 }
 
 KernelLoops get_loops(KernelKind kind, int dimension) {
-  using Dimensions = std::make_integer_sequence<int, 8>;
-  switch (kind) {
-    case KernelKind::cubic:
-      return pick_loops<KernelKind::cubic>(dimension, Dimensions{});
-    case KernelKind::linear:
-      return pick_loops<KernelKind::linear>(dimension, Dimensions{});
-    case KernelKind::thin_plate:
-      return pick_loops<KernelKind::thin_plate>(dimension, Dimensions{});
-    case KernelKind::quintic:
-      return pick_loops<KernelKind::quintic>(dimension, Dimensions{});
-  }
-  return {};
+  return pick_loops(8 * static_cast<size_t>(kind) + static_cast<size_t>(dimension - 1),
+                    std::make_integer_sequence<int, 8 * static_cast<int>(kKernelKinds.size())>{});
 }
 
 int64_t get_target() { return HWY_TARGET; }
