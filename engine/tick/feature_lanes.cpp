@@ -119,8 +119,10 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
 }  // namespace
 
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
-  const double keep = std::exp(-step_s / relaxation_time_s);
-  return {keep, relaxation_time_s * (1.0 - keep) / step_s};
+  V4 keep;
+  V4 gain;
+  step_of(keep, gain, V4{relaxation_time_s, 1.0, 1.0, 1.0}, step_s, 1.0 / step_s);
+  return {keep[0], gain[0]};
 }
 
 void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
