@@ -180,6 +180,14 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+std::string lower_ascii(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
 bool is_utf8(std::string_view text, std::size_t& bad_offset) {
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t bytes = utf8_sequence_bytes(text.substr(i));

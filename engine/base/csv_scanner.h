@@ -100,6 +100,9 @@ class LineScanner {
 // `text` without blanks (space, tab) at both ends.
 std::string_view trimmed(std::string_view text);
 
+// With A to Z as a to z.
+std::string lower_ascii(std::string_view text);
+
 // True if every byte of `text` belongs to a well-formed UTF-8 sequence;
 // otherwise `bad_offset` is the first that does not. Source: RFC 3629, section 4.
 bool is_utf8(std::string_view text, std::size_t& bad_offset);

@@ -19,6 +19,8 @@ std::string formatted(double value, std::chars_format format, int decimals) {
 
 std::string fixed(double value, int decimals) { return formatted(value, std::chars_format::fixed, decimals); }
 
+std::string general(double value, int digits) { return formatted(value, std::chars_format::general, digits); }
+
 std::string with_thousands(const std::string& digits) {
   const std::size_t first = !digits.empty() && digits[0] == '-' ? 1 : 0;
   std::size_t end = digits.find('.');

@@ -9,6 +9,9 @@ namespace palpate {
 // As printf's %.*f has it; `decimals` 0 to 100.
 std::string fixed(double value, int decimals);
 
+// As printf's %.*g has it.
+std::string general(double value, int digits);
+
 // 1234567.5 -> 1,234,567.5; `digits` as `fixed` has it.
 std::string with_thousands(const std::string& digits);
 

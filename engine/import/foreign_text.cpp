@@ -1,34 +1,16 @@
 #include "engine/import/foreign_text.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
 
 // As much as decides about the encoding; names of columns stand at the beginning.
 constexpr std::size_t kEncodingSampleBytes = 64 * 1024;
-
-class FileMapping {
- public:
-  FileMapping(void* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
-  FileMapping(const FileMapping&) = delete;
-  FileMapping& operator=(const FileMapping&) = delete;
-  ~FileMapping() { ::munmap(bytes_, size_); }
-
- private:
-  void* bytes_;
-  std::size_t size_;
-};
 
 void append_utf8(std::string& out, unsigned code) {
   const auto put = [&out](unsigned byte) { out += static_cast<char>(byte); };
@@ -123,29 +105,9 @@ Result<ForeignText> ForeignText::from_memory(std::string bytes, const std::strin
 }
 
 Result<ForeignText> ForeignText::open(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    return Error{path + ": the file cannot be opened (" + std::strerror(errno) + "); check the path"};
-  }
-  if (S_ISDIR(status.st_mode)) return wrong_kind(path, "a folder", "name a file in it");
-  if (!S_ISREG(status.st_mode)) return wrong_kind(path, "a pipe or a device", "save it to a file first");
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) {
-    return Error{path + ": the file cannot be opened (" + std::strerror(errno) +
-                 "); check its permissions (chmod u+r)"};
-  }
-  const auto size = static_cast<std::size_t>(status.st_size);
-  void* const bytes = size > 0 ? ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
-  const int error_number = errno;
-  ::close(descriptor);
-  if (size > 0 && bytes == MAP_FAILED) {
-    return Error{path + ": the file cannot be read (" + std::strerror(error_number) + "); copy it elsewhere"};
-  }
-  ForeignText text;
-  if (size > 0) text.storage_ = std::make_shared<const FileMapping>(bytes, size);
-  const std::string_view mapped(static_cast<const char*>(bytes), size);
-  if (const Status interpreted = text.interpret(mapped, path); !interpreted) return interpreted.error();
-  return text;
+  auto bytes = read_plain_file(path, "a table as text (CSV, TXT)");
+  if (!bytes) return bytes.error();
+  return from_memory(std::move(*bytes), path);
 }
 
 std::string ForeignText::to_utf8(std::string_view piece) const {

@@ -1,8 +1,7 @@
 // The bytes of a file that another program wrote, as text that can be searched:
 // UTF-8 (with or without a byte order mark), Latin-1 and UTF-16 either way round.
 //
-// UTF-8 and Latin-1 are mapped and not copied; UTF-16 is decoded into memory. Only
-// names of columns can hold anything beyond ASCII, so Latin-1 is converted there.
+// Only names of columns can hold anything beyond ASCII, so Latin-1 is converted there.
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 
@@ -34,7 +33,7 @@ class ForeignText {
  private:
   Status interpret(std::string_view bytes, const std::string& label);
 
-  std::shared_ptr<const void> storage_;  // the mapping or the string behind text_
+  std::shared_ptr<const std::string> storage_;  // behind text_
   std::string_view text_;
   TextEncoding encoding_ = TextEncoding::utf8;
 };

@@ -1,10 +1,10 @@
 #include "engine/import/import_words.h"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 #include "engine/recording/press_direction.h"
 
 namespace palpate {
@@ -43,11 +43,7 @@ std::vector<std::string> import_origin(const std::string& file, const ImportRequ
   return comments;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string short_number(double value) { return general(value, 6); }
 
 std::string count_of(std::uint64_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");

@@ -93,14 +93,6 @@ struct Reading {
   }
 };
 
-std::size_t most_frequent(const std::vector<std::size_t>& counts) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < counts.size(); ++i) {
-    if (counts[i] > counts[best]) best = i;
-  }
-  return best;
-}
-
 Reading read_as(const std::vector<SampleLine>& lines, Delimiter delimiter, char decimal) {
   Reading best;
   std::vector<std::string_view> fields;
@@ -118,7 +110,7 @@ Reading read_as(const std::vector<SampleLine>& lines, Delimiter delimiter, char 
       run.numbers += looks.numbers;
       run.mangled += looks.mangled;
     }
-    run.layout.columns = most_frequent(counts);
+    run.layout.columns = static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
     if (run.numbers > best.numbers) best = run;
     ++i;
   }

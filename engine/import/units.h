@@ -36,6 +36,4 @@ double volts_of(std::string_view text);
 // Takes a column's name and its unit apart.
 NameAndUnit split_name_and_unit(std::string_view header);
 
-std::string lower_ascii(std::string_view text);
-
 }  // namespace palpate

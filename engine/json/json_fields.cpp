@@ -1,7 +1,6 @@
 #include "engine/json/json_fields.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -179,62 +178,55 @@ JsonNode JsonFields::entry(const JsonNode& list, std::size_t index) {
   return {&(*list.value)[index], list.pointer + "/" + std::to_string(index)};
 }
 
+// The member if `good` says so; else complains, and gives none.
+template <typename Good>
+const Json* JsonFields::value_where(const JsonNode& object, const char* key, const std::string& expected,
+                                    const Good& good) {
+  const JsonNode node = member(object, key, expected);
+  if (node.value == nullptr || good(*node.value)) return node.value;
+  complain(node.pointer, found(*node.value) + ", expected " + expected);
+  return nullptr;
+}
+
 std::string JsonFields::text(const JsonNode& object, const char* key) {
-  const JsonNode node = member(object, key, "a text");
-  if (node.value == nullptr) return {};
-  if (node.value->is_string()) return node.value->get<std::string>();
-  complain(node.pointer, found(*node.value) + ", expected a text");
-  return {};
+  const Json* value = value_where(object, key, "a text", [](const Json& one) { return one.is_string(); });
+  return value != nullptr ? value->get<std::string>() : std::string();
 }
 
 bool JsonFields::boolean(const JsonNode& object, const char* key) {
-  const JsonNode node = member(object, key, "true or false");
-  if (node.value == nullptr) return false;
-  if (node.value->is_boolean()) return node.value->get<bool>();
-  complain(node.pointer, found(*node.value) + ", expected true or false");
-  return false;
+  const Json* value = value_where(object, key, "true or false", [](const Json& one) { return one.is_boolean(); });
+  return value != nullptr && value->get<bool>();
 }
 
 std::uint64_t JsonFields::count(const JsonNode& object, const char* key) {
-  const JsonNode node = member(object, key, "a whole number, 0 or more");
-  if (node.value == nullptr) return 0;
-  if (node.value->is_number_unsigned()) return node.value->get<std::uint64_t>();
-  complain(node.pointer, found(*node.value) + ", expected a whole number, 0 or more");
-  return 0;
+  const Json* value =
+      value_where(object, key, "a whole number, 0 or more", [](const Json& one) { return one.is_number_unsigned(); });
+  return value != nullptr ? value->get<std::uint64_t>() : 0;
 }
 
 std::string JsonFields::filled_text(const JsonNode& object, const char* key) {
-  const std::string expected = "a text that is not empty";
-  const JsonNode node = member(object, key, expected);
-  if (node.value == nullptr) return {};
-  std::string text = node.value->is_string() ? node.value->get<std::string>() : "";
-  if (text.empty()) complain(node.pointer, found(*node.value) + ", expected " + expected);
-  return text;
+  const Json* value = value_where(object, key, "a text that is not empty",
+                                  [](const Json& one) { return one.is_string() && one != ""; });
+  return value != nullptr ? value->get<std::string>() : std::string();
 }
 
-double JsonFields::number_where(const JsonNode& object, const char* key, const std::string& expected, double instead,
-                                bool (*good)(double, const NumberRange&), const NumberRange& range) {
-  const JsonNode node = member(object, key, expected);
-  if (node.value == nullptr) return instead;
-  const double value = node.value->is_number() ? node.value->get<double>() : std::nan("");
-  if (good(value, range)) return value;
-  complain(node.pointer, found(*node.value) + ", expected " + expected);
-  return instead;
+double JsonFields::number_in(const JsonNode& object, const char* key, const std::string& expected, double instead,
+                             const NumberRange& range) {
+  // No range holds what is not finite.
+  const Json* value = value_where(object, key, expected,
+                                  [&](const Json& one) { return one.is_number() && range.holds(one.get<double>()); });
+  return value != nullptr ? value->get<double>() : instead;
 }
 
 double JsonFields::number(const JsonNode& object, const char* key, Sign sign) {
-  const auto good = [](double value, const NumberRange& range) { return std::isfinite(value) && range.holds(value); };
   const double most = std::numeric_limits<double>::max();
-  if (sign == Sign::kAny) return number_where(object, key, "a number", 1.0, good, {-most, most});
+  if (sign == Sign::kAny) return number_in(object, key, "a number", 1.0, {-most, most});
   const bool positive = sign == Sign::kPositive;
-  return number_where(object, key, positive ? "a number above 0" : "a number, 0 or more", 1.0, good,
-                      {0.0, most, positive});
+  return number_in(object, key, positive ? "a number above 0" : "a number, 0 or more", 1.0, {0.0, most, positive});
 }
 
 double JsonFields::number(const JsonNode& object, const char* key, const NumberRange& range) {
-  return number_where(
-      object, key, range.words(), range.low,
-      [](double value, const NumberRange& wanted) { return wanted.holds(value); }, range);
+  return number_in(object, key, range.words(), range.low, range);
 }
 
 std::optional<std::size_t> JsonFields::choice(const JsonNode& node, const std::vector<std::string>& names) {
@@ -260,12 +252,9 @@ void JsonFields::refuse_unknown(const JsonNode& top) {
   }
 }
 
-// A list; without one, complains and gives a JsonNode without value.
 JsonNode JsonFields::list(const JsonNode& object, const char* key, const std::string& expected) {
-  const JsonNode node = member(object, key, expected);
-  if (node.value == nullptr || node.value->is_array()) return node;
-  complain(node.pointer, found(*node.value) + ", expected " + expected);
-  return {nullptr, node.pointer};
+  return {value_where(object, key, expected, [](const Json& one) { return one.is_array(); }),
+          object.pointer + "/" + key};
 }
 
 // Exactly `expected_count` numbers (`words` says which) into `values`.

@@ -72,6 +72,7 @@ class JsonFields {
   JsonNode member(const JsonNode& object, const char* key, const std::string& expected);
   // The same for a member that may be left out: then no complaint.
   JsonNode optional_member(const JsonNode& object, const char* key);
+  // A list; without one, complains and gives a JsonNode without value.
   JsonNode list(const JsonNode& object, const char* key, const std::string& expected);
   static JsonNode entry(const JsonNode& list, std::size_t index);
 
@@ -93,8 +94,11 @@ class JsonFields {
   void refuse_unknown(const JsonNode& top);
 
  private:
-  double number_where(const JsonNode& object, const char* key, const std::string& expected, double instead,
-                      bool (*good)(double, const NumberRange&), const NumberRange& range);
+  template <typename Good>
+  const nlohmann::json* value_where(const JsonNode& object, const char* key, const std::string& expected,
+                                    const Good& good);
+  double number_in(const JsonNode& object, const char* key, const std::string& expected, double instead,
+                   const NumberRange& range);
   bool told_already(const std::string& pointer) const;
   std::string_view text_;
   const std::string& path_;

@@ -65,8 +65,8 @@ class RecordingReader {
   const std::string& name() const;
   RecordingColumns columns() const;
 
-  // Reads up to `capacity` rows (at least 1) into `rows`; returns how many, 0
-  // at the end. Errors: any row that breaks a rule above; fewer than 10 rows in
+  // Reads `capacity` rows (at least 1) into `rows`; returns how many: fewer at the
+  // end only. Errors: any row that breaks a rule above; fewer than 10 rows in
   // all; a rate outside the range, known at row 1,000 or at the end, so after
   // earlier rows were returned. After an error each call repeats it.
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);

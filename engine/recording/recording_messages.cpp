@@ -28,14 +28,6 @@ bool is_number(std::string_view text) {
   return parse_recording_number(text.data(), text.data() + text.size(), value) == text.data() + text.size();
 }
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
-
 // `text` without blanks and one pair of quotes around it.
 std::string_view bare(std::string_view text) {
   text = trimmed(text);
@@ -93,7 +85,7 @@ Error missing_columns(const LineScanner& scanner, const CsvLine& line, const std
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (const std::string_view wanted : missing) {
-      if (lower_case(bare(names[i])) != lower_case(wanted)) continue;
+      if (lower_ascii(bare(names[i])) != lower_ascii(wanted)) continue;
       return at(field_column(line.text, i), "found column '" + printable(names[i]) + "', expected exactly " +
                                                 std::string(wanted) + "; rename the column");
     }
@@ -149,7 +141,7 @@ std::string number_fault(std::string_view field, std::string_view name) {
   if (bare(text).size() != text.size()) {
     return "found quotes around " + printable(bare(text)) + expected + "remove the quotes";
   }
-  const std::string lower = lower_case(text);
+  const std::string lower = lower_ascii(text);
   const std::size_t digits = lower.find_first_not_of("+-");
   if (digits != std::string::npos && lower.compare(digits, 2, "0x") == 0) {
     return found + expected + "write it in decimal";

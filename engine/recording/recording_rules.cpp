@@ -1,22 +1,15 @@
 #include "engine/recording/recording_rules.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "engine/base/csv_scanner.h"
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
 
 std::array<double, kKnownColumns> values_of(const RecordingRow& row) {
   return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
-}
-
-// Three digits are enough to recognise a step or a rate by.
-std::string rounded(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3);
-  return std::string(text, end.ptr);
 }
 
 bool rate_in_range(double step_s) {
@@ -90,7 +83,7 @@ std::optional<RowFault> RowRules::check_rate() {
   const double step_s = *middle;
   if (rate_in_range(step_s)) return std::nullopt;
   return RowFault{RowFault::Place::kFirstRow, ColumnRole::kTime,
-                  "found a median time step of " + rounded(step_s) + " s (" + rounded(1.0 / step_s) +
+                  "found a median time step of " + general(step_s, 3) + " s (" + general(1.0 / step_s, 3) +
                       " Hz), expected 10 Hz to 20 kHz; " + rate_advice(step_s)};
 }
 

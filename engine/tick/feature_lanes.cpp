@@ -13,9 +13,6 @@ namespace {
 // A filter at rest decays to zero, not into denormals, which would slow every later
 // operation on it.
 constexpr double kNothing_N = 1e-30;
-// So many exponentials take no longer one by one, by the C library.
-constexpr std::size_t kFewBranches = 2;
-
 PALPATE_INLINE void curve_at(V4& value, const CurveLanes& curve, double depth_m) noexcept {
   const auto* knots = curve.has_knots ? &curve.knot_N : nullptr;
   const V4 u = depth_m / curve.reference_depth_m;
@@ -32,20 +29,6 @@ PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s,
   keep = -step_s / time_s;
   to_exponential(keep);
   gain = time_s * (1.0 - keep) * per_step;
-}
-
-PALPATE_INLINE void steps_of(const double* time_s, std::size_t count, double clock, double step_s,
-                             BranchStep* steps) noexcept {
-  const double per_step = 1.0 / step_s;
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    const std::size_t lanes = std::min(kLanes, count - i);
-    V4 time{1.0, 1.0, 1.0, 1.0};
-    for (std::size_t lane = 0; lane < lanes; ++lane) time[lane] = time_s[i + lane];
-    V4 keep;
-    V4 gain;
-    step_of(keep, gain, time * clock, step_s, per_step);
-    for (std::size_t lane = 0; lane < lanes; ++lane) steps[i + lane] = {keep[lane], gain[lane]};
-  }
 }
 
 PALPATE_INLINE void prepare_groups(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {
@@ -102,10 +85,6 @@ PALPATE_INLINE void bend_groups(BristleLanes::Group* group, std::size_t count, d
   attribute void prepare_##suffix(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {          \
     prepare_groups(group, count, step_s);                                                                          \
   }                                                                                                                \
-  attribute void steps_##suffix(const double* time_s, std::size_t count, double clock, double step_s,              \
-                                BranchStep* steps) noexcept {                                                      \
-    steps_of(time_s, count, clock, step_s, steps);                                                                 \
-  }                                                                                                                \
   attribute double held_##suffix(const BranchLanes::Group* group, std::size_t count, double surface_m,             \
                                  const BranchStates& from, BranchStates& to) noexcept {                            \
     return held_by_groups(group, count, surface_m, from, to);                                                      \
@@ -119,12 +98,10 @@ PALPATE_LANE_LOOPS(, plain)
 #ifdef __x86_64__
 PALPATE_LANE_LOOPS([[gnu::target("avx2")]], wide)
 const bool kWide = has_wide_lanes();
-const auto kSteps = kWide ? &steps_wide : &steps_plain;
 const auto kPrepare = kWide ? &prepare_wide : &prepare_plain;
 const auto kHeld = kWide ? &held_wide : &held_plain;
 const auto kBend = kWide ? &bend_wide : &bend_plain;
 #else
-constexpr auto kSteps = &steps_plain;
 constexpr auto kPrepare = &prepare_plain;
 constexpr auto kHeld = &held_plain;
 constexpr auto kBend = &bend_plain;
@@ -142,13 +119,10 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
 }  // namespace
 
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept {
-  const double keep = std::exp(-step_s / relaxation_time_s);
-  return {keep, relaxation_time_s * (1.0 - keep) / step_s};
-}
-
-void branch_steps(const std::vector<double>& times_s, double clock, double step_s, std::vector<BranchStep>& steps) {
-  steps.resize(times_s.size());
-  kSteps(times_s.data(), times_s.size(), clock, step_s, steps.data());
+  V4 keep;
+  V4 gain;
+  step_of(keep, gain, V4{relaxation_time_s, 1.0, 1.0, 1.0}, step_s, 1.0 / step_s);
+  return {keep[0], gain[0]};
 }
 
 void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
@@ -168,15 +142,7 @@ std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s) 
 }
 
 void BranchLanes::prepare(double step_s) noexcept {
-  if (count_ <= kFewBranches) {
-    for (std::size_t i = 0; i < count_; ++i) {
-      const BranchStep step = branch_step(groups_[0].clock[i] * groups_[0].relaxation_time_s[i], step_s);
-      groups_[0].keep[i] = step.keep;
-      groups_[0].gain[i] = step.gain;
-    }
-  } else {
-    kPrepare(groups_.data(), groups_.size(), step_s);
-  }
+  kPrepare(groups_.data(), groups_.size(), step_s);
   held_at_m_ = std::numeric_limits<double>::quiet_NaN();
 }
 

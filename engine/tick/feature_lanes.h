@@ -36,9 +36,6 @@ struct BranchStep {
   double gain = 0.0;
 };
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
-// Of all times, each multiplied by `clock`, as filters of many branches have them.
-void branch_steps(const std::vector<double>& times_s, double clock, double step_s, std::vector<BranchStep>& steps);
-
 // As many parts as a filter can have.
 inline constexpr std::size_t kMaxLaneGroups = 16;
 

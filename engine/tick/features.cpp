@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -23,12 +24,6 @@ const DriveCurve& branch_drive(const FeatureSpec& spec, std::size_t part) noexce
 }
 double branch_time_s(const FeatureSpec& spec, std::size_t part) noexcept {
   return spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : spec.parts[part].relaxation_time_s;
-}
-
-std::string four_digits(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 4);
-  return {buffer.data(), end.ptr};
 }
 
 }  // namespace
@@ -60,7 +55,7 @@ std::string feature_name(const FeatureSpec& spec) {
   if (has_parts(spec.kind)) {
     const bool stops = spec.kind == FeatureKind::stops;
     const auto constant = [&](const FeaturePart& part) {
-      return four_digits(stops ? 1e3 * part.threshold_m : part.relaxation_time_s);
+      return general(stops ? 1e3 * part.threshold_m : part.relaxation_time_s, 4);
     };
     name.append("_").append(constant(spec.parts[0]));
     if (spec.part_count > 1) name.append("-").append(constant(spec.parts[spec.part_count - 1]));
@@ -68,7 +63,7 @@ std::string feature_name(const FeatureSpec& spec) {
   }
   if (has_time(spec.kind)) {
     const bool lowpass = spec.kind == FeatureKind::lowpass_velocity;
-    return name.append("_").append(four_digits(spec.relaxation_time_s)).append(lowpass ? "s_m_per_s" : "s_N");
+    return name.append("_").append(general(spec.relaxation_time_s, 4)).append(lowpass ? "s_m_per_s" : "s_N");
   }
   return name.append(spec.kind == FeatureKind::velocity ? "_m_per_s" : "_m");
 }

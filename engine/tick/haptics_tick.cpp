@@ -39,7 +39,6 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<c
     if (index == filters_.size()) filters_.emplace_back(model->features());
     filter_of_.push_back(index);
   }
-  vectors_.resize(filters_.size());
   rehearsed_ = filters_;
   snapshot_.model_count = static_cast<std::uint32_t>(models_.size());
 }
@@ -92,7 +91,6 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
     if (!(since_s >= 0.0 && since_s < kLongestGap_s)) filters_[i].reset();
     filters_[i].update({sample_.time_s, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
     for (const FeatureFilter& old : before.filters_) filters_[i].adopt(old);
-    vectors_[i] = filters_[i].vector();
   }
   evaluate_models();
 }
@@ -110,14 +108,14 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
   started_ = true;
   sample_ = sample;
   const MotionEstimate motion = motion_.update(sample);
-  for (std::size_t i = 0; i < filters_.size(); ++i) vectors_[i] = filters_[i].update(sample, motion);
+  for (FeatureFilter& filter : filters_) filter.update(sample, motion);
 
   snapshot_.fault = TickFault::none;
   snapshot_.time_s = sample.time_s;
   snapshot_.position_m = sample.position_m;
   snapshot_.in_contact = sample.position_m > 0.0;
   // A model's own surface may lie further out.
-  for (const FeatureVector& vector : vectors_) snapshot_.in_contact = snapshot_.in_contact || vector.in_contact;
+  for (const FeatureFilter& one : filters_) snapshot_.in_contact = snapshot_.in_contact || one.vector().in_contact;
   snapshot_.depth_m = std::max(0.0, sample.position_m);
   snapshot_.velocity_m_per_s = motion.velocity_m_per_s;
   evaluate_models();
@@ -135,7 +133,7 @@ void HapticsTick::evaluate_models() noexcept {
     double predicted_error_N = 0.0;
     if (snapshot_.in_contact) {
       const std::uint64_t before = timed_ ? cycle_count() : 0;
-      const FeatureVector& vector = vectors_[filter_of_[i]];
+      const FeatureVector& vector = filters_[filter_of_[i]].vector();
       const ForceEstimate estimate = models_[i]->evaluate(vector.values.data());
       if (timed_) cycles_[i] = cycle_count() - before;
       // Its surface may lie deeper than where positions are 0.

@@ -97,10 +97,10 @@ class HapticsTick {
   std::size_t model_count() const noexcept { return models_.size(); }
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }
   // The features that model `index` was last given.
-  const FeatureVector& features_of(std::size_t index) const noexcept { return vectors_[filter_of_[index]]; }
+  const FeatureVector& features_of(std::size_t index) const noexcept { return filters_[filter_of_[index]].vector(); }
   std::size_t filter_count() const noexcept { return filters_.size(); }
   const FeatureFilter& filter(std::size_t index) const noexcept { return filters_[index]; }
-  const FeatureVector& vector(std::size_t index) const noexcept { return vectors_[index]; }
+  const FeatureVector& vector(std::size_t index) const noexcept { return filters_[index].vector(); }
 
  private:
   void evaluate_models() noexcept;
@@ -108,7 +108,6 @@ class HapticsTick {
   MotionEstimator motion_;
   std::vector<std::shared_ptr<const ForceModel>> models_;
   std::vector<FeatureFilter> filters_;
-  std::vector<FeatureVector> vectors_;
   std::vector<std::size_t> filter_of_;  // per model
   std::array<std::uint64_t, kMaxModels> cycles_{};
   ToolSample sample_;                     // the last one

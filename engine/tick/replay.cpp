@@ -56,18 +56,6 @@ void run(HapticsTick& tick, double least_contact_N, const RecordingRow* rows, st
   }
 }
 
-// Fills `rows` as far as the reader has any.
-Result<std::size_t> read_full(RecordingReader& reader, std::vector<RecordingRow>& rows) {
-  std::size_t filled = 0;
-  while (filled < rows.size()) {
-    const Result<std::size_t> count = reader.read(rows.data() + filled, rows.size() - filled);
-    if (!count) return count.error();
-    if (*count == 0) break;
-    filled += *count;
-  }
-  return filled;
-}
-
 }  // namespace
 
 Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
@@ -86,7 +74,7 @@ Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models,
   if (const Status status = check_count(models); !status) return status.error();
   // One buffer for all: the rows that identification needs are also the chunk.
   std::vector<RecordingRow> rows(kSensorIdentificationRows);
-  Result<std::size_t> count = read_full(reader, rows);
+  Result<std::size_t> count = reader.read(rows.data(), rows.size());
   if (!count) return count.error();
   ReplaySummary summary;
   summary.sensor = identify_sensor(rows.data(), *count, reader.columns());
@@ -94,7 +82,7 @@ Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models,
   HapticsTick tick(summary.sensor, models);
   while (*count > 0) {
     run(tick, least_N, rows.data(), *count, visitor, surface_offset_m, summary);
-    count = read_full(reader, rows);
+    count = reader.read(rows.data(), rows.size());
     if (!count) return count.error();
   }
   return summary;

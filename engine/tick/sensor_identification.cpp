@@ -116,14 +116,9 @@ SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, Recordin
 
 Result<SensorSpec> identify_sensor(RecordingReader& reader) {
   std::vector<RecordingRow> rows(kSensorIdentificationRows);
-  std::size_t filled = 0;
-  while (filled < rows.size()) {
-    const Result<std::size_t> count = reader.read(rows.data() + filled, rows.size() - filled);
-    if (!count) return count.error();
-    if (*count == 0) break;
-    filled += *count;
-  }
-  return identify_sensor(rows.data(), filled, reader.columns());
+  const Result<std::size_t> count = reader.read(rows.data(), rows.size());
+  if (!count) return count.error();
+  return identify_sensor(rows.data(), *count, reader.columns());
 }
 
 double identify_force_noise_N(const RecordingRow* rows, std::size_t count) {

@@ -19,8 +19,9 @@ static real depth_m;
 static real last_depth_m;
 static real surface_m;
 
-/* sum_k coefficient[k] u^(k+1), beyond u = 1 along its tangent. */
-static real rising_curve(const real *coefficient, int count, real u) {
+/* sum_k coefficient[k] u^(k+1) + sum_k knot[k] max(0, u - (k + 1) / (knots + 1))^3, beyond
+   u = 1 along its tangent. */
+static real rising_curve(const real *coefficient, int count, const real *knot, int knots, real u) {
   const real inside = smaller(u, R(1.0));
   real sum = R(0.0);
   real slope = R(0.0);
@@ -29,18 +30,6 @@ static real rising_curve(const real *coefficient, int count, real u) {
     slope = slope * inside + (real)(k + 1) * coefficient[k];
     sum = (sum + coefficient[k]) * inside;
   }
-  return u > R(1.0) ? sum + slope * (u - R(1.0)) : sum;
-}
-)C";
-
-constexpr const char* kSplineC = R"C(
-/* The same with sum_k knot[k] max(0, u - (k + 1) / (knots + 1))^3 on top. */
-static real rising_spline(const real *coefficient, int count, const real *knot, int knots, real u) {
-  const real inside = smaller(u, R(1.0));
-  real sum = rising_curve(coefficient, count, inside);
-  real slope = R(0.0);
-  int k;
-  for (k = count - 1; k >= 0; --k) slope = slope * inside + (real)(k + 1) * coefficient[k];
   for (k = 0; k < knots; ++k) {
     const real beyond = larger(R(0.0), inside - (real)(k + 1) / (real)(knots + 1));
     sum += knot[k] * beyond * beyond * beyond;
@@ -101,17 +90,19 @@ static real filtered(real state, real change, real step_s, real time_s, real gai
 }
 )C";
 
-// Writes the table; returns the curve's value at `depth`, a C expression.
-std::string coefficients(CText& out, const std::string& name, const DriveCurve& curve,
-                         const std::string& depth = "depth_m") {
-  out.list(name, Eigen::Map<const Eigen::VectorXd>(curve.coefficient_N.data(), kDriveCoefficients));
-  if (curve.has_knots) {
-    out.list(name + "_knot", Eigen::Map<const Eigen::VectorXd>(curve.knot_N.data(), kDriveKnots));
-    return "rising_spline(" + name + ", " + std::to_string(kDriveCoefficients) + ", " + name + "_knot, " +
-           std::to_string(kDriveKnots) + ", " + depth + " / " + out.number(curve.reference_depth_m) + ")";
-  }
-  return "rising_curve(" + name + ", " + std::to_string(kDriveCoefficients) + ", " + depth + " / " +
-         out.number(curve.reference_depth_m) + ")";
+// Writes the tables; returns the curve's value at `u`, a C expression.
+template <std::size_t n>
+std::string write_curve(CText& out, const std::string& name, const std::array<double, n>& coefficients, bool has_knots,
+                        const std::array<double, kDriveKnots>& knots, const std::string& u) {
+  out.list(name, Eigen::Map<const Eigen::VectorXd>(coefficients.data(), n));
+  if (has_knots) out.list(name + "_knot", Eigen::Map<const Eigen::VectorXd>(knots.data(), kDriveKnots));
+  return "rising_curve(" + name + ", " + std::to_string(n) + ", " +
+         (has_knots ? name + "_knot, " + std::to_string(kDriveKnots) : "0, 0") + ", " + u + ")";
+}
+
+std::string write_drive(CText& out, const std::string& name, const DriveCurve& curve, const std::string& depth) {
+  return write_curve(out, name, curve.coefficient_N, curve.has_knots, curve.knot_N,
+                     depth + " / " + out.number(curve.reference_depth_m));
 }
 
 // Of one feature: tables and state go to `out` at once, the returned text goes into
@@ -142,7 +133,7 @@ constexpr const char* kSurfaceHalfwayC =
 std::string emit_branch(CText& out, const std::string& target, const std::string& name, const DriveCurve& drive,
                         double time_s, double slowing) {
   out.count({.arithmetic = drive.has_knots ? std::size_t{60} : std::size_t{26}, .divisions = 3, .exponentials = 1});
-  const std::string curve = coefficients(out, name, drive, "s");
+  const std::string curve = write_drive(out, name, drive, "s");
   const std::string clock = slowing == 0.0 ? ""
                                            : "EXP(" + out.number(slowing) + " * smaller(R(1.0), " + kSurfaceHalfwayC +
                                                  " / " + out.number(drive.reference_depth_m) + ")) * ";
@@ -159,7 +150,7 @@ std::string branch_name(std::size_t index, std::size_t part) { return branch_nam
 
 // What decides where the surface is: all branches and the elastic response of the lag.
 void write_surface(CText& out, const std::vector<FeatureSpec>& features, const FeatureSpec& lag) {
-  const std::string elastic = coefficients(out, "surface_elastic", lag.drive, "s");
+  const std::string elastic = write_drive(out, "surface_elastic", lag.drive, "s");
   std::string text = "\nstatic real held(real step_s, real s) {\n  return " + elastic;
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (features[i].kind == FeatureKind::maxwell_branch) text += " + " + branch_name(i) + "_after(step_s, s)";
@@ -204,7 +195,7 @@ std::string emit_bristles(CText& out, const FeatureSpec& spec, std::size_t index
     const std::string part = state + index_text(p);
     const std::string threshold = out.number(spec.parts[p].threshold_m);
     const std::string curve =
-        coefficients(out, "bristle_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive);
+        write_drive(out, "bristle_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive, "depth_m");
     if (spec.kind == FeatureKind::stops) {
       out.count({.arithmetic = 27, .divisions = 2});
       text += "  " + part + " = first || !(depth_m > R(0.0)) ? R(0.0) : clamped(" + part +
@@ -237,14 +228,6 @@ std::string feature_of(const std::vector<FeatureSpec>& features, FeatureKind kin
 
 bool has_filter(FeatureKind kind) { return kind == FeatureKind::lowpass_velocity || is_branch(kind); }
 
-bool has_splines(const std::vector<FeatureSpec>& features) {
-  return std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) {
-    const auto end = spec.parts.begin() + static_cast<std::ptrdiff_t>(spec.part_count);
-    return spec.drive.has_knots ||
-           std::any_of(spec.parts.begin(), end, [](const FeaturePart& part) { return part.drive.has_knots; });
-  });
-}
-
 // Features whose value is a force by itself.
 bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
@@ -252,7 +235,6 @@ bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
 void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(kFeatureHelpersC);
-  if (has_splines(features)) out.add(kSplineC);
   if (std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) { return has_filter(spec.kind); })) {
     out.add(kFilterC);
   }
@@ -279,22 +261,12 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
 
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {
   out.add("\n/* ---- trend: a nonlinear viscoelastic solid ---- */\n\n");
-  const auto coefficients_of = [&](const char* name, const auto& values) {
-    out.list(name, Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-  };
-  coefficients_of("elastic", trend.elastic_N);
-  const std::string count = std::to_string(kElasticCoefficients);
-  std::string elastic = "rising_curve(elastic, " + count + ", u)";
-  if (trend.has_elastic_knots) {
-    if (!has_splines(features)) out.add(kSplineC);
-    coefficients_of("elastic_knot", trend.elastic_knot_N);
-    elastic = "rising_spline(elastic, " + count + ", elastic_knot, " + std::to_string(kDriveKnots) + ", u)";
-  }
-  if (trend.preload_N != 0.0) {
-    elastic = "(u > R(0.0) ? " + out.number(trend.preload_N) + " : R(0.0)) + " + elastic;
-  }
-  coefficients_of("viscosity", trend.viscosity_Ns_per_m);
-  coefficients_of("thinning", trend.thinning_Ns_per_m);
+  const std::string rising =
+      write_curve(out, "elastic", trend.elastic_N, trend.has_elastic_knots, trend.elastic_knot_N, "u");
+  const std::string elastic =
+      trend.preload_N == 0.0 ? rising : "(u > R(0.0) ? " + out.number(trend.preload_N) + " : R(0.0)) + " + rising;
+  out.list("viscosity", Eigen::Map<const Eigen::VectorXd>(trend.viscosity_Ns_per_m.data(), kViscosityCoefficients));
+  out.list("thinning", Eigen::Map<const Eigen::VectorXd>(trend.thinning_Ns_per_m.data(), kViscosityCoefficients));
   const std::string limit = out.number(trend.velocity_limit_m_per_s);
   std::string text =
       "\nstatic real quadratic(const real *c, real u) { return (c[2] * u + c[1]) * u + c[0]; }\n\n"

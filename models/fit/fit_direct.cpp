@@ -11,7 +11,6 @@
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/lapack.h"
 #include "models/solve/projected_kernel.h"
-#include "models/solve/refined_solve.h"
 
 namespace palpate {
 namespace {
@@ -19,16 +18,12 @@ namespace {
 // Of the fit, for its progress.
 constexpr double kFactorisingFrom = 0.25;
 constexpr double kFactorised = 0.95;
-// A factor in single precision and what it takes to refine it is quicker from 1,000 sites
-// on, by a quarter at 1,500.
-constexpr Eigen::Index kRefinedSites = 1500;
 
 struct Solution {
   Eigen::VectorXd u;
   double smoothing = 0.0;
   double residual_squared = 0.0;  // of the scaled rows
   double condition = 0.0;
-  double criterion = 0.0;
   Eigen::Index rank = 0;
 };
 
@@ -40,20 +35,6 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
     return !cancelled;
   };
-  const auto take = [&](double condition) {
-    out.smoothing = smoothing;
-    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
-    out.condition = condition;
-    out.rank = kernel.data().size();
-    return Outcome::solved;
-  };
-  if (kernel.data().size() >= kRefinedSites) {
-    if (auto refined = solve_refined(kernel, smoothing, may_continue)) {
-      out.u = std::move(refined->u);
-      return take(refined->condition);
-    }
-    if (cancelled) return Outcome::cancelled;
-  }
   // A matrix that rounding made indefinite gets ten times the smoothing.
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
     Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
@@ -65,7 +46,11 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     Eigen::VectorXd u = kernel.data();
     cholesky_solve(matrix, u);
     out.u = kernel.project(u);
-    return take(cholesky_condition(matrix, norm));
+    out.smoothing = smoothing;
+    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
+    out.condition = cholesky_condition(matrix, norm);
+    out.rank = u.size();
+    return Outcome::solved;
   }
   return Outcome::failed;
 }
@@ -77,12 +62,10 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
   const std::optional<double> given =
       options.smoothing || options.kernel != KernelKind::cubic ? options.smoothing : sites.smoothing;
   double smoothing = given.value_or(0.0);
-  double criterion = 0.0;
   if (!given) {
-    const Result<SmoothingChoice> choice = choose_smoothing(sites, options.kernel);
+    const Result<double> choice = choose_smoothing(sites, options.kernel);
     if (!choice) return choice.error();
-    smoothing = choice->smoothing;
-    criterion = choice->criterion;
+    smoothing = *choice;
   }
   if (!control.may_continue(0.2)) return interrupted();
   switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
@@ -93,7 +76,6 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
     case Outcome::solved:
       break;
   }
-  solution.criterion = criterion;
   return solution;
 }
 
@@ -121,7 +103,6 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   report.condition = solution->condition;
   report.residual_rms = std::sqrt(solution->residual_squared / static_cast<double>(sites.count()));
   report.smoothing = solution->smoothing;
-  report.criterion = solution->criterion;
   return fitted;
 }
 

@@ -1,5 +1,5 @@
 // Direct interpolation: every site is a centre, smoothed as much as the data
-// ask for (choose_smoothing.h), with the side condition of eq. 3.
+// ask for (decide_strength.h, else choose_smoothing.h), with the side condition of eq. 3.
 //
 // Cholesky factorises the projected system (projected_kernel.h); the paper's truncated
 // SVD takes some thirty times longer and agreed within the noise.

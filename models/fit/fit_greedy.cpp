@@ -80,9 +80,7 @@ class RandomSubsets final : public Selection {
 class AllSites final : public Selection {
  public:
   AllSites(const Sites& sites, const MethodRequest& request, std::vector<Eigen::Index> distinct)
-      : Selection(sites, request, std::move(distinct)),
-        row_scale_(sites.row_scale),
-        product_(request.kernel, gains_.points()) {
+      : Selection(sites, request, std::move(distinct)), sites_(sites), kernel_(request.kernel) {
     gains_.update(left_, basis_);
   }
 
@@ -110,11 +108,12 @@ class AllSites final : public Selection {
   void accept(const OrthogonalBasis::Outside& part) {
     const double residual_share = part.correlation / std::sqrt(part.squared);
     const Eigen::VectorXd q = basis_.add(part);
-    gains_.advance(left_, basis_, product_.multiply(q.cwiseProduct(row_scale_)), residual_share);
+    gains_.advance(left_, basis_, kernel_product(kernel_, sites_.points, q.cwiseProduct(sites_.row_scale)),
+                   residual_share);
   }
 
-  const Eigen::VectorXd& row_scale_;
-  KernelProduct product_;
+  const Sites& sites_;
+  KernelKind kernel_;
 };
 
 bool select(Selection& selection, Eigen::Index count, const FitControl& control, std::vector<Eigen::Index>& chosen) {

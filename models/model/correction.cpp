@@ -2,24 +2,17 @@
 
 #include <string_view>
 
-// The table of kinds: one line each. A row is defined beside its class.
-#define PALPATE_CORRECTION_KINDS(ROW) \
-  ROW(kRbfCorrectionKind)             \
-  ROW(kGridCorrectionKind)            \
-  ROW(kNoCorrectionKind)
-
 namespace palpate {
 
-#define PALPATE_DECLARE_KIND(row) extern const CorrectionKind row;
-PALPATE_CORRECTION_KINDS(PALPATE_DECLARE_KIND)
-#undef PALPATE_DECLARE_KIND
+// The table of kinds. A row is defined beside its class.
+extern const CorrectionKind kRbfCorrectionKind;
+extern const CorrectionKind kGridCorrectionKind;
+extern const CorrectionKind kNoCorrectionKind;
 
 namespace {
 
 std::vector<CorrectionKind>& kind_table() {
-#define PALPATE_LIST_KIND(row) row,
-  static std::vector<CorrectionKind> table = {PALPATE_CORRECTION_KINDS(PALPATE_LIST_KIND)};
-#undef PALPATE_LIST_KIND
+  static std::vector<CorrectionKind> table = {kRbfCorrectionKind, kGridCorrectionKind, kNoCorrectionKind};
   return table;
 }
 

@@ -72,14 +72,11 @@ double NearestDistance::nearest_squared(const double* x) const noexcept {
 }
 
 NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
-    : centre_(aligned_array<double>(kMaxFeatures)),
-      split_coordinate_(aligned_array<std::int32_t>(simd::kNearLeaves)),
-      split_at_(aligned_array<float>(simd::kNearLeaves)),
-      loops_(simd::nearest_loops(static_cast<int>(points.rows()))) {
+    : loops_(simd::nearest_loops(static_cast<int>(points.rows()))) {
   const Eigen::VectorXd centre = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   const Eigen::MatrixXd about = points.colwise() - centre;
-  std::copy(centre.begin(), centre.end(), centre_.get());
-  std::fill_n(split_at_.get(), simd::kNearLeaves, std::numeric_limits<float>::infinity());
+  std::copy(centre.begin(), centre.end(), tree_.centre.begin());
+  tree_.split_at.fill(std::numeric_limits<float>::infinity());
   std::vector<std::vector<Eigen::Index>> leaves(simd::kNearLeaves);
   split(about, all_of(about), 0, leaves);
   for (const auto& leaf : leaves) tree_.leaf_size = std::max(tree_.leaf_size, whole_vectors(leaf.size()));
@@ -90,10 +87,7 @@ NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
   leaves_ = aligned_array<float>(leaves.size() * floats);
   for (std::size_t i = 0; i < leaves.size(); ++i)
     fill_rows(rows, leaves[i], tree_.leaf_size, leaves_.get() + i * floats);
-  tree_.split_coordinate = split_coordinate_.get();
-  tree_.split_at = split_at_.get();
   tree_.leaves = leaves_.get();
-  tree_.centre = centre_.get();
   set_limit(radius, points.colwise().norm().maxCoeff(), about.colwise().squaredNorm().maxCoeff());
 }
 
@@ -122,8 +116,8 @@ void NearPoints::split(const Eigen::MatrixXd& points, std::vector<Eigen::Index> 
   });
   const std::size_t middle = part.size() / 2;
   const auto overlap = static_cast<std::size_t>(kOverlap * static_cast<double>(part.size()));
-  split_coordinate_[static_cast<std::ptrdiff_t>(node)] = static_cast<std::int32_t>(k);
-  split_at_[static_cast<std::ptrdiff_t>(node)] = simd::nearest_float(points(k, part[middle]));
+  tree_.split_coordinate[node] = static_cast<std::int32_t>(k);
+  tree_.split_at[node] = simd::nearest_float(points(k, part[middle]));
   const auto place = [&](std::size_t i) { return part.begin() + static_cast<std::ptrdiff_t>(i); };
   split(points, {part.begin(), place(std::max<std::size_t>(1, middle + overlap))}, 2 * node + 1, leaves);
   split(points, {place(middle - overlap), part.end()}, 2 * node + 2, leaves);

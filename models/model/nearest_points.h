@@ -52,9 +52,6 @@ class NearPoints {
              std::vector<std::vector<Eigen::Index>>& leaves);
   void set_limit(double radius, double largest, double about_squared);
 
-  std::shared_ptr<double[]> centre_;
-  std::shared_ptr<std::int32_t[]> split_coordinate_;
-  std::shared_ptr<float[]> split_at_;
   std::shared_ptr<float[]> leaves_;
   simd::NearTree tree_;
   simd::NearestLoops loops_;

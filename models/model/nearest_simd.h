@@ -2,6 +2,7 @@
 // models/model/rbf/rbf_simd.h, whose choose_target holds for these too.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -30,13 +31,13 @@ using NearestFunction = float (*)(const float* coordinates, std::size_t stride, 
 // one multiplication and addition a coordinate.
 struct NearTree {
   // Split i: q below split_at[i] in coordinate split_coordinate[i] goes to 2 i + 1, else to
-  // 2 i + 2. kNearLeaves of each, the last unused.
-  const std::int32_t* split_coordinate = nullptr;
-  const float* split_at = nullptr;
+  // 2 i + 2; the last is unused.
+  std::array<std::int32_t, kNearLeaves> split_coordinate{};
+  std::array<float, kNearLeaves> split_at{};
   // Leaf j from leaves + j * leaf_size * (d + 1): a row a coordinate, and one of -|p|^2 / 2.
   const float* leaves = nullptr;
-  std::size_t leaf_size = 0;       // a multiple of kSimdPadFloat
-  const double* centre = nullptr;  // 8 values
+  std::size_t leaf_size = 0;  // a multiple of kSimdPadFloat
+  std::array<double, 8> centre{};
   // r^2 / 2 and 1/2, less and more by what rounding may do to the two sides.
   float half_squared = 0.0F;
   float half = 0.5F;

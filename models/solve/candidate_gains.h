@@ -52,7 +52,6 @@ class CandidateGains {
   bool useful(Eigen::Index site, const OrthogonalBasis::Outside& part) const {
     return part.squared > kInsideBasis * length_squared_[site];
   }
-  const PointArrays& points() const { return points_; }
 
  private:
   Eigen::MatrixXd columns(std::span<const Eigen::Index> sites) const;

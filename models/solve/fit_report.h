@@ -21,10 +21,9 @@ struct FitReport {
   double condition = 0.0;
   // sqrt(mean(row_scale^2 (f - h)^2)) over the sites.
   double residual_rms = 0.0;
-  // Direct fit: lambda, and the value of the criterion that chose it. The others:
+  // Direct fit: lambda. The others:
   // the ridge over the square of the largest singular value.
   double smoothing = 0.0;
-  double criterion = 0.0;
   // Sentences for people: what was clamped, truncated or skipped.
   std::vector<std::string> notes;
 };

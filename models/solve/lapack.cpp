@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cstdlib>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 extern "C" {
@@ -27,14 +26,6 @@ void dpotrf_(const char*, const int*, double*, const int*, int*);
 void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
 void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
 double dlansy_(const char*, const char*, const int*, const double*, const int*, double*);
-void strsm_(const char*, const char*, const char*, const char*, const int*, const int*, const float*, const float*,
-            const int*, float*, const int*);
-void ssyrk_(const char*, const char*, const int*, const int*, const float*, const float*, const int*, const float*,
-            float*, const int*);
-void spotrf_(const char*, const int*, float*, const int*, int*);
-void spotrs_(const char*, const int*, const int*, const float*, const int*, float*, const int*, int*);
-void spocon_(const char*, const int*, const float*, const int*, const float*, float*, float*, int*, int*);
-float slansy_(const char*, const char*, const int*, const float*, const int*, float*);
 // Only in OpenBLAS; null with another BLAS.
 [[gnu::weak]] void openblas_set_num_threads(int);
 [[gnu::weak]] int openblas_get_num_threads(void);
@@ -196,105 +187,58 @@ bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
   return info == 0;
 }
 
-namespace {
-
-template <typename Scalar, typename Single, typename Double>
-constexpr auto of(Single* in_single, Double* in_double) {
-  if constexpr (std::is_same_v<Scalar, float>)
-    return in_single;
-  else
-    return in_double;
-}
-
-// The routines of either precision.
-template <typename Scalar>
-struct Routines {
-  static constexpr auto trsm = of<Scalar>(strsm_, dtrsm_);
-  static constexpr auto syrk = of<Scalar>(ssyrk_, dsyrk_);
-  static constexpr auto potrf = of<Scalar>(spotrf_, dpotrf_);
-  static constexpr auto potrs = of<Scalar>(spotrs_, dpotrs_);
-  static constexpr auto pocon = of<Scalar>(spocon_, dpocon_);
-  static constexpr auto lansy = of<Scalar>(slansy_, dlansy_);
-};
-
 // By panels, so that a large one can be given up: half a second each at 6,850 sites
 // on one slow core, and as quick as LAPACK's own in one go.
-template <typename Matrix>
-bool factorise(Matrix& a, const std::function<bool(double)>& may_continue) {
-  using Scalar = typename Matrix::Scalar;
+bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue) {
   constexpr int kPanel = 512;
   const int n = to_int(a.rows());
   const int lda = leading(a);
-  const Scalar one = 1;
-  const Scalar minus_one = -1;
+  const double one = 1.0;
+  const double minus_one = -1.0;
   for (int first = 0; first < n; first += kPanel) {
     const int columns = std::min(kPanel, n - first);
     const int rest = n - first - columns;
     const double left = static_cast<double>(n - first) / n;
     if (may_continue && !may_continue(1.0 - left * left * left)) return false;
-    Scalar* const corner = &a.coeffRef(first, first);
+    double* const corner = &a.coeffRef(first, first);
     int info = 0;
-    Routines<Scalar>::potrf("L", &columns, corner, &lda, &info);
+    dpotrf_("L", &columns, corner, &lda, &info);
     if (info != 0) return false;
     if (rest == 0) break;
-    Scalar* const below = corner + columns;
-    Routines<Scalar>::trsm("R", "L", "T", "N", &rest, &columns, &one, corner, &lda, below, &lda);
-    Scalar* const next = &a.coeffRef(first + columns, first + columns);
-    Routines<Scalar>::syrk("L", "N", &rest, &columns, &minus_one, below, &lda, &one, next, &lda);
+    double* const below = corner + columns;
+    dtrsm_("R", "L", "T", "N", &rest, &columns, &one, corner, &lda, below, &lda);
+    double* const next = &a.coeffRef(first + columns, first + columns);
+    dsyrk_("L", "N", &rest, &columns, &minus_one, below, &lda, &one, next, &lda);
   }
   return true;
 }
 
-template <typename Matrix, typename Vector>
-void solve_factored(const Matrix& factor, Vector& b) {
+void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) {
   const int n = to_int(factor.rows());
   const int one = 1;
   const int lda = leading(factor);
   const int ldb = std::max(1, n);
   int info = 0;
-  Routines<typename Matrix::Scalar>::potrs("L", &n, &one, factor.data(), &lda, b.data(), &ldb, &info);
+  dpotrs_("L", &n, &one, factor.data(), &lda, b.data(), &ldb, &info);
   assert(info == 0);
 }
 
-template <typename Matrix>
-double condition_of(const Matrix& factor, double norm) {
-  using Scalar = typename Matrix::Scalar;
+double cholesky_condition(const ConstMatrixRef& factor, double norm) {
   const int n = to_int(factor.rows());
   const int lda = leading(factor);
-  std::vector<Scalar> work(static_cast<std::size_t>(3 * n));
+  Eigen::VectorXd work(3 * n);
   std::vector<int> integers(static_cast<std::size_t>(n));
-  const auto its_norm = static_cast<Scalar>(norm);
-  Scalar reciprocal = 0;
+  double reciprocal = 0.0;
   int info = 0;
-  Routines<Scalar>::pocon("L", &n, factor.data(), &lda, &its_norm, &reciprocal, work.data(), integers.data(), &info);
-  return 1.0 / std::max(static_cast<double>(reciprocal), 1e-300);
+  dpocon_("L", &n, factor.data(), &lda, &norm, &reciprocal, work.data(), integers.data(), &info);
+  return 1.0 / std::max(reciprocal, 1e-300);
 }
 
-template <typename Matrix>
-double norm_of(const Matrix& a) {
-  using Scalar = typename Matrix::Scalar;
+double symmetric_norm(const ConstMatrixRef& a) {
   const int n = to_int(a.rows());
   const int lda = leading(a);
-  std::vector<Scalar> work(static_cast<std::size_t>(std::max(1, n)));
-  return static_cast<double>(Routines<Scalar>::lansy("1", "L", &n, a.data(), &lda, work.data()));
+  Eigen::VectorXd work(std::max(1, n));
+  return dlansy_("1", "L", &n, a.data(), &lda, work.data());
 }
-
-}  // namespace
-
-bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue) {
-  return factorise(a, may_continue);
-}
-bool cholesky_in_place(FloatMatrixRef a, const std::function<bool(double)>& may_continue) {
-  return factorise(a, may_continue);
-}
-
-void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b) { solve_factored(factor, b); }
-void cholesky_solve(const ConstFloatMatrixRef& factor, Eigen::VectorXf& b) { solve_factored(factor, b); }
-
-double cholesky_condition(const ConstMatrixRef& factor, double norm) { return condition_of(factor, norm); }
-double cholesky_condition(const ConstFloatMatrixRef& factor, double norm) { return condition_of(factor, norm); }
-
-double symmetric_norm(const ConstMatrixRef& a) { return norm_of(a); }
-double symmetric_norm(const ConstFloatMatrixRef& a) { return norm_of(a); }
 
 }  // namespace palpate

@@ -12,8 +12,6 @@ namespace palpate {
 
 using MatrixRef = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-using FloatMatrixRef = Eigen::Ref<Eigen::MatrixXf, 0, Eigen::OuterStride<>>;
-using ConstFloatMatrixRef = Eigen::Ref<const Eigen::MatrixXf, 0, Eigen::OuterStride<>>;
 
 // Sets the threads of BLAS (OpenBLAS; others are left alone) while it lives:
 // one thread where work is split by parallel_for or is too small to split,
@@ -69,15 +67,11 @@ bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
 // Cholesky factor in the lower triangle of `a`. False when `a` is not positive
 // definite, or when `may_continue`, asked now and then with the share done, says no.
 bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue = {});
-bool cholesky_in_place(FloatMatrixRef a, const std::function<bool(double)>& may_continue = {});
 // Solves a x = b in place, `factor` from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
-void cholesky_solve(const ConstFloatMatrixRef& factor, Eigen::VectorXf& b);
 // Estimate of the condition number in the 1-norm. `norm`: norm_1 of the matrix.
 double cholesky_condition(const ConstMatrixRef& factor, double norm);
-double cholesky_condition(const ConstFloatMatrixRef& factor, double norm);
 // The 1-norm of a symmetric matrix given by its lower triangle.
 double symmetric_norm(const ConstMatrixRef& a);
-double symmetric_norm(const ConstFloatMatrixRef& a);
 
 }  // namespace palpate

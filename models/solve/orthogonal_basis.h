@@ -25,8 +25,7 @@ class OrthogonalBasis {
     double correlation = 0.0;  // its product with the residual
   };
   Outside outside(const Eigen::VectorXd& column) const;
-  // Leaves of each column (N rows) its part outside, by the same two passes. On all
-  // cores; the result does not depend on their number.
+  // Leaves of each column (N rows) its part outside, by the same two passes.
   void project_out(Eigen::MatrixXd& columns) const;
 
   // Makes the direction part of the basis and takes its share from the

@@ -52,12 +52,9 @@ TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
     solution.condition = diagonal.maxCoeff() / diagonal.minCoeff();
     return solution;
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted = [&] {
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-    qr.setThreshold(kNothing);
-    qr.compute(r);
-    return qr;
-  }();
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> pivoted;
+  pivoted.setThreshold(kNothing);
+  pivoted.compute(r);
   solution.unknowns = pivoted.solve(triangle.col(n).head(n)).cwiseQuotient(scale);
   solution.rank = pivoted.rank();
   const double least = std::abs(pivoted.matrixQR()(n - 1, n - 1));

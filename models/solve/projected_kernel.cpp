@@ -12,7 +12,7 @@
 namespace palpate {
 
 ProjectedKernel::ProjectedKernel(const Sites& sites, KernelKind kernel)
-    : sites_(sites), kernel_(kernel), points_(sites.points), product_(kernel, points_) {
+    : sites_(sites), kernel_(kernel), points_(sites.points) {
   find_tail_space();
   data_ = project(sites.target_N.cwiseProduct(sites.row_scale));
   Eigen::MatrixXd kq(q_.rows(), q_.cols());
@@ -50,49 +50,29 @@ void ProjectedKernel::find_tail_space() {
 }
 
 Eigen::VectorXd ProjectedKernel::multiply_kernel(const Eigen::VectorXd& v) const {
-  const Eigen::VectorXd product = product_.multiply(v.cwiseProduct(sites_.row_scale));
+  const Eigen::VectorXd product = kernel_product(kernel_, sites_.points, v.cwiseProduct(sites_.row_scale));
   return definiteness_sign(kernel_) * product.cwiseProduct(sites_.row_scale);
 }
 
-template <typename Take>
-void ProjectedKernel::for_blocks(double fill, const Take& take) const {
+Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
   constexpr Eigen::Index kBlock = 64;  // columns at a time; a multiple of 8
   const Eigen::Index count = sites_.count();
   const auto blocks = static_cast<int>((count + kBlock - 1) / kBlock);
   const Eigen::MatrixXd update = half_update_ - 0.5 * fill * q_;
+  Eigen::MatrixXd matrix(count, count);
   const BlasThreads one_thread(1);
   parallel_for(blocks, [&](int block) {
     const Eigen::Index first = block * kBlock;
     const Eigen::Index columns = std::min(kBlock, count - first);
     const Eigen::Index rows = count - first;
-    take(first, rows, columns, [&](MatrixRef part) {
-      kernel_matrix(kernel_, points_, sites_.points.middleCols(first, columns), part, first);
-      part.array().colwise() *= sites_.row_scale.tail(rows).array();
-      part.array().rowwise() *=
-          definiteness_sign(kernel_) * sites_.row_scale.segment(first, columns).transpose().array();
-      palpate::multiply(q_.bottomRows(rows), false, update.middleRows(first, columns), true, -1.0, 1.0, part);
-      palpate::multiply(update.bottomRows(rows), false, q_.middleRows(first, columns), true, -1.0, 1.0, part);
-    });
-  });
-}
-
-Eigen::MatrixXd ProjectedKernel::matrix(double fill, double smoothing) const {
-  Eigen::MatrixXd matrix(sites_.count(), sites_.count());
-  for_blocks(fill, [&](Eigen::Index first, Eigen::Index rows, Eigen::Index columns, const auto& set) {
-    set(matrix.block(first, first, rows, columns));
+    auto part = matrix.block(first, first, rows, columns);
+    kernel_matrix(kernel_, points_, sites_.points.middleCols(first, columns), part, first);
+    part.array().colwise() *= sites_.row_scale.tail(rows).array();
+    part.array().rowwise() *= definiteness_sign(kernel_) * sites_.row_scale.segment(first, columns).transpose().array();
+    multiply(q_.bottomRows(rows), false, update.middleRows(first, columns), true, -1.0, 1.0, part);
+    multiply(update.bottomRows(rows), false, q_.middleRows(first, columns), true, -1.0, 1.0, part);
   });
   matrix.diagonal().array() += smoothing;
-  return matrix;
-}
-
-Eigen::MatrixXf ProjectedKernel::float_matrix(double fill, double smoothing) const {
-  Eigen::MatrixXf matrix(sites_.count(), sites_.count());
-  for_blocks(fill, [&](Eigen::Index first, Eigen::Index rows, Eigen::Index columns, const auto& set) {
-    Eigen::MatrixXd part(rows, columns);
-    set(part);
-    part.diagonal().array() += smoothing;
-    matrix.block(first, first, rows, columns) = part.cast<float>();
-  });
   return matrix;
 }
 

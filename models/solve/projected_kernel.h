@@ -24,14 +24,8 @@ class ProjectedKernel {
   ProjectedKernel(const Sites& sites, KernelKind kernel);
 
   // The lower triangle of P K P + fill q q^T + smoothing I, N x N; the upper
-  // one is not set. Uses all cores. In single precision each element is that of the
-  // other, rounded.
+  // one is not set. Uses all cores.
   Eigen::MatrixXd matrix(double fill, double smoothing) const;
-  Eigen::MatrixXf float_matrix(double fill, double smoothing) const;
-
-  // P K v: of a v on the complement of q, what `matrix` without smoothing makes of it, by
-  // the kernel itself.
-  Eigen::VectorXd multiply(const Eigen::VectorXd& v) const { return project(multiply_kernel(v)); }
 
   // P S f, the right-hand side, and P v.
   const Eigen::VectorXd& data() const { return data_; }
@@ -48,16 +42,11 @@ class ProjectedKernel {
 
  private:
   void find_tail_space();
-  // For each block of columns, from the diagonal down: take(first column, rows, columns, set),
-  // where set(m) makes m that block without smoothing. On all cores.
-  template <typename Take>
-  void for_blocks(double fill, const Take& take) const;
   Eigen::VectorXd multiply_kernel(const Eigen::VectorXd& v) const;  // K v
 
   const Sites& sites_;
   KernelKind kernel_;
   PointArrays points_;
-  KernelProduct product_;
   Eigen::MatrixXd q_;            // N x rank
   Eigen::MatrixXd to_tail_;      // L x rank: coefficients of G from those of q
   Eigen::MatrixXd half_update_;  // V of P K P = K - q V^T - V q^T

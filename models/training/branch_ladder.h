@@ -29,7 +29,6 @@ class BranchLadder {
   std::vector<double> values_;
   std::vector<double> drive_;  // g_k at the last sample
   std::vector<double> change_;
-  std::vector<BranchStep> steps_;
   double time_s_ = 0.0;
   double depth_m_ = 0.0;
   double surface_m_ = 0.0;

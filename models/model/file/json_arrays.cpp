@@ -19,11 +19,9 @@ Eigen::MatrixXd read_points(JsonFields& fields, const JsonNode& object, const ch
   // The list has been parsed, so there is memory for as many points as it has.
   Eigen::MatrixXd matrix(dimension, static_cast<Eigen::Index>(node.value->size()));
   for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-    const auto index = static_cast<std::size_t>(j);
-    const JsonNode point{&(*node.value)[index], node.pointer + "/" + std::to_string(index)};
-    if (!fields.fill(point, static_cast<std::size_t>(dimension), "numbers, one per feature", matrix.col(j).data())) {
+    const JsonNode point = JsonFields::entry(node, static_cast<std::size_t>(j));
+    if (!fields.fill(point, static_cast<std::size_t>(dimension), "numbers, one per feature", matrix.col(j).data()))
       break;
-    }
   }
   return matrix;
 }

@@ -110,26 +110,17 @@ class ModelReader : private JsonFields {
       return;
     }
     for (std::size_t i = 0; i < node.value->size(); ++i) {
-      read_feature({&(*node.value)[i], node.pointer + "/" + std::to_string(i)});
+      read_feature(entry(node, i));
     }
   }
 
   void read_feature(const JsonNode& node) {
-    const std::string kind = text(node, "kind");
     FeatureSpec spec;
-    bool known = false;
-    std::string known_kinds;
-    for (const FeatureKind candidate : kFeatureKinds) {
-      known_kinds += (known_kinds.empty() ? "" : ", ") + std::string(feature_kind_name(candidate));
-      if (feature_kind_name(candidate) != kind) continue;
-      spec.kind = candidate;
-      known = true;
-    }
-    if (kind == "fading_peak") {
-      complain(node.pointer + "/kind",
-               "found \"fading_peak\", a feature that fits no longer use; fit again (palpate fit)");
-    } else if (!known) {
-      complain(node.pointer + "/kind", "found \"" + printable(kind) + "\", expected one of " + known_kinds);
+    const JsonNode kind = member(node, "kind", "a text");
+    if (kind.value != nullptr && *kind.value == "fading_peak") {
+      complain(kind.pointer, "found \"fading_peak\", a feature that fits no longer use; fit again (palpate fit)");
+    } else if (const auto known = choice(kind, {kFeatureKindNames.begin(), kFeatureKindNames.end()})) {
+      spec.kind = kFeatureKinds[*known];
     }
     if (has_time(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
     if (is_branch(spec.kind) && optional_member(node, "slowing").value != nullptr)
@@ -179,7 +170,7 @@ class ModelReader : private JsonFields {
     }
     spec.part_count = parts.value->size();
     for (std::size_t p = 0; p < spec.part_count; ++p) {
-      const JsonNode part{&(*parts.value)[p], parts.pointer + "/" + std::to_string(p)};
+      const JsonNode part = entry(parts, p);
       if (is_bristle(spec.kind)) spec.parts[p].threshold_m = number(part, "threshold_m", Sign::kPositive);
       if (spec.kind != FeatureKind::stops) {
         spec.parts[p].relaxation_time_s = number(part, "relaxation_time_s", Sign::kPositive);
@@ -242,12 +233,9 @@ class ModelReader : private JsonFields {
     Provenance& from = data_.provenance;
     const JsonNode recordings = list(node, "recordings", "a list of names");
     for (std::size_t i = 0; recordings.value != nullptr && i < recordings.value->size(); ++i) {
-      const nlohmann::json& name = (*recordings.value)[i];
-      if (!name.is_string()) {
-        complain(recordings.pointer + "/" + std::to_string(i), found(name) + ", expected a text");
-        return;
-      }
-      from.recordings.push_back(name.get<std::string>());
+      const JsonNode name = entry(recordings, i);
+      if (!name.value->is_string()) return complain(name.pointer, found(*name.value) + ", expected a text");
+      from.recordings.push_back(name.value->get<std::string>());
     }
     from.scene = text(node, "scene");
     from.samples = count(node, "samples");
@@ -262,7 +250,7 @@ class ModelReader : private JsonFields {
     optional_member(node, "fit_seconds");  // older files
     const JsonNode times = list(node, "relaxation_times", "a list");
     for (std::size_t i = 0; times.value != nullptr && i < times.value->size(); ++i) {
-      const JsonNode time{&(*times.value)[i], times.pointer + "/" + std::to_string(i)};
+      const JsonNode time = entry(times, i);
       from.relaxation_times.push_back(
           {number(time, "time_s", Sign::kPositive), number(time, "standard_error_s", Sign::kNotNegative)});
     }

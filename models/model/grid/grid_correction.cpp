@@ -39,7 +39,7 @@ CorrectionPtr read_grid(JsonFields& fields, const JsonNode& top, int dimension) 
   if (values.value == nullptr) return nullptr;
   std::size_t product = 1;
   for (std::size_t k = 0; k < axes.value->size(); ++k) {
-    if (!read_grid_axis(fields, {&(*axes.value)[k], axes.pointer + "/" + std::to_string(k)}, grid)) return nullptr;
+    if (!read_grid_axis(fields, JsonFields::entry(axes, k), grid)) return nullptr;
     product *= grid.nodes.back().size();
     // Checked at every step, for the product of eight sizes may wrap around.
     if (product > values.value->size()) break;

@@ -1,6 +1,5 @@
 #include "models/model/rbf/rbf_correction.h"
 
-#include "engine/base/csv_scanner.h"
 #include "engine/json/json_fields.h"
 #include "models/model/file/json_arrays.h"
 #include "models/model/file/json_text.h"
@@ -9,17 +8,11 @@ namespace palpate {
 namespace {
 
 CorrectionPtr read_rbf(JsonFields& fields, const JsonNode& top, int dimension) {
-  const std::string name = fields.text(top, "kernel");
-  const std::optional<KernelKind> kernel = kernel_from_name(name);
-  if (!kernel) {
-    std::string known;
-    for (const std::string& one : kernel_names()) known += (known.empty() ? "" : ", ") + one;
-    fields.complain("/kernel", "found \"" + printable(name) + "\", expected one of " + known);
-    return nullptr;
-  }
+  const auto kernel = fields.choice(fields.member(top, "kernel", "a text"), kernel_names());
+  if (!kernel) return nullptr;
   RbfFunction function;
-  function.kernel = *kernel;
-  function.tail = read_vector(fields, top, "tail", tail_size(tail_degree(*kernel), dimension), "coefficients");
+  function.kernel = kKernelKinds[*kernel];
+  function.tail = read_vector(fields, top, "tail", tail_size(tail_degree(function.kernel), dimension), "coefficients");
   function.centres = read_points(fields, top, "centres", dimension);
   function.weights = read_vector(fields, top, "weights", function.centre_count(), "numbers, one per centre");
   return std::make_shared<const RbfCorrection>(std::move(function));

@@ -26,7 +26,6 @@ PointArrays::PointArrays(const Eigen::MatrixXd& points) : count_(points.cols()) 
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     for (Eigen::Index k = 0; k < points.rows(); ++k)
       memory[static_cast<std::ptrdiff_t>(view_.stride) * k + i] = simd::without_denormals(points(k, i));
-  if (points.size() > 0) view_.largest = points.cwiseAbs().maxCoeff();
   view_.coordinates = memory.get();
   memory_ = std::move(memory);
 }
@@ -65,34 +64,11 @@ void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<
     column(rows, static_cast<std::size_t>(out.rows()), centres.col(j).data(), out.col(j).data());
 }
 
-KernelProduct::KernelProduct(KernelKind kind, const PointArrays& points)
-    : points_(points), product_(simd::kernel_loops(kind, points.view().dimension).product) {}
-
-Eigen::VectorXd KernelProduct::multiply(const Eigen::VectorXd& v) const {
-  // Tiles of the lower triangle; a tile's rows, columns and vectors fit in the
-  // first-level cache.
-  constexpr std::size_t kTile = 256;
-  // Each part sums into a vector of its own; their number is fixed so that the
-  // order of the sum is too.
-  constexpr int kParts = 8;
-  const std::size_t padded = points_.view().padded;
-  const std::size_t tiles = (padded + kTile - 1) / kTile;
-  const auto input = aligned_array<double>(padded);
-  std::copy(v.begin(), v.end(), input.get());
-  const auto sums = aligned_array<double>(padded * kParts);
-  parallel_for(kParts, [&](int part) {
-    double* y = sums.get() + padded * static_cast<std::size_t>(part);
-    std::size_t index = 0;
-    for (std::size_t row = 0; row < tiles; ++row)
-      for (std::size_t column = 0; column <= row; ++column)
-        if (index++ % kParts == static_cast<std::size_t>(part))
-          product_(points_.view(), row * kTile, std::min(padded, (row + 1) * kTile), column * kTile,
-                   std::min(padded, (column + 1) * kTile), input.get(), y);
-  });
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(v.size());
-  for (int part = 0; part < kParts; ++part)
-    result += Eigen::Map<const Eigen::VectorXd>(sums.get() + padded * static_cast<std::size_t>(part), v.size());
-  return result;
+Eigen::VectorXd kernel_product(KernelKind kind, const Eigen::MatrixXd& points, const Eigen::VectorXd& v) {
+  const auto tail = tail_size(tail_degree(kind), static_cast<int>(points.rows()));
+  Eigen::VectorXd product;
+  RbfEvaluator({kind, points, v, Eigen::VectorXd::Zero(tail)}).evaluate_many(points, product);
+  return product;
 }
 
 }  // namespace palpate

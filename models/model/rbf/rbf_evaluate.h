@@ -78,20 +78,8 @@ class RbfEvaluator {
 void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
                    Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row = 0);
 
-// Products with the symmetric kernel matrix of one point set, without ever
-// storing it: each pair's kernel is computed once and used twice, which is as
-// fast as reading a stored matrix from memory and needs O(N) instead of O(N^2)
-// of it.
-class KernelProduct {
- public:
-  KernelProduct(KernelKind kind, const PointArrays& points);
-
-  // Phi v, N values. On all cores; the result does not depend on their number.
-  Eigen::VectorXd multiply(const Eigen::VectorXd& v) const;
-
- private:
-  PointArrays points_;
-  simd::ProductFunction product_;
-};
+// Phi v, the product with the kernel matrix of one point set, which is never stored.
+// `points`: d x N; `v`: N values. On all cores; the result does not depend on their number.
+Eigen::VectorXd kernel_product(KernelKind kind, const Eigen::MatrixXd& points, const Eigen::VectorXd& v);
 
 }  // namespace palpate

@@ -28,7 +28,6 @@ struct Points {
   std::size_t stride = 0;
   std::size_t padded = 0;
   int dimension = 0;
-  double largest = 0.0;  // of |coordinate|
 };
 
 // sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of
@@ -37,26 +36,13 @@ using EvaluateFunction = double (*)(const Points& points, const double* weights,
                                     const double* x) noexcept;
 // out[i] = phi(|point_i - centre|) for i < count.
 using ColumnFunction = void (*)(const Points& points, std::size_t count, const double* centre, double* out) noexcept;
-// For rows i in [row_begin, row_end) and columns j in [column_begin,
-// column_end), which must not overlap unless they are equal:
-//   y[i] += sum_j phi_ij v[j], and, when they differ, y[j] += sum_i phi_ij v[i].
-// All bounds are multiples of kSimdPad.
-using ProductFunction = void (*)(const Points& points, std::size_t row_begin, std::size_t row_end,
-                                 std::size_t column_begin, std::size_t column_end, const double* v, double* y) noexcept;
 
 struct KernelLoops {
   EvaluateFunction evaluate = nullptr;
   ColumnFunction column = nullptr;
-  ProductFunction product = nullptr;
 };
 // The loops for this kernel and dimension (1 to 8) on the chosen target.
 KernelLoops kernel_loops(KernelKind kind, int dimension);
-
-// sqrt(squared) from an estimate of 1/sqrt(squared), as the loops take some of
-// their roots: with 3 terms from one good to 14 bits (AVX-512), with 4 from one
-// good to 1.5 x 2^-12 (AVX2). Here so that tests can check the arithmetic on
-// processors without these instructions.
-double refined_root(double squared, double estimate, int terms);
 
 // Names of the instruction sets this processor can run, best first, and the
 // one in use. choose_target takes one of them, or "" for the best; it concerns

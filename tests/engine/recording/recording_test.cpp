@@ -79,8 +79,8 @@ TEST(Recording, RefusesAFileItMayNotRead) {
   const std::string path = folder.with_file("rec.csv", test::good_recording());
   ASSERT_EQ(chmod(path.c_str(), 0), 0);
   EXPECT_EQ(message_for(path), path +
-                                   ": found no permission to read it, expected a readable "
-                                   "recording; change its permissions (chmod u+r)");
+                                   ": found no permission to read it, expected a recording (CSV); "
+                                   "change its permissions (chmod u+r)");
 }
 
 TEST(Recording, AcceptsByteOrderMarkCrlfAndAMissingLastNewline) {

@@ -96,38 +96,15 @@ TEST(FitDirect, ChosenSmoothingRemovesNoise) {
   Sites sites = smooth_sites(3, 600, 0.1, 1);
   const Sites truth = smooth_sites(3, 500, 0.0, 99);
   const double without = rms_error(fit_direct(sites, {.smoothing = 0.0})->function, truth);
-  for (const bool by_group : {true, false}) {
-    if (!by_group) sites.group.clear();
-    const auto fitted = fit_direct(sites, {});
-    ASSERT_TRUE(fitted.ok());
-    const double chosen = rms_error(fitted->function, truth);
-    EXPECT_LT(chosen, 0.6 * without);
-    // Near the best of a grid of refits on the noise-free truth.
-    double best = without;
-    for (double smoothing = 1e-6; smoothing < 1e6; smoothing *= 10.0)
-      best = std::min(best, rms_error(fit_direct(sites, {.smoothing = smoothing})->function, truth));
-    EXPECT_LT(chosen, 1.2 * best);
-  }
-}
-
-// The closed form against its definition: fit without each stroke, predict it.
-TEST(ChooseSmoothing, GroupCriterionIsTheErrorOfRefitsWithoutEachGroup) {
-  const Sites sites = smooth_sites(2, 250, 0.05, 1);
-  const Result<SmoothingChoice> choice = choose_smoothing(sites, KernelKind::cubic);
-  ASSERT_TRUE(choice.ok());
-  EXPECT_TRUE(choice->by_group);
-  double sum = 0.0;
-  for (int group = 0; group < 5; ++group) {
-    Sites rest = sites;
-    rest.row_scale.segment(group * 50, 50).setZero();
-    const auto fitted = fit_direct(rest, {.smoothing = choice->smoothing});
-    ASSERT_TRUE(fitted.ok());
-    for (Eigen::Index i = group * 50; i < (group + 1) * 50; ++i) {
-      const double error = rbf_value(fitted->function, sites.points.col(i).data()) - sites.target_N[i];
-      sum += std::pow(error * sites.row_scale[i], 2);
-    }
-  }
-  EXPECT_NEAR(choice->criterion / (sum / 250.0), 1.0, 1e-6);
+  const auto fitted = fit_direct(sites, {});
+  ASSERT_TRUE(fitted.ok());
+  const double chosen = rms_error(fitted->function, truth);
+  EXPECT_LT(chosen, 0.6 * without);
+  // Near the best of a grid of refits on the noise-free truth.
+  double best = without;
+  for (double smoothing = 1e-6; smoothing < 1e6; smoothing *= 10.0)
+    best = std::min(best, rms_error(fit_direct(sites, {.smoothing = smoothing})->function, truth));
+  EXPECT_LT(chosen, 1.2 * best);
 }
 
 // Forty places with four sites each, 1e-5 apart; strokes that all visit the same
