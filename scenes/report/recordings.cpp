@@ -26,7 +26,6 @@ Result<SharedRecording> virtual_silicone(std::uint64_t seed, double seconds,
   settings.seconds = seconds;
   auto recording = record_sensors(settings, progress);
   if (!recording) return recording.error();
-  recording->name = "silicone_" + std::to_string(seed);
   return std::make_shared<const Recording>(std::move(*recording));
 }
 
