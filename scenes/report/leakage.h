@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "engine/recording/recording.h"
 
 namespace palpate {
+
+using SharedRecording = std::shared_ptr<const Recording>;
 
 // FNV-1a over positions and forces, row by row. Times and names do not count.
 std::uint64_t content_hash(const Recording& recording);
@@ -33,8 +36,9 @@ struct SharedStretch {
 // 2 kLeakRows and more are always found. rows == 0: none.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
-// Errors: a recording that is given twice under any names, or a stretch of a tested
-// recording that was trained on; by name and rows.
-Status refuse_leakage(const std::vector<const Recording*>& trained, const std::vector<const Recording*>& tested);
+// `all`: the first `trained` of them to train on, the others to test on. Errors: a recording that
+// is given twice under any names, or a stretch of a tested recording that was trained on; by name
+// and rows.
+Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
 }  // namespace palpate

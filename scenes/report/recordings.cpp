@@ -1,47 +1,20 @@
 #include "scenes/report/recordings.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <map>
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
 #include "models/surface/surface_estimate.h"
 #include "scenes/material/rig.h"
-#include "scenes/report/leakage.h"
 
 namespace palpate {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kTrainSeconds = 41.499;
 constexpr double kTestSeconds = 45.272;
 // A part of a recording that is cut for folds is worth testing on from here.
 constexpr std::size_t kSmallestPart = 200;
-
-Result<SharedRecording> virtual_silicone(std::uint64_t seed, double seconds,
-                                         const std::function<bool(double)>& progress) {
-  RigSettings settings;
-  settings.seed = seed;
-  settings.seconds = seconds;
-  auto recording = record_sensors(settings, progress);
-  if (!recording) return recording.error();
-  return std::make_shared<const Recording>(std::move(*recording));
-}
-
-Status refuse_doubles(const std::vector<std::string>& paths) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code missing;
-      if (fs::equivalent(paths[i], paths[j], missing)) {
-        return Error{paths[i] +
-                     " is given twice, expected every recording once: errors on what was trained on say "
-                     "nothing; leave one out"};
-      }
-    }
-  }
-  return {};
-}
 
 RecordingFacts facts_of(const Recording& recording, const std::string& role) {
   RecordingFacts facts;
@@ -72,25 +45,33 @@ void make_folds(RecordingSet& set) {
 }
 
 Status add_files(RecordingSet& set, const std::vector<std::string>& paths) {
-  std::vector<std::pair<std::uint64_t, SharedRecording>> added;
+  std::map<std::pair<std::string, std::uint64_t>, SharedRecording> added;
   for (const std::string& path : paths) {
-    auto recording = read_recording(path);
-    if (!recording) return recording.error();
-    auto shared = std::make_shared<const Recording>(std::move(*recording));
-    added.emplace_back(content_hash(*shared), shared);
+    auto read = read_recording(path);
+    if (!read) return read.error();
+    const auto recording = std::make_shared<const Recording>(std::move(*read));
+    if (!added.try_emplace({recording->name, content_hash(*recording)}, recording).second) {
+      return Error{path +
+                   " is given twice, expected every recording once: errors on what was trained on say "
+                   "nothing; leave one out"};
+    }
   }
-  std::sort(added.begin(), added.end(), [](const auto& a, const auto& b) {
-    return a.second->name != b.second->name ? a.second->name < b.second->name : a.first < b.first;
-  });
-  for (const auto& [hash, recording] : added) set.all.push_back(recording);
+  for (const auto& [key, recording] : added) set.all.push_back(recording);
   return {};
 }
 
-Status check_leakage(const RecordingSet& set, std::size_t trained) {
-  std::vector<const Recording*> train;
-  std::vector<const Recording*> test;
-  for (std::size_t i = 0; i < set.all.size(); ++i) (i < trained ? train : test).push_back(set.all[i].get());
-  return refuse_leakage(train, test);
+Status add_virtual_silicone(RecordingSet& set, const std::function<bool(double)>& progress) {
+  RigSettings settings;
+  for (const double seconds : {kTrainSeconds, kTestSeconds}) {
+    settings.seconds = seconds;
+    settings.seed = set.all.size() + 1;
+    auto recording = record_sensors(settings, [&](double share) {
+      return !progress || progress(0.5 * (static_cast<double>(set.all.size()) + share));
+    });
+    if (!recording) return recording.error();
+    set.all.push_back(std::make_shared<const Recording>(std::move(*recording)));
+  }
+  return {};
 }
 
 Status check_contact(const RecordingSet& set) {
@@ -151,27 +132,13 @@ Result<RecordingSet> load_recordings(const std::vector<std::string>& train, cons
   if (train.empty() && !test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
-  std::vector<std::string> every = train;
-  every.insert(every.end(), test.begin(), test.end());
-  if (const Status status = refuse_doubles(every); !status) return status.error();
-
   RecordingSet set;
   set.virtual_recordings = train.empty();
-  std::size_t trained = train.size();
-  if (set.virtual_recordings) {
-    trained = 1;
-    for (const auto& [seed, seconds] : {std::pair{1, kTrainSeconds}, std::pair{2, kTestSeconds}}) {
-      const double first = seed == 1 ? 0.0 : 0.5;
-      auto recording = virtual_silicone(static_cast<std::uint64_t>(seed), seconds,
-                                        [&](double share) { return !progress || progress(first + 0.5 * share); });
-      if (!recording) return recording.error();
-      set.all.push_back(*recording);
-    }
-  } else {
-    if (const Status status = add_files(set, train); !status) return status.error();
-    if (const Status status = add_files(set, test); !status) return status.error();
-  }
-  if (const Status status = check_leakage(set, trained); !status) return status.error();
+  const Status added = set.virtual_recordings ? add_virtual_silicone(set, progress) : add_files(set, train);
+  if (!added) return added.error();
+  const std::size_t trained = set.virtual_recordings ? 1 : train.size();
+  if (const Status status = add_files(set, test); !status) return status.error();
+  if (const Status status = refuse_leakage(set.all, trained); !status) return status.error();
   if (trained == set.all.size()) {
     set.cross_validated = true;
     if (set.all.size() == 1) {

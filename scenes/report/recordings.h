@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/recording/recording.h"
 #include "models/training/motion_source.h"
+#include "scenes/report/leakage.h"
 
 namespace palpate {
-
-using SharedRecording = std::shared_ptr<const Recording>;
 
 struct RecordingFacts {
   std::string role;  // train, test, both (k-fold)
