@@ -8,7 +8,6 @@
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "models/model/fitted_model.h"
-#include "scenes/live/device_choice.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/local_time.h"
@@ -23,18 +22,6 @@ constexpr std::size_t kSnapshotsAtOnce = 256;
 constexpr std::int64_t kRehearse_ns = 100'000;
 // A device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;
-
-WrittenForce written(ReferenceKind kind) {
-  switch (kind) {
-    case ReferenceKind::measured:
-      return WrittenForce::measured;
-    case ReferenceKind::truth:
-      return WrittenForce::reference;
-    case ReferenceKind::direct:
-      return WrittenForce::model;
-  }
-  return WrittenForce::model;
-}
 
 constexpr const char* kDefaultScene = "silicone_block";
 constexpr std::string_view kReplay = "replay:";
@@ -331,7 +318,7 @@ Status LiveSession::start_recording(const std::string& path) {
   }
   RecorderRequest request;
   request.path = path;
-  request.force = written(comparison_.reference());
+  request.force = comparison_.reference();
   const SensorSpec sensor = device_->sensor();
   request.columns = {sensor.has_velocity, sensor.has_acceleration};
   request.comments = recording_comments();
