@@ -113,6 +113,7 @@ class ModelSlots {
   bool join(std::size_t index, FinishedModel& finished);
   bool has_room(const std::string& what);
   void select_what_is_there();
+  std::vector<std::size_t> shown_slots() const;  // whose models are there
   std::string distinct_name(const std::string& name, const Slot* but) const;
 
   const Scene& scene_;

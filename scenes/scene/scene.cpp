@@ -27,28 +27,15 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
+// Those of other kinds are identified in a fit, never written in a scene.
 std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
   for (const FeatureSpec& feature : scene.features) {
     char low_pass[48];
     std::snprintf(low_pass, sizeof low_pass, "relaxation %g s", feature.relaxation_time_s);
-    switch (feature.kind) {
-      case FeatureKind::depth:
-        words.emplace_back("depth");
-        break;
-      case FeatureKind::velocity:
-        words.emplace_back("velocity");
-        break;
-      case FeatureKind::lowpass_velocity:
-        words.emplace_back(low_pass);
-        break;
-      case FeatureKind::maxwell_branch:  // these are identified in a fit, never written in a scene
-      case FeatureKind::maxwell_spectrum:
-      case FeatureKind::stops:
-      case FeatureKind::creep:
-      case FeatureKind::surface_lag:
-        break;
-    }
+    words.emplace_back(feature.kind == FeatureKind::depth      ? "depth"
+                       : feature.kind == FeatureKind::velocity ? "velocity"
+                                                               : low_pass);
   }
   return joined(words);
 }
