@@ -9,9 +9,8 @@
 
 #include "engine/base/text.h"
 #include "scenes/cli/check_recordings.h"
-#include "scenes/cli/forces_file.h"
-#include "scenes/cli/loaded_models.h"
 #include "scenes/cli/output.h"
+#include "scenes/cli/replay_files.h"
 #include "scenes/cli/replay_plot.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"

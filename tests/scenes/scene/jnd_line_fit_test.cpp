@@ -1,4 +1,4 @@
-#include "scenes/scene/jnd_line_fit.h"
+#include "scenes/scene/jnd_file.h"
 
 #include <gtest/gtest.h>
 
