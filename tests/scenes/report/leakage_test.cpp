@@ -1,4 +1,4 @@
-#include "scenes/report/leakage.h"
+#include "scenes/report/recordings.h"
 
 #include <gtest/gtest.h>
 
