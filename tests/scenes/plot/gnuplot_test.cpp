@@ -27,8 +27,7 @@ TEST(Gnuplot, SaysWhatItDidNotUnderstand) {
   folder.with_file("a.gp", "dance\n");
   const Status status = run_gnuplot(folder.path(), {"a.gp"});
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message.rfind("gnuplot could not draw a.gp: ", 0), 0u)
-      << status.error().message;
+  EXPECT_EQ(status.error().message.rfind("gnuplot could not draw a.gp: ", 0), 0u) << status.error().message;
 }
 
 TEST(Gnuplot, MissingIsToldBeforeAnyWork) {
