@@ -13,7 +13,7 @@
 #include "rendering/app/settings.h"
 #include "rendering/panels/curve_files.h"
 #include "rendering/panels/view_state.h"
-#include "scenes/live/device_choice.h"
+#include "scenes/live/live_session.h"
 #include "scenes/live/recording_offer.h"
 
 namespace palpate {

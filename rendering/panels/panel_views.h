@@ -14,7 +14,7 @@
 #include "engine/tick/jnd.h"
 #include "scenes/live/fault_log.h"
 #include "scenes/live/force_history.h"
-#include "scenes/live/slot_view.h"
+#include "scenes/live/model_slots.h"
 
 namespace palpate {
 

@@ -11,7 +11,7 @@
 
 #include "engine/live/time_histogram.h"
 #include "rendering/ui/colours.h"
-#include "scenes/live/device_choice.h"
+#include "scenes/live/live_session.h"
 
 namespace palpate {
 

@@ -1,7 +1,6 @@
 // palpate check: is this recording fit to be fitted?
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "engine/base/text.h"
 #include "models/check/check_recording.h"
 #include "scenes/cli/check_recordings.h"
+#include "scenes/cli/output.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
 
@@ -41,7 +41,7 @@ void print_check_json(const std::vector<CheckedFile>& files) {
                     {"surface_offset_m", file.check.surface_offset_m},
                     {"force_zero_N", file.check.force_zero_N}});
   }
-  std::cout << Json{{"recordings", list}}.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  print_json({{"recordings", list}});
 }
 
 std::string verdict_text(const RecordingCheck& check) {

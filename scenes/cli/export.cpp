@@ -1,7 +1,6 @@
 // palpate export: a model as one self-contained C99 file.
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "engine/tick/sensor_identification.h"
 #include "models/export/export_c.h"
 #include "models/model/file/model_io.h"
+#include "scenes/cli/output.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -34,23 +34,23 @@ Result<PositionSensor> sensor_of(const ExportArguments& arguments, const ModelDa
   return PositionSensor{sensor->encoder_step_m, sensor->position_noise_m};
 }
 
-void print_json(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
-                const ExportedC& file) {
-  const nlohmann::ordered_json object = {{"file", arguments.out},
-                                         {"model", data.name},
-                                         {"precision", arguments.single_precision ? "float" : "double"},
-                                         {"encoder_step_m", request.sensor.encoder_step_m},
-                                         {"position_noise_m", request.sensor.position_noise_m},
-                                         {"text_bytes", file.text.size()},
-                                         {"table_bytes", file.table_bytes},
-                                         {"state_bytes", file.state_bytes},
-                                         {"operations",
-                                          {{"arithmetic", file.operations.arithmetic},
-                                           {"divisions", file.operations.divisions},
-                                           {"roots", file.operations.roots},
-                                           {"exponentials", file.operations.exponentials},
-                                           {"logarithms", file.operations.logarithms}}}};
-  std::printf("%s\n", object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+void print_export_json(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
+                       const ExportedC& file) {
+  const TickOperations& counted = file.operations;
+  print_json({{"file", arguments.out},
+              {"model", data.name},
+              {"precision", arguments.single_precision ? "float" : "double"},
+              {"encoder_step_m", request.sensor.encoder_step_m},
+              {"position_noise_m", request.sensor.position_noise_m},
+              {"text_bytes", file.text.size()},
+              {"table_bytes", file.table_bytes},
+              {"state_bytes", file.state_bytes},
+              {"operations",
+               {{"arithmetic", counted.arithmetic},
+                {"divisions", counted.divisions},
+                {"roots", counted.roots},
+                {"exponentials", counted.exponentials},
+                {"logarithms", counted.logarithms}}}});
 }
 
 std::string source_of_sensor(const ExportArguments& arguments, const ModelData& data) {
@@ -88,7 +88,7 @@ Status run_export(const ExportArguments& arguments) {
   if (!file) return Error{arguments.model + ": " + file.error().message};
   if (Status status = write_file_atomically(arguments.out, file->text, arguments.force); !status) return status;
   if (arguments.json) {
-    print_json(arguments, data, request, *file);
+    print_export_json(arguments, data, request, *file);
   } else {
     print_summary(arguments, data, request, *file);
   }

@@ -22,36 +22,35 @@ Error wrong(std::string_view item, const std::string& expected) {
   return Error{"found \"" + std::string(item) + "\", expected " + expected};
 }
 
+// What may stand behind a kind's colon: one to eight values.
+struct ListedKind {
+  std::string_view kind;
+  std::string_view unit;
+  const char* expected;
+};
+constexpr ListedKind kListed[] = {
+    {"maxwell", "", "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27"},
+    {"stops", "mm", "stops: with one to eight thresholds such as stops:0.05mm+0.1mm"},
+    {"creep", "", "creep: with one to eight times in seconds such as creep:0.1+1"}};
+
 Status add_item(std::string_view item, FeatureList& list) {
   const std::size_t colon = item.find(':');
-  const std::string_view kind = item.substr(0, colon);
   const std::string_view rest = colon == std::string_view::npos ? std::string_view() : item.substr(colon + 1);
   if (item == "depth") return {};
   if (item == "velocity" && !list.velocity) {
     list.velocity = true;
     return {};
   }
-  if (kind == "maxwell") {
-    auto times_s = parse_values(rest, '+');
-    if (times_s.empty() || times_s.size() > kMaxFeatureParts) {
-      return wrong(item, "maxwell: with one to eight times in seconds such as maxwell:0.4+1.27");
-    }
-    list.relaxation_times_s.push_back(std::move(times_s));
-    return {};
-  }
-  if (kind == "stops" && list.stop_thresholds_m.empty()) {
-    const auto thresholds_mm = parse_values(rest, '+', "mm");
-    if (thresholds_mm.empty() || thresholds_mm.size() > kMaxFeatureParts) {
-      return wrong(item, "stops: with one to eight thresholds such as stops:0.05mm+0.1mm");
-    }
-    for (const double threshold_mm : thresholds_mm) list.stop_thresholds_m.push_back(1e-3 * threshold_mm);
-    return {};
-  }
-  if (kind == "creep" && list.creep_times_s.empty()) {
-    list.creep_times_s = parse_values(rest, '+');
-    if (list.creep_times_s.empty() || list.creep_times_s.size() > kMaxFeatureParts) {
-      return wrong(item, "creep: with one to eight times in seconds such as creep:0.1+1");
-    }
+  for (const ListedKind& one : kListed) {
+    const bool again = (one.kind == "stops" && !list.stop_thresholds_m.empty()) ||
+                       (one.kind == "creep" && !list.creep_times_s.empty());
+    if (item.substr(0, colon) != one.kind || again) continue;
+    auto values = parse_values(rest, '+', one.unit);
+    if (values.empty() || values.size() > kMaxFeatureParts) return wrong(item, one.expected);
+    if (one.kind == "maxwell") list.relaxation_times_s.push_back(values);
+    if (one.kind == "creep") list.creep_times_s = values;
+    if (one.kind != "stops") return {};
+    for (const double threshold_mm : values) list.stop_thresholds_m.push_back(1e-3 * threshold_mm);
     return {};
   }
   return wrong(item, "depth, velocity, maxwell:, stops: and creep:, of which only maxwell: may come again");

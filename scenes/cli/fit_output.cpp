@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "engine/base/text.h"
+#include "scenes/cli/output.h"
 
 namespace palpate::cli {
 namespace {
@@ -47,13 +47,6 @@ std::string strength_text(const StrengthChoice& strength) {
   return text;
 }
 
-std::vector<RecordingSurface> surfaces_of(const Provenance& provenance) {
-  if (!provenance.surfaces.empty()) return provenance.surfaces;
-  std::vector<RecordingSurface> as_recorded;
-  for (const std::string& name : provenance.recordings) as_recorded.push_back({name, 0.0, 0.0, 0.0});
-  return as_recorded;
-}
-
 void print_surfaces(const Provenance& provenance) {
   for (const RecordingSurface& surface : provenance.surfaces) {
     const std::string error = std::isfinite(surface.standard_error_m)
@@ -67,16 +60,18 @@ void print_surfaces(const Provenance& provenance) {
 }
 
 nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
+  std::vector<RecordingSurface> surfaces = provenance.surfaces;
+  if (surfaces.empty()) {
+    for (const std::string& name : provenance.recordings) surfaces.push_back({name, 0.0, 0.0, 0.0});
+  }
   auto list = nlohmann::ordered_json::array();
-  for (const RecordingSurface& surface : surfaces_of(provenance)) {
-    list.push_back(
-        {{"name", surface.name},
-         {"surface_offset_m", surface.offset_m},
-         {"standard_error_m", std::isfinite(surface.standard_error_m) ? nlohmann::ordered_json(surface.standard_error_m)
-                                                                      : nlohmann::ordered_json(nullptr)},
-         {"told", std::isfinite(surface.standard_error_m)},
-         {"force_zero_N", surface.force_zero_N},
-         {"force_lag_s", surface.lag_s}});
+  for (const RecordingSurface& surface : surfaces) {
+    list.push_back({{"name", surface.name},
+                    {"surface_offset_m", surface.offset_m},
+                    {"standard_error_m", surface.standard_error_m},  // not finite: null
+                    {"told", std::isfinite(surface.standard_error_m)},
+                    {"force_zero_N", surface.force_zero_N},
+                    {"force_lag_s", surface.lag_s}});
   }
   return list;
 }
@@ -132,26 +127,25 @@ void print_fit_json(const MethodFit& fit, const PreparedTraining& prepared, cons
   for (const RelaxationTime& time : provenance.relaxation_times) {
     times.push_back({{"time_s", time.time_s}, {"standard_error_s", time.standard_error_s}});
   }
-  const nlohmann::ordered_json object = {{"method", fit.data.method},
-                                         {"centres", fit.data.correction->size()},
-                                         {"kernel", kernel},
-                                         {"weighting", weighting},
-                                         {"samples", provenance.samples},
-                                         {"samples_after_reduction", provenance.samples_after_reduction},
-                                         {"fit_seconds", seconds},
-                                         {"training_within_jnd", provenance.training_within_jnd},
-                                         {"name", fit.data.name},
-                                         {"features", features},
-                                         {"feature_worth", worth_json(prepared.worth)},
-                                         {"correction", strength_json(prepared.strength)},
-                                         {"contact_samples", provenance.contact_samples},
-                                         {"relaxation_times", times},
-                                         {"recordings", surfaces_json(provenance)},
-                                         {"condition", fit.report.condition},
-                                         {"rank", fit.report.rank},
-                                         {"smoothing", fit.report.smoothing},
-                                         {"notes", fit.report.notes}};
-  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+  print_json({{"method", fit.data.method},
+              {"centres", fit.data.correction->size()},
+              {"kernel", kernel},
+              {"weighting", weighting},
+              {"samples", provenance.samples},
+              {"samples_after_reduction", provenance.samples_after_reduction},
+              {"fit_seconds", seconds},
+              {"training_within_jnd", provenance.training_within_jnd},
+              {"name", fit.data.name},
+              {"features", features},
+              {"feature_worth", worth_json(prepared.worth)},
+              {"correction", strength_json(prepared.strength)},
+              {"contact_samples", provenance.contact_samples},
+              {"relaxation_times", times},
+              {"recordings", surfaces_json(provenance)},
+              {"condition", fit.report.condition},
+              {"rank", fit.report.rank},
+              {"smoothing", fit.report.smoothing},
+              {"notes", fit.report.notes}});
 }
 
 }  // namespace palpate::cli

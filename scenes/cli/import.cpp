@@ -1,10 +1,8 @@
 // palpate import: a table that another program wrote becomes a recording.
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "engine/import/import_table.h"
 #include "engine/import/import_words.h"
 #include "models/surface/surface_estimate.h"
+#include "scenes/cli/output.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -135,27 +134,23 @@ void print_import_json(const ImportOptions& options, const ImportRequest& reques
           {"number", column.number}, {"name", column.header}, {"unit", column.unit}, {"guessed", column.guessed}};
     }
   }
-  const Json object = {{"file", options.file},
-                       {"out", options.out},
-                       {"rows", table.recording.rows.size()},
-                       {"seconds", seconds},
-                       {"rate_Hz", static_cast<double>(table.recording.rows.size() - 1) / seconds},
-                       {"encoding", encoding_name(table.encoding)},
-                       {"delimiter", delimiter_name(table.layout.delimiter)},
-                       {"decimal", decimal_name(table.layout)},
-                       {"header_line", table.layout.header_line},
-                       {"data_line", table.layout.data_line},
-                       {"columns", columns},
-                       {"flips", flipped_roles(request)},
-                       {"notes", table.notes}};
-  std::cout << object.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  print_json({{"file", options.file},
+              {"out", options.out},
+              {"rows", table.recording.rows.size()},
+              {"seconds", seconds},
+              {"rate_Hz", static_cast<double>(table.recording.rows.size() - 1) / seconds},
+              {"encoding", encoding_name(table.encoding)},
+              {"delimiter", delimiter_name(table.layout.delimiter)},
+              {"decimal", decimal_name(table.layout)},
+              {"header_line", table.layout.header_line},
+              {"data_line", table.layout.data_line},
+              {"columns", columns},
+              {"flips", flipped_roles(request)},
+              {"notes", table.notes}});
 }
 
 Status run_import(const ImportOptions& options) {
-  std::error_code missing;
-  if (std::filesystem::equivalent(options.file, options.out, missing)) {
-    return Error{options.out + " is the file to read from, expected another one for --out; name a new file"};
-  }
+  if (const Status status = refuse_input_as_output(options.out, {options.file}, "--out"); !status) return status;
   const ImportRequest request = import_request(options);
   // A name that cannot be written is told now and not after the reading.
   if (const auto trial = AtomicFile::create(options.out, options.force); !trial) return trial.error();

@@ -28,19 +28,10 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 
-void add_all_verbs(CLI::App& app, Verbs& verbs) {
-  add_synth(app, verbs);
-  add_import(app, verbs);
-  add_check(app, verbs);
-  add_fit(app, verbs);
-  add_replay(app, verbs);
-  add_export(app, verbs);
-  add_report(app, verbs);
-  add_record(app, verbs);
-  add_scenes(app, verbs);
-  add_devices(app, verbs);
-  add_study(app, verbs);
-}
+// In the order of --help.
+constexpr void (*kVerbs[])(CLI::App&, Verbs&) = {add_synth,  add_import,  add_check,  add_fit,
+                                                 add_replay, add_export,  add_report, add_record,
+                                                 add_scenes, add_devices, add_study};
 
 int fail(const std::string& message, int exit_code) {
   const std::string block = "error: " + message + "\n";
@@ -88,7 +79,7 @@ int run_program(int argc, char** argv) {
   CLI::App app("Palpate: data-driven haptic rendering, without a window", "palpate");
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
   Verbs verbs;
-  add_all_verbs(app, verbs);
+  for (const auto& add : kVerbs) add(app, verbs);
   try {
     if (argc < 2) return fail_usage(app, verbs, "no verb given");
     if (names_unknown_verb(verbs, argc, argv)) {

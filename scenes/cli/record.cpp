@@ -104,7 +104,7 @@ RecorderRequest recorder_request(const RecordOptions& options, Device& device) {
   const SensorSpec sensor = device.sensor();
   RecorderRequest request;
   request.path = options.out;
-  request.force = WrittenForce::measured;
+  request.force = ReferenceKind::measured;
   request.columns = {sensor.has_velocity, sensor.has_acceleration, device.measures_force()};
   request.overwrite = options.force;
   request.comments = {"recorded by palpate record; device " + options.device,

@@ -3,15 +3,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/text.h"
 #include "scenes/cli/check_recordings.h"
-#include "scenes/cli/forces_file.h"
-#include "scenes/cli/loaded_models.h"
+#include "scenes/cli/output.h"
+#include "scenes/cli/replay_files.h"
 #include "scenes/cli/replay_plot.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
@@ -36,7 +35,7 @@ struct Options {
 constexpr double kShareThatMatters = 0.005;
 constexpr double kRmsThatMatters = 0.1;
 
-struct ModelFigures {
+struct ReplayedModel {
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
   PredictedErrors predicted;
@@ -48,8 +47,21 @@ struct ReplayedRecording {
   std::string path;
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
-  std::vector<ModelFigures> models;
+  std::vector<ReplayedModel> models;
 };
+
+// A figure of merit where there are samples in contact, else null: there is no number that would be true.
+struct Figure {
+  const char* key;
+  double ErrorSummary::*value;
+  double scale;  // of the table
+  int decimals;
+};
+constexpr Figure kFigures[] = {{"rms_error_N", &ErrorSummary::rms_error_N, 1e3, 1},
+                               {"max_error_N", &ErrorSummary::max_error_N, 1e3, 1},
+                               {"within_jnd", &ErrorSummary::within_jnd, 1e2, 2},
+                               {"p99_error_over_jnd", &ErrorSummary::p99_error_over_jnd, 1.0, 2},
+                               {"max_error_over_jnd", &ErrorSummary::max_error_over_jnd, 1.0, 2}};
 
 // The output must not replace what is being read, --force or not.
 Status check_output(const Options& options, const std::string& option, const std::string& out) {
@@ -59,14 +71,10 @@ Status check_output(const Options& options, const std::string& option, const std
   }
   std::vector<std::string> inputs = options.models;
   inputs.push_back(options.recordings.front());
-  for (const std::string& input : inputs) {
-    std::error_code missing;
-    if (std::filesystem::equivalent(out, input, missing)) {
-      return Error{out + " is the file to read from, expected another one for " + option + "; name a new file"};
-    }
-  }
-  return {};
+  return refuse_input_as_output(out, inputs, option);
 }
+
+OrderedJson number_or_null(bool known, double value) { return known ? OrderedJson(value) : OrderedJson(nullptr); }
 
 OrderedJson bins_json(const std::vector<ForceBin>& bins) {
   OrderedJson list = OrderedJson::array();
@@ -82,36 +90,28 @@ OrderedJson bins_json(const std::vector<ForceBin>& bins) {
   return list;
 }
 
-// Figures over no sample are null: there is no number that would be true.
 void add_figures(OrderedJson& object, const ErrorSummary& errors) {
-  const auto figure = [&](double value) { return errors.samples > 0 ? OrderedJson(value) : OrderedJson(nullptr); };
-  object["rms_error_N"] = figure(errors.rms_error_N);
-  object["max_error_N"] = figure(errors.max_error_N);
-  object["within_jnd"] = figure(errors.within_jnd);
-  object["p99_error_over_jnd"] = figure(errors.p99_error_over_jnd);
-  object["max_error_over_jnd"] = figure(errors.max_error_over_jnd);
+  for (const Figure& figure : kFigures) object[figure.key] = number_or_null(errors.samples > 0, errors.*figure.value);
 }
 
 OrderedJson time_json(const Timing& time, bool measured) {
-  const auto figure = [&](double value) { return measured ? OrderedJson(value) : OrderedJson(nullptr); };
-  return {{"median", figure(time.median_ns)}, {"p99", figure(time.p99_ns)}};
+  return {{"median", number_or_null(measured, time.median_ns)}, {"p99", number_or_null(measured, time.p99_ns)}};
 }
 
-OrderedJson model_json(const LoadedModel& one, const ModelFigures& figures) {
+OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   OrderedJson object = {{"name", one.name}, {"method", one.model->method()}, {"centres", one.model->centre_count()}};
-  add_figures(object, figures.as_recorded);
-  object["out_of_domain_samples"] = figures.as_recorded.out_of_domain_samples;
-  object["evaluation_ns"] = time_json(figures.time.evaluation, figures.time.measured);
-  object["tick_ns"] = time_json(figures.time.tick, figures.time.measured);
-  OrderedJson moved;
-  add_figures(moved, figures.surface_moved);
-  object["surface_moved"] = std::move(moved);
-  object["surface_offset_m"] = figures.surface.at;
-  object["surface_told"] = figures.surface.told;
-  const auto bound = [&](double value) { return std::isnan(value) ? OrderedJson(nullptr) : OrderedJson(value); };
-  object["predicted_error"] = {{"bound_95_held", bound(figures.predicted.held_share)},
-                               {"median_bound_N", bound(figures.predicted.median_N)}};
-  object["bins"] = bins_json(figures.as_recorded.bins);
+  add_figures(object, replayed.as_recorded);
+  object["out_of_domain_samples"] = replayed.as_recorded.out_of_domain_samples;
+  object["evaluation_ns"] = time_json(replayed.time.evaluation, replayed.time.measured);
+  object["tick_ns"] = time_json(replayed.time.tick, replayed.time.measured);
+  add_figures(object["surface_moved"], replayed.surface_moved);
+  object["surface_offset_m"] = replayed.surface.at;
+  object["surface_told"] = replayed.surface.told;
+  const PredictedErrors& predicted = replayed.predicted;
+  object["predicted_error"] = {
+      {"bound_95_held", number_or_null(!std::isnan(predicted.held_share), predicted.held_share)},
+      {"median_bound_N", number_or_null(!std::isnan(predicted.median_N), predicted.median_N)}};
+  object["bins"] = bins_json(replayed.as_recorded.bins);
   return object;
 }
 
@@ -125,45 +125,29 @@ OrderedJson recording_json(const ReplayedRecording& replayed, const std::vector<
           {"models", list}};
 }
 
-void print_json(const std::vector<ReplayedRecording>& all, const std::vector<LoadedModel>& models) {
+void print_all_json(const std::vector<ReplayedRecording>& all, const std::vector<LoadedModel>& models) {
   OrderedJson list = OrderedJson::array();
   for (const ReplayedRecording& replayed : all) list.push_back(recording_json(replayed, models));
-  // A path need not be UTF-8; what cannot be said is replaced.
-  std::printf(
-      "%s\n",
-      (all.size() == 1 ? list.front() : list).dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
+  print_json(all.size() == 1 ? list.front() : list);
 }
 
-using Row = std::vector<std::string>;
-
-std::string surface_text(const Located& surface) {
-  if (!surface.told) return "not told";
-  return fixed(1e3 * surface.at, 3) + " +- " + fixed(1e3 * surface.standard_error, 3);
-}
-
-Row table_row(const LoadedModel& one, const ModelFigures& model) {
-  const auto figure = [&](const ErrorSummary& errors, double value, int decimals) {
-    return errors.samples > 0 ? fixed(value, decimals) : std::string("-");
+std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& model) {
+  std::vector<std::string> row{one.name, std::to_string(one.model->centre_count())};
+  const auto add = [&](const ErrorSummary& errors) {
+    for (const Figure& figure : kFigures) {
+      row.push_back(errors.samples > 0 ? fixed(figure.scale * (errors.*figure.value), figure.decimals) : "-");
+    }
   };
-  const ErrorSummary& errors = model.as_recorded;
-  const ErrorSummary& moved = model.surface_moved;
-  const auto time = [&](double value) { return model.time.measured ? fixed(value, 0) : std::string("-"); };
-  return {one.name,
-          std::to_string(one.model->centre_count()),
-          figure(errors, 1e3 * errors.rms_error_N, 1),
-          figure(errors, 1e3 * errors.max_error_N, 1),
-          figure(errors, 1e2 * errors.within_jnd, 2),
-          figure(errors, errors.p99_error_over_jnd, 2),
-          figure(errors, errors.max_error_over_jnd, 2),
-          std::to_string(errors.out_of_domain_samples),
-          surface_text(model.surface),
-          figure(moved, 1e3 * moved.rms_error_N, 1),
-          figure(moved, 1e3 * moved.max_error_N, 1),
-          figure(moved, 1e2 * moved.within_jnd, 2),
-          figure(moved, moved.p99_error_over_jnd, 2),
-          figure(moved, moved.max_error_over_jnd, 2),
-          time(model.time.tick.median_ns),
-          time(model.time.tick.p99_ns)};
+  add(model.as_recorded);
+  row.push_back(std::to_string(model.as_recorded.out_of_domain_samples));
+  row.push_back(model.surface.told
+                    ? fixed(1e3 * model.surface.at, 3) + " +- " + fixed(1e3 * model.surface.standard_error, 3)
+                    : "not told");
+  add(model.surface_moved);
+  for (const double time_ns : {model.time.tick.median_ns, model.time.tick.p99_ns}) {
+    row.push_back(model.time.measured ? fixed(time_ns, 0) : "-");
+  }
+  return row;
 }
 
 // What moving the surface changed, in words; empty where it changes nothing that matters.
@@ -192,23 +176,15 @@ std::string surface_remark(const ReplayedRecording& replayed, const std::vector<
   return text;
 }
 
-void print_table(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+void print_recording(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   std::printf("%s: %llu samples, %llu in contact\n", replayed.path.c_str(),
               static_cast<unsigned long long>(replayed.samples),
               static_cast<unsigned long long>(replayed.contact_samples));
-  std::vector<Row> rows = {{"MODEL", "CENTRES", "RMS mN", "MAX mN", "WITHIN JND %", "P99 JND", "MAX JND",
-                            "OUT OF DOMAIN", "SURFACE mm", "MOVED: RMS mN", "MAX mN", "WITHIN JND %", "P99 JND",
-                            "MAX JND", "TICK ns", "P99 ns"}};
+  std::vector<std::vector<std::string>> rows = {{"MODEL", "CENTRES", "RMS mN", "MAX mN", "WITHIN JND %", "P99 JND",
+                                                 "MAX JND", "OUT OF DOMAIN", "SURFACE mm", "MOVED: RMS mN", "MAX mN",
+                                                 "WITHIN JND %", "P99 JND", "MAX JND", "TICK ns", "P99 ns"}};
   for (std::size_t i = 0; i < models.size(); ++i) rows.push_back(table_row(models[i], replayed.models[i]));
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  for (const Row& row : rows) {
-    std::string line = row[0] + std::string(widths[0] - row[0].size(), ' ');
-    for (std::size_t i = 1; i < row.size(); ++i) line += "  " + std::string(widths[i] - row[i].size(), ' ') + row[i];
-    std::printf("%s\n", line.c_str());
-  }
+  print_table(rows, true);
   if (const std::string remark = surface_remark(replayed, models); !remark.empty())
     std::printf("note: %s\n", remark.c_str());
 }
@@ -278,13 +254,13 @@ Status run(const Options& options) {
   if (!options.plot.empty()) {
     const std::string name = std::filesystem::path(options.recordings.front()).filename().string();
     std::vector<ErrorSummary> errors;
-    for (const ModelFigures& one : all.front().models) errors.push_back(one.as_recorded);
+    for (const ReplayedModel& one : all.front().models) errors.push_back(one.as_recorded);
     if (const Status status = plot.draw(options.plot, name, errors, options.force); !status) return status;
   }
   if (options.json) {
-    print_json(all, *models);
+    print_all_json(all, *models);
   } else {
-    for (const ReplayedRecording& replayed : all) print_table(replayed, *models);
+    for (const ReplayedRecording& replayed : all) print_recording(replayed, *models);
   }
   return {};
 }

@@ -78,7 +78,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
   }
   against.series.push_back(std::move(jnd));
   plot.panels = {std::move(force), std::move(difference), std::move(against)};
-  return draw_plot(plot, path, overwrite);
+  return draw_plot(plot, {path}, overwrite);
 }
 
 }  // namespace palpate::cli

@@ -8,7 +8,7 @@
 
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
-#include "scenes/cli/loaded_models.h"
+#include "scenes/cli/replay_files.h"
 #include "scenes/evaluation/model_errors.h"
 
 namespace palpate::cli {

@@ -34,15 +34,15 @@ Status run(ReportRequest request) {
   std::vector<std::string> recordings = request.train;
   recordings.insert(recordings.end(), request.test.begin(), request.test.end());
   if (const auto checked = check_before_use(recordings, check_request(*scene)); !checked) return checked.error();
-  Result<ReportSummary> summary = [&] {
+  const Result<std::string> answer = [&] {
     ProgressLine line("reporting");
     FitControl control;
     control.progress = [&](double fraction) { return line.update(fraction); };
     return make_report(request, control);
   }();
-  if (!summary) return summary.error();
-  std::printf("%s\n", summary->answer.c_str());
-  std::printf("written  %s/index.html and %zu more files\n", request.out.c_str(), summary->files.size() - 1);
+  if (!answer) return answer.error();
+  std::printf("%s\n", answer->c_str());
+  std::printf("written  %s/index.html, with its tables and figures\n", request.out.c_str());
   return {};
 }
 

@@ -17,25 +17,15 @@ namespace {
 
 constexpr int kPause_ms = 10;
 
-// What may be typed now; Enter ends a line.
-const char* choices(StudyState state) {
-  switch (state) {
-    case StudyState::consent:
-      return " [y: I have read this and agree]";
-    case StudyState::ready:
-    case StudyState::rest:
-      return " [Enter: go on]";
-    case StudyState::answering:
-      return " [1 or 2]";
-    case StudyState::unsaved:
-      return " [r: try again]";
-    case StudyState::presenting:
-    case StudyState::done:
-    case StudyState::aborted:
-      break;
-  }
-  return "";
-}
+// What may be typed now, by StudyState; Enter ends a line.
+constexpr const char* kChoices[] = {" [y: I have read this and agree]",
+                                    " [Enter: go on]",
+                                    "",
+                                    " [1 or 2]",
+                                    " [r: try again]",
+                                    " [Enter: go on]",
+                                    "",
+                                    ""};
 
 void obey(LiveStudy& study, const std::string& line) {
   StudySession& session = study.session();
@@ -78,7 +68,7 @@ std::string words_of(LiveStudy& study) {
     words = std::string(view.training ? "training " : "") + std::to_string(view.answered + 1) + " of " +
             std::to_string(view.trials) + ": ";
   }
-  words += view.message + choices(view.state);
+  words += view.message + kChoices[static_cast<std::size_t>(view.state)];
   if (const std::string device = study.device_words(); !device.empty()) words += "\n" + device;
   if (study.newest().device.zeroing == Zeroing::needed) words += " [z: zero here]";
   return words;

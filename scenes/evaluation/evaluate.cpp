@@ -58,23 +58,43 @@ class ErrorPass {
 
 using Models = std::vector<EvaluatedModel>;
 
-// Calls `one(batch, index of its first model)` for up to kMaxModels models at a time.
-template <typename One>
-Status in_batches(const Models& models, const FitControl& control, double from, const One& one) {
+// What all models made of all rows.
+struct Passed {
+  ReplaySummary summary;
+  ModelErrors no_force{JndLine{}};
+  std::vector<ModelErrors> errors;
+  std::vector<PredictedErrors> predicted;
+};
+
+// Up to kMaxModels models at a time; `also` sees every row with the first of them. `from`: what of
+// the whole is done before.
+Result<Passed> pass_over(const RowSource& rows, const Models& models, double surface_offset_m,
+                         const EvaluationRequest& request, double from, const ReplayVisitor& also) {
+  Passed passed;
   for (std::size_t first = 0; first < models.size(); first += kMaxModels) {
     const double done = static_cast<double>(first) / static_cast<double>(models.size());
-    if (!control.may_continue(from + 0.5 * done)) return interrupted();
+    if (!request.control.may_continue(from + 0.5 * done)) return interrupted();
     const auto begin = models.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(kMaxModels, models.size() - first));
-    if (const Status status = one(Models(begin, end), first); !status) return status;
+    const Models batch(begin, begin + static_cast<std::ptrdiff_t>(std::min(kMaxModels, models.size() - first)));
+    ForceModels force_models;
+    for (const EvaluatedModel& one : batch) force_models.push_back(one.model);
+    ErrorPass pass(batch, rows.seconds, request.counted_s);
+    const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+      pass.add(row, snapshot);
+      if (first == 0 && also) also(row, snapshot, tick);
+    };
+    const auto summary = rows.replay(force_models, visitor, surface_offset_m);
+    if (!summary) return summary.error();
+    if (first == 0) {
+      passed.summary = *summary;
+      passed.no_force = pass.no_force();
+    }
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      passed.errors.push_back(pass.errors(i));
+      passed.predicted.push_back(pass.predicted(i));
+    }
   }
-  return {};
-}
-
-ForceModels force_models(const Models& models) {
-  ForceModels list;
-  for (const EvaluatedModel& one : models) list.push_back(one.model);
-  return list;
+  return passed;
 }
 
 }  // namespace
@@ -99,31 +119,21 @@ RowSource rows_of_file(const std::string& path) {
 Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models, const EvaluationRequest& request) {
   RecordingEvaluation result;
   GrowingStride surface_rows(2 * kSearchRows);
-  const Status recorded =
-      in_batches(models, request.control, 0.0, [&](const Models& batch, std::size_t first) -> Status {
-        ErrorPass pass(batch, rows.seconds, request.counted_s);
-        const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
-          pass.add(row, snapshot);
-          if (first > 0) return;
-          const ToolSample sample = tool_sample(row);
-          surface_rows.add({sample, tick.motion(), row.force_N});
-          if (snapshot.in_contact) result.timing.add(sample);
-          if (request.also) request.also(row, snapshot, tick);
-        };
-        const auto summary = rows.replay(force_models(batch), visitor, 0.0);
-        if (!summary) return summary.error();
-        if (first == 0) {
-          result.samples = summary->samples;
-          result.contact_samples = pass.no_force().summary().samples;
-          result.sensor = summary->sensor;
-          result.no_force = pass.no_force();
-        }
-        for (std::size_t i = 0; i < batch.size(); ++i) {
-          result.models.push_back({pass.errors(i), pass.errors(i), pass.predicted(i), {}});
-        }
-        return {};
-      });
+  const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
+    const ToolSample sample = tool_sample(row);
+    surface_rows.add({sample, tick.motion(), row.force_N});
+    if (snapshot.in_contact) result.timing.add(sample);
+    if (request.also) request.also(row, snapshot, tick);
+  };
+  const auto recorded = pass_over(rows, models, 0.0, request, 0.0, visitor);
   if (!recorded) return recorded.error();
+  result.samples = recorded->summary.samples;
+  result.contact_samples = recorded->no_force.summary().samples;
+  result.sensor = recorded->summary.sensor;
+  result.no_force = recorded->no_force;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    result.models.push_back({recorded->errors[i], recorded->errors[i], recorded->predicted[i], {}});
+  }
   if (!request.move_surface) return result;
   const std::vector<SurfaceRow> searched = thinned_rows(surface_rows.rows(), kSearchRows);
   std::map<double, std::vector<std::size_t>> by_offset;
@@ -134,25 +144,15 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
     surface = request.surface_models.empty() ? locate_surface(searched, {models[i].model}, models[i].jnd) : common;
     if (surface.at != 0.0) by_offset[surface.at].push_back(i);
   }
-  for (const auto& group : by_offset) {  // named below: a lambda may not hold a binding (clang 14)
-    const double offset_m = group.first;
-    const std::vector<std::size_t>& which = group.second;
-    Models moved;
-    for (const std::size_t i : which) moved.push_back(models[i]);
-    const auto replay_moved = [&](const Models& batch, std::size_t first) -> Status {
-      ErrorPass pass(batch, rows.seconds, request.counted_s);
-      const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-        pass.add(row, snapshot);
-      };
-      const auto summary = rows.replay(force_models(batch), visitor, offset_m);
-      if (!summary) return summary.error();
-      for (std::size_t i = 0; i < batch.size(); ++i) {
-        result.models[which[first + i]].surface_moved = pass.errors(i);
-        result.models[which[first + i]].predicted = pass.predicted(i);
-      }
-      return {};
-    };
-    if (const Status status = in_batches(moved, request.control, 0.5, replay_moved); !status) return status.error();
+  for (const auto& [offset_m, which] : by_offset) {
+    Models there;
+    for (const std::size_t i : which) there.push_back(models[i]);
+    const auto moved = pass_over(rows, there, offset_m, request, 0.5, {});
+    if (!moved) return moved.error();
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      result.models[which[i]].surface_moved = moved->errors[i];
+      result.models[which[i]].predicted = moved->predicted[i];
+    }
   }
   return result;
 }

@@ -124,14 +124,8 @@ void Comparison::show(const LoopSnapshot& newest) {
 }
 
 double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept {
-  switch (reference_) {
-    case ReferenceKind::measured:
-      return snapshot.measured_N;
-    case ReferenceKind::truth:
-      return snapshot.reference_N;
-    case ReferenceKind::direct:
-      break;
-  }
+  if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
+  if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
   if (set == nullptr || !slots_.reference()) return kNoForce;
   const auto place = set->place_of(*slots_.reference());
   return place ? snapshot.tick.force_N[*place] : kNoForce;

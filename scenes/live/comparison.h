@@ -25,15 +25,6 @@
 
 namespace palpate {
 
-// What the models are compared with.
-enum class ReferenceKind : std::uint8_t {
-  measured,  // the force in the recording that is replayed
-  truth,     // of the scene's virtual material under the same tool
-  direct,    // a model: the direct interpolant, all sites; of files without one, the first
-};
-inline constexpr std::array<ReferenceKind, 3> kReferenceKinds{ReferenceKind::measured, ReferenceKind::truth,
-                                                              ReferenceKind::direct};
-
 class Comparison {
  public:
   // `slots` outlive this; their views get the figures.

@@ -10,6 +10,8 @@
 // Thread guarantee: one thread; allocates in the constructor only.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "engine/tick/features.h"
@@ -19,10 +21,25 @@ namespace palpate {
 class Dent {
  public:
   Dent() = default;
-  explicit Dent(const std::vector<FeatureSpec>& features);
+  explicit Dent(const std::vector<FeatureSpec>& features) {
+    for (const FeatureSpec& feature : features) {
+      if (feature.relaxation_time_s > 0.0) branches_.push_back({feature.relaxation_time_s, 0.0});
+    }
+  }
 
   // `step_s`: since the last call.
-  void step(double depth_m, double error_over_jnd, double step_s);
+  void step(double depth_m, double error_over_jnd, double step_s) {
+    constexpr double kShown = 0.35;  // of the remembered depth, on a free surface
+    constexpr double kFading_s = 0.3;
+    double sum_m = 0.0;
+    for (Branch& branch : branches_) {
+      branch.depth_m = depth_m + (branch.depth_m - depth_m) * std::exp(-step_s / branch.relaxation_time_s);
+      sum_m += branch.depth_m;
+    }
+    const double mean_m = branches_.empty() ? 0.0 : sum_m / static_cast<double>(branches_.size());
+    dent_m_ = std::max(depth_m, kShown * mean_m);
+    error_over_jnd_ = std::max(error_over_jnd, error_over_jnd_ * std::exp(-step_s / kFading_s));
+  }
 
   double depth_m() const noexcept { return dent_m_; }
   double error_over_jnd() const noexcept { return error_over_jnd_; }

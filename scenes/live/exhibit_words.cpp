@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/csv_scanner.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
-}
 
 void replace(std::string& text, std::string_view sign, const std::string& by) {
   if (const std::size_t at = text.find(sign); at != std::string::npos) text.replace(at, sign.size(), by);
@@ -25,17 +21,17 @@ void replace(std::string& text, std::string_view sign, const std::string& by) {
 Result<ExhibitWords> ExhibitWords::parse(std::string_view text, const std::string& path) {
   ExhibitWords words;
   std::size_t number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = trimmed(text.substr(at, end - at));
-    at = end + 1;
+  std::istringstream lines{std::string(text)};
+  for (std::string whole; std::getline(lines, whole);) {
+    std::erase(whole, '\r');
+    const std::string_view line = trimmed(whole);
     ++number;
     if (line.empty() || line.front() == '#') continue;
     const std::size_t sign = line.find('=');
     const std::string where = path + ":" + std::to_string(number) + ": ";
-    if (sign == std::string::npos) return Error{where + "found \"" + line + "\", expected key = text"};
-    const std::string key = trimmed(std::string_view(line).substr(0, sign));
-    if (!words.texts_.emplace(key, trimmed(std::string_view(line).substr(sign + 1))).second)
+    if (sign == std::string::npos) return Error{where + "found \"" + std::string(line) + "\", expected key = text"};
+    const std::string key(trimmed(line.substr(0, sign)));
+    if (!words.texts_.emplace(key, trimmed(line.substr(sign + 1))).second)
       return Error{where + "found \"" + key + "\" a second time, expected each key once"};
   }
   return words;

@@ -8,7 +8,6 @@
 #include "engine/base/text.h"
 #include "engine/recording/recording.h"
 #include "models/model/fitted_model.h"
-#include "scenes/live/device_choice.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/local_time.h"
@@ -24,20 +23,13 @@ constexpr std::int64_t kRehearse_ns = 100'000;
 // A device that fails all day does not fill the disk.
 constexpr int kMostFaultFiles = 50;
 
-WrittenForce written(ReferenceKind kind) {
-  switch (kind) {
-    case ReferenceKind::measured:
-      return WrittenForce::measured;
-    case ReferenceKind::truth:
-      return WrittenForce::reference;
-    case ReferenceKind::direct:
-      return WrittenForce::model;
-  }
-  return WrittenForce::model;
-}
-
 constexpr const char* kDefaultScene = "silicone_block";
 constexpr std::string_view kReplay = "replay:";
+
+DeviceRequest with_calibrations(DeviceRequest request) {
+  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
+  return request;
+}
 
 // A recording that is named or replayed is the material: nothing else is true of it.
 Status take_recording(const SessionRequest& request, Scene& scene) {
@@ -72,10 +64,8 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 }  // namespace
 
 std::vector<DeviceChoice> device_choices() {
-  DeviceRequest request;
-  if (const auto assets = find_assets()) request.calibrations = *assets + "/devices";
   std::vector<DeviceChoice> choices;
-  for (DeviceDescription& device : list_devices(request)) {
+  for (DeviceDescription& device : list_devices(with_calibrations({}))) {
     if (device.name.find(':') == std::string::npos)
       choices.push_back({std::move(device.name), std::move(device.summary), std::move(device.problem)});
   }
@@ -105,8 +95,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& req
   device_request.seed = request.seed + 1;  // other gestures than those of the training recording
   device_request.hand.strongest_press_N = scene->strongest_press_N;
   device_request.bus = request.bus;
-  if (const auto assets = find_assets()) device_request.calibrations = *assets + "/devices";
-  Result<std::unique_ptr<Device>> device = open_device(request.device, device_request);
+  Result<std::unique_ptr<Device>> device = open_device(request.device, with_calibrations(device_request));
   if (!device) return device.error();
   std::unique_ptr<LiveSession> session(new LiveSession(request, std::move(*scene), std::move(*device)));
   if (line_up == nullptr) session->request_.line_up.clear();
@@ -120,9 +109,8 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
     if (!material) return material.error();
     truth_ = std::make_shared<TrueForce>(*material);
   }
-  comparison_.use_reference(device_->measures_force() ? ReferenceKind::measured
-                            : truth_ != nullptr       ? ReferenceKind::truth
-                                                      : ReferenceKind::direct);
+  comparison_.use_reference(*std::find_if(kReferenceKinds.begin(), kReferenceKinds.end() - 1,
+                                          [&](ReferenceKind kind) { return has_reference(kind); }));
   if (replay() != nullptr) comparison_.begins_at(replay()->recording().rows.front().time_s);
   LoopSettings settings;
   settings.rehearse_ns = kRehearse_ns;
@@ -244,15 +232,9 @@ void LiveSession::select(std::size_t slot) {
 }
 
 bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
-  switch (kind) {
-    case ReferenceKind::measured:
-      return device_->measures_force();
-    case ReferenceKind::truth:
-      return truth_ != nullptr;
-    case ReferenceKind::direct:
-      return models_.reference().has_value();
-  }
-  return false;
+  return kind == ReferenceKind::measured ? device_->measures_force()
+         : kind == ReferenceKind::truth  ? truth_ != nullptr
+                                         : models_.reference().has_value();
 }
 
 void LiveSession::use_reference(ReferenceKind kind) {
@@ -260,24 +242,19 @@ void LiveSession::use_reference(ReferenceKind kind) {
 }
 
 std::string LiveSession::reference_words(bool brief) const {
-  const std::string model = has_reference(ReferenceKind::direct) ? models_.view(*models_.reference()).name : "";
-  switch (comparison_.reference()) {
-    case ReferenceKind::measured:
-      if (replay() != nullptr)
-        return brief ? "the recording"
-                     : "as recorded in " + replay()->recording().name + (models_.fits() ? ", fitted to it" : "");
-      return brief ? "the real block" : "measured force of the real block";
-    case ReferenceKind::truth:
-      return brief ? "the material" : "true force of the virtual material, " + *scene_.material;
-    case ReferenceKind::direct:
-      if (model.empty()) return "no truth to compare with";
-      if (brief) return model;
-      if (scene_.material) return "direct interpolant";
-      return (scene_.recording.empty() ? "no truth to compare with: difference from "
-                                       : "best model of the recording, ") +
-             model;
+  if (comparison_.reference() == ReferenceKind::truth)
+    return brief ? "the material" : "true force of the virtual material, " + *scene_.material;
+  if (comparison_.reference() == ReferenceKind::measured) {
+    if (replay() == nullptr) return brief ? "the real block" : "measured force of the real block";
+    return brief ? "the recording"
+                 : "as recorded in " + replay()->recording().name + (models_.fits() ? ", fitted to it" : "");
   }
-  return {};
+  if (!models_.reference()) return "no truth to compare with";
+  const std::string& model = models_.view(*models_.reference()).name;
+  if (brief) return model;
+  if (scene_.material) return "direct interpolant";
+  return (scene_.recording.empty() ? "no truth to compare with: difference from " : "best model of the recording, ") +
+         model;
 }
 
 void LiveSession::reset_figures() {
@@ -331,7 +308,7 @@ Status LiveSession::start_recording(const std::string& path) {
   }
   RecorderRequest request;
   request.path = path;
-  request.force = written(comparison_.reference());
+  request.force = comparison_.reference();
   const SensorSpec sensor = device_->sensor();
   request.columns = {sensor.has_velocity, sensor.has_acceleration};
   request.comments = recording_comments();

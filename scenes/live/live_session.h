@@ -42,6 +42,17 @@ struct SessionRequest {
   HidBus* bus = nullptr;    // outlives the session; null: the machine's own
 };
 
+// The devices that a session can be opened with, for whoever does not see them.
+struct DeviceChoice {
+  std::string name;
+  std::string summary;  // one line
+  std::string problem;  // why it cannot be opened and what to do; empty: it can
+};
+
+// Those that need no more than their name. Slow side: opens and closes what is plugged in, which
+// takes a while.
+std::vector<DeviceChoice> device_choices();
+
 class LiveSession {
  public:
   // Quick: fits and files come later. Errors: unknown scene, unknown method, a

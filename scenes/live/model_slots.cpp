@@ -136,13 +136,16 @@ bool ModelSlots::fits() const noexcept {
 std::optional<std::size_t> ModelSlots::reference() const noexcept {
   if (direct_) return direct_;
   if (fits()) return std::nullopt;
-  std::optional<std::size_t> first;
+  const auto shown = shown_slots();
+  return shown.size() > 1 ? std::optional<std::size_t>(shown.front()) : std::nullopt;
+}
+
+std::vector<std::size_t> ModelSlots::shown_slots() const {
+  std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (!slots_[i]->takes_part()) continue;
-    if (first) return first;
-    first = i;
+    if (slots_[i]->takes_part()) shown.push_back(i);
   }
-  return std::nullopt;
+  return shown;
 }
 
 bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
@@ -155,7 +158,7 @@ bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
     slot.view.problem = finished.problem;
     return false;
   }
-  const bool first = std::none_of(slots_.begin(), slots_.end(), [](const auto& other) { return other->takes_part(); });
+  const bool first = shown_slots().empty();
   slot.model = finished.model;
   slot.view.state = slot.hidden ? SlotState::hidden : SlotState::ready;
   slot.view.progress = 1.0;
@@ -193,11 +196,10 @@ bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
     if (!first) first = index;
   }
   for (const auto& slot : slots_) {
-    if (slot->hidden) {
-      slot->view.state = SlotState::hidden;
-    } else if (slot->view.state == SlotState::hidden) {
-      slot->view.state = slot->model != nullptr ? SlotState::ready : SlotState::waiting;
-    }
+    SlotState& state = slot->view.state;
+    if (!slot->hidden && state == SlotState::hidden)
+      state = slot->model != nullptr ? SlotState::ready : SlotState::waiting;
+    if (slot->hidden) state = SlotState::hidden;
   }
   if (slots_[selected_]->hidden && first) selected_ = *first;
   select_what_is_there();
@@ -206,20 +208,14 @@ bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
 
 // The active model must be one that takes part, as soon as there is one.
 void ModelSlots::select_what_is_there() {
-  if (slots_.empty() || slots_[selected_]->takes_part()) return;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (!slots_[i]->takes_part()) continue;
-    selected_ = i;
-    return;
-  }
+  const auto shown = shown_slots();
+  if (!shown.empty() && !slots_[selected_]->takes_part()) selected_ = shown.front();
 }
 
 void ModelSlots::remove(std::size_t index) {
   if (index >= slots_.size()) return;
   Slot& slot = *slots_[index];
-  const auto others = std::count_if(slots_.begin(), slots_.end(),
-                                    [&](const auto& other) { return other.get() != &slot && other->takes_part(); });
-  if (others == 0) {
+  if (shown_slots().size() == (slot.takes_part() ? 1 : 0)) {
     notices_.add("the last model stays: there must be one to press", false);
     return;
   }
@@ -244,9 +240,8 @@ void ModelSlots::refit(std::size_t index, int centres) {
 
 double ModelSlots::trained_depth_m() const noexcept {
   double depth_m = std::numeric_limits<double>::infinity();
-  for (const auto& slot : slots_) {
-    if (!slot->takes_part()) continue;
-    const ModelData& data = slot->model->data();
+  for (const std::size_t slot : shown_slots()) {
+    const ModelData& data = slots_[slot]->model->data();
     for (std::size_t i = 0; i < data.features.size(); ++i) {
       if (data.features[i].kind == FeatureKind::depth)
         depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
@@ -295,9 +290,7 @@ void ModelSlots::write_selection(LoopControls& controls) const {
 
 std::vector<std::shared_ptr<const ForceModel>> ModelSlots::ready_models() const {
   std::vector<std::shared_ptr<const ForceModel>> models;
-  for (const auto& slot : slots_) {
-    if (slot->view.state == SlotState::ready) models.push_back(slot->model);
-  }
+  for (const std::size_t slot : shown_slots()) models.push_back(slots_[slot]->model);
   return models;
 }
 
@@ -309,7 +302,7 @@ const std::vector<FeatureSpec>& ModelSlots::features(std::size_t slot) const noe
 }
 
 bool ModelSlots::select(std::size_t slot) {
-  if (slot >= slots_.size() || slots_[slot]->view.state != SlotState::ready) return false;
+  if (slot >= slots_.size() || !slots_[slot]->takes_part()) return false;
   selected_ = slot;
   user_chose_ = true;
   return true;

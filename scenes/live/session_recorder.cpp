@@ -14,17 +14,9 @@ constexpr std::size_t kSamplesAtOnce = 1024;
 constexpr auto kPause = std::chrono::milliseconds(20);
 constexpr int kRoundsToDisk = 10;  // of so many pauses
 
-double force_of(const RecordedSample& sample, WrittenForce force) {
-  switch (force) {
-    case WrittenForce::measured:
-      return sample.measured_N;
-    case WrittenForce::reference:
-      return sample.reference_N;
-    case WrittenForce::model:
-      return sample.model_N;
-  }
-  return kNoForce;
-}
+// By ReferenceKind.
+constexpr double RecordedSample::*kForces[] = {&RecordedSample::measured_N, &RecordedSample::reference_N,
+                                               &RecordedSample::model_N};
 
 std::string counted(std::uint64_t count, const char* words) {
   return count > 0 ? "; " + std::to_string(count) + " samples " + words : std::string();
@@ -141,7 +133,7 @@ void SessionRecorder::write(const RecordedSample& sample) {
     ++counts_.unusable;
     return;
   }
-  const double force_N = request_.columns.force ? force_of(sample, request_.force) : 0.0;
+  const double force_N = request_.columns.force ? sample.*kForces[static_cast<std::size_t>(request_.force)] : 0.0;
   if (!std::isfinite(force_N)) {
     ++counts_.without_force;
     return;

@@ -24,6 +24,7 @@
 #include "engine/base/result.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/recording/recording_writer.h"
+#include "scenes/live/force_history.h"
 #include "scenes/live/notices.h"
 
 namespace palpate {
@@ -36,12 +37,9 @@ struct RecordingStatus {
   double seconds = 0.0;  // of motion: gaps between streams do not count
 };
 
-// Which of RecordedSample's forces is written.
-enum class WrittenForce : std::uint8_t { measured, reference, model };
-
 struct RecorderRequest {
   std::string path;
-  WrittenForce force = WrittenForce::reference;
+  ReferenceKind force = ReferenceKind::truth;  // which of the sample's is written
   RecordingColumns columns;
   std::vector<std::string> comments;
   bool overwrite = false;

@@ -16,9 +16,23 @@
 // nothing and fits the haptic tick.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 namespace palpate {
+
+// A Maxwell branch over one sub-step in which its spring is stretched evenly: exact,
+//   F <- F decay + K ds gain
+struct MaxwellStep {
+  MaxwellStep() = default;
+  MaxwellStep(double substep_s, double relaxation_time_s) noexcept {
+    const double ratio = substep_s / relaxation_time_s;
+    decay = std::exp(-ratio);
+    gain = -std::expm1(-ratio) / ratio;
+  }
+  double decay = 1.0;
+  double gain = 1.0;
+};
 
 class Block {
  public:

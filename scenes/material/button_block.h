@@ -14,6 +14,9 @@
 // section 4.4 (snap-through).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "scenes/material/block.h"
 
 namespace palpate {
@@ -34,22 +37,61 @@ class ButtonBlock final : public Block {
 
   // Where a hand aims: what the press met at most on its way there, for beyond the peak no
   // force belongs to one depth.
-  double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override;
+  double held_force_N(double depth_m) const noexcept override {
+    return rising_N(depth_m, kLeg_N_per_m + 0.5 * kLegBranch_N_per_m);
+  }
+  double relaxed_force_N(double depth_m) const noexcept override { return rising_N(depth_m, kLeg_N_per_m); }
   std::string relaxation_times_text() const override { return "0.25 s; dry friction"; }
 
  private:
   struct Leg {
     double shortened_m = 0.0, branch_N = 0.0, friction_N = 0.0;
   };
-  void prepare() noexcept override;
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
-  Leg leg_at(double surface_m) const noexcept;
+  void prepare() noexcept override { branch_ = MaxwellStep(substep_s(), kLegTime_s); }
+  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override {
+    const Leg leg = leg_at(surface_m);
+    return dome_N(surface_m, kLeg_N_per_m * leg.shortened_m + leg.branch_N + leg.friction_N, rate_m_per_s);
+  }
+  void settle(double surface_m, bool) noexcept override {
+    leg_ = leg_at(surface_m);
+    if (std::abs(leg_.branch_N) < kNoForce_N) leg_.branch_N = 0.0;
+  }
+  void forget(double surface_m) noexcept override { leg_ = {shortened_m(surface_m), 0.0, 0.0}; }
+
+  Leg leg_at(double surface_m) const noexcept {
+    Leg leg;
+    leg.shortened_m = shortened_m(surface_m);
+    const double change_m = leg.shortened_m - leg_.shortened_m;
+    leg.branch_N = leg_.branch_N * branch_.decay + kLegBranch_N_per_m * change_m * branch_.gain;
+    const double limit_N = kFriction * kLeg_N_per_m * std::max(0.0, leg.shortened_m);
+    leg.friction_N = std::clamp(leg_.friction_N + kPresliding_N_per_m * change_m, -limit_N, limit_N);
+    return leg;
+  }
+  static double leg_length_m(double surface_m) noexcept { return std::hypot(kHalfSpan_m, kRise_m - surface_m); }
+  // Written so that nothing cancels, and a flat surface has exactly 0.
+  static double shortened_m(double surface_m) noexcept {
+    return surface_m * (2.0 * kRise_m - surface_m) / (leg_length_m(0.0) + leg_length_m(surface_m));
+  }
+  // What a force along each leg, the skirt and the floor are together.
+  static double dome_N(double surface_m, double leg_N, double rate_m_per_s) noexcept {
+    const double beyond_m = std::max(0.0, surface_m - kFloor_m);
+    return 2.0 * leg_N * (kRise_m - surface_m) / leg_length_m(surface_m) + kSkirt_N_per_m * surface_m +
+           kSkirt_Ns_per_m * rate_m_per_s + kFloor_N_per_m1_5 * beyond_m * std::sqrt(beyond_m);
+  }
+  // Rises with the depth, over the valley as well.
+  static double rising_N(double depth_m, double leg_N_per_m) noexcept {
+    const auto at_rest_N = [&](double s) { return dome_N(s, leg_N_per_m * shortened_m(s), 0.0); };
+    constexpr double kStep_m = 2e-5;
+    constexpr double kLeast_N_per_m = 1.0;
+    double peak_m = 0.0;  // the first
+    while (peak_m < kRise_m && at_rest_N(peak_m + kStep_m) > at_rest_N(peak_m)) peak_m += kStep_m;
+    if (depth_m <= peak_m) return at_rest_N(depth_m);
+    return std::max(at_rest_N(peak_m) + kLeast_N_per_m * (depth_m - peak_m),
+                    depth_m < kRise_m ? 0.0 : at_rest_N(depth_m));
+  }
 
   Leg leg_;  // at the last surface
-  double branch_decay_ = 1.0, branch_gain_ = 1.0;
+  MaxwellStep branch_;
 };
 
 }  // namespace palpate

@@ -17,13 +17,15 @@
 // tissue along a probe).
 #pragma once
 
-#include "scenes/material/block.h"
-#include "scenes/material/relaxation_spectrum.h"
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/material/hereditary_block.h"
 #include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
-class FrictionBlock final : public Block {
+class FrictionBlock final : public HereditaryBlock {
  public:
   static constexpr SphereContact kContact = {.radius_m = 0.01, .modulus_Pa = 12e3};
   static constexpr double kFriction_N = 0.35;    // F_c
@@ -31,26 +33,40 @@ class FrictionBlock final : public Block {
   static constexpr double kGripped_m = 0.004;    // d_c
   static constexpr double kWeight = 0.03;        // of the box spectrum, per unit of ln tau
 
-  FrictionBlock();
-  double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  std::string relaxation_times_text() const override;
+  FrictionBlock() : HereditaryBlock({0.05, 2.0, [](double) { return kWeight; }}) {}
+
+  double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
+  std::string relaxation_times_text() const override { return "continuous, 0.05 s to 2 s; dry friction"; }
 
   // F_c(depth), newtons: what friction can be at most.
-  static double friction_limit_N(double depth_m) noexcept;
+  static double friction_limit_N(double depth_m) noexcept { return kFriction_N * std::min(1.0, depth_m / kGripped_m); }
 
  private:
-  void prepare() noexcept override { spectrum_.prepare(substep_s()); }
-  void begin_substep() noexcept override { spectrum_.relax(); }
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  double free_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
-  double friction_after_N(double surface_m) const noexcept;
+  double contact_force_N(double surface_m, double) const noexcept override {
+    return hereditary_force_N(surface_m) + friction_after_N(surface_m);
+  }
+  double free_force_N(double surface_m, double) const noexcept override { return hereditary_force_N(surface_m); }
+  void settle(double surface_m, bool touching) noexcept override {
+    const double limit_N = friction_limit_N(surface_m);
+    const double friction_N = std::max(friction_after_N(surface_m), -hereditary_force_N(surface_m));
+    bend_ = touching && limit_N > kNoForce_N ? std::clamp(friction_N / limit_N, -1.0, 1.0) : 0.0;
+    HereditaryBlock::settle(surface_m, touching);
+  }
+  void forget(double surface_m) noexcept override {
+    HereditaryBlock::forget(surface_m);
+    bend_ = 0.0;
+  }
+  // F_c(s) z when the probe goes on to `surface_m`, exact for each bristle.
+  double friction_after_N(double surface_m) const noexcept {
+    const double way_m = surface_m - last_surface_m();
+    const double side = way_m < 0.0 ? -1.0 : 1.0;
+    const double slipped = -std::expm1(-std::abs(way_m) / kPresliding_m);
+    const double bend = bend_ + (side - bend_) * slipped;
+    // Those that arrive in this sub-step are unbent when they do.
+    return bend * friction_limit_N(std::min(surface_m, last_surface_m()));
+  }
 
-  RelaxationSpectrum spectrum_;
-  double elastic_N_ = 0.0;  // E at the last surface
-  double bend_ = 0.0;       // z, -1 .. 1
+  double bend_ = 0.0;  // z, -1 .. 1
 };
 
 }  // namespace palpate

@@ -19,7 +19,14 @@ class Hand final : public HandMotion {
       : HandMotion(settings, seed), block_(material.make_block()) {}
 
  protected:
-  double held_depth_m(double force_N) const noexcept override;
+  double held_depth_m(double force_N) const noexcept override {
+    double low_m = 0.0, high_m = 0.1;
+    for (int i = 0; i < 40; ++i) {
+      const double depth_m = 0.5 * (low_m + high_m);
+      (block_->held_force_N(depth_m) < force_N ? low_m : high_m) = depth_m;
+    }
+    return low_m;
+  }
 
  private:
   std::unique_ptr<const Block> block_;  // untouched, for what it would hold

@@ -13,13 +13,15 @@
 // ten, as of breast tumours: Samani, Zubovits & Plewes (2007).
 #pragma once
 
-#include "scenes/material/block.h"
-#include "scenes/material/relaxation_spectrum.h"
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/material/hereditary_block.h"
 #include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
-class LayeredBlock final : public Block {
+class LayeredBlock final : public HereditaryBlock {
  public:
   static constexpr SphereContact kTop = {.radius_m = 0.01, .modulus_Pa = 14e3};
   static constexpr double kGap_m = 0.006;                   // g
@@ -29,27 +31,77 @@ class LayeredBlock final : public Block {
   static constexpr double kSupportTime_s = 0.3;             // tau_m
   static constexpr double kWeight = 0.06;                   // of the box spectrum, per unit of ln tau
 
-  LayeredBlock();
-  double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override;
-  std::string relaxation_times_text() const override;
+  LayeredBlock() : HereditaryBlock({0.02, 4.0, [](double) { return kWeight; }}) {}
 
+  double elastic_force_N(double depth_m) const noexcept override { return kTop.force_N(depth_m); }
+  double held_force_N(double depth_m) const noexcept override {
+    return HereditaryBlock::held_force_N(depth_m) +
+           supported_N(depth_m, kSupport_N_per_m + 0.5 * kSupportBranch_N_per_m);
+  }
+  double relaxed_force_N(double depth_m) const noexcept override {
+    return kTop.force_N(depth_m) + supported_N(depth_m, kSupport_N_per_m);
+  }
+  std::string relaxation_times_text() const override { return "continuous, 0.02 s to 4 s; 0.3 s under the inclusion"; }
   double inclusion_depth_m() const noexcept { return inclusion_m_; }
 
  private:
-  void prepare() noexcept override;
-  void begin_substep() noexcept override { spectrum_.relax(); }
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
-  double inclusion_after_m(double surface_m) const noexcept;
-  static double balance_m(double surface_m, double slope_N_per_m, double offset_N, double guess_m) noexcept;
+  void prepare() noexcept override {
+    HereditaryBlock::prepare();
+    support_ = MaxwellStep(substep_s(), kSupportTime_s);
+  }
+  double contact_force_N(double surface_m, double) const noexcept override {
+    const double squeezed_m = surface_m - kGap_m - inclusion_after_m(surface_m);
+    const double inclusion_N = squeezed_m > 0.0 ? kInclusion_N_per_m1_5 * squeezed_m * std::sqrt(squeezed_m) : 0.0;
+    return hereditary_force_N(surface_m) + inclusion_N;
+  }
+  void settle(double surface_m, bool touching) noexcept override {
+    HereditaryBlock::settle(surface_m, touching);
+    const double inclusion_m = inclusion_after_m(surface_m);
+    branch_N_ = branch_N_ * support_.decay + kSupportBranch_N_per_m * support_.gain * (inclusion_m - inclusion_m_);
+    if (std::abs(branch_N_) < kNoForce_N) branch_N_ = 0.0;
+    inclusion_m_ = std::abs(inclusion_m) < 1e-30 ? 0.0 : inclusion_m;
+  }
+  void forget(double surface_m) noexcept override {
+    HereditaryBlock::forget(surface_m);
+    inclusion_m_ = balance_m(surface_m, kSupport_N_per_m, 0.0, 0.0);
+    branch_N_ = 0.0;
+  }
 
-  RelaxationSpectrum spectrum_;
-  double elastic_N_ = 0.0;    // E at the last surface
+  // What a support of this stiffness holds at rest.
+  static double supported_N(double depth_m, double slope_N_per_m) noexcept {
+    return slope_N_per_m * balance_m(depth_m, slope_N_per_m, 0.0, 0.0);
+  }
+  double inclusion_after_m(double surface_m) const noexcept {
+    const double branch_N_per_m = kSupportBranch_N_per_m * support_.gain;
+    return balance_m(surface_m, kSupport_N_per_m + branch_N_per_m,
+                     branch_N_ * support_.decay - branch_N_per_m * inclusion_m_, inclusion_m_);
+  }
+  // The y where k_i max(0, s - g - y)^1.5 = slope y + offset, by Newton's method.
+  // The left side falls and the right side rises with y, and their difference is
+  // convex: from below the root Newton overshoots at most to where the contact is
+  // open, which is bounded by s - g, and from there the next step is exact or from
+  // below.
+  static double balance_m(double surface_m, double slope_N_per_m, double offset_N, double guess_m) noexcept {
+    constexpr int kNewtonSteps = 6;
+    constexpr double kSolved_N = 1e-12;
+    const double reach_m = surface_m - kGap_m;
+    const double open_m = -offset_N / slope_N_per_m;
+    if (open_m >= reach_m) return open_m;
+    double y_m = std::clamp(guess_m, open_m, reach_m);
+    for (int i = 0; i < kNewtonSteps; ++i) {
+      const double squeezed_m = std::max(0.0, reach_m - y_m);
+      const double root = std::sqrt(squeezed_m);
+      const double excess_N = kInclusion_N_per_m1_5 * squeezed_m * root - slope_N_per_m * y_m - offset_N;
+      if (std::abs(excess_N) < kSolved_N) break;
+      const double slope = 1.5 * kInclusion_N_per_m1_5 * root + slope_N_per_m;
+      y_m = std::clamp(y_m + excess_N / slope, open_m, reach_m);
+    }
+    return y_m;
+  }
+
   double inclusion_m_ = 0.0;  // y
   double branch_N_ = 0.0;     // z
-  double branch_decay_ = 1.0, branch_gain_ = 1.0;
+  MaxwellStep support_;
 };
 
 }  // namespace palpate

@@ -15,10 +15,12 @@
 // Hunt & Crossley (1975) (damping that grows with depth).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <memory>
 
+#include "engine/base/csv_scanner.h"
 #include "scenes/material/block.h"
 
 namespace palpate {
@@ -46,11 +48,20 @@ struct MaxwellParameters {
   std::array<RelaxationBranch, kMaximumBranches> branches{};
 
   // E(depth), newtons; depth_m >= 0.
-  double elastic_force_N(double depth_m) const noexcept;
+  double elastic_force_N(double depth_m) const noexcept {
+    return depth_m *
+           (elastic_linear_N_per_m + depth_m * (elastic_quadratic_N_per_m2 + depth_m * elastic_cubic_N_per_m3));
+  }
   // g_b(depth): what branch b would hold had it not relaxed at all, newtons.
-  double unrelaxed_force_N(std::size_t branch, double depth_m) const noexcept;
+  double unrelaxed_force_N(std::size_t branch, double depth_m) const noexcept {
+    const RelaxationBranch& b = branches[branch];
+    return depth_m * (b.stiffness_N_per_m + 0.5 * b.stiffness_slope_N_per_m2 * depth_m);
+  }
   // V(depth, rate), newtons.
-  double viscous_force_N(double depth_m, double rate_m_per_s) const noexcept;
+  double viscous_force_N(double depth_m, double rate_m_per_s) const noexcept {
+    const double thinned = (1.0 - thick_fraction) / (1.0 + std::abs(rate_m_per_s) / thinning_speed_m_per_s);
+    return viscosity_Ns_per_m2 * depth_m * rate_m_per_s * (thick_fraction + thinned);
+  }
 };
 
 inline constexpr MaxwellParameters kMaxwell = {.elastic_linear_N_per_m = 330.0,
@@ -92,29 +103,63 @@ class MaxwellBlock final : public Block {
   explicit MaxwellBlock(const MaxwellParameters& parameters) noexcept : material_(parameters) {}
 
   const MaxwellParameters& parameters() const noexcept { return material_; }
-  double branch_force_N(std::size_t branch) const noexcept { return branch_force_N_[branch]; }
+  double branch_force_N(std::size_t branch) const noexcept { return inner_.branch_N[branch]; }
 
-  double held_force_N(double depth_m) const noexcept override;
+  double held_force_N(double depth_m) const noexcept override {
+    double held_N = material_.elastic_force_N(depth_m);
+    for (std::size_t b = 0; b < material_.branch_count; ++b) held_N += 0.5 * material_.unrelaxed_force_N(b, depth_m);
+    return held_N;
+  }
   double relaxed_force_N(double depth_m) const noexcept override { return material_.elastic_force_N(depth_m); }
-  std::string relaxation_times_text() const override;
+  std::string relaxation_times_text() const override {
+    std::string text;
+    for (std::size_t b = 0; b < material_.branch_count; ++b) {
+      text += (b == 0 ? "" : ", ") + shortest(material_.branches[b].relaxation_time_s) + " s";
+    }
+    return text.empty() ? "none" : text;
+  }
 
  private:
+  // The elements with memory.
   struct Inner {
     std::array<double, kMaximumBranches> branch_N{};
     double friction_N = 0.0;
-    double static_force_N = 0.0;  // all but viscosity
   };
-  void prepare() noexcept override;
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
-  Inner inner_at(double surface_m) const noexcept;
+  void prepare() noexcept override {
+    for (std::size_t b = 0; b < material_.branch_count; ++b) {
+      steps_[b] = MaxwellStep(substep_s(), material_.branches[b].relaxation_time_s);
+    }
+  }
+  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override {
+    const Inner inner = inner_at(surface_m);
+    double static_N = material_.elastic_force_N(surface_m);
+    for (std::size_t b = 0; b < material_.branch_count; ++b) static_N += inner.branch_N[b];
+    return static_N + inner.friction_N + material_.viscous_force_N(surface_m, rate_m_per_s);
+  }
+  void settle(double surface_m, bool) noexcept override {
+    inner_ = inner_at(surface_m);
+    for (double& branch_N : inner_.branch_N) branch_N = std::abs(branch_N) > kNoForce_N ? branch_N : 0.0;
+  }
+  void forget(double) noexcept override { inner_ = {}; }
+
+  // After the surface has moved to `surface_m` within one sub-step, g_b changing evenly:
+  // exact for that path.
+  Inner inner_at(double surface_m) const noexcept {
+    Inner inner;
+    for (std::size_t b = 0; b < material_.branch_count; ++b) {
+      const double change_N =
+          material_.unrelaxed_force_N(b, surface_m) - material_.unrelaxed_force_N(b, last_surface_m());
+      inner.branch_N[b] = inner_.branch_N[b] * steps_[b].decay + change_N * steps_[b].gain;
+    }
+    const double limit_N = material_.friction_fraction * material_.elastic_force_N(surface_m);
+    const double dragged_N = inner_.friction_N + material_.friction_stiffness_N_per_m * (surface_m - last_surface_m());
+    inner.friction_N = std::clamp(dragged_N, -limit_N, limit_N);
+    return inner;
+  }
 
   MaxwellParameters material_;
-  double friction_N_ = 0.0;
-  std::array<double, kMaximumBranches> branch_force_N_{};
-  std::array<double, kMaximumBranches> decay_{};  // exp(-h / tau)
-  std::array<double, kMaximumBranches> gain_{};   // (1 - exp(-h / tau)) tau / h
+  Inner inner_;
+  std::array<MaxwellStep, kMaximumBranches> steps_{};
 };
 
 }  // namespace palpate

@@ -1,8 +1,9 @@
 #include "scenes/material/rig.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "engine/base/csv_scanner.h"
 
 namespace palpate {
 namespace {
@@ -41,16 +42,6 @@ double converted(double value, double range) {
 // nanometres, which is short in a file.
 double encoded(double position_m, double step_m) {
   return std::nearbyint(std::nearbyint(position_m / step_m) * step_m * 1e9) / 1e9 + 0.0;
-}
-
-std::string recording_name(const RigSettings& settings) {
-  return settings.material + "_" + std::to_string(settings.seed);
-}
-
-// The shortest text that reads back as `value`.
-std::string shortest(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 
 // `settings` with what suits the material where nothing was said.
@@ -163,7 +154,7 @@ Result<Recording> record_sensors(const RigSettings& settings, const std::functio
   Result<Rig> rig = Rig::create(settings);
   if (!rig) return rig.error();
   Recording recording;
-  recording.name = recording_name(settings);
+  recording.name = settings.material + "_" + std::to_string(settings.seed);
   recording.columns.acceleration = true;
   recording.rows.reserve(rig->row_count());
   RecordingRow row;
@@ -175,23 +166,6 @@ Result<Recording> record_sensors(const RigSettings& settings, const std::functio
     if (progress && done % kRowsPerUpdate == 0 && !progress(share)) return Error{"interrupted"};
   }
   return recording;
-}
-
-Result<RigRecording> record(const RigSettings& settings) {
-  Result<Rig> rig = Rig::create(settings);
-  if (!rig) return rig.error();
-  RigRecording made;
-  made.recording.name = recording_name(settings);
-  made.recording.columns.acceleration = true;
-  made.recording.rows.reserve(rig->row_count());
-  made.truth.reserve(rig->row_count());
-  RecordingRow row;
-  RigTruth truth;
-  while (rig->next(row, truth)) {
-    made.recording.rows.push_back(row);
-    made.truth.push_back(truth);
-  }
-  return made;
 }
 
 std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
@@ -216,18 +190,6 @@ std::vector<std::string> describe_recording(const RigSettings& settings, const M
                     shortest(sensors.jitter_share) + " of their spacing");
   }
   return lines;
-}
-
-std::size_t count_force_steps(const Recording& recording, double step_N) {
-  if (recording.rows.empty()) return 0;
-  std::size_t kept = 1;
-  double last_N = recording.rows.front().force_N;
-  for (const RecordingRow& row : recording.rows) {
-    if (std::abs(row.force_N - last_N) < step_N) continue;
-    last_N = row.force_N;
-    ++kept;
-  }
-  return kept;
 }
 
 }  // namespace palpate

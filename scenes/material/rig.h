@@ -70,11 +70,6 @@ struct RigTruth {
   double cell_force_N = 0.0;     // force_N as the force cell gets it, after its filter
 };
 
-struct RigRecording {
-  Recording recording;          // columns: position, force, acceleration
-  std::vector<RigTruth> truth;  // one for each row
-};
-
 // Makes rows one by one, in bounded memory.
 class Rig {
  public:
@@ -109,20 +104,12 @@ class Rig {
 
 // A whole recording as the sensors see it, without the truth. `progress` is told
 // the share done now and then and may be empty; when it returns false the
-// recording is given up. Errors: as Rig::create; "interrupted".
+// recording is given up. The recording's name is "<material>_<seed>". Errors: as Rig::create; "interrupted".
 Result<Recording> record_sensors(const RigSettings& settings, const std::function<bool(double share)>& progress = {});
-
-// A whole recording with its truth; errors as Rig::create. The recording's
-// name is "<material>_<seed>".
-Result<RigRecording> record(const RigSettings& settings);
 
 // What a recording made with `settings` says about itself, line by line; the
 // same for the same settings, with no path and no date. `row_count`: its rows.
 std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
                                             std::size_t row_count);
-
-// How many rows of `recording` the paper's reduction keeps: a row is dropped
-// when its force differs by less than `step_N` from the last kept row's.
-std::size_t count_force_steps(const Recording& recording, double step_N);
 
 }  // namespace palpate

@@ -11,33 +11,22 @@
 // Source: Fung (1993), Biomechanics, section 7.6.
 #pragma once
 
-#include "scenes/material/block.h"
-#include "scenes/material/relaxation_spectrum.h"
+#include "scenes/material/hereditary_block.h"
 #include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
-class SiliconeBlock final : public Block {
+class SiliconeBlock final : public HereditaryBlock {
  public:
   static constexpr SphereContact kContact = {.radius_m = 0.01, .modulus_Pa = 25e3};
   static constexpr double kShortest_s = 0.001;  // tau1
   static constexpr double kLongest_s = 30.0;    // tau2
   static constexpr double kWeight = 0.06;       // c
 
-  SiliconeBlock();
-  double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  std::string relaxation_times_text() const override;
+  SiliconeBlock() : HereditaryBlock({kShortest_s, kLongest_s, [](double) { return kWeight; }}) {}
 
- private:
-  void prepare() noexcept override { spectrum_.prepare(substep_s()); }
-  void begin_substep() noexcept override { spectrum_.relax(); }
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
-
-  RelaxationSpectrum spectrum_;
-  double elastic_N_ = 0.0;  // E at the last surface
+  double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
+  std::string relaxation_times_text() const override { return "continuous, 0.001 s to 30 s"; }
 };
 
 }  // namespace palpate

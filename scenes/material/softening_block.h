@@ -14,12 +14,13 @@
 // & Gilormini (2009) (review; recovery with time).
 #pragma once
 
-#include "scenes/material/block.h"
-#include "scenes/material/relaxation_spectrum.h"
+#include <cmath>
+
+#include "scenes/material/hereditary_block.h"
 
 namespace palpate {
 
-class SofteningBlock final : public Block {
+class SofteningBlock final : public HereditaryBlock {
  public:
   static constexpr double kStiffness_N_per_m1_5 = 5200.0;  // k
   static constexpr double kStiffening_m = 0.012;           // s0
@@ -29,24 +30,53 @@ class SofteningBlock final : public Block {
   static constexpr double kHealing_s = 6.0;                // tau_heal
   static constexpr double kWeight = 0.03;                  // of the box spectrum, per unit of ln tau
 
-  SofteningBlock();
-  double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override;
-  std::string relaxation_times_text() const override;
+  SofteningBlock() : HereditaryBlock({0.01, 3.0, [](double) { return kWeight; }}) {}
 
+  double elastic_force_N(double depth_m) const noexcept override {
+    return kStiffness_N_per_m1_5 * depth_m * std::sqrt(depth_m) * (1.0 + stiffened(depth_m));
+  }
+  std::string relaxation_times_text() const override { return "continuous, 0.01 s to 3 s; heals in 6 s"; }
   // m, metres.
   double deepest_recent_m() const noexcept { return deepest_m_; }
 
  private:
-  void prepare() noexcept override;
-  void begin_substep() noexcept override;
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
-  double softened(double surface_m) const noexcept;
+  void prepare() noexcept override {
+    HereditaryBlock::prepare();
+    fade_ = std::exp(-substep_s() / kHealing_s);
+  }
+  void begin_substep() noexcept override {
+    HereditaryBlock::begin_substep();
+    deepest_m_ = last_surface_m() + (deepest_m_ - last_surface_m()) * fade_;
+    if (deepest_m_ < 1e-12) deepest_m_ = 0.0;  // healed, to far below an atom
+    deepest_J_ = elastic_energy_J(deepest_m_);
+  }
+  double contact_force_N(double surface_m, double) const noexcept override {
+    return hereditary_force_N(surface_m, softened(surface_m));
+  }
+  void settle(double surface_m, bool touching) noexcept override {
+    HereditaryBlock::settle(surface_m, touching);
+    if (surface_m > deepest_m_) deepest_m_ = surface_m;
+  }
+  void forget(double surface_m) noexcept override {
+    HereditaryBlock::forget(surface_m);
+    deepest_m_ = surface_m;
+  }
+  static double stiffened(double depth_m) noexcept {
+    const double share = depth_m / kStiffening_m;
+    return share * share;
+  }
+  // W(depth).
+  static double elastic_energy_J(double depth_m) noexcept {
+    return kStiffness_N_per_m1_5 * depth_m * depth_m * std::sqrt(depth_m) *
+           (2.0 / 5.0 + 2.0 / 9.0 * stiffened(depth_m));
+  }
+  // eta at `surface_m`.
+  double softened(double surface_m) const noexcept {
+    if (surface_m >= deepest_m_) return 1.0;
+    const double below_J = deepest_J_ - elastic_energy_J(surface_m);
+    return 1.0 - kSoftening * std::erf(below_J / (kSharpness_J + kSharpnessShare * deepest_J_));
+  }
 
-  RelaxationSpectrum spectrum_;
-  double elastic_N_ = 0.0;  // E at the last surface
   double deepest_m_ = 0.0;
   double deepest_J_ = 0.0;  // W(m)
   double fade_ = 1.0;       // exp(-h / tau_heal)

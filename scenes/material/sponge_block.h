@@ -19,7 +19,9 @@
 // (permeability and strain); Gibson & Ashby (1997) (foams close up).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "scenes/material/block.h"
@@ -37,16 +39,77 @@ class SpongeBlock final : public Block {
   static constexpr double kDiffusivity_m2_per_s = 1.25e-4;  // k0 M
   static constexpr double kPermeabilityFall = 5.0;          // b
 
-  double held_force_N(double depth_m) const noexcept override;
-  double relaxed_force_N(double depth_m) const noexcept override;
-  std::string relaxation_times_text() const override;
+  // A press of some tenths of a second leaves in the pores about a tenth of what
+  // they would hold at once.
+  double held_force_N(double depth_m) const noexcept override {
+    return relaxed_force_N(depth_m) + 0.1 * kArea_m2 * kPore_Pa * depth_m / kHeight_m;
+  }
+  // Of the skeleton.
+  double relaxed_force_N(double depth_m) const noexcept override {
+    constexpr double kMostClosed = 0.9;  // nearly: from here on it stiffens no more
+    const double strain = depth_m / kHeight_m;
+    const double closed = std::min(kMostClosed, strain / kClosed_strain);
+    return kArea_m2 * kSkeleton_Pa * strain / (1.0 - closed);
+  }
+  std::string relaxation_times_text() const override {
+    return "a diffusion's series, 0.2 s and quicker, slower with depth";
+  }
 
  private:
   using Rings = std::array<double, kRings>;
-  void begin_substep() noexcept override;
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
+  static constexpr double kArea_m2 = 3.14159265358979324 * kRadius_m * kRadius_m;
+  static constexpr double kRingCount = static_cast<double>(kRings);
+
+  // The ring's share of the tool's area: rings are equally wide.
+  static constexpr double ring_share(std::size_t ring) {
+    return (2.0 * static_cast<double>(ring) + 1.0) / (kRingCount * kRingCount);
+  }
+  // Over the outer edge of `ring`: diffusivity times perimeter over the distance of
+  // the pressures, per ring's width squared times 2 pi. At the rim the pressure 0
+  // is half a ring away.
+  static constexpr double ring_edge(std::size_t ring) {
+    const double outer = static_cast<double>(ring) + 1.0;
+    return ring + 1 == kRings ? 2.0 * outer : outer;
+  }
+  // Solves (I - h D) p = p_old + M de for any de: two right sides, one elimination.
+  void begin_substep() noexcept override {
+    const double strain = last_surface_m() / kHeight_m;
+    const double width_m = kRadius_m / kRingCount;
+    const double flow =
+        substep_s() * kDiffusivity_m2_per_s * std::exp(-kPermeabilityFall * strain) / (width_m * width_m);
+    Rings above{};  // of the diagonal, divided by the pivot
+    double from_inside = 0.0, last_drained = 0.0, last_squeezed = 0.0;
+    for (std::size_t i = 0; i < kRings; ++i) {
+      const double volume = static_cast<double>(i) + 0.5;
+      const double inner = i == 0 ? 0.0 : flow * ring_edge(i - 1);
+      const double outer = flow * ring_edge(i);
+      const double pivot = 1.0 / (volume + inner + outer - inner * from_inside);
+      drained_Pa_[i] = last_drained = (volume * pressure_Pa_[i] + inner * last_drained) * pivot;
+      squeezed_Pa_[i] = last_squeezed = (volume * kPore_Pa + inner * last_squeezed) * pivot;
+      above[i] = from_inside = i + 1 < kRings ? outer * pivot : 0.0;
+    }
+    mean_drained_Pa_ = mean_squeezed_Pa_ = 0.0;
+    for (std::size_t i = kRings; i-- > 0;) {
+      if (i + 1 < kRings) {
+        drained_Pa_[i] += above[i] * drained_Pa_[i + 1];
+        squeezed_Pa_[i] += above[i] * squeezed_Pa_[i + 1];
+      }
+      mean_drained_Pa_ += ring_share(i) * drained_Pa_[i];
+      mean_squeezed_Pa_ += ring_share(i) * squeezed_Pa_[i];
+    }
+  }
+  double strained(double surface_m) const noexcept { return (surface_m - last_surface_m()) / kHeight_m; }
+  double contact_force_N(double surface_m, double) const noexcept override {
+    return relaxed_force_N(surface_m) + kArea_m2 * (mean_drained_Pa_ + mean_squeezed_Pa_ * strained(surface_m));
+  }
+  void settle(double surface_m, bool) noexcept override {
+    constexpr double kNoPressure_Pa = 1e-25;
+    for (std::size_t i = 0; i < kRings; ++i) {
+      const double pressure_Pa = drained_Pa_[i] + squeezed_Pa_[i] * strained(surface_m);
+      pressure_Pa_[i] = std::abs(pressure_Pa) > kNoPressure_Pa ? pressure_Pa : 0.0;
+    }
+  }
+  void forget(double) noexcept override { pressure_Pa_.fill(0.0); }
 
   Rings pressure_Pa_{};
   // At the end of the sub-step: pressure = drained_ + squeezed_ times the change

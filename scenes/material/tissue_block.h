@@ -13,13 +13,14 @@
 // Vezin & Palierne (2010) (kidney's power law); Lin et al. (2009) (contact).
 #pragma once
 
-#include "scenes/material/block.h"
-#include "scenes/material/relaxation_spectrum.h"
+#include <cmath>
+
+#include "scenes/material/hereditary_block.h"
 #include "scenes/material/sphere_contact.h"
 
 namespace palpate {
 
-class TissueBlock final : public Block {
+class TissueBlock final : public HereditaryBlock {
  public:
   static constexpr SphereContact kContact = {.radius_m = 0.008, .modulus_Pa = 25e3, .stiffening = 3.0};
   static constexpr double kShortest_s = 1e-4;
@@ -27,21 +28,24 @@ class TissueBlock final : public Block {
   static constexpr double kExponent = 0.15;         // alpha
   static constexpr double kFractionalShare = 0.45;  // p
 
-  TissueBlock();
+  TissueBlock() : HereditaryBlock({kShortest_s, kLongest_s, density}) {}
+
+  double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double held_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double relaxed_force_N(double depth_m) const noexcept override { return held_share_ * kContact.force_N(depth_m); }
-  std::string relaxation_times_text() const override;
+  std::string relaxation_times_text() const override { return "a power law of time, t^-0.15"; }
 
  private:
-  void prepare() noexcept override { spectrum_.prepare(substep_s()); }
-  void begin_substep() noexcept override { spectrum_.relax(); }
-  double contact_force_N(double surface_m, double rate_m_per_s) const noexcept override;
-  void settle(double surface_m, bool touching) noexcept override;
-  void forget(double surface_m) noexcept override;
+  // Of the power law, per unit of ln tau.
+  static double density(double time_s) {
+    return kFractionalShare * std::pow(time_s, -kExponent) / std::tgamma(kExponent);
+  }
+  double contact_force_N(double surface_m, double) const noexcept override {
+    return hereditary_force_N(surface_m, held_share_);
+  }
 
-  RelaxationSpectrum spectrum_;
-  double held_share_ = 0.0;  // of E: what never relaxes and what is slower than the slowest time
-  double elastic_N_ = 0.0;   // E at the last surface
+  // Of E: what never relaxes, and the integral of the density from the slowest time on.
+  double held_share_ = 1.0 - kFractionalShare + density(kLongest_s) / kExponent;
 };
 
 }  // namespace palpate

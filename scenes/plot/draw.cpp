@@ -2,18 +2,59 @@
 
 #include <stdlib.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "engine/base/atomic_file.h"
 #include "engine/base/temporary_paths.h"
 #include "engine/base/whole_file.h"
-#include "scenes/plot/gnuplot.h"
 
 namespace palpate {
+namespace {
 
 namespace fs = std::filesystem;
 
-ScratchFolder::ScratchFolder(const std::string& parent) : path_(parent + "/.palpate-figures-XXXXXX") {
+// For the shell: nothing in it means anything.
+std::string shell_quoted(const std::string& text) {
+  std::string safe(1, '\'');
+  for (const char letter : text) {
+    if (letter == '\'') safe.append("'\\'");
+    safe.push_back(letter);
+  }
+  safe.push_back('\'');
+  return safe;
+}
+
+struct ShellRun {
+  bool done = false;
+  std::string said;
+};
+
+ShellRun run_in_shell(const std::string& command) {
+  ShellRun run;
+  std::FILE* const output = popen(command.c_str(), "r");
+  if (output == nullptr) return run;
+  char chunk[4096];
+  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, output)) run.said.append(chunk, count);
+  run.done = pclose(output) == 0;
+  return run;
+}
+
+// The first line that says something, warnings left out.
+std::string first_line(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool says = line.find_first_not_of(" \t^") != std::string::npos;
+    if (says && line.find("warning:") == std::string::npos) return line;
+  }
+  return "no message";
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder(const std::string& parent, const std::string& name)
+    : path_(parent + "/" + name + "XXXXXX") {
   if (mkdtemp(path_.data()) == nullptr) {
     path_.clear();
     return;
@@ -27,9 +68,25 @@ ScratchFolder::~ScratchFolder() {
   unregister_temporary(slot_);
 }
 
+Status find_gnuplot() {
+  if (run_in_shell("command -v gnuplot").done) return {};
+  return Error{"found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)"};
+}
+
+Status run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts) {
+  // A process each, without personal settings: what one script leaves set must not colour the next.
+  for (const std::string& script : scripts) {
+    const ShellRun run = run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
+                                      " 2>&1 >/dev/null </dev/null");
+    if (run.done) continue;
+    return Error{"gnuplot could not draw " + script + ": " + first_line(run.said) +
+                 "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
+  }
+  return {};
+}
+
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
-  const auto gnuplot = find_gnuplot();
-  if (!gnuplot) return gnuplot.error();
+  if (const Status found = find_gnuplot(); !found) return found;
   std::vector<std::string> scripts;
   for (const Plot& plot : plots) {
     const auto script = plot_script(plot);
@@ -38,7 +95,7 @@ Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
     if (const Status status = write_file_atomically(folder + "/" + scripts.back(), *script, true); !status)
       return status;
   }
-  return run_gnuplot(*gnuplot, folder, scripts);
+  return run_gnuplot(folder, scripts);
 }
 
 Status check_plot_path(const std::string& path, bool overwrite) {
@@ -51,16 +108,25 @@ Status check_plot_path(const std::string& path, bool overwrite) {
   return {};
 }
 
-Status draw_plot(const Plot& plot, const std::string& path, bool overwrite) {
-  if (const Status status = check_plot_path(path, overwrite); !status) return status;
-  const fs::path parent = fs::path(path).parent_path();
+Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool overwrite) {
+  for (const std::string& path : paths) {
+    if (const Status status = check_plot_path(path, overwrite); !status) return status;
+  }
+  const fs::path parent = fs::path(paths.front()).parent_path();
   const ScratchFolder scratch(parent.empty() ? "." : parent.string());
-  if (scratch.path().empty()) return Error{"cannot write " + path + ": no folder can be made beside it"};
+  if (scratch.path().empty()) return Error{"cannot write " + paths.front() + ": no folder can be made beside it"};
   if (const Status status = draw_plots(scratch.path(), {plot}); !status) return status;
-  const auto drawn = read_whole_file(scratch.path() + "/" + plot.name + fs::path(path).extension().string());
-  if (!drawn || drawn->empty())
-    return Error{"gnuplot wrote no " + path + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
-  return write_file_atomically(path, *drawn, overwrite);
+  std::vector<std::string> drawn;
+  for (const std::string& path : paths) {
+    const auto text = read_whole_file(scratch.path() + "/" + plot.name + fs::path(path).extension().string());
+    if (!text || text->empty())
+      return Error{"gnuplot wrote no " + path + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+    drawn.push_back(*text);
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (const Status status = write_file_atomically(paths[i], drawn[i], overwrite); !status) return status;
+  }
+  return {};
 }
 
 }  // namespace palpate

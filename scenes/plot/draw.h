@@ -1,4 +1,4 @@
-// Plots drawn into files by gnuplot.
+// Plots drawn into files by gnuplot, a program beside this one.
 //
 // Thread guarantee: slow side; starts a process, does I/O.
 #pragma once
@@ -14,7 +14,7 @@ namespace palpate {
 // A folder of its own in `parent`, gone with this object, or with the program.
 class ScratchFolder {
  public:
-  explicit ScratchFolder(const std::string& parent);
+  explicit ScratchFolder(const std::string& parent, const std::string& name = ".palpate-figures-");
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();
@@ -25,13 +25,20 @@ class ScratchFolder {
   int slot_ = -1;
 };
 
+// Errors: there is no gnuplot in PATH; says what to install.
+Status find_gnuplot();
+
+// Runs `scripts` (names in `folder`) in `folder`, one after the other, and waits.
+// Errors: it cannot be started or fails; with the first line it said.
+Status run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts);
+
 // NAME.gp, NAME.svg and NAME.png of every plot in `folder`, which is there. Errors: gnuplot
 // is missing or fails; the disk refuses.
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
 
-// One plot as the file `path`, which ends in .svg or .png, whole or not at all. Errors: it
-// does not; it exists and `overwrite` is false; as above.
-Status draw_plot(const Plot& plot, const std::string& path, bool overwrite);
+// One plot as the files `paths` of one folder, each of which ends in .svg or .png: all of them,
+// whole, or none. Errors: another ending; one exists and `overwrite` is false; as above.
+Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool overwrite);
 Status check_plot_path(const std::string& path, bool overwrite);
 
 }  // namespace palpate

@@ -114,29 +114,20 @@ std::string axis_text(const char* name, const Axis& axis, const Range& range) {
   return text + log_tics(name, range.low, range.high);
 }
 
+// How a mark is drawn, a variable of style.gp, and what stands for it in the legend.
+struct MarkStyle {
+  const char* style;
+  const char* legend;
+};
+constexpr MarkStyle kMarks[] = {{"line", "— "},   {"dashed", "– – "}, {"points", "● "},
+                                {"hollow", "○ "}, {"curve", "● "},    {"hollow_curve", "○ "},
+                                {"bars", "● "},   {"plus", "● "},     {"area", "■ "}};
+
+const MarkStyle& style_of(const Series& series) { return kMarks[static_cast<std::size_t>(series.mark)]; }
+
 std::string drawn_with(const Series& series) {
-  const std::string hue = " linecolor rgb " + colour_of(series.colour);
-  switch (series.mark) {
-    case Mark::line:
-      return "using 1:2 with lines linewidth 1.6" + hue;
-    case Mark::dashed:
-      return "using 1:2 with lines dashtype 2 linewidth 1.6" + hue;
-    case Mark::points:
-      return "using 1:2 with points pointtype 7 pointsize 0.8" + hue;
-    case Mark::hollow:
-      return "using 1:2 with points pointtype 6 pointsize 0.8 linewidth 1.6" + hue;
-    case Mark::curve:
-      return "using 1:2 with linespoints pointtype 7 pointsize 0.6 linewidth 1.3" + hue;
-    case Mark::hollow_curve:
-      return "using 1:2 with linespoints pointtype 6 pointsize 0.6 linewidth 1.3 dashtype 3" + hue;
-    case Mark::bars:
-      return "using 1:2:3:4 with yerrorbars pointtype 7 pointsize 0.8 linewidth 1.3" + hue;
-    case Mark::plus:
-      return "using 1:2 with points pointtype 1 pointsize 0.5 linewidth 0.8" + hue;
-    case Mark::area:
-      return "using 1:3:4 with filledcurves fillcolor rgb band fillstyle solid noborder";
-  }
-  return {};
+  const std::string hue = series.mark == Mark::area ? "" : " linecolor rgb " + colour_of(series.colour);
+  return std::string(1, '@').append(style_of(series).style) + hue;
 }
 
 // A line across and its name: beside the panel, where no curve is, or at the upper end of one that stands.
@@ -185,11 +176,6 @@ struct Legend {
   int lines = 0;
 };
 
-const char* legend_mark(Mark mark) {
-  if (mark == Mark::hollow || mark == Mark::hollow_curve) return "○ ";
-  return mark == Mark::area ? "■ " : mark == Mark::line ? "— " : mark == Mark::dashed ? "– – " : "● ";
-}
-
 // Every name once, from left to right, on as many lines as it takes.
 Legend legend_of(const Plot& plot) {
   Legend legend;
@@ -205,7 +191,7 @@ Legend legend_of(const Plot& plot) {
         ++legend.lines;
         column = 0;
       }
-      legend.text += "set label " + std::to_string(tag) + " " + quoted(legend_mark(series.mark) + series.name) +
+      legend.text += "set label " + std::to_string(tag) + " " + quoted(style_of(series).legend + series.name) +
                      " at screen 0, screen 1 left offset character " + std::to_string(column + 2) + "," +
                      number(-0.9 * legend.lines) + " textcolor rgb " +
                      (series.mark == Mark::area ? "muted" : colour_of(series.colour)) + "\n";

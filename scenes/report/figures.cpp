@@ -81,24 +81,19 @@ Panel force_panel(const ReportData& data, const std::string& title, Recipe recip
 void share_scale(Panel& one, Panel& other) {
   double low = 1e300;
   double high = 0.0;
+  const auto include = [&](double value) {
+    if (value > 0.0) low = std::min(low, value);
+    high = std::max(high, value);
+  };
   for (const Panel* panel : {&one, &other}) {
     for (const Series& series : panel->series) {
-      for (const PlotRow& row : series.rows) {
-        if (!(row.y > 0.0)) continue;
-        low = std::min(low, row.y);
-        high = std::max(high, row.y);
-      }
+      for (const PlotRow& row : series.rows) include(row.y);
     }
-    for (const Level& level : panel->levels) {
-      low = std::min(low, level.value);
-      high = std::max(high, level.value);
-    }
+    for (const Level& level : panel->levels) include(level.value);
   }
   if (!(low < high)) return;
-  for (Panel* panel : {&one, &other}) {
-    panel->y.low = low / 1.3;
-    panel->y.high = high * 1.3;
-  }
+  one.y.low = other.y.low = low / 1.3;
+  one.y.high = other.y.high = high * 1.3;
 }
 
 Panel jnd_panel(const ReportData& data, double largest_N) {

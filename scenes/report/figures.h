@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/plot/plot.h"
-#include "scenes/report/report_data.h"
+#include "scenes/report/measure.h"
 
 namespace palpate {
 

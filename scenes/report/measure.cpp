@@ -41,18 +41,17 @@ class Progress {
   double part_ = 0.0;
 };
 
-// The same recording with its surface and force zero where a fit to all of the training found them.
-std::vector<SharedRecording> at_own_surfaces(const std::vector<SharedRecording>& training,
+// The same recordings with surface and force zero where a fit to all of the training found them.
+std::vector<SharedRecording> at_own_surfaces(std::vector<SharedRecording> training,
                                              const std::vector<RecordingSurface>& surfaces) {
-  std::vector<SharedRecording> moved;
-  for (const SharedRecording& recording : training) {
-    const auto at = std::find_if(surfaces.begin(), surfaces.end(),
-                                 [&](const RecordingSurface& one) { return one.name == recording->name; });
-    moved.push_back(at == surfaces.end() ? recording
-                                         : std::make_shared<const Recording>(
-                                               with_correction(*recording, {at->offset_m, at->force_zero_N})));
+  for (SharedRecording& recording : training) {
+    for (const RecordingSurface& at : surfaces) {
+      if (at.name != recording->name) continue;
+      recording = std::make_shared<const Recording>(with_correction(*recording, {at.offset_m, at.force_zero_N}));
+      break;
+    }
   }
-  return moved;
+  return training;
 }
 
 struct Preparations {
@@ -116,21 +115,19 @@ class Measurement {
            (total + kEvaluateSeconds * static_cast<double>(data_.models.size()));
   }
 
-  Result<PreparedTraining> prepare_one(const std::vector<SharedRecording>& training, const TrainingRequest& request) {
+  Result<Preparations> prepare(const std::vector<SharedRecording>& training, Surface surface) {
     std::vector<MotionSource::Input> inputs;
     for (const SharedRecording& recording : training) inputs.push_back({"", recording});
-    MotionSource source(std::move(inputs));
-    return prepare_training(source, request, progress_.next(kPrepareSeconds));
-  }
-
-  Result<Preparations> prepare(const std::vector<SharedRecording>& training, Surface surface) {
     TrainingRequest request = training_request(scene_);
     request.surface = surface;
-    auto paper = prepare_one(training, recipe_2009_request(request));
-    if (!paper) return paper.error();
-    auto palpate = prepare_one(training, request);
-    if (!palpate) return palpate.error();
-    return Preparations{std::move(*paper), std::move(*palpate)};
+    std::vector<PreparedTraining> made;
+    for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
+      MotionSource source(inputs);
+      auto prepared = prepare_training(source, one, progress_.next(kPrepareSeconds));
+      if (!prepared) return prepared.error();
+      made.push_back(std::move(*prepared));
+    }
+    return Preparations{std::move(made[0]), std::move(made[1])};
   }
 
   // Those of the planned models that are wanted; null where one is not, and for no force.

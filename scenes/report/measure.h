@@ -7,11 +7,55 @@
 #pragma once
 
 #include "engine/base/fit_control.h"
+#include "models/fit/fit.h"
+#include "models/model/fitted_model.h"
+#include "scenes/evaluation/evaluate.h"
+#include "scenes/evaluation/model_timing.h"
+#include "scenes/evaluation/noise_floor.h"
+#include "scenes/report/plan.h"
 #include "scenes/report/recordings.h"
-#include "scenes/report/report_data.h"
+#include "scenes/report/worst_stretch.h"
 #include "scenes/scene/scene.h"
 
 namespace palpate {
+
+// A model over all folds; errors over the same samples as every other's.
+struct ModelResult {
+  PlannedModel plan;
+  int size = 0;        // centres, or nodes of the grid
+  Evidence errors;     // positions as recorded
+  ErrorSummary moved;  // the surface of every test recording moved to the models'
+  Evidence left_out;   // on training that was left out; no samples: not fitted to the rest
+  PredictedErrors predicted;
+  double fit_seconds = 0.0;                  // mean over the folds, preparation left out
+  ModelTiming time;                          // of the last fold's model
+  std::shared_ptr<const FittedModel> model;  // likewise; null: no force
+};
+
+// Which model to use, chosen before the test had a say.
+struct Choice {
+  std::size_t chosen = 0;         // index of a model
+  std::vector<std::size_t> tied;  // on what it was chosen on, the chosen one among them
+  std::string chosen_on;          // in words
+};
+
+struct ReportData {
+  std::string scene;
+  JndLine jnd;
+  bool quick = false;
+  bool virtual_recordings = false;
+  int folds = 0;  // of a cross-validation; 0: test recordings
+  std::vector<RecordingFacts> recordings;
+  std::vector<double> surface_offset_m;  // of the test recordings
+  NoiseFloor floor;                      // of all test recordings together
+  std::vector<ModelResult> models;       // the first always says 0 N
+  Choice choice;
+  WorstStretch worst;                         // of the chosen model
+  std::vector<RecordingSurface> surfaces;     // of the training recordings
+  std::vector<double> times_2009_s;           // relaxation times fitted for the 2009 recipe
+  std::optional<double> correction_strength;  // 0 to 1
+  std::vector<FeatureWorth> worth;
+};
 
 // Training again, with a part left out.
 struct LeftOut {

@@ -10,7 +10,7 @@
 
 #include "engine/base/result.h"
 #include "scenes/report/figures.h"
-#include "scenes/report/report_data.h"
+#include "scenes/report/measure.h"
 #include "scenes/report/table.h"
 
 namespace palpate {

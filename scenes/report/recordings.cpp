@@ -1,48 +1,26 @@
 #include "scenes/report/recordings.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <bit>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/surface/surface_estimate.h"
 #include "scenes/material/rig.h"
-#include "scenes/report/leakage.h"
 
 namespace palpate {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kTrainSeconds = 41.499;
 constexpr double kTestSeconds = 45.272;
 // A part of a recording that is cut for folds is worth testing on from here.
 constexpr std::size_t kSmallestPart = 200;
-
-Result<SharedRecording> virtual_silicone(std::uint64_t seed, double seconds,
-                                         const std::function<bool(double)>& progress) {
-  RigSettings settings;
-  settings.seed = seed;
-  settings.seconds = seconds;
-  auto recording = record_sensors(settings, progress);
-  if (!recording) return recording.error();
-  recording->name = "silicone_" + std::to_string(seed);
-  return std::make_shared<const Recording>(std::move(*recording));
-}
-
-Status refuse_doubles(const std::vector<std::string>& paths) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code missing;
-      if (fs::equivalent(paths[i], paths[j], missing)) {
-        return Error{paths[i] +
-                     " is given twice, expected every recording once: errors on what was trained on say "
-                     "nothing; leave one out"};
-      }
-    }
-  }
-  return {};
-}
 
 RecordingFacts facts_of(const Recording& recording, const std::string& role) {
   RecordingFacts facts;
@@ -73,25 +51,33 @@ void make_folds(RecordingSet& set) {
 }
 
 Status add_files(RecordingSet& set, const std::vector<std::string>& paths) {
-  std::vector<std::pair<std::uint64_t, SharedRecording>> added;
+  std::map<std::pair<std::string, std::uint64_t>, SharedRecording> added;
   for (const std::string& path : paths) {
-    auto recording = read_recording(path);
-    if (!recording) return recording.error();
-    auto shared = std::make_shared<const Recording>(std::move(*recording));
-    added.emplace_back(content_hash(*shared), shared);
+    auto read = read_recording(path);
+    if (!read) return read.error();
+    const auto recording = std::make_shared<const Recording>(std::move(*read));
+    if (!added.try_emplace({recording->name, content_hash(*recording)}, recording).second) {
+      return Error{path +
+                   " is given twice, expected every recording once: errors on what was trained on say "
+                   "nothing; leave one out"};
+    }
   }
-  std::sort(added.begin(), added.end(), [](const auto& a, const auto& b) {
-    return a.second->name != b.second->name ? a.second->name < b.second->name : a.first < b.first;
-  });
-  for (const auto& [hash, recording] : added) set.all.push_back(recording);
+  for (const auto& [key, recording] : added) set.all.push_back(recording);
   return {};
 }
 
-Status check_leakage(const RecordingSet& set, std::size_t trained) {
-  std::vector<const Recording*> train;
-  std::vector<const Recording*> test;
-  for (std::size_t i = 0; i < set.all.size(); ++i) (i < trained ? train : test).push_back(set.all[i].get());
-  return refuse_leakage(train, test);
+Status add_virtual_silicone(RecordingSet& set, const std::function<bool(double)>& progress) {
+  RigSettings settings;
+  for (const double seconds : {kTrainSeconds, kTestSeconds}) {
+    settings.seconds = seconds;
+    settings.seed = set.all.size() + 1;
+    auto recording = record_sensors(settings, [&](double share) {
+      return !progress || progress(0.5 * (static_cast<double>(set.all.size()) + share));
+    });
+    if (!recording) return recording.error();
+    set.all.push_back(std::make_shared<const Recording>(std::move(*recording)));
+  }
+  return {};
 }
 
 Status check_contact(const RecordingSet& set) {
@@ -104,7 +90,104 @@ Status check_contact(const RecordingSet& set) {
   return {};
 }
 
+std::uint64_t mixed(std::uint64_t hash, double value) {         // FNV-1a
+  const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 is 0
+  for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> (8 * byte) & 0xff)) * 1099511628211ULL;
+  return hash;
+}
+
+using Forces = std::vector<double>;
+
+Forces forces_of(const Recording& recording) {
+  Forces forces_N;
+  forces_N.reserve(recording.rows.size());
+  for (const RecordingRow& row : recording.rows) forces_N.push_back(row.force_N + 0.0);
+  return forces_N;
+}
+
+// The bytes of kLeakRows forces from `first` on.
+std::string_view window_at(const Forces& forces_N, std::size_t first) {
+  return {reinterpret_cast<const char*>(&forces_N[first]), kLeakRows * sizeof(double)};
+}
+
+// Enough different forces from `first` on for a coincidence to be out of the question.
+bool is_telling(const Forces& forces_N, std::size_t first) {
+  const auto begin = forces_N.begin() + static_cast<std::ptrdiff_t>(first);
+  return std::set<double>(begin, begin + static_cast<std::ptrdiff_t>(kLeakRows)).size() >= kLeakValues;
+}
+
+SharedStretch extended(const Forces& trained, const Forces& tested, std::size_t trained_row, std::size_t tested_row) {
+  SharedStretch stretch{tested_row, trained_row, 0};
+  while (stretch.first_row > 0 && stretch.trained_row > 0 &&
+         tested[stretch.first_row - 1] == trained[stretch.trained_row - 1]) {
+    --stretch.first_row;
+    --stretch.trained_row;
+  }
+  while (stretch.first_row + stretch.rows < tested.size() && stretch.trained_row + stretch.rows < trained.size() &&
+         tested[stretch.first_row + stretch.rows] == trained[stretch.trained_row + stretch.rows]) {
+    ++stretch.rows;
+  }
+  return stretch;
+}
+
+// A time of a recording, counted from its beginning.
+std::string seconds(const Recording& recording, std::size_t row) {
+  return three_digits(recording.rows[row].time_s - recording.rows.front().time_s);
+}
+
 }  // namespace
+
+std::uint64_t content_hash(const Recording& recording) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const RecordingRow& row : recording.rows) hash = mixed(mixed(hash, row.position_m), row.force_N);
+  return hash;
+}
+
+std::string hash_text(std::uint64_t hash) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+SharedStretch shared_stretch(const Recording& trained, const Recording& tested) {
+  const Forces known = forces_of(trained);
+  const Forces asked = forces_of(tested);
+  SharedStretch longest;
+  // Every kLeakRows-th window of the one, all windows of the other.
+  std::unordered_map<std::string_view, std::size_t> windows;
+  for (std::size_t first = 0; first + kLeakRows <= known.size(); first += kLeakRows) {
+    if (is_telling(known, first)) windows.try_emplace(window_at(known, first), first);
+  }
+  for (std::size_t first = 0; first + kLeakRows <= asked.size();) {
+    const auto found = windows.find(window_at(asked, first++));
+    if (found == windows.end()) continue;
+    const SharedStretch stretch = extended(known, asked, found->second, first - 1);
+    first = stretch.first_row + stretch.rows;
+    if (stretch.rows > longest.rows) longest = stretch;
+  }
+  return longest;
+}
+
+Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained) {
+  std::unordered_map<std::uint64_t, const Recording*> seen;
+  for (const SharedRecording& recording : all) {
+    const auto [at, fresh] = seen.try_emplace(content_hash(*recording), recording.get());
+    if (fresh) continue;
+    return Error{recording->name + " has the same content as " + at->second->name + " (" + hash_text(at->first) +
+                 "), expected every recording once: errors on what was trained on say nothing; leave one out"};
+  }
+  for (std::size_t i = trained; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < trained; ++k) {
+      const SharedStretch stretch = shared_stretch(*all[k], *all[i]);
+      if (stretch.rows == 0) continue;
+      return Error{all[i]->name + ": the forces of " + std::to_string(stretch.rows) + " rows from " +
+                   seconds(*all[i], stretch.first_row) + " s on are those of " + all[k]->name + " from " +
+                   seconds(*all[k], stretch.trained_row) +
+                   " s on, expected a test that was not trained on; leave that stretch out of one of them"};
+    }
+  }
+  return {};
+}
 
 Recording with_correction(const Recording& recording, const RowCorrection& correction) {
   Recording moved = recording;
@@ -152,27 +235,13 @@ Result<RecordingSet> load_recordings(const std::vector<std::string>& train, cons
   if (train.empty() && !test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
-  std::vector<std::string> every = train;
-  every.insert(every.end(), test.begin(), test.end());
-  if (const Status status = refuse_doubles(every); !status) return status.error();
-
   RecordingSet set;
   set.virtual_recordings = train.empty();
-  std::size_t trained = train.size();
-  if (set.virtual_recordings) {
-    trained = 1;
-    for (const auto& [seed, seconds] : {std::pair{1, kTrainSeconds}, std::pair{2, kTestSeconds}}) {
-      const double first = seed == 1 ? 0.0 : 0.5;
-      auto recording = virtual_silicone(static_cast<std::uint64_t>(seed), seconds,
-                                        [&](double share) { return !progress || progress(first + 0.5 * share); });
-      if (!recording) return recording.error();
-      set.all.push_back(*recording);
-    }
-  } else {
-    if (const Status status = add_files(set, train); !status) return status.error();
-    if (const Status status = add_files(set, test); !status) return status.error();
-  }
-  if (const Status status = check_leakage(set, trained); !status) return status.error();
+  const Status added = set.virtual_recordings ? add_virtual_silicone(set, progress) : add_files(set, train);
+  if (!added) return added.error();
+  const std::size_t trained = set.virtual_recordings ? 1 : train.size();
+  if (const Status status = add_files(set, test); !status) return status.error();
+  if (const Status status = refuse_leakage(set.all, trained); !status) return status.error();
   if (trained == set.all.size()) {
     set.cross_validated = true;
     if (set.all.size() == 1) {

@@ -1,4 +1,6 @@
-// The recordings of a report and who is trained and tested on which.
+// The recordings of a report, who is trained and tested on which, and whether what is tested on
+// was trained on: measured forces are compared bit by bit, for sensor noise makes every recording's
+// own, whatever its name, its start time or a shift of its positions.
 //
 // Thread guarantee: slow side (does I/O, allocates).
 #pragma once
@@ -64,6 +66,30 @@ SharedRecording rows_of(const Recording& recording, std::size_t begin, std::size
 // short.
 Result<std::vector<SharedRecording>> cut_into_parts(const Recording& whole);
 
+// FNV-1a over positions and forces, row by row. Times and names do not count.
+std::uint64_t content_hash(const Recording& recording);
+std::string hash_text(std::uint64_t hash);
+
+// A stretch of at least this many rows with the same forces, and this many different
+// ones among them, is no chance.
+inline constexpr std::size_t kLeakRows = 50;
+inline constexpr std::size_t kLeakValues = 12;
+
+struct SharedStretch {
+  std::size_t first_row = 0;    // of `tested`
+  std::size_t trained_row = 0;  // of `trained`, likewise
+  std::size_t rows = 0;
+};
+
+// The longest stretch of `tested` whose forces stand in `trained` as well; stretches of
+// 2 kLeakRows and more are always found. rows == 0: none.
+SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
+
+// `all`: the first `trained` of them to train on, the others to test on. Errors: a recording that
+// is given twice under any names, or a stretch of a tested recording that was trained on; by name
+// and rows.
+Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
+
 // Reads the files. Without any, the virtual silicone: seed 1 to train on, seed 2
 // to test on. Without a test recording the training recordings are divided into
 // up to kMostFolds folds, each tested by models that were fitted to the others; a
@@ -71,7 +97,7 @@ Result<std::vector<SharedRecording>> cut_into_parts(const Recording& whole);
 // tool is out of contact if it ever is. Recordings are ordered by name and content,
 // whatever the order in which they were given. Errors: those of the recordings; a test
 // recording without a training recording; the same file twice; the same content twice,
-// or a stretch of a training recording in a test (leakage.h); no contact in a test
+// or a stretch of a training recording in a test; no contact in a test
 // recording; too short to be cut.
 Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
                                      const std::function<bool(double share)>& progress = {});

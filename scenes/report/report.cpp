@@ -11,11 +11,8 @@
 #include <thread>
 
 #include "scenes/plot/draw.h"
-#include "scenes/plot/gnuplot.h"
-#include "scenes/report/measure.h"
 #include "scenes/report/page.h"
 #include "scenes/report/report_folder.h"
-#include "scenes/report/report_tables.h"
 
 namespace palpate {
 namespace {
@@ -113,21 +110,11 @@ Result<std::map<std::string, std::string>> draw(const ReportFolder& folder, cons
   return svgs;
 }
 
-std::vector<std::string> files_in(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code ignored;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder, ignored).string());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 }  // namespace
 
-Result<ReportSummary> make_report(const ReportRequest& request, const FitControl& control) {
+Result<std::string> make_report(const ReportRequest& request, const FitControl& control) {
   const auto start = std::chrono::steady_clock::now();
-  if (const auto gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
+  if (const Status gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
   const auto scene = load_scene(request.scene);
   if (!scene) return scene.error();
   // A folder that cannot be written is told now and not after the fits.
@@ -167,7 +154,7 @@ Result<ReportSummary> make_report(const ReportRequest& request, const FitControl
   if (const Status status = folder->write("index.html", *page); !status) return status.error();
   if (!control.may_continue(1.0)) return interrupted();
   if (const Status status = folder->commit(); !status) return status.error();
-  return ReportSummary{plain_text(answer_html(*data)), files_in(request.out)};
+  return plain_text(answer_html(*data));
 }
 
 }  // namespace palpate

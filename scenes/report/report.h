@@ -21,14 +21,10 @@ struct ReportRequest {
   std::string version;
 };
 
-struct ReportSummary {
-  std::string answer;              // the sentence of the page, plain
-  std::vector<std::string> files;  // of the folder, sorted
-};
-
 // Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into
 // `request.out`, which appears only when all is there. Errors: gnuplot is missing; the
-// folder exists without `force`; those of the recordings and fits; interrupted.
-Result<ReportSummary> make_report(const ReportRequest& request, const FitControl& control = {});
+// folder exists without `force`; those of the recordings and fits; interrupted. Returns the
+// sentence of the page, plain.
+Result<std::string> make_report(const ReportRequest& request, const FitControl& control = {});
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
 #include "scenes/report/report_folder.h"
 
 #include <fcntl.h>
-#include <stdlib.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -11,7 +10,6 @@
 #include <utility>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/temporary_paths.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
@@ -82,40 +80,27 @@ Result<ReportFolder> ReportFolder::create(const std::string& path, bool overwrit
                  " does not exist; create it first"};
   }
   remove_abandoned(parent);
-  std::string name;
-  int lock = -1;
+  ReportFolder folder;
+  folder.path_ = clean.string();
   do {  // again when another run took it for abandoned before it was locked
-    if (lock >= 0) close(lock);
-    name = (parent / kTemporaryName).string() + "XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) {
+    if (folder.lock_ >= 0) close(folder.lock_);
+    folder.temporary_ = std::make_unique<ScratchFolder>(parent.string(), kTemporaryName);
+    if (folder.temporary_->path().empty()) {
       return Error{"cannot write " + clean.string() + ": the folder " + parent.string() + " is not writable (" +
                    std::generic_category().message(errno) + ")"};
     }
-    lock = lock_folder(name);
-  } while (lock >= 0 && access(name.c_str(), F_OK) != 0);
-  // mkdtemp leaves it to the owner alone.
-  fs::permissions(name,
-                  fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read |
-                      fs::perms::others_exec,
-                  error);
-  ReportFolder folder;
-  folder.path_ = clean.string();
-  folder.temporary_ = name;
-  folder.lock_ = lock;
-  folder.registry_slot_ = register_temporary(name);
+    folder.lock_ = lock_folder(folder.temporary_->path());
+  } while (folder.lock_ >= 0 && !fs::exists(folder.temporary_->path(), error));
+  // As it was made it is the owner's alone.
+  fs::permissions(folder.temporary_->path(), static_cast<fs::perms>(0755), error);
   return folder;
 }
 
 ReportFolder::ReportFolder(ReportFolder&& other) noexcept
-    : path_(std::move(other.path_)),
-      temporary_(std::exchange(other.temporary_, {})),
-      lock_(std::exchange(other.lock_, -1)),
-      registry_slot_(std::exchange(other.registry_slot_, -1)) {}
+    : path_(std::move(other.path_)), temporary_(std::move(other.temporary_)), lock_(std::exchange(other.lock_, -1)) {}
 
 ReportFolder::~ReportFolder() {
-  std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  unregister_temporary(registry_slot_);
+  temporary_.reset();
   if (lock_ >= 0) close(lock_);
 }
 
@@ -136,19 +121,19 @@ Status ReportFolder::commit() {
   std::error_code error;
   // A folder can only replace an empty one: the earlier report steps aside first, and
   // comes back when the rename fails.
-  const std::string aside = temporary_ + ".old";
+  const std::string made = temporary_->path();
+  const std::string aside = made + ".old";
   const bool replaces = fs::exists(path_, error);
   if (replaces) {
     fs::rename(path_, aside, error);
     if (error) return Error{"cannot replace " + path_ + ": " + error.message()};
   }
-  fs::rename(temporary_, path_, error);
+  fs::rename(made, path_, error);
   if (error) {
     std::error_code ignored;
     if (replaces) fs::rename(aside, path_, ignored);
     return Error{"cannot write " + path_ + ": " + error.message()};
   }
-  temporary_.clear();
   if (replaces) fs::remove_all(aside, error);
   return {};
 }

@@ -3,10 +3,12 @@
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "engine/base/result.h"
+#include "scenes/plot/draw.h"
 
 namespace palpate {
 
@@ -27,7 +29,7 @@ class ReportFolder {
   // The whole of a file; its folder, one level deep, is made when missing.
   Status write(const std::string& name, std::string_view text) const;
   Result<std::string> read(const std::string& name) const;
-  std::string path_of(const std::string& name) const { return temporary_ + "/" + name; }
+  std::string path_of(const std::string& name) const { return temporary_->path() + "/" + name; }
 
   // Under the final name now; an earlier report there is gone.
   Status commit();
@@ -35,9 +37,8 @@ class ReportFolder {
  private:
   ReportFolder() = default;
   std::string path_;
-  std::string temporary_;  // empty: nothing to remove
-  int lock_ = -1;          // of the hidden folder
-  int registry_slot_ = -1;
+  std::unique_ptr<ScratchFolder> temporary_;
+  int lock_ = -1;  // of the hidden folder
 };
 
 }  // namespace palpate

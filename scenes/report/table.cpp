@@ -8,6 +8,8 @@
 namespace palpate {
 namespace {
 
+constexpr int kThree = TableColumn::kThreeDigits;
+
 std::string quoted_if_needed(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted(1, '"');
@@ -19,30 +21,142 @@ std::string quoted_if_needed(const std::string& text) {
 }
 
 std::string csv_cell(const TableCell& cell) {
-  if (cell.kind == TableCell::Kind::text) return quoted_if_needed(cell.text);
-  if (cell.kind == TableCell::Kind::count) return std::to_string(cell.count);
-  return std::isfinite(cell.number) ? shortest(cell.number) : "";
+  if (cell.is_string()) return quoted_if_needed(cell.get<std::string>());
+  if (cell.is_number_integer()) return cell.dump();
+  return std::isfinite(cell.get<double>()) ? shortest(cell.get<double>()) : "";
 }
 
 std::string shown(const TableCell& cell, const TableColumn& column) {
-  if (cell.kind == TableCell::Kind::text) return escape_html(cell.text);
-  if (cell.kind == TableCell::Kind::count) return with_thousands(std::to_string(cell.count));
-  const double value = cell.number * column.scale;
+  if (cell.is_string()) return escape_html(cell.get<std::string>());
+  if (cell.is_number_integer()) return with_thousands(cell.dump());
+  const double value = cell.get<double>() * column.scale;
   if (!std::isfinite(value)) return "–";
   return column.decimals == TableColumn::kThreeDigits ? three_digits(value)
                                                       : with_thousands(fixed(value, column.decimals));
 }
 
 std::string interval_html(const TableCell& low, const TableCell& high, const TableColumn& column) {
-  if (!std::isfinite(low.number) || !std::isfinite(high.number)) return {};
+  if (!std::isfinite(low.get<double>()) || !std::isfinite(high.get<double>())) return {};
   return "<small>" + shown(low, column) + "–" + shown(high, column) + "</small>";
 }
 
 bool is_text(const Table& table, std::size_t column) {
   for (const auto& row : table.rows) {
-    if (row[column].kind != TableCell::Kind::text) return false;
+    if (!row[column].is_string()) return false;
   }
   return !table.rows.empty();
+}
+
+TableCell any(const ErrorSummary& errors, double value) { return errors.samples > 0 ? value : kNoNumber; }
+
+const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+Table models_table(const ReportData& data) {
+  Table table{"models"};
+  for (const ModelResult& one : data.models) {
+    const Evidence& errors = one.errors;
+    const Interval within = errors.within_interval();
+    const Interval p99 = errors.p99_interval();
+    const Interval rms_N = errors.rms_interval_N();
+    const PairedDifference difference = paired_difference(errors, data.models[data.choice.chosen].errors);
+    table.begin_row();
+    table.add({"model", "model"}, one.plan.name);
+    table.add({"size", "size"}, one.size);
+    table.add({"contact_samples", "samples"}, errors.samples);
+    table.add({"within_jnd", "≤ JND [%]", kInPercent, 2, true}, errors.within_jnd);
+    table.add({"within_jnd_low", ""}, within.low);
+    table.add({"within_jnd_high", ""}, within.high);
+    table.add({"within_at_least", "at least [%]", kInPercent, 2}, errors.within_at_least());
+    table.add({"p99_error_over_jnd", "99 % error [JND]", 1.0, kThree, true}, errors.p99_error_over_jnd);
+    table.add({"p99_error_over_jnd_low", ""}, p99.low);
+    table.add({"p99_error_over_jnd_high", ""}, p99.high);
+    table.add({"p99_at_most", ""}, errors.p99_at_most());
+    table.add({"rms_error_N", "RMS [mN]", kInMilli, kThree, true}, errors.rms_error_N);
+    table.add({"rms_error_N_low", ""}, rms_N.low);
+    table.add({"rms_error_N_high", ""}, rms_N.high);
+    table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
+    table.add({"max_error_over_jnd", "worst [JND]"}, errors.max_error_over_jnd);
+    table.add({"strokes", "strokes"}, errors.strokes);
+    table.add({"beyond_strokes", "beyond"}, errors.beyond_strokes);
+    table.add({"out_of_domain_samples", ""}, errors.out_of_domain_samples);
+    table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, any(one.moved, one.moved.within_jnd));
+    table.add({"moved_p99_error_over_jnd", "99 % [JND]"}, any(one.moved, one.moved.p99_error_over_jnd));
+    table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, any(one.moved, one.moved.rms_error_N));
+    table.add({"left_out_p99_error_over_jnd", "left out: 99 % [JND]"},
+              any(one.left_out, one.left_out.p99_error_over_jnd));
+    table.add({"difference_p99", "against the choice [JND]", 1.0, kThree, true}, difference.p99);
+    table.add({"difference_p99_low", ""}, difference.interval.low);
+    table.add({"difference_p99_high", ""}, difference.interval.high);
+  }
+  return table;
+}
+
+Table times_table(const ReportData& data) {
+  Table table{"times", true};
+  for (const ModelResult& one : data.models) {
+    if (!one.time.measured) continue;
+    table.begin_row();
+    table.add({"model", "model"}, one.plan.name);
+    table.add({"tick_ns", "tick [ns]", 1.0, 0}, one.time.tick.median_ns);
+    table.add({"tick_p99_ns", "p99 [ns]", 1.0, 0}, one.time.tick.p99_ns);
+    table.add({"evaluation_ns", "evaluation [ns]", 1.0, 0}, one.time.evaluation.median_ns);
+    table.add({"evaluation_p99_ns", "p99 [ns]", 1.0, 0}, one.time.evaluation.p99_ns);
+    table.add({"fit_seconds", "fit [s]"}, one.fit_seconds);
+  }
+  return table;
+}
+
+Table recordings_table(const ReportData& data) {
+  Table table{"recordings"};
+  for (const RecordingFacts& one : data.recordings) {
+    table.begin_row();
+    table.add({"role", "role"}, one.role);
+    table.add({"name", "recording"}, one.name);
+    table.add({"samples", "samples"}, one.samples);
+    table.add({"contact_samples", "in contact"}, one.contact_samples);
+    table.add({"seconds", "[s]"}, one.seconds);
+    table.add({"rate_Hz", "[Hz]"}, one.rate_Hz);
+    table.add({"deepest_m", "deepest [mm]", kInMilli}, one.deepest_m);
+    table.add({"largest_force_N", "largest [N]"}, one.largest_force_N);
+    table.add({"force_noise_N", "force noise [mN]", kInMilli}, one.force_noise_N);
+    table.add({"accelerometer", "accelerometer"}, yes_or_no(one.accelerometer));
+    table.add({"content_hash", ""}, one.content_hash);
+  }
+  return table;
+}
+
+Table bins_table(const ReportData& data) {
+  Table table{"force_bins"};
+  for (const ModelResult& one : data.models) {
+    for (const ForceBin& bin : one.errors.bins) {
+      if (!one.plan.main || bin.count == 0) continue;
+      table.begin_row();
+      table.add({"model", ""}, one.plan.name);
+      table.add({"force_from_N", ""}, bin.force_from_N);
+      table.add({"force_to_N", ""}, bin.force_to_N);
+      table.add({"count", ""}, bin.count);
+      table.add({"mean_force_N", ""}, bin.mean_force_N);
+      table.add({"mean_abs_error_N", ""}, bin.mean_abs_error_N);
+      table.add({"std_abs_error_N", ""}, bin.std_abs_error_N);
+      table.add({"max_abs_error_N", ""}, bin.max_abs_error_N);
+      table.add({"mean_error_over_jnd", ""}, bin.mean_error_over_jnd);
+      table.add({"std_error_over_jnd", ""}, bin.std_error_over_jnd);
+      table.add({"max_error_over_jnd", ""}, bin.max_error_over_jnd);
+    }
+  }
+  return table;
+}
+
+Table worth_table(const ReportData& data) {
+  Table table{"features"};
+  for (const FeatureWorth& one : data.worth) {
+    table.begin_row();
+    table.add({"feature", "feature"}, one.name);
+    table.add({"taken", "taken"}, yes_or_no(one.taken));
+    table.add({"error_over_jnd_with", "RMS error over the JND with it"}, one.error_with);
+    table.add({"error_over_jnd_without", "without"}, one.error_without);
+  }
+  return table;
 }
 
 }  // namespace
@@ -68,20 +182,7 @@ nlohmann::ordered_json table_json(const Table& table) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const auto& row : table.rows) {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      nlohmann::ordered_json& value = object[table.columns[i].key];
-      switch (row[i].kind) {
-        case TableCell::Kind::text:
-          value = row[i].text;
-          break;
-        case TableCell::Kind::count:
-          value = row[i].count;
-          break;
-        case TableCell::Kind::number:
-          value = row[i].number;
-          break;  // not finite: dumped as null
-      }
-    }
+    for (std::size_t i = 0; i < row.size(); ++i) object[table.columns[i].key] = row[i];  // not finite: null
     list.push_back(std::move(object));
   }
   return list;
@@ -108,6 +209,10 @@ std::string table_html(const Table& table) {
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
+}
+
+std::vector<Table> make_tables(const ReportData& data) {
+  return {models_table(data), recordings_table(data), bins_table(data), worth_table(data), times_table(data)};
 }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// A table of the report: one description for the CSV file, the page and
+// The tables of the report: one description for the CSV file, the page and
 // report.json, so that the three can never disagree.
 //
 // Thread guarantee: value types and pure functions.
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/base/text.h"
+#include "scenes/report/measure.h"
 
 namespace palpate {
 
@@ -30,19 +31,7 @@ struct TableColumn {
 
 // Text, a count, or a number; a number that is not finite is "no figure": an empty
 // cell, null in JSON, a dash on the page.
-struct TableCell {
-  enum class Kind { text, count, number };
-
-  TableCell(std::string value) : kind(Kind::text), text(std::move(value)) {}
-  TableCell(std::uint64_t value) : kind(Kind::count), count(value) {}
-  TableCell(double value) : kind(Kind::number), number(value) {}
-
-  Kind kind;
-  std::string text;
-  std::uint64_t count = 0;
-  double number = 0.0;
-};
-
+using TableCell = nlohmann::ordered_json;
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 // Scales of columns.
 inline constexpr double kInPercent = 100.0;
@@ -51,8 +40,15 @@ inline constexpr double kInMilli = 1e3;
 struct Table {
   std::string name;        // of the CSV file, without its ending
   bool has_times = false;  // holds measured times: differs from run to run
-  std::vector<TableColumn> columns;
-  std::vector<std::vector<TableCell>> rows;  // as many cells as columns
+  std::vector<TableColumn> columns{};
+  std::vector<std::vector<TableCell>> rows{};  // as many cells as columns
+
+  void begin_row() { rows.emplace_back(); }
+  // The next cell of the row begun last; the first row makes the columns.
+  void add(const TableColumn& column, TableCell cell) {
+    if (rows.size() == 1) columns.push_back(column);
+    rows.back().push_back(std::move(cell));
+  }
 };
 
 // Header and rows; numbers read back as the same doubles, text with a comma, a
@@ -65,5 +61,9 @@ nlohmann::ordered_json table_json(const Table& table);
 // <div><table>...</table></div>, everything from outside escaped; numbers to the
 // right.
 std::string table_html(const Table& table);
+
+// All numbers of a report: models, recordings, force_bins, features, times; those with times
+// differ from run to run.
+std::vector<Table> make_tables(const ReportData& data);
 
 }  // namespace palpate

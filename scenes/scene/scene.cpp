@@ -27,65 +27,44 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
+// Those of other kinds are identified in a fit, never written in a scene.
 std::string describe_features(const Scene& scene) {
   std::vector<std::string> words;
   for (const FeatureSpec& feature : scene.features) {
     char low_pass[48];
     std::snprintf(low_pass, sizeof low_pass, "relaxation %g s", feature.relaxation_time_s);
-    switch (feature.kind) {
-      case FeatureKind::depth:
-        words.emplace_back("depth");
-        break;
-      case FeatureKind::velocity:
-        words.emplace_back("velocity");
-        break;
-      case FeatureKind::lowpass_velocity:
-        words.emplace_back(low_pass);
-        break;
-      case FeatureKind::maxwell_branch:  // these are identified in a fit, never written in a scene
-      case FeatureKind::maxwell_spectrum:
-      case FeatureKind::stops:
-      case FeatureKind::creep:
-      case FeatureKind::surface_lag:
-        break;
-    }
+    words.emplace_back(feature.kind == FeatureKind::depth      ? "depth"
+                       : feature.kind == FeatureKind::velocity ? "velocity"
+                                                               : low_pass);
   }
   return joined(words);
 }
 
-Result<std::vector<std::string>> scene_names_in(const std::string& folder) {
+Result<std::vector<std::string>> scene_names(const std::string& in_folder) {
+  const Result<std::string> folder = in_folder.empty() ? scenes_folder() : in_folder;
+  if (!folder) return folder.error();
   std::error_code error;
   std::vector<std::string> names;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(*folder, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->path().extension() == ".json") names.push_back(entry->path().stem().string());
   }
-  if (error) return Error{"cannot list the scenes in " + folder + ": " + error.message()};
+  if (error) return Error{"cannot list the scenes in " + *folder + ": " + error.message()};
   std::sort(names.begin(), names.end());
   return names;
 }
 
-Result<std::vector<std::string>> scene_names() {
-  Result<std::string> folder = scenes_folder();
+Result<Scene> load_scene(const std::string& name, const std::string& in_folder) {
+  const Result<std::string> folder = in_folder.empty() ? scenes_folder() : in_folder;
   if (!folder) return folder.error();
-  return scene_names_in(*folder);
-}
-
-Result<Scene> load_scene_from(const std::string& folder, const std::string& name) {
-  const Result<std::vector<std::string>> names = scene_names_in(folder);
+  const Result<std::vector<std::string>> names = scene_names(*folder);
   if (!names) return names.error();
   if (std::find(names->begin(), names->end(), name) == names->end()) {
     return Error{"unknown scene \"" + name + "\"; known scenes: " + joined(*names)};
   }
-  const std::string path = folder + "/" + name + ".json";
+  const std::string path = *folder + "/" + name + ".json";
   const std::optional<std::string> text = read_whole_file(path);
   if (!text) return Error{"cannot read the scene " + path};
   return parse_scene(*text, path);
-}
-
-Result<Scene> load_scene(const std::string& name) {
-  Result<std::string> folder = scenes_folder();
-  if (!folder) return folder.error();
-  return load_scene_from(*folder, name);
 }
 
 }  // namespace palpate

@@ -59,13 +59,10 @@ std::string describe_features(const Scene& scene);
 // own folder; it is read too.
 Result<Scene> parse_scene(std::string_view text, const std::string& path);
 
-// The names of all scenes in `folder` (by default the assets' own), sorted.
-// Errors: no such folder.
-Result<std::vector<std::string>> scene_names();
-Result<std::vector<std::string>> scene_names_in(const std::string& folder);
+// The names of all scenes in `folder`, sorted; empty: the assets' own. Errors: no such folder.
+Result<std::vector<std::string>> scene_names(const std::string& folder = {});
 
 // The scene of that name. Errors: unknown (lists the known ones), file broken.
-Result<Scene> load_scene(const std::string& name);
-Result<Scene> load_scene_from(const std::string& folder, const std::string& name);
+Result<Scene> load_scene(const std::string& name, const std::string& folder = {});
 
 }  // namespace palpate

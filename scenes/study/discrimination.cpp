@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
+#include "engine/base/text.h"
 #include "scenes/study/psychometrics.h"
 
 namespace palpate {
@@ -36,19 +36,11 @@ int found_side(const ShareInterval& interval) {
 }
 
 std::string prediction_words(const StrokePair& strokes) {
-  char text[160];
-  switch (predicted_side(strokes)) {
-    case -1:
-      std::snprintf(text, sizeof text, "Predicted below the JND (at most %.2f of it). ", strokes.max_over_jnd);
-      break;
-    case 1:
-      std::snprintf(text, sizeof text, "Predicted above the JND (%.2f of it on average). ", strokes.mean_over_jnd);
-      break;
-    default:
-      std::snprintf(text, sizeof text, "Above the JND for a moment only (at most %.2f of it, on average %.2f). ",
-                    strokes.max_over_jnd, strokes.mean_over_jnd);
-  }
-  return text;
+  const int side = predicted_side(strokes);
+  const std::string most = fixed(strokes.max_over_jnd, 2), mean = fixed(strokes.mean_over_jnd, 2);
+  if (side < 0) return "Predicted below the JND (at most " + most + " of it). ";
+  if (side > 0) return "Predicted above the JND (" + mean + " of it on average). ";
+  return "Above the JND for a moment only (at most " + most + " of it, on average " + mean + "). ";
 }
 
 std::string agreement_words(int predicted, int found) {
@@ -59,8 +51,7 @@ std::string agreement_words(int predicted, int found) {
 }
 
 Status check_discrimination_files(const std::vector<StudyData>& files) {
-  if (files.empty()) return Error{"found no study file, expected one or more"};
-  std::set<std::string> seen;
+  if (const Status once = check_subjects(files); !once) return once;
   for (const StudyData& file : files) {
     const StudyHeader& header = file.header;
     if (header.strokes == nullptr) {
@@ -72,9 +63,6 @@ Status check_discrimination_files(const std::vector<StudyData>& files) {
       return Error{"found other strokes in the file of subject " + header.subject + ", expected \"" + first.reference +
                    "\" and \"" + first.comparison + "\" in " + first.recording +
                    " as in the first; analyse them apart"};
-    }
-    if (!seen.insert(header.subject).second) {
-      return Error{"found two files of subject " + header.subject + ", expected one; leave one of them out"};
     }
   }
   return {};

@@ -243,9 +243,7 @@ Result<Recording> test_recording(const StrokeRequest& request) {
   RigSettings settings;
   settings.material = *request.scene.material;
   settings.seed = kTestSeed;
-  Result<Recording> recording = record_sensors(settings);
-  if (recording) recording->name = *request.scene.material + "_" + std::to_string(kTestSeed);
-  return recording;
+  return record_sensors(settings);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <set>
 
+#include "engine/base/csv_scanner.h"
+
 namespace palpate {
 namespace {
 
@@ -116,13 +118,9 @@ void average_subjects(const std::vector<SubjectJnd>& subjects, PooledJnd& pooled
 }
 
 Status check_files(const std::vector<StudyData>& files) {
-  if (files.empty()) return Error{"found no study file, expected one or more"};
-  std::set<std::string> seen;
+  if (const Status once = check_subjects(files); !once) return once;
   for (const StudyData& file : files) {
     const std::string& subject = file.header.subject;
-    if (!seen.insert(subject).second) {
-      return Error{"found two files of subject " + subject + ", expected one; leave one of them out"};
-    }
     if (file.header.strokes != nullptr) {
       return Error{"found the procedure discriminate in the file of subject " + subject +
                    ", expected constant as in the first; analyse them apart"};
@@ -130,11 +128,8 @@ Status check_files(const std::vector<StudyData>& files) {
     for (const StudyRecord& record : file.records) {
       const auto& planned_N = kReferenceForces_N;
       if (std::find(planned_N.begin(), planned_N.end(), record.trial.reference_N) != planned_N.end()) continue;
-      char text[160];
-      std::snprintf(text, sizeof text,
-                    "found a reference force of %g N in the file of subject %s, expected 0.3, 0.5, 1 or 2.5 N",
-                    record.trial.reference_N, subject.c_str());
-      return Error{text};
+      return Error{"found a reference force of " + shortest(record.trial.reference_N) + " N in the file of subject " +
+                   subject + ", expected 0.3, 0.5, 1 or 2.5 N"};
     }
     const bool any = std::any_of(file.records.begin(), file.records.end(),
                                  [](const StudyRecord& record) { return !record.training && is_usable(record); });

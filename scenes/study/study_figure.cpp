@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <utility>
-#include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/whole_file.h"
 #include "scenes/plot/draw.h"
 
 namespace palpate {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr Hue kLineColour = 0x0072B2;
 constexpr Hue kSubjectColour = 0xE69F00;
@@ -84,32 +79,15 @@ Plot study_plot(const StudyAnalysis& analysis) {
 }
 
 Status write_study_figures(const StudyAnalysis& analysis, const std::string& folder, bool overwrite) {
-  const std::vector<std::string> figures{"figure3.svg", "figure3.png"};
+  const std::vector<std::string> figures{folder + "/figure3.svg", folder + "/figure3.png"};
   for (const std::string& figure : figures) {
-    const std::string path = folder + "/" + figure;
-    if (!overwrite && fs::exists(path)) return Error{path + " exists; pass --force to replace it"};
+    if (const Status status = check_plot_path(figure, overwrite); !status) return status;
   }
   const Plot plot = study_plot(analysis);
   const auto script = plot_script(plot);
   if (!script) return script.error();
   if (const Status status = write_file_atomically(folder + "/figure3.gp", *script, overwrite); !status) return status;
-  const ScratchFolder scratch(folder);
-  if (scratch.path().empty()) return Error{"cannot make a folder in " + folder + "; is there space left?"};
-  if (const Status status = draw_plots(scratch.path(), {plot}); !status) return status;
-  std::vector<AtomicFile> files;
-  for (const std::string& figure : figures) {
-    const auto drawn = read_whole_file(scratch.path() + "/" + figure);
-    if (!drawn || drawn->empty())
-      return Error{"gnuplot wrote no " + figure + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
-    Result<AtomicFile> file = AtomicFile::create(folder + "/" + figure, overwrite);
-    if (!file) return file.error();
-    file->write(*drawn);
-    files.push_back(std::move(*file));
-  }
-  for (AtomicFile& file : files) {
-    if (const Status status = file.commit(); !status) return status;
-  }
-  return {};
+  return draw_plot(plot, figures, overwrite);
 }
 
 }  // namespace palpate

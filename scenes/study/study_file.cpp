@@ -6,21 +6,18 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
+#include <optional>
+#include <set>
 #include <system_error>
+
+#include "engine/base/csv_scanner.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
 
 bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
-// The shortest text that reads back the same.
-std::string number_text(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return {text, end.ptr};
-}
 
 std::string checksum(const std::string& text) {
   std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
@@ -60,18 +57,6 @@ void flush_folder_of(const std::string& path) {
   close(descriptor);
 }
 
-Result<std::string> read_all(int descriptor, const std::string& path) {
-  std::string text;
-  char block[65536];
-  for (;;) {
-    const ssize_t got = ::read(descriptor, block, sizeof block);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return Error{"cannot read " + path + ": " + std::generic_category().message(errno)};
-    if (got == 0) return text;
-    text.append(block, static_cast<std::size_t>(got));
-  }
-}
-
 }  // namespace
 
 std::string study_header_text(const StudyHeader& header) {
@@ -83,12 +68,12 @@ std::string study_header_text(const StudyHeader& header) {
   if (header.strokes == nullptr) return text;
   const StrokePair& strokes = *header.strokes;
   text += "# reference " + strokes.reference + "\n# comparison " + strokes.comparison + "\n# stroke from_s " +
-          number_text(strokes.from_s) + " to_s " + number_text(strokes.to_s) + " of " + strokes.recording + "\n";
-  text += "# forces reference_mean_N " + number_text(strokes.reference_mean_N) + " comparison_mean_N " +
-          number_text(strokes.comparison_mean_N) + " checksum " + std::to_string(strokes.checksum) + "\n";
-  return text + "# predicted mean_over_jnd " + number_text(strokes.mean_over_jnd) + " max_over_jnd " +
-         number_text(strokes.max_over_jnd) + " jnd_offset_N " + number_text(strokes.jnd.offset_N) +
-         " jnd_weber_fraction " + number_text(strokes.jnd.weber_fraction) + "\n";
+          shortest(strokes.from_s) + " to_s " + shortest(strokes.to_s) + " of " + strokes.recording + "\n";
+  text += "# forces reference_mean_N " + shortest(strokes.reference_mean_N) + " comparison_mean_N " +
+          shortest(strokes.comparison_mean_N) + " checksum " + std::to_string(strokes.checksum) + "\n";
+  return text + "# predicted mean_over_jnd " + shortest(strokes.mean_over_jnd) + " max_over_jnd " +
+         shortest(strokes.max_over_jnd) + " jnd_offset_N " + shortest(strokes.jnd.offset_N) + " jnd_weber_fraction " +
+         shortest(strokes.jnd.weber_fraction) + "\n";
 }
 
 std::string study_columns(ProcedureKind procedure) {
@@ -99,16 +84,27 @@ std::string study_columns(ProcedureKind procedure) {
 
 std::string study_row(const StudyRecord& record, ProcedureKind procedure) {
   std::string row = record.training ? "training," : "study,";
-  row += std::to_string(record.number) + "," + number_text(record.trial.reference_N) + "," +
-         number_text(record.trial.comparison_N) + (record.trial.comparison_first ? ",1," : ",0,") +
-         number_text(record.first_rendered_N) + "," + number_text(record.second_rendered_N) +
+  row += std::to_string(record.number) + "," + shortest(record.trial.reference_N) + "," +
+         shortest(record.trial.comparison_N) + (record.trial.comparison_first ? ",1," : ",0,") +
+         shortest(record.first_rendered_N) + "," + shortest(record.second_rendered_N) +
          (record.limited ? ",1," : ",0,") + (record.answered_second ? "second," : "first,") +
          std::to_string(record.response_ms);
   if (procedure == ProcedureKind::discriminate) {
     row += ',';
-    row += number_text(record.reminder_rendered_N) + "," + number_text(record.worst_N);
+    row += shortest(record.reminder_rendered_N) + "," + shortest(record.worst_N);
   }
   return row + "," + record.device + (record.rendered ? ",true\n" : ",false\n");
+}
+
+Status check_subjects(const std::vector<StudyData>& files) {
+  if (files.empty()) return Error{"found no study file, expected one or more"};
+  std::set<std::string> seen;
+  for (const StudyData& file : files) {
+    const std::string& subject = file.header.subject;
+    if (seen.insert(subject).second) continue;
+    return Error{"found two files of subject " + subject + ", expected one; leave one of them out"};
+  }
+  return {};
 }
 
 std::size_t remove_rehearsals(StudyData& data) {
@@ -146,8 +142,8 @@ Status StudyFile::take_up() {
   if (fstat(descriptor_, &status) != 0) return failure(errno);
   if (!S_ISREG(status.st_mode)) return Error{path_ + " is not a regular file; name one"};
   if (const Status locked = lock(); !locked) return locked;
-  const Result<std::string> text = read_all(descriptor_, path_);
-  if (!text) return text.error();
+  const std::optional<std::string> text = read_whole_file(path_);
+  if (!text) return Error{"cannot read " + path_};
   if (is_cut_header(*text, study_header_text(header_), study_columns(header_.procedure))) return {};
   const Result<StudyData> data = parse_study(*text, path_);
   if (!data) return data.error();

@@ -56,6 +56,9 @@ std::string study_header_text(const StudyHeader& header);
 std::string study_columns(ProcedureKind procedure);
 // One row of the table, with its line end.
 std::string study_row(const StudyRecord& record, ProcedureKind procedure);
+// Errors: no file; two of one subject.
+Status check_subjects(const std::vector<StudyData>& files);
+
 // Takes out the answers that nobody could feel; returns how many.
 std::size_t remove_rehearsals(StudyData& data);
 

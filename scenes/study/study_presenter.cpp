@@ -43,34 +43,19 @@ std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
 }
 
 std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
-  switch (phase) {
-    case PresentationPhase::lead_in:
-      return timing_.lead_in;
-    case PresentationPhase::reminder:
-      return order_.stimuli.has_reminder ? timing_.interval() : 0;
-    case PresentationPhase::reminder_pause:
-      return order_.stimuli.has_reminder ? timing_.pause : 0;
-    case PresentationPhase::first:
-    case PresentationPhase::second:
-      return timing_.interval();
-    case PresentationPhase::pause:
-      return timing_.pause;
-    default:
-      return 0;
-  }
+  const bool reminds = phase == PresentationPhase::reminder || phase == PresentationPhase::reminder_pause;
+  const bool pauses = phase == PresentationPhase::pause || phase == PresentationPhase::reminder_pause;
+  if (phase == PresentationPhase::lead_in) return timing_.lead_in;
+  if (reminds && !order_.stimuli.has_reminder) return 0;
+  if (phase == PresentationPhase::idle || phase >= PresentationPhase::finished) return 0;
+  return pauses ? timing_.pause : timing_.interval();
 }
 
 const Stimulus* StudyPresenter::stimulus() const noexcept {
-  switch (state_.phase) {
-    case PresentationPhase::reminder:
-      return &order_.stimuli.reminder;
-    case PresentationPhase::first:
-      return &order_.stimuli.first;
-    case PresentationPhase::second:
-      return &order_.stimuli.second;
-    default:
-      return nullptr;
-  }
+  return state_.phase == PresentationPhase::reminder ? &order_.stimuli.reminder
+         : state_.phase == PresentationPhase::first  ? &order_.stimuli.first
+         : state_.phase == PresentationPhase::second ? &order_.stimuli.second
+                                                     : nullptr;
 }
 
 bool StudyPresenter::is_held() const noexcept {

@@ -82,14 +82,8 @@ ModelWorker::~ModelWorker() {
 
 Status ModelWorker::start() {
   try {
-    thread_ = std::thread([this] {
-      lower_thread_priority();
-      work();
-    });
-    reader_ = std::thread([this] {
-      lower_thread_priority();
-      read_files();
-    });
+    thread_ = std::thread([this] { work(jobs_); });
+    reader_ = std::thread([this] { work(files_); });
   } catch (const std::system_error& error) {
     return Error{std::string("cannot start the thread that fits models: ") + error.what() + "; close other programs"};
   }
@@ -117,68 +111,36 @@ std::vector<FinishedModel> ModelWorker::read_finished() {
 
 ModelWorker::Progress ModelWorker::progress() const {
   const std::lock_guard lock(mutex_);
-  if (!working_on_) return {};
-  return {true, *working_on_, share_.load(std::memory_order_relaxed)};
+  return {working_on_.has_value(), working_on_.value_or(0), share_.load(std::memory_order_relaxed)};
 }
 
-std::optional<ModelWorker::Job> ModelWorker::next_job() {
-  std::unique_lock lock(mutex_);
-  working_on_.reset();
-  wake_.wait(lock, [this] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
-  if (cancelled_.load(std::memory_order_relaxed)) return std::nullopt;
-  Job job = std::move(jobs_.front());
-  jobs_.pop_front();
-  working_on_ = job.job_id;
-  share_.store(0.0, std::memory_order_relaxed);
-  return job;
-}
-
-void ModelWorker::work() {
-  while (const std::optional<Job> job = next_job()) {
-    FinishedModel model = make(*job);
-    if (model.model != nullptr) model.tick_ns = tick_ns(model.model);
-    const std::lock_guard lock(mutex_);
-    finished_.push_back(std::move(model));
-  }
-}
-
-void ModelWorker::read_files() {
-  while (true) {
-    std::unique_lock lock(mutex_);
-    wake_.wait(lock, [this] { return !files_.empty() || cancelled_.load(std::memory_order_relaxed); });
+void ModelWorker::work(std::deque<Job>& jobs) {
+  lower_thread_priority();
+  for (std::unique_lock lock(mutex_);;) {
+    if (&jobs == &jobs_) working_on_.reset();
+    wake_.wait(lock, [&] { return !jobs.empty() || cancelled_.load(std::memory_order_relaxed); });
     if (cancelled_.load(std::memory_order_relaxed)) return;
-    const Job job = std::move(files_.front());
-    files_.pop_front();
+    const Job job = std::move(jobs.front());
+    jobs.pop_front();
+    if (&jobs == &jobs_) {
+      working_on_ = job.job_id;
+      share_.store(0.0, std::memory_order_relaxed);
+    }
     lock.unlock();
-    FinishedModel model = make(job);
-    if (model.model != nullptr) model.tick_ns = tick_ns(model.model);
+    const auto model = make(job.plan);
+    FinishedModel made{job.job_id, job.plan, model ? *model : nullptr, model ? "" : model.error().message};
+    if (made.model != nullptr) made.tick_ns = tick_ns(made.model);
     lock.lock();
-    finished_.push_back(std::move(model));
+    finished_.push_back(std::move(made));
   }
 }
 
-FinishedModel ModelWorker::make(const Job& job) {
-  FinishedModel made{job.job_id, job.plan, nullptr, ""};
-  if (job.plan.loaded != nullptr) {
-    made.model = job.plan.loaded;
-    return made;
-  }
-  if (job.plan.origin == ModelOrigin::file) {
-    auto model = load_model(job.plan.path);
-    if (model) {
-      made.model = std::move(*model);
-    } else {
-      made.problem = model.error().message;
-    }
-    return made;
-  }
-  Result<ModelData> data = fit(job.plan);
-  if (data) {
-    made.model = std::make_shared<const FittedModel>(std::move(*data));
-  } else {
-    made.problem = data.error().message;
-  }
-  return made;
+Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const SlotPlan& plan) {
+  if (plan.loaded != nullptr) return plan.loaded;
+  if (plan.origin == ModelOrigin::file) return load_model(plan.path);
+  Result<ModelData> data = fit(plan);
+  if (!data) return data.error();
+  return std::make_shared<const FittedModel>(std::move(*data));
 }
 
 FitControl ModelWorker::control(double from, double to) {
@@ -192,17 +154,13 @@ FitControl ModelWorker::control(double from, double to) {
 
 Status ModelWorker::prepare_recording() {
   if (recording_ != nullptr) return {};
-  if (!scene_.recording.empty()) {
-    Result<Recording> recording = read_recording(scene_.recording);
-    if (!recording) return recording.error();
-    recording_ = std::make_shared<const Recording>(std::move(*recording));
-    return {};
-  }
-  if (!scene_.material) return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
+  if (scene_.recording.empty() && !scene_.material)
+    return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
   RigSettings settings;
-  settings.material = *scene_.material;
+  settings.material = scene_.material.value_or("");
   settings.seed = seed_;
-  Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
+  Result<Recording> recording = scene_.recording.empty() ? record_sensors(settings, control(0.0, kRecorded).progress)
+                                                         : read_recording(scene_.recording);
   if (!recording) return recording.error();
   recording_ = std::make_shared<const Recording>(std::move(*recording));
   return {};

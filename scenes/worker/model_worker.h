@@ -79,10 +79,9 @@ class ModelWorker {
     SlotPlan plan;
     double cost_s = 0.0;  // expected; below 0: at once
   };
-  void work();
-  void read_files();
-  std::optional<Job> next_job();
-  FinishedModel make(const Job& job);
+  // Until cancelled: fits of jobs_, or, on a thread of its own, reading of files_.
+  void work(std::deque<Job>& jobs);
+  Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
   Result<ModelData> fit(const SlotPlan& plan);
   Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
                                const FitControl& control);

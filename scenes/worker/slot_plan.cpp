@@ -58,19 +58,11 @@ Result<SlotPlan> plan_one(const Scene& scene, const std::string& asked) {
 }  // namespace
 
 std::string plan_name(const SlotPlan& plan) {
-  switch (plan.origin) {
-    case ModelOrigin::method: {
-      std::string name = plan.method->name;
-      if (plan.centres > 0) name.append("-").append(std::to_string(plan.centres));
-      if (plan.paper) name += kPaperMark;
-      return name;
-    }
-    case ModelOrigin::position:
-      return "position only";
-    case ModelOrigin::file:
-      return std::filesystem::path(plan.path).stem().string();
-  }
-  return {};
+  if (plan.origin == ModelOrigin::file) return std::filesystem::path(plan.path).stem().string();
+  if (plan.origin == ModelOrigin::position) return "position only";
+  std::string name = plan.method->name;
+  if (plan.centres > 0) name.append("-").append(std::to_string(plan.centres));
+  return plan.paper ? name + kPaperMark : name;
 }
 
 bool SlotPlan::same_as(const SlotPlan& other) const {
@@ -100,15 +92,8 @@ const LineUp* find_line_up(const std::string& name) {
 }
 
 std::string plan_method(const SlotPlan& plan) {
-  switch (plan.origin) {
-    case ModelOrigin::method:
-      return plan.method->name;
-    case ModelOrigin::position:
-      return "position";
-    case ModelOrigin::file:
-      return {};
-  }
-  return {};
+  if (plan.origin == ModelOrigin::file) return {};
+  return plan.origin == ModelOrigin::position ? "position" : plan.method->name;
 }
 
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,

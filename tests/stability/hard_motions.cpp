@@ -124,12 +124,12 @@ std::vector<HardCaseResult> run_hard_materials() {
     settings.material = name;
     settings.seconds = kMaterialSeconds;
     settings.rate_Hz = kMaterialRate_Hz;
-    const Result<RigRecording> rig = record(settings);
+    const Result<Recording> rig = record_sensors(settings);
     if (!rig) return {refused({}, rig.error().message)};
     TrainingRequest request = clean_request();
     request.choice = FeatureChoice::automatic;
-    const FittedMethods fitted = fit_methods(name, rig->recording, request);
-    for (const MotionCase& one : motion_cases(deepest_m(rig->recording))) {
+    const FittedMethods fitted = fit_methods(name, *rig, request);
+    for (const MotionCase& one : motion_cases(deepest_m(*rig))) {
       const std::unique_ptr<Block> block = material.make_block();
       std::vector<OutcomeCounter> counters(fitted.models.size());
       evaluate_press(press_into(*block, one.path, even_times(one.seconds, kEvaluatedRate_Hz)), fitted.models, counters);

@@ -38,7 +38,7 @@ RigSettings test_settings(const std::string& material) {
 }
 
 RecordingPtr rig_recording(const RigSettings& settings) {
-  return std::make_shared<const Recording>(must(record(settings)).recording);
+  return std::make_shared<const Recording>(must(record_sensors(settings)));
 }
 
 RecordingPtr encoder_only(const RecordingPtr& recording) {

@@ -8,7 +8,7 @@
 
 #include "engine/recording/recording.h"
 #include "models/model/file/model_io.h"
-#include "scenes/cli/forces_file.h"
+#include "scenes/cli/replay_files.h"
 #include "tests/support/example_model.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"

@@ -36,12 +36,12 @@ TEST(Synth, WritesTheRecordingOfTheLibrary) {
   settings.seed = 3;
   settings.seconds = 2.0;
   settings.rate_Hz = 500.0;
-  const Result<RigRecording> rig = record(settings);
+  const Result<Recording> rig = record_sensors(settings);
   ASSERT_TRUE(rig.ok());
   ASSERT_EQ(read->rows.size(), 1000u);
   EXPECT_TRUE(read->columns.acceleration);
   for (std::size_t i = 0; i < read->rows.size(); ++i) {
-    const RecordingRow& expected = rig->recording.rows[i];
+    const RecordingRow& expected = rig->rows[i];
     ASSERT_EQ(read->rows[i].time_s, expected.time_s);
     ASSERT_EQ(read->rows[i].position_m, expected.position_m);
     ASSERT_EQ(read->rows[i].force_N, expected.force_N);

@@ -37,7 +37,7 @@ struct Rig {
     models->written_model = 0;
     loop.publish_models(std::move(models));
   }
-  Status start(const std::string& path, WrittenForce force, RecordingColumns columns = {}) {
+  Status start(const std::string& path, ReferenceKind force, RecordingColumns columns = {}) {
     Status status = recorder.start({path, force, columns, {"made by a test"}});
     loop.set_controls({1, 0, recorder.number()});
     return status;
@@ -62,7 +62,7 @@ TEST(SessionRecorder, WritesEverySampleOfAHand) {
   const TemporaryFolder folder;
   HandDevice hand(1);
   Rig rig(hand);
-  ASSERT_TRUE(rig.start(folder.file("hand.csv"), WrittenForce::reference, {true, false}).ok());
+  ASSERT_TRUE(rig.start(folder.file("hand.csv"), ReferenceKind::truth, {true, false}).ok());
   EXPECT_TRUE(rig.recorder.status().active);
   rig.run(20000);
   const Notice notice = rig.finish();
@@ -91,7 +91,7 @@ TEST(SessionRecorder, WritesTheModelsForceWhenThatIsTheReference) {
   const TemporaryFolder folder;
   PathDevice device(test::strokes);
   Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::model).ok());
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::direct).ok());
   rig.run(1000);
   EXPECT_FALSE(rig.finish().problem);
   const Recording recording = read_recording(folder.file("a.csv")).value();
@@ -109,7 +109,7 @@ TEST(SessionRecorder, GoesOnWhereARecordingStartsOver) {
   for (int i = 0; i < 2000; ++i) played.rows.push_back({5.0 + i / 4000.0, 1e-3, 0.25, 0.0, 0.0});
   ReplayDevice device(played);
   Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::measured).ok());
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::measured).ok());
   rig.run(1300);
   const Notice notice = rig.finish();
   EXPECT_FALSE(notice.problem);
@@ -134,7 +134,7 @@ TEST(SessionRecorder, LeavesOutWhatTheLoopCouldNotUse) {
   const TemporaryFolder folder;
   PathDevice device([](double time_s) { return std::fmod(time_s, 0.1) < 0.005 ? kNan : 1e-3; });
   Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
   rig.run(1000);
   const Notice notice = rig.finish();
   EXPECT_NE(notice.text.find("samples that the loop could not use were left out"), std::string::npos) << notice.text;
@@ -147,15 +147,15 @@ TEST(SessionRecorder, TakesOneAtATimeAndNothingOfTheLast) {
   const TemporaryFolder folder;
   PathDevice device(test::strokes);
   Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
-  EXPECT_EQ(rig.start(folder.file("b.csv"), WrittenForce::reference).error().message,
+  ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
+  EXPECT_EQ(rig.start(folder.file("b.csv"), ReferenceKind::truth).error().message,
             "already recording into " + folder.file("a.csv") + "; stop that one first");
   rig.run(100);
   EXPECT_FALSE(rig.finish().problem);
   // The loop has not heard of the end yet: these belong to nobody.
-  EXPECT_EQ(rig.recorder.start({folder.file("a.csv"), WrittenForce::reference, {}, {}}).error().message,
+  EXPECT_EQ(rig.recorder.start({folder.file("a.csv"), ReferenceKind::truth, {}, {}}).error().message,
             folder.file("a.csv") + " exists; choose another name");
-  ASSERT_TRUE(rig.recorder.start({folder.file("b.csv"), WrittenForce::reference, {}, {}}).ok());
+  ASSERT_TRUE(rig.recorder.start({folder.file("b.csv"), ReferenceKind::truth, {}, {}}).ok());
   const Notice notice = rig.finish();
   EXPECT_TRUE(notice.problem) << "fewer than ten rows";
   EXPECT_EQ(folder.entries(), std::vector<std::string>{"a.csv"});
@@ -166,7 +166,7 @@ TEST(SessionRecorder, IsWholeWhenTheSessionEnds) {
   PathDevice device(test::strokes);
   {
     Rig rig(device);
-    ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+    ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
     rig.run(500);
   }
   EXPECT_EQ(read_recording(folder.file("a.csv")).value().rows.size(), 500u);
@@ -177,7 +177,7 @@ TEST(SessionRecorder, SaysThatTheFolderIsGone) {
   std::filesystem::create_directory(folder.file("sub"));
   PathDevice device(test::strokes);
   Rig rig(device);
-  ASSERT_TRUE(rig.start(folder.file("sub/a.csv"), WrittenForce::reference).ok());
+  ASSERT_TRUE(rig.start(folder.file("sub/a.csv"), ReferenceKind::truth).ok());
   rig.run(100);
   std::filesystem::remove_all(folder.file("sub"));
   const Notice notice = rig.finish();
@@ -212,7 +212,7 @@ TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
   Notice notice;
   {
     const SmallFiles small;
-    ASSERT_TRUE(rig.start(folder.file("a.csv"), WrittenForce::reference).ok());
+    ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
     rig.run(30000);
     rig.recorder.wait();
     notice = rig.recorder.read_outcome().value_or(Notice{"no outcome", false});
@@ -220,7 +220,7 @@ TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
   EXPECT_TRUE(notice.problem);
   EXPECT_EQ(notice.text, "the recording was lost: cannot write " + folder.file("a.csv") + ": File too large");
   EXPECT_TRUE(folder.entries().empty());
-  ASSERT_TRUE(rig.start(folder.file("b.csv"), WrittenForce::reference).ok()) << "and the next one is free to begin";
+  ASSERT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok()) << "and the next one is free to begin";
 }
 
 // The loop's own thread beside the recorder's; for the thread sanitizer.
@@ -235,7 +235,7 @@ TEST(SessionRecorder, RecordsBesideTheRunningLoop) {
                                                    std::make_shared<DepthForce>()));
   ASSERT_TRUE(loop.start().ok());
   for (const char* name : {"a.csv", "b.csv"}) {
-    ASSERT_TRUE(recorder.start({folder.file(name), WrittenForce::reference, {}, {}}).ok());
+    ASSERT_TRUE(recorder.start({folder.file(name), ReferenceKind::truth, {}, {}}).ok());
     loop.set_controls({1, 0, recorder.number()});
     while (recorder.status().rows < 100) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     loop.set_controls({1, 0, 0});

@@ -4,7 +4,6 @@
 
 #include "engine/base/whole_file.h"
 #include "scenes/plot/draw.h"
-#include "scenes/plot/gnuplot.h"
 #include "scenes/plot/inline_svg.h"
 #include "tests/support/temporary_folder.h"
 
@@ -104,11 +103,11 @@ TEST(Plot, AGapBreaksTheLine) {
 TEST(DrawPlot, WritesOneFileWholeOrNothing) {
   if (!find_gnuplot()) GTEST_SKIP() << "no gnuplot here";
   const test::TemporaryFolder folder;
-  EXPECT_EQ(draw_plot(errors_up_to(3.0), folder.file("a.jpg"), false).error().message,
+  EXPECT_EQ(draw_plot(errors_up_to(3.0), {folder.file("a.jpg")}, false).error().message,
             "found --plot " + folder.file("a.jpg") + ", expected a file that ends in .svg or .png");
-  ASSERT_TRUE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok());
+  ASSERT_TRUE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok());
   EXPECT_EQ(folder.entries(), (std::vector<std::string>{"a.svg"}));
-  EXPECT_FALSE(draw_plot(errors_up_to(3.0), folder.file("a.svg"), false).ok()) << "it exists";
+  EXPECT_FALSE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok()) << "it exists";
 }
 
 TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {

@@ -1,4 +1,4 @@
-#include "scenes/report/leakage.h"
+#include "scenes/report/recordings.h"
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,18 @@ Recording noisy(const std::string& name, std::uint64_t seed, std::size_t rows = 
   return recording;
 }
 
+// The first is trained on.
+Status refuse(const std::vector<Recording>& recordings) {
+  std::vector<SharedRecording> all;
+  for (const Recording& one : recordings) all.push_back(std::make_shared<const Recording>(one));
+  return refuse_leakage(all, 1);
+}
+
 TEST(Leakage, TheSameMotionWithItsOwnNoiseIsNoLeak) {
   const Recording train = noisy("train", 1);
   const Recording test = noisy("test", 2);
   EXPECT_EQ(shared_stretch(train, test).rows, 0u);
-  EXPECT_TRUE(refuse_leakage({&train}, {&test}).ok());
+  EXPECT_TRUE(refuse({train, test}).ok());
   EXPECT_NE(content_hash(train), content_hash(test));
 }
 
@@ -30,7 +37,7 @@ TEST(Leakage, ACopyUnderAnotherNameIsRefusedByName) {
   Recording copy = train;
   copy.name = "copy";
   for (RecordingRow& row : copy.rows) row.time_s += 100.0;
-  const Status status = refuse_leakage({&train}, {&copy});
+  const Status status = refuse({train, copy});
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().message, "copy has the same content as train (" + hash_text(content_hash(train)) +
                                         "), expected every recording once: errors on what was trained on say nothing; "
@@ -46,7 +53,7 @@ TEST(Leakage, AStretchOfTheTrainingInATestIsFoundWhereverItLies) {
   EXPECT_EQ(stretch.rows, 2 * kLeakRows);
   EXPECT_EQ(stretch.first_row, 777u);
   EXPECT_EQ(stretch.trained_row, 331u);
-  const Status status = refuse_leakage({&train}, {&test});
+  const Status status = refuse({train, test});
   ASSERT_FALSE(status);
   EXPECT_EQ(
       status.error().message.rfind("test: the forces of 100 rows from 0.777 s on are those of train from 0.331 s", 0),

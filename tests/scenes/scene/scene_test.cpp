@@ -52,7 +52,7 @@ TEST(Scene, UnknownNameListsTheKnownOnes) {
 }
 
 TEST(Scene, MissingFolderIsNamed) {
-  const auto names = scene_names_in("/none");
+  const auto names = scene_names("/none");
   ASSERT_FALSE(names.ok());
   EXPECT_EQ(names.error().message, "cannot list the scenes in /none: No such file or directory");
 }
@@ -61,8 +61,8 @@ TEST(Scene, LoadsFromAnyFolder) {
   const TemporaryFolder folder;
   folder.with_file("broken.json", "{");
   folder.with_file("note.txt", "no scene");
-  EXPECT_EQ(*scene_names_in(folder.path()), std::vector<std::string>{"broken"});
-  EXPECT_FALSE(load_scene_from(folder.path(), "broken").ok());
+  EXPECT_EQ(*scene_names(folder.path()), std::vector<std::string>{"broken"});
+  EXPECT_FALSE(load_scene("broken", folder.path()).ok());
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-// FORCES.csv of `palpate replay`: motion, measured force, features and every
-// model's force, one row per sample.
-// Thread guarantee: slow side; one thread per object.
+// What palpate replay reads and writes: models under names that tell them apart, and FORCES.csv.
+// Thread guarantee: slow side (does I/O); one thread per object.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,9 +10,21 @@
 #include "engine/base/atomic_file.h"
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
+#include "models/model/fitted_model.h"
 
 namespace palpate::cli {
 
+struct LoadedModel {
+  std::string name;  // distinct among the models of one run
+  std::shared_ptr<const FittedModel> model;
+};
+
+// `names`: one for each file, or none; models that then have one name are named by
+// their files. Errors: too many models; a file that is no model, or a recording.
+Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
+                                             const std::vector<std::string>& names = {});
+
+// FORCES.csv: motion, measured force, features and every model's force, one row per sample.
 // Columns: time_s, position_m, force_N, depth_m, each distinct feature of the
 // models once, then "<model name>_N" per model. Features that differ but share a
 // name get the suffix -2, -3 ... Numbers read back as the same doubles.
@@ -34,7 +46,6 @@ class ForcesFile {
   explicit ForcesFile(AtomicFile file) : file_(std::move(file)) {}
   AtomicFile file_;
   std::vector<FeatureColumn> columns_;
-  std::string line_;
 };
 
 // `names` with -2, -3 ... behind those that came before, so that all differ.
