@@ -93,13 +93,6 @@ void DemoApp::listen() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->handle_key_event(key, action, modifiers);
   });
-  const auto stir = [](GLFWwindow* handle, auto...) {
-    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->stirred_ = true;
-  };
-  glfwSetCursorPosCallback(window_->handle(), stir);
-  glfwSetMouseButtonCallback(window_->handle(), stir);
-  glfwSetScrollCallback(window_->handle(), stir);
-  glfwSetCharCallback(window_->handle(), stir);
   // After these callbacks, which it calls behind its own.
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
@@ -127,7 +120,6 @@ void DemoApp::drop_files(const std::vector<std::string>& paths) {
 }
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
-  stirred_ = true;
   if (view_.exhibit && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
   input_.add_key(key, action, modifiers);
 }
@@ -172,14 +164,9 @@ void DemoApp::frame() {
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
-  const bool whole = panel_is_due(now_s);
-  if (whole) {
-    draw();
-  } else {
-    draw_again();
-  }
+  draw();
   handle_keys();
-  if (whole) input_.handle_mouse(*session_, *blocks_, overlay_, view_, scene_area());
+  input_.handle_mouse(*session_, *blocks_, overlay_, view_, scene_area());
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
@@ -234,8 +221,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(files_.settings().camera);
   blocks_framed_ = 0;
-  stirred_ = true;
-  panel_ = Panel{};  // no curve of the old one
+  panel_ = SidePanel{};  // no curve of the old one
   view_.time = CurveTime{};
   view_.force_scale_N = view_.error_scale = 1.0;
   view_.time.zero_s = steady_now_s();
