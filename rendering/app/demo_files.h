@@ -14,6 +14,7 @@
 #include "rendering/panels/curve_files.h"
 #include "rendering/panels/view_state.h"
 #include "scenes/live/device_choice.h"
+#include "scenes/live/notices.h"
 #include "scenes/live/recording_offer.h"
 
 namespace palpate {
@@ -54,6 +55,7 @@ class DemoFiles {
   std::string settings_file_;
   std::future<Result<RecordingOffer>> arriving_;    // a file that is read
   std::future<std::vector<DeviceChoice>> looking_;  // for devices
+  std::future<Notice> drawing_;                     // a figure of the curves
   std::string recording_;                           // the file that is being recorded; empty: none
 };
 

@@ -63,8 +63,8 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 
 }  // namespace
 
-void Panel::draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
-                 const ImVec2& at, const ImVec2& size) {
+void SidePanel::draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
+                     const ImVec2& at, const ImVec2& size) {
   ImGui::SetNextWindowPos(at);
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("panel", nullptr, kPanelWindow);

@@ -31,7 +31,7 @@ Limits limits_of(const ErrorsView& errors) {
   return limits;
 }
 
-void draw_slot(const Plot& plot, const ModelsView& models, std::size_t index, const JndLine& jnd,
+void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index, const JndLine& jnd,
                const UiStyle& style) {
   const bool selected = index == models.selected;
   const SlotView& slot = *models.slots[index];
@@ -55,8 +55,8 @@ void draw_slot(const Plot& plot, const ModelsView& models, std::size_t index, co
 void draw_error_bins(const ErrorsView& errors, const UiStyle& style, float height) {
   const Limits limits = limits_of(errors);
   {
-    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height},
-                    {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N", true});
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
+                        {{0.0, limits.force_N}, {0.0, limits.error_N}, "N", "N", true});
     const double ends[2] = {0.0, limits.force_N};
     std::vector<ImVec2> line;
     std::vector<ImVec2> floor;

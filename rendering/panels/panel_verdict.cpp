@@ -75,8 +75,8 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
   const float size = style.scale();
   const Palette& p = style.colours();
   {
-    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height - 2.0F * line},
-                    {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - 2.0F * line},
+                        {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
     plot.list().AddRectFilled({plot.left(), plot.y_px(0.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
     plot.level(0.0, ink(p.text), 1.5F * size);
     const float budget_px = plot.x_px(std::log10(kBudget_us));

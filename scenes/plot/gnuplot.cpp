@@ -68,7 +68,8 @@ Status run_script(const std::string& program, const std::string& folder, const s
   std::vector<std::string> environment = plain_environment();
   const std::vector<char*> arguments = pointers(command);
   const std::vector<char*> settings = pointers(environment);
-  const pid_t child = fork();
+  // No copy of our memory, for which the haptics thread of a window would have to wait.
+  const pid_t child = vfork();
   if (child == 0) become(arguments.data(), settings.data(), folder.c_str(), pipe_ends[1]);
   close(pipe_ends[1]);
   const std::string said = child > 0 ? read_all(pipe_ends[0]) : "";
