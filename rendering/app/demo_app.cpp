@@ -53,8 +53,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   }
   if (const auto folder = data_folder()) wanted.data_folder = *folder;
   files_.use_settings(view_.exhibit ? "" : request.settings_file);
-  if (!files_.settings().line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
-    wanted.line_up = files_.settings().line_up;
+  if (!view_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = view_.line_up;
   request_ = wanted;
   first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
   auto session = LiveSession::open(wanted);
@@ -70,7 +69,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
-  blocks_->camera().turn(files_.settings().camera);
+  blocks_->camera().turn(view_.camera);
   if (view_.exhibit) {
     if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   }
@@ -219,10 +218,11 @@ void DemoApp::reopen(const SessionRequest& request) {
   session_ = std::move(*session);
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
-  blocks_->camera().turn(files_.settings().camera);
+  blocks_->camera().turn(view_.camera);
   blocks_framed_ = 0;
   panel_ = SidePanel{};  // no curve of the old one
   view_.time = CurveTime{};
+  view_.feel = false;
   view_.force_scale_N = view_.error_scale = 1.0;
   view_.time.zero_s = steady_now_s();
 }

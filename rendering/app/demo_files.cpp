@@ -57,25 +57,15 @@ void DemoFiles::use_settings(const std::string& file) {
     notify_(settings.error().message, true);
     return;
   }
-  settings_ = *settings;
-  view_.theme = settings_.theme;
-  view_.block_count = settings_.block_count;
-  view_.difference = settings_.difference;
-  view_.text_size = settings_.text_size;
-  view_.picker.recent = settings_.recent;
+  static_cast<Settings&>(view_) = *settings;
 }
 
 void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& camera) {
   if (settings_file_.empty()) return;
-  settings_.theme = view_.theme;
-  settings_.block_count = view_.block_count;
-  settings_.difference = view_.difference;
-  settings_.text_size = view_.text_size;
-  settings_.recent = view_.picker.recent;
-  if (!session.line_up().empty()) settings_.line_up = session.line_up();
-  settings_.camera = camera;
+  if (!session.line_up().empty()) view_.line_up = session.line_up();
+  view_.camera = camera;
   // Nobody is there to read of it any more.
-  (void)write_settings(settings_file_, settings_);
+  (void)write_settings(settings_file_, view_);
 }
 
 void DemoFiles::update(const LiveSession& session) {
@@ -102,7 +92,7 @@ void DemoFiles::update(const LiveSession& session) {
 
 void DemoFiles::open(const std::string& path, LiveSession& session) {
   constexpr std::size_t kRecent = 5;
-  std::vector<std::string>& recent = view_.picker.recent;
+  std::vector<std::string>& recent = view_.recent;
   std::erase(recent, path);
   recent.insert(recent.begin(), path);
   if (recent.size() > kRecent) recent.pop_back();

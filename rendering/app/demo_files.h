@@ -30,7 +30,6 @@ class DemoFiles {
   // Of this file; empty: nothing is remembered.
   void use_settings(const std::string& file);
   void save_settings(const LiveSession& session, const CameraTurn& camera);
-  const Settings& settings() const noexcept { return settings_; }
 
   // Once a frame: what has been read, found or recorded meanwhile.
   void update(const LiveSession& session);
@@ -51,7 +50,6 @@ class DemoFiles {
 
   ViewState& view_;
   Notify notify_;
-  Settings settings_;
   std::string settings_file_;
   std::future<Result<RecordingOffer>> arriving_;    // a file that is read
   std::future<std::vector<DeviceChoice>> looking_;  // for devices

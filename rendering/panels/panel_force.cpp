@@ -96,8 +96,8 @@ ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, c
   hovered_ = false;
   const Scene scene{force, view, style, view.time.end_s(steady_now_s())};
   const auto columns = static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
-  curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
-                 columns);
+  curves_.gather(*force.history, force.models.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s,
+                 scene.end_s, columns);
   const double highest_N = 1.05 * static_cast<double>(curves_.highest_force_N());
   view.force_scale_N = eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, highest_N}));
   // Beyond 8 JND the line would only hide what is near 1.
