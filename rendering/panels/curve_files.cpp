@@ -1,9 +1,10 @@
 #include "rendering/panels/curve_files.h"
 
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <utility>
+
+#include "engine/base/text.h"
 
 namespace palpate {
 namespace {
@@ -12,12 +13,9 @@ constexpr double kFigure_jnd = 3.0;
 // Of a ReferenceKind: what reference_N was in that row, which F changes.
 constexpr const char* kReferenceNames[] = {"measured", "truth", "model"};
 
-__attribute__((format(printf, 1, 2))) std::string print(const char* pattern, ...) {
-  char text[256];
-  va_list values;
-  va_start(values, pattern);
-  std::vsnprintf(text, sizeof text, pattern, values);
-  va_end(values);
+std::string number(float value) {
+  char text[32] = "";
+  if (!std::isnan(value)) std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
   return text;
 }
 
@@ -62,16 +60,13 @@ Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double f
 }
 
 std::string curve_csv(const ForceHistory& history, const CurveSource& source, double from_s, double to_s) {
-  const auto number = [](float value) {
-    return std::isnan(value) ? std::string() : print("%.6g", static_cast<double>(value));
-  };
   std::string csv = std::string("# ") + source.scene + ", " + source.device +
                     "; now compared with: " + source.reference + "\ntime_s,depth_m,reference,reference_N,rendered_N";
   for (const CurveModel& model : source.models) csv.append(",").append(model.name).append("_N");
   csv += "\n";
   for (std::size_t i = history.first_at(from_s); i < history.size() && history[i].loop_time_s <= to_s; ++i) {
     const HistoryPoint& point = history[i];
-    csv += print("%.6f,", point.loop_time_s - source.zero_s) + number(point.depth_m) + "," +
+    csv += fixed(point.loop_time_s - source.zero_s, 6) + "," + number(point.depth_m) + "," +
            (std::isnan(point.reference_N) ? "" : kReferenceNames[point.reference]) + "," + number(point.reference_N) +
            "," + number(point.rendered_N);
     for (const CurveModel& model : source.models) csv.append(",").append(number(point.force_N[model.slot]));
