@@ -101,6 +101,31 @@ TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
   EXPECT_GT(largest_N, 9.0);
 }
 
+// In the air for a second, then shaken inside the block, as an encoder of 30 um sees it.
+double shaken(double time_s) {
+  const double position_m = time_s < 1.0 ? -1e-3 : 2e-3 + 1.5e-3 * std::sin(125.0 * time_s);
+  return 30e-6 * std::round(position_m / 30e-6);
+}
+
+TEST(LiveTickSafety, AScaledForceIsKeptAsPassiveAsThatOfAStifferModel) {
+  PathDevice stiff_device(shaken), device(shaken);
+  ModelSlot<LiveModels> stiff_slot, slot;
+  LiveTick stiff(stiff_device, stiff_slot), live(device, slot);
+  stiff_slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(4 * 750.0)}));
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(750.0)}));
+  LoopControls controls;
+  controls.scale.stiffness = 4.0;
+  double taken_N = 0.0;
+  for (int tick = 0; tick < 3000; ++tick) {
+    const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
+    const LoopSnapshot as_stiff = stiff.run(kTick_s * tick, {});
+    ASSERT_EQ(scaled.commanded_N, as_stiff.commanded_N) << tick;
+    ASSERT_EQ(scaled.rendered_N, as_stiff.rendered_N) << tick;
+    taken_N = std::max(taken_N, std::abs(scaled.passive_N - scaled.commanded_N));
+  }
+  EXPECT_GT(taken_N, 0.01) << "or the controller had nothing to do";
+}
+
 TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
   FrailDevice device;
   ModelSlot<LiveModels> slot;

@@ -202,7 +202,10 @@ TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
       return app_->session().models().all_settled() && app_->session().newest().loop_time_s > began_s + 12.0;
     }));
   }
+  press(GLFW_KEY_J);
+  app_->session().use_scale({1.5, 4.0});
   for (const auto& [width, height] : {std::pair{1024, 600}, std::pair{1280, 720}, std::pair{1920, 1080}}) {
+    if (height == 1080) press(GLFW_KEY_J);
     glfwSetWindowSize(app_->window().handle(), width, height);
     glfwSetCursorPos(app_->window().handle(), 4.0, 0.5 * height);  // over nothing that explains itself
     for (const Theme theme : {Theme::light, Theme::dark}) {
