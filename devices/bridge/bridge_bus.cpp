@@ -123,7 +123,7 @@ Result<HidOpened> BridgeBus::open_and_identify() {
         break;
       case ReportVerdict::wrong_version:
         return Error{info_.path + ": speaks version " + std::to_string(reading.version) +
-                     " of the bridge protocol, expected " + std::to_string(kBridgeDriver.version) +
+                     " of the bridge protocol, expected " + std::to_string(bridge::kVersion) +
                      "; update the device's program (devices/README.md#bridge)"};
       default:
         break;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "devices/bridge/byte_stream.h"
-#include "devices/firmware/hapkit/bridge_protocol.h"
+#include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hid_bus.h"
 #include "devices/hid/hid_link.h"
 

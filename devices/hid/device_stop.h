@@ -1,8 +1,7 @@
 // The last report of every open device when a signal ends the program: no force.
 // No handler covers SIGKILL, a power cut or a hung system. A device whose host falls
 // silent takes its force away by itself, as far as its firmware lives:
-//   paddle       50 ms after the last valid report or beat of the haptics thread
-//                (paddle_protocol.md, rule 3)
+//   bridge       50 ms after the last valid frame or beat of the haptics thread
 //   OpenFFBoard  50 ms after the host last started its effect anew (protocol/openffboard.h)
 //   SpaceMouse   has no force
 // Nothing here covers firmware that hangs while its motor is driven.

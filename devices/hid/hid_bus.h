@@ -42,14 +42,10 @@ using HidDrivers = std::vector<const HidDriver*>;
 // The driver that `info` needs, by its ids; null: nothing that the program knows.
 const HidDriver* matching_driver(const HidDeviceInfo& info);
 
-// Slow side: reads reports until they tell whether the device speaks as `driver` does.
-// Errors: no report comes, another protocol version, other reports.
-Status identify(HidConnection& connection, const HidDriver& driver);
-
 // For `palpate devices`: every node, what it would be used as, and why not.
 struct HidDiagnosis {
   HidDeviceInfo info;
-  const HidDriver* driver = nullptr;  // null: not identified
+  const HidDriver* driver = nullptr;  // null: it cannot be used
   std::string use;                    // in words
   std::string problem;                // with what to do; empty: it can be used, or is none of ours
 };

@@ -32,7 +32,7 @@ struct HidCommand {
   std::uint32_t sequence = 0;
   std::uint16_t heartbeat = 0;
   bool drive = false;
-  double units = 0.0;  // what one is, the driver says; clamped to what 16 bits hold
+  double units = 0.0;  // what one is, the driver says
 };
 
 // Reports to write one after the other, as hid_write wants them: the report id
@@ -46,15 +46,11 @@ struct OutReports {
 struct HidDriver {
   const char* name;         // of its calibration file and in messages
   const char* description;  // in words
-  // What this repository has for the device, which replaces what is on it; empty: nothing.
-  const char* firmware;
-  std::uint8_t version;  // of the protocol; 0: it has none
   bool renders_force;
-  bool reports_unasked;  // also at rest; else its ids alone must identify it
-  bool numbers_reports;  // sequence, time, boot and confirmation; else arrival is all there is
-  const char* tried;     // in words: on real hardware and on an emulated device
-  // Counts are nm from the surface on, units uN: nothing is zeroed, and samples come at
-  // any rate that they like.
+  const char* tried;  // in words: on real hardware and on an emulated device
+  // Counts are nm from the surface on, units uN: nothing is zeroed. Reports have a sequence,
+  // a time and a confirmation, and come at any rate that they like; else arrival is all
+  // there is.
   bool knows_position = false;
 
   bool (*matches)(const HidDeviceInfo& info) noexcept;
@@ -69,11 +65,5 @@ struct HidDriver {
   // Takes the force away, whatever was sent before.
   OutReports (*encode_stop)() noexcept;
 };
-
-// For drivers: the units of a command as 16 bits, 0 when not finite or not driven.
-std::int16_t int16_units(const HidCommand& command) noexcept;
-// For drivers: appends a report of `size` bytes behind its id and returns where
-// they begin.
-std::uint8_t* append_report(OutReports& reports, std::uint8_t id, std::size_t size) noexcept;
 
 }  // namespace palpate

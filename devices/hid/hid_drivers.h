@@ -6,14 +6,12 @@
 
 #include "devices/hid/protocol/bridge.h"
 #include "devices/hid/protocol/openffboard.h"
-#include "devices/hid/protocol/paddle.h"
 #include "devices/hid/protocol/spacemouse.h"
 
 namespace palpate {
 
 // A node has the ids of one of them at most.
 inline constexpr std::array kHidDrivers = {
-    &kPaddleDriver,
     &kOpenFfBoardDriver,
     &kSpaceMouseDriver,
     &kBridgeDriver,

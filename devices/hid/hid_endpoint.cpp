@@ -8,7 +8,6 @@ namespace {
 
 MonitorSettings monitor_settings(const HidCalibration& calibration) noexcept {
   MonitorSettings settings;
-  settings.numbered = calibration.driver->numbers_reports;
   settings.knows_position = calibration.driver->knows_position;
   settings.counts_per_metre = calibration.counts_per_metre;
   settings.fastest_m_per_s = calibration.fastest_m_per_s;
@@ -141,8 +140,8 @@ ForceLimits HidEndpoint::limits() const noexcept {
 
 bool HidEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
   if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
-  if (!calibration_.driver->numbers_reports) return false;  // confirms nothing
-  if (calibration_.driver->knows_position && link.round_trip_s > kWriteStalled_s) return true;
+  if (!calibration_.driver->knows_position) return false;  // confirms nothing
+  if (link.round_trip_s > kWriteStalled_s) return true;
   const double confirmed_s = std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
   return now_s - confirmed_s > kWriteStalled_s;
 }

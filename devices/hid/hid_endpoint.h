@@ -3,8 +3,8 @@
 // moves the tool and the force. What is handed over goes through TripleBuffers.
 //
 // The writer is the host's watchdog: when the haptics thread has not written for
-// kHapticsSilent_s it sends no force, and the heartbeat in a paddle's report
-// stands still, which stops the paddle as well.
+// kHapticsSilent_s it sends no force, and the heartbeat in a frame of the bridge
+// stands still, which stops the board as well.
 #pragma once
 
 #include <array>

@@ -30,15 +30,8 @@ std::optional<HidOpened> try_open(HidBus& bus, const HidDrivers& drivers, std::s
     const HidDriver* const driver = matching_driver(info);
     if (driver == nullptr || !contains(drivers, driver)) continue;
     Result<std::unique_ptr<HidConnection>> connection = bus.open(info);
-    std::string problem;
-    if (!connection) {
-      problem = connection.error().message;
-    } else {
-      const Status identified = identify(**connection, *driver);
-      if (identified) return HidOpened{info, driver, std::move(*connection)};
-      problem = info.path + ": " + identified.error().message;
-    }
-    problems += (problems.empty() ? "" : "; ") + problem;
+    if (connection) return HidOpened{info, driver, std::move(*connection)};
+    problems += (problems.empty() ? "" : "; ") + connection.error().message;
   }
   return std::nullopt;
 }

@@ -60,7 +60,7 @@ class HidLink {
   // Slow side, blocking: ends the threads, then takes the force away.
   void stop() noexcept;
 
-  // Slow side: "haptic paddle: Teensyduino RawHID, /dev/hidraw7".
+  // Slow side: "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
   std::string description() const;
 
  private:

@@ -21,7 +21,6 @@ struct DeviceReading {
   std::uint32_t sequence = 0;
   std::uint32_t time_us = 0;
   std::uint32_t confirmed = 0;  // of the host's command that it obeyed last
-  std::uint16_t boot = 0;
   std::uint8_t version = 0;
   double measured_N = std::numeric_limits<double>::quiet_NaN();  // of a force sensor; NaN: none
   bool grip = false;

@@ -58,15 +58,15 @@ void StreamMonitor::start_zeroing() noexcept {
 bool StreamMonitor::started_again(const DeviceReading& reading) noexcept {
   refused_in_order_ = reading.sequence == refused_ + 1 ? refused_in_order_ + 1 : 0;
   refused_ = reading.sequence;
-  return settings_.knows_position && refused_in_order_ >= kStartedAgain;
+  return refused_in_order_ >= kStartedAgain;
 }
 
 bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
-  if (!settings_.numbered || !connected_) return true;
+  if (!settings_.knows_position || !connected_) return true;
   const bool newer = later(reading.sequence, last_.sequence);
   // The same report again says nothing new; its age will tell.
   const bool again = reading.sequence == last_.sequence;
-  if (reading.boot != last_.boot || (!newer && !again && started_again(reading))) {
+  if (!newer && !again && started_again(reading)) {
     lose(device_fault::kReset, now_s);
     connected_ = false;
     return true;
@@ -91,12 +91,11 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
   const bool together = now_s - arrivals_s_[2] < kTogether_s;
   std::copy_backward(arrivals_s_, arrivals_s_ + 2, arrivals_s_ + 3);
   arrivals_s_[0] = now_s;
-  if (!settings_.numbered) {
+  if (!settings_.knows_position) {
     read_time_s_ = now_s;
     if (together) fault(device_fault::kBurst, now_s);
     return !together;
   }
-  if (!connected_ && !settings_.knows_position) clock_.restart();
   read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
   if (now_s - read_time_s_ <= settings_.stale_after_s) {
     late_since_s_ = now_s;
@@ -104,7 +103,7 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
   }
   // Late for so long, the device's clock has paused: begin anew. Whether the way itself is
   // that long shows in the time that a command takes to be confirmed.
-  if (settings_.knows_position && now_s - late_since_s_ > kClockPaused_s) connected_ = false;
+  if (now_s - late_since_s_ > kClockPaused_s) connected_ = false;
   fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
   return false;
 }

@@ -7,7 +7,7 @@
 //   reports that waited in a queue (device time, or four
 //   within kTogether_s)                                   kBurst
 //   a step faster than the device can move                kJump
-//   another boot number                                   kReset
+//   sequence numbers that begin anew                      kReset
 //   no count in `stuck_after_s` in spite of kPushing_N    kStuck
 //   a device that stopped by its watchdog                 kWriteStalled
 // Reports that do not come at all are found by their age, by
@@ -28,8 +28,7 @@
 namespace palpate {
 
 struct MonitorSettings {
-  bool numbered = false;        // readings carry a sequence, a time and a boot number
-  bool knows_position = false;  // nothing is zeroed; no boot number
+  bool knows_position = false;  // nothing is zeroed; readings carry a sequence and a time
   double counts_per_metre = 1.0;
   double fastest_m_per_s = 5.0;
   double stale_after_s = 0.01;

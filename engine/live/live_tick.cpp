@@ -167,7 +167,8 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
     outgoing_ = nullptr;
   }
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
-  return force_N;
+  const TickSnapshot& tick = snapshot_.tick;
+  return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, controls.scale, step_s);
 }
 
 void LiveTick::acknowledge(const LoopControls& controls) noexcept {

@@ -4,7 +4,7 @@
 // the same bits for the same samples.
 //
 //   take a new set of models -> read the device -> HapticsTick for each sample
-//   -> mix (the active model) -> passivity -> limit -> write the device -> snapshot
+//   -> mix (the active model) -> scale -> passivity -> limit -> write the device -> snapshot
 //
 // Thread guarantee: built on the slow side; `run` and `release` belong to the
 // haptics thread, are wait-free, allocate nothing, lock nothing and never throw.
@@ -21,6 +21,7 @@
 #include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
+#include "engine/live/force_scale.h"
 #include "engine/live/model_slot.h"
 #include "engine/live/passivity_controller.h"
 #include "engine/live/spsc_ring.h"
@@ -85,6 +86,7 @@ struct LoopControls {
   // When the dead-man key was last seen held, on the loop's steady clock: set it
   // anew in every frame.
   double held_s = -std::numeric_limits<double>::infinity();
+  ForceScale scale{};  // of the models' force
   // Raised by one each time the user has seen the latched faults: they are cleared.
   std::uint32_t acknowledged = 0;
 };
@@ -189,6 +191,7 @@ class LiveTick {
   Device& device_;
   ModelSlot<LiveModels>& slot_;
   ForceMixer mixer_;
+  ScaledForce scaled_;
   PassivityController passivity_;
   bool passivity_on_;
   ForceLimiter limiter_;

@@ -53,8 +53,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   }
   if (const auto folder = data_folder()) wanted.data_folder = *folder;
   files_.use_settings(view_.exhibit ? "" : request.settings_file);
-  if (!files_.settings().line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
-    wanted.line_up = files_.settings().line_up;
+  if (!view_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = view_.line_up;
   request_ = wanted;
   first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
   auto session = LiveSession::open(wanted);
@@ -70,7 +69,7 @@ Status DemoApp::set_up(const DemoRequest& request) {
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
-  blocks_->camera().turn(files_.settings().camera);
+  blocks_->camera().turn(view_.camera);
   if (view_.exhibit) {
     if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   }
@@ -93,13 +92,6 @@ void DemoApp::listen() {
     auto* app = static_cast<DemoApp*>(glfwGetWindowUserPointer(handle));
     app->handle_key_event(key, action, modifiers);
   });
-  const auto stir = [](GLFWwindow* handle, auto...) {
-    static_cast<DemoApp*>(glfwGetWindowUserPointer(handle))->stirred_ = true;
-  };
-  glfwSetCursorPosCallback(window_->handle(), stir);
-  glfwSetMouseButtonCallback(window_->handle(), stir);
-  glfwSetScrollCallback(window_->handle(), stir);
-  glfwSetCharCallback(window_->handle(), stir);
   // After these callbacks, which it calls behind its own.
   ui_ = std::make_unique<UiContext>(window_->handle());
 }
@@ -127,7 +119,6 @@ void DemoApp::drop_files(const std::vector<std::string>& paths) {
 }
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
-  stirred_ = true;
   if (view_.exhibit && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
   input_.add_key(key, action, modifiers);
 }
@@ -172,14 +163,9 @@ void DemoApp::frame() {
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
-  const bool whole = panel_is_due(now_s);
-  if (whole) {
-    draw();
-  } else {
-    draw_again();
-  }
+  draw();
   handle_keys();
-  if (whole) input_.handle_mouse(*session_, *blocks_, overlay_, view_, scene_area());
+  input_.handle_mouse(*session_, *blocks_, overlay_, view_, scene_area());
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
@@ -232,11 +218,11 @@ void DemoApp::reopen(const SessionRequest& request) {
   session_ = std::move(*session);
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
-  blocks_->camera().turn(files_.settings().camera);
+  blocks_->camera().turn(view_.camera);
   blocks_framed_ = 0;
-  stirred_ = true;
-  panel_ = Panel{};  // no curve of the old one
+  panel_ = SidePanel{};  // no curve of the old one
   view_.time = CurveTime{};
+  view_.feel = false;
   view_.force_scale_N = view_.error_scale = 1.0;
   view_.time.zero_s = steady_now_s();
 }

@@ -79,11 +79,8 @@ class DemoApp {
   void scroll_curves(double by_s);
   void seek_replay(double by_s);
   void read_notices(double now_s);
-  bool panel_is_due(double now_s) const;
-  void draw();        // all of it
-  void draw_again();  // the picture, and around it what was drawn last
+  void draw();
   void draw_blocks();
-  void clear_panel();
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
   std::vector<BlockPose> true_poses() const;  // not deeper than they are
@@ -104,7 +101,7 @@ class DemoApp {
   std::unique_ptr<BlockView> blocks_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  Panel panel_;
+  SidePanel panel_;
   SceneOverlay overlay_;
   Exhibit exhibit_{1};
   ViewState view_;
@@ -122,11 +119,7 @@ class DemoApp {
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
-  Backdrop drawn_panel_;
-  double panel_drawn_s_ = 0.0;
-  ImVec2 panel_drawn_in_{0.0F, 0.0F};  // a window of this size
-  bool stirred_ = true;                // somebody did something since the panel was drawn
-  bool leaving_ = false;               // an exhibit's only way out
+  bool leaving_ = false;  // an exhibit's only way out
 };
 
 }  // namespace palpate

@@ -22,6 +22,15 @@ constexpr float kTextStep = 0.1F;
 
 void turn(bool& what) { what = !what; }
 
+// A part of the view, on and off; `shown` lives as long as the commands.
+WindowCommand toggle(std::vector<int> keys, const char* label, const char* help, bool& shown) {
+  return {.keys = std::move(keys),
+          .label = label,
+          .help = help,
+          .run = [&shown](std::size_t) { turn(shown); },
+          .on = [&shown] { return shown; }};
+}
+
 }  // namespace
 
 std::vector<WindowCommand> DemoApp::make_commands() {
@@ -40,11 +49,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .shown = "1 ... 9",
        .help = "make a model the active one; a click on its block or row too",
        .run = [this](std::size_t key) { select_listed(key); }},
-      {.keys = {GLFW_KEY_H, GLFW_KEY_SLASH},
-       .label = "Help",
-       .help = "all keys",
-       .run = [this](std::size_t) { turn(view_.help); },
-       .on = [this] { return view_.help; }},
+      toggle({GLFW_KEY_H, GLFW_KEY_SLASH}, "Help", "all keys", view_.help),
       {.keys = {GLFW_KEY_R},
        .label = "Record",
        .help = "record this session to a file that `palpate fit` reads",
@@ -65,11 +70,16 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .label = "Models",
        .help = "the next set of models: Ladder, 2009, Palpate",
        .run = [this](std::size_t) { next_line_up(); }},
-      {.keys = {GLFW_KEY_X},
-       .label = "x 10",
-       .help = "arrows that show ten times the difference, and back",
-       .run = [this](std::size_t) { turn(view_.exaggerated); },
-       .on = [this] { return view_.exaggerated; }},
+      toggle({GLFW_KEY_X}, "x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
+      {.keys = {GLFW_KEY_J},
+       .label = "Feel",
+       .help = "make the active model stiffer or more damped in the hand, and as it is again",
+       .run =
+           [this](std::size_t) {
+             turn(view_.feel);
+             session_->use_scale({});
+           },
+       .on = [this] { return view_.feel; }},
       {.keys = {GLFW_KEY_B},
        .help = "one, two or four blocks side by side",
        .run = [this](std::size_t) { next_block_count(); }},
@@ -85,16 +95,8 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .label = "Reference",
        .help = "choose what the models are compared with",
        .run = [this](std::size_t) { next_reference(); }},
-      {.keys = {GLFW_KEY_O},
-       .label = "Scene",
-       .help = "choose another material",
-       .run = [this](std::size_t) { turn(view_.scene_list); },
-       .on = [this] { return view_.scene_list; }},
-      {.keys = {GLFW_KEY_M},
-       .label = "Open",
-       .help = "open a recording, another program's table or a model",
-       .run = [this](std::size_t) { turn(view_.file_list); },
-       .on = [this] { return view_.file_list; }},
+      toggle({GLFW_KEY_O}, "Scene", "choose another material", view_.scene_list),
+      toggle({GLFW_KEY_M}, "Open", "open a recording, another program's table or a model", view_.file_list),
       {.keys = {GLFW_KEY_S},
        .label = "Save curves",
        .help = "save what the curves show, as a figure and as data",
@@ -157,11 +159,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .label = "Theme",
        .help = "light or dark",
        .run = [this](std::size_t) { view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light; }},
-      {.keys = {GLFW_KEY_L},
-       .label = "Loop",
-       .help = "all figures of the loop, and its faults",
-       .run = [this](std::size_t) { turn(view_.details); },
-       .on = [this] { return view_.details; }},
+      toggle({GLFW_KEY_L}, "Loop", "all figures of the loop, and its faults", view_.details),
       {.keys = {GLFW_KEY_Z},
        .help = "the device's tool is at its rest position: zero it there",
        .run = [this](std::size_t) { session_->start_zeroing(); }},

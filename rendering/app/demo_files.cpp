@@ -4,12 +4,15 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
 #include <utility>
 
 #include "engine/base/atomic_file.h"
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
+#include "scenes/plot/draw.h"
 #include "scenes/scene/local_time.h"
 #include "scenes/scene/user_folders.h"
 
@@ -21,13 +24,18 @@ bool is_there(const std::future<T>& future) {
   return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
+Hue hue_of(const Rgb& colour) {
+  const glm::uvec3 parts(glm::round(255.0F * glm::clamp(colour, 0.0F, 1.0F)));
+  return parts.r << 16 | parts.g << 8 | parts.b;
+}
+
 CurveSource curve_source(const LiveSession& session, double zero_s) {
   CurveSource source{
       session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
   const ModelsView models = models_view(session);
   for (std::size_t i = 0; i < models.slots.size(); ++i) {
     if (models.slots[i]->state == SlotState::ready)
-      source.models.push_back({i, models.slots[i]->name, slot_colour(models, i, Theme::light)});
+      source.models.push_back({i, models.slots[i]->name, hue_of(slot_colour(models, i, Theme::light))});
   }
   return source;
 }
@@ -49,25 +57,15 @@ void DemoFiles::use_settings(const std::string& file) {
     notify_(settings.error().message, true);
     return;
   }
-  settings_ = *settings;
-  view_.theme = settings_.theme;
-  view_.block_count = settings_.block_count;
-  view_.difference = settings_.difference;
-  view_.text_size = settings_.text_size;
-  view_.picker.recent = settings_.recent;
+  static_cast<Settings&>(view_) = *settings;
 }
 
 void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& camera) {
   if (settings_file_.empty()) return;
-  settings_.theme = view_.theme;
-  settings_.block_count = view_.block_count;
-  settings_.difference = view_.difference;
-  settings_.text_size = view_.text_size;
-  settings_.recent = view_.picker.recent;
-  if (!session.line_up().empty()) settings_.line_up = session.line_up();
-  settings_.camera = camera;
+  if (!session.line_up().empty()) view_.line_up = session.line_up();
+  view_.camera = camera;
   // Nobody is there to read of it any more.
-  (void)write_settings(settings_file_, settings_);
+  (void)write_settings(settings_file_, view_);
 }
 
 void DemoFiles::update(const LiveSession& session) {
@@ -77,6 +75,10 @@ void DemoFiles::update(const LiveSession& session) {
         offered ? OfferedFile{offered->path, offered->words, {}} : OfferedFile{{}, {}, offered.error().message};
   }
   if (is_there(looking_)) view_.devices = looking_.get();
+  if (is_there(drawing_)) {
+    const Notice notice = drawing_.get();
+    notify_(notice.text, notice.problem);
+  }
   // Recorded and on the disk: what now?
   const RecordingStatus status = session.recording();
   if (status.active || status.saving) {
@@ -90,7 +92,7 @@ void DemoFiles::update(const LiveSession& session) {
 
 void DemoFiles::open(const std::string& path, LiveSession& session) {
   constexpr std::size_t kRecent = 5;
-  std::vector<std::string>& recent = view_.picker.recent;
+  std::vector<std::string>& recent = view_.recent;
   std::erase(recent, path);
   recent.insert(recent.begin(), path);
   if (recent.size() > kRecent) recent.pop_back();
@@ -121,19 +123,22 @@ void DemoFiles::record(LiveSession& session) {
   notify_(status ? "recording to " + path : status.error().message, !status);
 }
 
-// What the curves show now, as a figure and as data.
+// What the curves show now, as data, and as a figure that is drawn beside the window.
 void DemoFiles::save_curves(const LiveSession& session, const CurveColumns& columns) {
   const std::string into = folder();
-  if (into.empty()) return;
+  if (into.empty() || drawing_.valid()) return;
   const std::string path = into + local_time_text("/curves-%Y%m%d-%H%M%S");
   const double to_s = view_.time.end_s(steady_now_s());
   const double from_s = to_s - view_.time.shown_s;
   const CurveSource source = curve_source(session, view_.time.zero_s);
-  Status status = write_file_atomically(path + ".svg", curve_svg(columns, source, from_s, to_s), false);
-  if (status)
-    status =
-        write_file_atomically(path + ".csv", curve_csv(session.comparison().history(), source, from_s, to_s), false);
-  notify_(status ? "saved " + path + ".svg and .csv" : status.error().message, !status);
+  const std::string table = curve_csv(session.comparison().history(), source, from_s, to_s);
+  drawing_ = std::async(std::launch::async, [path, table, plot = curve_plot(columns, source, from_s, to_s)] {
+    if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
+      return Notice{status.error().message, true};
+    const Status drawn = draw_plot(plot, path + ".svg", false);
+    return drawn ? Notice{"saved " + path + ".svg and .csv", false}
+                 : Notice{"saved " + path + ".csv without a figure: " + drawn.error().message, true};
+  });
 }
 
 void DemoFiles::save_model(const LiveSession& session) {

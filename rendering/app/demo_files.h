@@ -14,6 +14,7 @@
 #include "rendering/panels/curve_files.h"
 #include "rendering/panels/view_state.h"
 #include "scenes/live/live_session.h"
+#include "scenes/live/notices.h"
 #include "scenes/live/recording_offer.h"
 
 namespace palpate {
@@ -29,7 +30,6 @@ class DemoFiles {
   // Of this file; empty: nothing is remembered.
   void use_settings(const std::string& file);
   void save_settings(const LiveSession& session, const CameraTurn& camera);
-  const Settings& settings() const noexcept { return settings_; }
 
   // Once a frame: what has been read, found or recorded meanwhile.
   void update(const LiveSession& session);
@@ -50,10 +50,10 @@ class DemoFiles {
 
   ViewState& view_;
   Notify notify_;
-  Settings settings_;
   std::string settings_file_;
   std::future<Result<RecordingOffer>> arriving_;    // a file that is read
   std::future<std::vector<DeviceChoice>> looking_;  // for devices
+  std::future<Notice> drawing_;                     // a figure of the curves
   std::string recording_;                           // the file that is being recorded; empty: none
 };
 

@@ -30,33 +30,15 @@ Viewport pixels_of(const SceneArea& area) {
 
 }  // namespace
 
-// Text and curves are much of a frame's work where the processor draws, and nobody reads
-// sixty numbers a second: the probe moves in every frame, the panel some twenty times a second.
-// What somebody does is answered at once.
-bool DemoApp::panel_is_due(double now_s) const {
-  constexpr double kPanelEvery_s = 0.045;
-  const UiSize size = window_->ui_size();
-  return stirred_ || now_s - panel_drawn_s_ >= kPanelEvery_s || ImGui::GetIO().WantCaptureMouse ||
-         size.width != panel_drawn_in_.x || size.height != panel_drawn_in_.y;
-}
-
-void DemoApp::draw_again() {
-  draw_blocks();
-  const SceneArea panel = lay_out(ImGui::GetIO().DisplaySize).panel;
-  const Viewport part = pixels_of(panel);
-  drawn_panel_.copy(part.x, part.y);
-  ui_->draw_again(panel.at, {panel.at.x + panel.size.x, panel.at.y + panel.size.y});
-}
-
 void DemoApp::draw() {
-  stirred_ = false;
-  panel_drawn_s_ = steady_now_s();
-  panel_drawn_in_ = {window_->ui_size().width, window_->ui_size().height};
   style_.update(window_->ui_size(), view_.exhibit ? kExhibitText : view_.text_size, view_.theme);
   ui_->begin_frame();
   input_.keep_wheel();
+  // Clearing costs less than filling a rectangle, where the processor draws.
+  const Rgb& panel_colour = palette(view_.theme).panel;
+  glClearColor(panel_colour.r, panel_colour.g, panel_colour.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   draw_blocks();
-  clear_panel();
   const SceneArea area = scene_area();
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
   const SceneArea& panel = layout.panel;
@@ -77,8 +59,6 @@ void DemoApp::draw() {
     panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
   ui_->end_frame();
-  const Viewport part = pixels_of(panel);
-  drawn_panel_.take(part.x, part.y, part.width, part.height);
 }
 
 void DemoApp::draw_blocks() {
@@ -89,17 +69,6 @@ void DemoApp::draw_blocks() {
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
   blocks_framed_ = poses.size();
   blocks_->draw(poses, viewport, view_.theme);
-}
-
-// Clearing costs less than filling a rectangle, where the processor draws.
-void DemoApp::clear_panel() {
-  const Viewport part = pixels_of(lay_out(ImGui::GetIO().DisplaySize).panel);
-  const Rgb& panel = style_.colours().panel;
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(part.x, part.y, part.width, part.height);
-  glClearColor(panel.r, panel.g, panel.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
-  glDisable(GL_SCISSOR_TEST);
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {

@@ -12,7 +12,7 @@ namespace palpate {
 
 // x of the plot is the columns' time less `zero_s`.
 struct CurvePainter {
-  const Plot& plot;
+  const LivePlot& plot;
   const std::vector<CurveColumn>& columns;
   double zero_s = 0.0;
 

@@ -1,20 +1,20 @@
-// What the curves show, as files: a figure (SVG) and a table (CSV).
+// What the curves show, as files: a figure, which gnuplot draws, and a table (CSV).
 // Thread guarantee: pure functions.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "rendering/ui/colours.h"
 #include "rendering/ui/curves.h"
 #include "scenes/live/force_history.h"
+#include "scenes/plot/plot.h"
 
 namespace palpate {
 
 struct CurveModel {
   std::size_t slot = 0;
   std::string name;
-  Rgb colour{0.0F};
+  Hue colour = kInkColour;
 };
 
 // What both say of themselves.
@@ -27,9 +27,9 @@ struct CurveSource {
   std::vector<CurveModel> models;
 };
 
-// Force with the JND band above, difference in JND below, on white, names at their ends:
-// of every column of the screen one tick, the same for all curves, and a row of the table.
-std::string curve_svg(const CurveColumns& columns, const CurveSource& source, double from_s, double to_s);
+// Force with the JND band above, difference in JND below: of every column of the screen one
+// tick, the same for all curves, and a row of the table.
+Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double from_s, double to_s);
 
 // Every tick between the two loop times: time_s,depth_m,reference,reference_N,rendered_N
 // and one column a model, "<name>_N"; a force that is not there is an empty field.

@@ -264,8 +264,8 @@ void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, d
   const Palette& p = canvas.style.colours();
   const float height = begin_plot(canvas, words()("axis_difference"));
   {
-    const Plot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
-                    {{0.0, right_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
+    const LivePlot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
+                        {{0.0, right_s}, {-kMost_jnd, kMost_jnd}, "s", "", true});
     plot.list().AddRectFilled({plot.left(), plot.y_px(1.0)}, {plot.right(), plot.y_px(-1.0)}, ink(p.band));
     plot.level(0.0, ink(kReferenceColour), 4.0F * canvas.style.scale());
     std::vector<ImVec2> points;
@@ -304,8 +304,8 @@ void Exhibit::draw_forces(const Canvas& canvas) {
     most_N = std::max({most_N, columns[i].first_N + jnd.at(columns[i].first_N), columns[i].second_N});
   const float height = begin_plot(canvas, words()("axis_force"));
   {
-    const Plot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
-                    {{from_s, from_s + kForces_s}, {0.0, 1.05 * most_N}, "s", "N", true});
+    const LivePlot plot(canvas.style, {ImGui::GetContentRegionAvail().x, height},
+                        {{from_s, from_s + kForces_s}, {0.0, 1.05 * most_N}, "s", "N", true});
     std::vector<ImVec2> upper, lower, first, second;
     for (std::size_t i = first_column; i < end; ++i) {
       if (columns[i].ticks == 0) continue;

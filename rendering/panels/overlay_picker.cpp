@@ -66,7 +66,7 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   ImGui::SetNextItemWidth(width);
   if (ImGui::InputText("##path", picker.path.data(), picker.path.size(), ImGuiInputTextFlags_EnterReturnsTrue))
     done = pick(picker, picker.path.data(), actions);
-  for (const std::string& file : std::vector<std::string>(picker.recent))
+  for (const std::string& file : std::vector<std::string>(view.recent))
     if (ImGui::Selectable(("opened of late: " + fs::path(file).filename().string() + "###" + file).c_str()))
       done = pick(picker, file, actions);
   ImGui::TextUnformatted(fitting(picker.folder, width).c_str());

@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-class Panel {
+class SidePanel {
  public:
   // Into a window at (x, y).
   void draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames, const ImVec2& at,

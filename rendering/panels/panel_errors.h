@@ -7,6 +7,6 @@
 
 namespace palpate {
 
-void draw_error_bins(const ErrorsView& errors, const UiStyle& style, float height);
+void draw_error_bins(const ModelsView& models, const UiStyle& style, float height);
 
 }  // namespace palpate

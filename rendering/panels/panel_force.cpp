@@ -96,8 +96,8 @@ ForceCurves::Scene ForceCurves::begin(const ForceView& force, ViewState& view, c
   hovered_ = false;
   const Scene scene{force, view, style, view.time.end_s(steady_now_s())};
   const auto columns = static_cast<std::size_t>(std::max(40.0F, ImGui::GetContentRegionAvail().x / kColumn_px));
-  curves_.gather(*force.history, force.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s, scene.end_s,
-                 columns);
+  curves_.gather(*force.history, force.models.jnd, force.models.slots.size(), scene.end_s - view.time.shown_s,
+                 scene.end_s, columns);
   const double highest_N = 1.05 * static_cast<double>(curves_.highest_force_N());
   view.force_scale_N = eased_scale(view.force_scale_N, std::max({1.0, force.usual_force_N, highest_N}));
   // Beyond 8 JND the line would only hide what is near 1.
@@ -144,7 +144,7 @@ void ForceCurves::draw_titles_of_error(const Scene& scene) const {
 }
 
 // What all have: the mouse, its readings, names at the right.
-void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
+void ForceCurves::finish_plot(const Scene& scene, const LivePlot& plot, float (*value)(const CurveColumn&, std::size_t),
                               const char* unit) {
   CurveTime& time = scene.view.time;
   if (handle_time_plot(plot, scene.style, *scene.force.history, time, scene.end_s)) hovered_ = true;
@@ -172,7 +172,7 @@ void ForceCurves::finish_plot(const Scene& scene, const Plot& plot, float (*valu
 void ForceCurves::draw_force(const Scene& scene, float height) {
   const double scale_N = scene.view.force_scale_N;
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
-  const Plot plot(scene.style, size, scene.axes({-0.04 * scale_N, scale_N}, "N", false));
+  const LivePlot plot(scene.style, size, scene.axes({-0.04 * scale_N, scale_N}, "N", false));
   const CurvePainter paint_on{plot, curves_.columns(), scene.view.time.zero_s};
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
@@ -195,7 +195,7 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
 
 void ForceCurves::draw_difference(const Scene& scene, float height) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
-  const Plot plot(scene.style, size, scene.axes({-kDifference_jnd, kDifference_jnd}, "", true));
+  const LivePlot plot(scene.style, size, scene.axes({-kDifference_jnd, kDifference_jnd}, "", true));
   const CurvePainter paint_on{plot, curves_.columns(), scene.view.time.zero_s};
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();
@@ -223,7 +223,7 @@ void ForceCurves::draw_difference(const Scene& scene, float height) {
 
 void ForceCurves::draw_felt(const Scene& scene, float height) {
   const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
-  const Plot plot(scene.style, size, scene.axes({0.0, scene.view.error_scale}, "", true));
+  const LivePlot plot(scene.style, size, scene.axes({0.0, scene.view.error_scale}, "", true));
   const CurvePainter paint_on{plot, curves_.columns(), scene.view.time.zero_s};
   const float thin = scene.style.scale();
   const Palette& p = scene.style.colours();

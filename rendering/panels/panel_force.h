@@ -28,7 +28,7 @@ class ForceCurves {
   void draw_felt(const Scene& scene, float height);
   void draw_titles_of_force(const Scene& scene) const;
   void draw_titles_of_error(const Scene& scene) const;
-  void finish_plot(const Scene& scene, const Plot& plot, float (*value)(const CurveColumn&, std::size_t),
+  void finish_plot(const Scene& scene, const LivePlot& plot, float (*value)(const CurveColumn&, std::size_t),
                    const char* unit);
   CurveColumns curves_;
   std::array<std::array<float, kMaxModels>, 2> label_px_{};  // of both plots; 0: not yet

@@ -74,11 +74,18 @@ std::string device_line(const HealthView& health) {
   return line;
 }
 
-int health_lines(const HealthView& health, const ViewState& view) {
-  const int quiet = device_line(health).empty() ? 3 : 4;
-  if (!view.details) return quiet;
-  const int fix = health.scheduling.fix.empty() ? 0 : 8;
-  return quiet + fix + 6 + static_cast<int>(std::clamp<std::size_t>(health.faults.size(), 1, kFaultsShown));
+float health_height(const HealthView& health, const ViewState& view) {
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  // Longer than a narrow panel is wide.
+  const std::string device = device_line(health);
+  const float room = ImGui::GetContentRegionAvail().x;
+  float height = 3.0F * line;
+  if (!device.empty())
+    height += ImGui::CalcTextSize(device.c_str(), nullptr, false, room).y + ImGui::GetStyle().ItemSpacing.y;
+  if (!view.details) return height;
+  const float fix = health.scheduling.fix.empty() ? 0.0F : 8.0F;
+  const auto faults = static_cast<float>(std::clamp<std::size_t>(health.faults.size(), 1, kFaultsShown));
+  return height + (fix + 6.0F + faults) * line;
 }
 
 HealthWords health_words(const HealthView& health, double recent_fps) {
@@ -114,15 +121,13 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
   section_title(style, "LOOP");
   ImGui::SameLine();
   const HealthWords words = health_words(health, frames.recent_fps);
-  if (words.problem) {
-    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().fault));
-    ImGui::TextWrapped("%s%s", words.text.c_str(), words.past ? ". C clears this." : "");
+  const auto wrapped = [](const Rgb& colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, paint(colour));
+    ImGui::TextWrapped("%s", text.c_str());
     ImGui::PopStyleColor();
-  } else {
-    ImGui::PushStyleColor(ImGuiCol_Text, paint(style.colours().quiet));
-    ImGui::TextWrapped("%s", words.text.c_str());
-    ImGui::PopStyleColor();
-  }
+  };
+  const Palette& p = style.colours();
+  wrapped(words.problem ? p.fault : p.quiet, words.text + (words.past ? ". C clears this." : ""));
   if (ImGui::IsItemClicked()) view.details = !view.details;
   tip("How well the 1000 Hz loop keeps its time. L shows all figures and faults.");
   const RtStatus& scheduling = health.scheduling;
@@ -133,7 +138,7 @@ void draw_health(const HealthView& health, ViewState& view, const UiStyle& style
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", scheduling.fix.c_str());
   }
   if (const std::string line = device_line(health); !line.empty()) {
-    ImGui::TextDisabled("%s", line.c_str());
+    wrapped(p.quiet, line);
     tip("The device: age of its newest sample, time from a force to the report that confirms it, and how much of "
         "the motor's thermal budget is used.");
   }

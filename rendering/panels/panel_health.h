@@ -21,8 +21,8 @@ HealthWords health_words(const HealthView& health, double recent_fps);
 // Age of the sample, round trip and heat, of a device that has them; else empty.
 std::string device_line(const HealthView& health);
 
-// Lines of text that draw_health takes, at most as a rule.
-int health_lines(const HealthView& health, const ViewState& view);
+// What draw_health takes of the panel's height, at most as a rule.
+float health_height(const HealthView& health, const ViewState& view);
 void draw_health(const HealthView& health, ViewState& view, const UiStyle& style, const FrameFigures& frames);
 
 }  // namespace palpate

@@ -75,14 +75,15 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
   const float size = style.scale();
   const Palette& p = style.colours();
   {
-    const Plot plot(style, {ImGui::GetContentRegionAvail().x, height - 2.0F * line},
-                    {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - 2.0F * line},
+                        {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
     plot.list().AddRectFilled({plot.left(), plot.y_px(0.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
     plot.level(0.0, ink(p.text), 1.5F * size);
     const float budget_px = plot.x_px(std::log10(kBudget_us));
     plot.list().AddLine({budget_px, plot.top()}, {budget_px, plot.bottom()}, ink(p.fault), 1.5F * size);
     plot.caption("a hand could tell", 0.01F, 0.0F, ink(p.quiet));
-    plot.caption("1 ms", 0.99F, 0.98F, ink(p.quiet));
+    const float wide = ImGui::CalcTextSize("1 ms ").x;
+    plot.list().AddText({budget_px - wide, plot.bottom() - line}, ink(p.quiet), "1 ms");
     for (const std::size_t slot : judged(models)) {
       const SlotView& view = *models.slots[slot];
       const double error = std::clamp(std::log10(std::max(view.quantile.p99(), 1e-9)), kErrors.from, kErrors.to);

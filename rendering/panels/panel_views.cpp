@@ -52,12 +52,8 @@ ModelsView models_view(const LiveSession& session, double until_s) {
 }
 
 ForceView force_view(const LiveSession& session, double until_s) {
-  return {models_view(session, until_s), session.jnd(), &session.comparison().history(), session.reference_words(),
+  return {models_view(session, until_s), &session.comparison().history(), session.reference_words(),
           kUsualOverStrongest * session.scene().strongest_press_N};
-}
-
-ErrorsView errors_view(const LiveSession& session, double until_s) {
-  return {models_view(session, until_s), session.jnd()};
 }
 
 HealthView health_view(const LiveSession& session) {

@@ -47,15 +47,9 @@ struct ModelsView {
 
 struct ForceView {
   ModelsView models;
-  JndLine jnd;
   const ForceHistory* history = nullptr;  // never null when filled from a session
   std::string reference_words;
   double usual_force_N = 0.0;  // the axis holds it always, so that it does not jump
-};
-
-struct ErrorsView {
-  ModelsView models;
-  JndLine jnd;
 };
 
 struct HealthView {
@@ -73,7 +67,6 @@ struct HealthView {
 // `until_s`: loop time at which the curves stand still.
 ModelsView models_view(const LiveSession& session, double until_s = std::numeric_limits<double>::infinity());
 ForceView force_view(const LiveSession& session, double until_s);
-ErrorsView errors_view(const LiveSession& session, double until_s);
 HealthView health_view(const LiveSession& session);
 
 }  // namespace palpate

@@ -16,7 +16,7 @@ namespace {
 
 using namespace overlay;
 
-void draw_block_buttons(ViewState& view) {
+void draw_block_buttons(const LiveSession& session, ViewState& view) {
   ImGui::SameLine(0.0F, 2.0F * ImGui::GetFontSize());
   for (const std::size_t count : {1U, 2U, 4U}) {
     ImGui::SameLine();
@@ -27,7 +27,30 @@ void draw_block_buttons(ViewState& view) {
     tip("Blocks side by side, each with its own model under the same probe (B)");
   }
   ImGui::SameLine();
-  ImGui::TextDisabled(view.block_count > 1 ? "blocks, dents x 2" : "blocks");
+  if (view.feel) {
+    ImGui::TextColored(paint(kAboveJndColour), "%s", scale_words(session.scale()).c_str());
+  } else {
+    ImGui::TextDisabled(shown_slots(session, view.block_count).size() > 1 ? "blocks, dents x 2" : "blocks");
+  }
+}
+
+// How the active model is felt; the title says so.
+void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area) {
+  ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.4F * height_of(style.fonts().heading)});
+  ImGui::Begin("feel", nullptr, kFloating);
+  auto stiffness = static_cast<float>(session.scale().stiffness);
+  auto damping = static_cast<float>(session.scale().damping_Ns_per_m);
+  ImGui::PushItemWidth(0.28F * area.size.x);
+  bool moved = ImGui::SliderFloat("stiffness", &stiffness, static_cast<float>(ForceScale::kLeast),
+                                  static_cast<float>(ForceScale::kMost), "x %.2f",
+                                  ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+  moved = ImGui::SliderFloat("damping", &damping, 0.0F, static_cast<float>(ForceScale::kMostDamping_Ns_per_m),
+                             "+ %.1f N s/m", ImGuiSliderFlags_AlwaysClamp) ||
+          moved;
+  ImGui::PopItemWidth();
+  tip("In the hand alone: curves and figures are of the models as they are. J ends it.");
+  ImGui::End();
+  if (moved) session.use_scale({static_cast<double>(stiffness), static_cast<double>(damping)});
 }
 
 void draw_title(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
@@ -37,7 +60,7 @@ void draw_title(const LiveSession& session, ViewState& view, const UiStyle& styl
   ImGui::TextUnformatted(session.scene().title.c_str());
   ImGui::PopFont();
   tip(session.scene().description.c_str());
-  draw_block_buttons(view);
+  draw_block_buttons(session, view);
   if (view.exaggerated) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
     ImGui::TextColored(paint(kAboveJndColour), "arrows: difference x 10");
@@ -131,6 +154,10 @@ void draw_recording(const LiveSession& session, const UiStyle& style, const Scen
 }
 
 }  // namespace
+
+std::string scale_words(const ForceScale& scale) {
+  return "in the hand: stiffness x " + fixed(scale.stiffness, 2) + ", damping + " + fixed(scale.damping_Ns_per_m, 1);
+}
 
 std::string data_warning(const ModelsView& models) {
   if (!models.out_of_domain()) return {};
@@ -226,7 +253,8 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   if (!view.exhibit && session.models().size() > 0) draw_big_number(session, style, area, bars);
   if (!view.exhibit) draw_data_warning(session, style, area);
   if (!view.exhibit) draw_title(session, view, style, area);
-  if (!view.exhibit) draw_hint(session, view, style, area);
+  if (view.feel) draw_feel(session, style, area);
+  if (!view.exhibit && !view.feel) draw_hint(session, view, style, area);
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
   if (!view.exhibit) buttons_height_ = draw_buttons(area, *actions.commands);

@@ -29,6 +29,7 @@ struct OverlayActions {
 };
 
 // The overlay's sentences; empty when there is nothing to tell.
+std::string scale_words(const ForceScale& scale);
 std::string data_warning(const ModelsView& models);
 std::string recording_words(const RecordingStatus& recording);
 // The big number and what it is: the 99 % error of the active model in JND, over the

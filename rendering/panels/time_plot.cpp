@@ -10,12 +10,12 @@ namespace {
 constexpr float kDrag_px = 6.0F;     // less is a click
 constexpr double kWheelShare = 0.1;  // of what is shown, a step of the wheel
 
-double time_under_mouse(const Plot& plot, const CurveTime& time) {
+double time_under_mouse(const LivePlot& plot, const CurveTime& time) {
   const float px = std::clamp(ImGui::GetIO().MousePos.x, plot.left(), plot.right());
   return plot.x_at(px) + time.zero_s;
 }
 
-void drag(const Plot& plot, const UiStyle& style, CurveTime& time) {
+void drag(const LivePlot& plot, const UiStyle& style, CurveTime& time) {
   if (plot.hovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) time.drag_from_s = time_under_mouse(plot, time);
   if (std::isnan(time.drag_from_s)) return;
   const double to_s = time_under_mouse(plot, time);
@@ -33,7 +33,7 @@ void drag(const Plot& plot, const UiStyle& style, CurveTime& time) {
 
 }  // namespace
 
-bool handle_time_plot(const Plot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
+bool handle_time_plot(const LivePlot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
                       double end_s) {
   const double oldest_s = history.size() > 0 ? history[0].loop_time_s : end_s;
   drag(plot, style, time);
@@ -55,7 +55,7 @@ bool handle_time_plot(const Plot& plot, const UiStyle& style, const ForceHistory
   return plot.hovered();
 }
 
-void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time,
+void draw_readings(const LivePlot& plot, const UiStyle& style, const CurveTime& time,
                    const std::vector<Reading>& readings) {
   if (!plot.hovered() || std::isnan(time.hover_s)) return;
   char heading[48];
@@ -82,7 +82,7 @@ void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time
   }
 }
 
-void draw_labels(const Plot& plot, const std::vector<CurveLabel>& labels) {
+void draw_labels(const LivePlot& plot, const std::vector<CurveLabel>& labels) {
   const float line = ImGui::GetTextLineHeight();
   std::vector<float> wanted;
   for (const CurveLabel& label : labels) wanted.push_back(label.y_px - 0.5F * line);

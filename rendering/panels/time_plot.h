@@ -15,7 +15,7 @@ namespace palpate {
 // Wheel: back in time. Drag: shows what was dragged over, standing still. Double click:
 // runs again. Draws what is dragged over, and the time under the mouse. Whether the
 // mouse is over it.
-bool handle_time_plot(const Plot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
+bool handle_time_plot(const LivePlot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
                       double end_s);
 
 struct Reading {
@@ -23,7 +23,8 @@ struct Reading {
   Rgb colour{0.0F};
 };
 // Beside the time under the mouse, on the plot that the mouse is over.
-void draw_readings(const Plot& plot, const UiStyle& style, const CurveTime& time, const std::vector<Reading>& readings);
+void draw_readings(const LivePlot& plot, const UiStyle& style, const CurveTime& time,
+                   const std::vector<Reading>& readings);
 
 struct CurveLabel {
   std::string text;
@@ -31,6 +32,6 @@ struct CurveLabel {
   float y_px = 0.0F;  // where its curve ends
 };
 // At the right of the frame, none over another.
-void draw_labels(const Plot& plot, const std::vector<CurveLabel>& labels);
+void draw_labels(const LivePlot& plot, const std::vector<CurveLabel>& labels);
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/live/time_histogram.h"
+#include "rendering/picture/camera.h"
 #include "rendering/ui/colours.h"
 #include "scenes/live/live_session.h"
 
@@ -64,20 +65,28 @@ struct OfferedFile {
 
 // The file that is looked for.
 struct FilePicker {
-  std::string folder;               // empty: not yet
-  std::vector<std::string> files;   // in it
-  std::array<char, 512> path{};     // that is typed
-  std::vector<std::string> recent;  // opened of late, the newest first
+  std::string folder;              // empty: not yet
+  std::vector<std::string> files;  // in it
+  std::array<char, 512> path{};    // that is typed
 };
 
-struct ViewState {
+// What outlives a run: how things are shown, never what is shown.
+struct Settings {
   Theme theme = Theme::light;
+  std::size_t block_count = 4;      // 1, 2 or 4
+  bool difference = true;           // beside the force: the difference in its band; else what is felt of it
+  float text_size = 1.0F;           // times the usual
+  std::string line_up;              // empty: the default
+  std::vector<std::string> recent;  // files that were opened, the newest first
+  CameraTurn camera;
+};
+
+struct ViewState : Settings {
   bool exhibit = false;
-  float text_size = 1.0F;       // times the usual
-  bool blind = false;           // which model is active is a secret
-  bool tool_is_held = false;    // out of the block, whatever the mouse does
-  std::size_t block_count = 4;  // 1, 2 or 4
+  bool blind = false;         // which model is active is a secret
+  bool tool_is_held = false;  // out of the block, whatever the mouse does
   TableState table;
+  bool feel = false;             // the force in the hand is scaled
   bool exaggerated = false;      // arrows show ten times the difference
   bool centres_together = true;  // the slider moves all models that have centres
   int requested_centres = 0;     // of the slider, as long as it is held
@@ -92,7 +101,6 @@ struct ViewState {
   bool has_pressed = false;           // the person at the mouse knows how
   CurveTime time;
   bool verdict = true;         // speed against error; else the error against the force
-  bool difference = true;      // beside the force: the difference in its band; else what is felt of it
   double force_scale_N = 1.0;  // of the force plot, eases
   double error_scale = 2.0;    // of the error plot
 };

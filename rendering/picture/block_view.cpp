@@ -27,39 +27,14 @@ Rgb rgb(const Colour& colour) {
          255.0F;
 }
 
-// What has depth and is seen from outside.
-template <typename Draw>
-void draw_solids(Draw draw) {
-  glEnable(GL_DEPTH_TEST);
-  glEnable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  draw();
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_DEPTH_TEST);
-  glBindVertexArray(0);
-}
-
-Viewport around(const std::vector<Viewport>& parts) {
-  Viewport whole = parts.front();
-  for (const Viewport& part : parts) {
-    const int right = std::max(whole.x + whole.width, part.x + part.width);
-    const int top = std::max(whole.y + whole.height, part.y + part.height);
-    whole.x = std::min(whole.x, part.x);
-    whole.y = std::min(whole.y, part.y);
-    whole.width = right - whole.x;
-    whole.height = top - whole.y;
-  }
-  return whole;
-}
-
 // In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
 // sensor's disc, and a dull handle.
 constexpr float kToolLength = 15.2F;
-std::vector<glm::vec2> ball_profile(float detail) {
+std::vector<glm::vec2> ball_profile() {
   std::vector<glm::vec2> profile;
-  const int steps = static_cast<int>(20.0F * detail);
-  for (int i = 0; i <= steps; ++i) {
-    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / static_cast<float>(steps) * 0.89F - 0.5F);
+  constexpr int kSteps = 20;
+  for (int i = 0; i <= kSteps; ++i) {
+    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / kSteps * 0.89F - 0.5F);
     profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
   }
   for (const glm::vec2 point : {glm::vec2(0.30F, 2.02F), glm::vec2(0.30F, 5.0F), glm::vec2(0.33F, 5.2F),
@@ -113,28 +88,15 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
       block_shader_(std::move(block)),
       solid_shader_(std::move(solid)),
       table_shader_(std::move(table)),
-      fine_(geometry_, 1.0F),
-      coarse_(geometry_, 0.5F),
+      block_(block_mesh(static_cast<float>(geometry_.width_m), static_cast<float>(geometry_.length_m),
+                        static_cast<float>(geometry_.height_m))),
+      ball_(lathe_mesh(ball_profile(), 28)),
+      sensor_(lathe_mesh(sensor_profile(), 32)),
+      handle_(lathe_mesh(handle_profile(), 28)),
+      shaft_(lathe_mesh(shaft_profile(), 14)),
+      tip_(lathe_mesh(tip_profile(), 20)),
       square_(square_mesh()) {
   show(1, true);
-}
-
-BlockView::Meshes::Meshes(const BlockGeometry& geometry, float detail)
-    : block(block_mesh(static_cast<float>(geometry.width_m), static_cast<float>(geometry.length_m),
-                       static_cast<float>(geometry.height_m), detail)),
-      ball(lathe_mesh(ball_profile(detail), static_cast<int>(28.0F * detail))),
-      sensor(lathe_mesh(sensor_profile(), static_cast<int>(32.0F * detail))),
-      handle(lathe_mesh(handle_profile(), static_cast<int>(28.0F * detail))),
-      shaft(lathe_mesh(shaft_profile(), 14)),
-      tip(lathe_mesh(tip_profile(), 20)) {}
-
-// Triangles of a few pixels cost as much as large ones, and nobody sees them.
-const BlockView::Meshes& BlockView::meshes(const Viewport& viewport, std::size_t count) const {
-  constexpr float kFineFrom_px = 340.0F;  // a block's width
-  const glm::vec2 size(viewport.width, viewport.height);
-  const float half_m = 0.5F * static_cast<float>(geometry_.width_m);
-  const glm::vec2 from = on_screen(0, count, {-half_m, 0.0F, 0.0F}, size);
-  return glm::length(on_screen(0, count, {half_m, 0.0F, 0.0F}, size) - from) < kFineFrom_px ? coarse_ : fine_;
 }
 
 void BlockView::show(std::size_t count, bool at_once) {
@@ -179,152 +141,46 @@ void BlockView::begin(const Shader& shader) const {
 void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
   if (viewport.width < 1 || viewport.height < 1) return;
   view_projection_ = camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
-  shown_ = &meshes(viewport, blocks.size());
-  draw_backdrop(table_state(blocks, viewport, theme));
-  // Without the sides, which never move, where the backdrop has them. A dent is seen through
-  // the flat top's outline, the tool's shadow goes over its edge.
-  constexpr float kEdge_m = 0.005F;
-  std::vector<Viewport> parts;
-  add_block_parts(blocks.size(), resting_ ? kEdge_m : static_cast<float>(geometry_.height_m), viewport, parts);
-  add_tool_parts(blocks, viewport, parts);
-  if (parts.empty()) return;
-  const Viewport whole = around(parts);
-  const bool smooth = (resting_ && smooth_.begin_with_kept(whole, parts)) || smooth_.begin(0, whole, parts);
-  if (smooth) {
-    glViewport(viewport.x - whole.x, viewport.y - whole.y, viewport.width, viewport.height);
-  } else {
-    glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
-    glScissor(viewport.x, viewport.y, viewport.width, viewport.height);
-    glEnable(GL_SCISSOR_TEST);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    glDisable(GL_SCISSOR_TEST);
-  }
-  draw_blocks(blocks);
-  if (smooth) smooth_.end(0, whole, parts);
+  smooth_.begin(viewport);
+  const Rgb& background = palette(theme).background;
+  glClearColor(background.r, background.g, background.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glDisable(GL_BLEND);
+  draw_table(blocks, theme);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CULL_FACE);
+  for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()));
+  for (std::size_t i = 0; i < blocks.size(); ++i) draw_block(blocks[i], place(i, blocks.size()));
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(0);
+  smooth_.end();
 }
 
-void BlockView::draw_blocks(const std::vector<BlockPose>& blocks) const {
-  draw_solids([&] {
-    for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()));
-    for (std::size_t i = 0; i < blocks.size(); ++i) draw_block(blocks[i], place(i, blocks.size()));
-  });
-}
-
-void BlockView::add_part(const glm::vec3& low_m, const glm::vec3& high_m, const Viewport& viewport,
-                         std::vector<Viewport>& parts) const {
-  const glm::vec2 size(viewport.width, viewport.height);
-  glm::vec2 low = size;
-  glm::vec2 high(0.0F);
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 upper(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::vec2 at = project(view_projection_, glm::mix(low_m, high_m, upper), size);
-    low = glm::min(low, at);
-    high = glm::max(high, at);
-  }
-  low = glm::clamp(low - 2.0F, glm::vec2(0.0F), size);
-  high = glm::clamp(high + 2.0F, glm::vec2(0.0F), size);
-  const glm::ivec2 from(glm::floor(glm::vec2(low.x, size.y - high.y)));
-  const glm::ivec2 to(glm::ceil(glm::vec2(high.x, size.y - low.y)));
-  const Viewport part{viewport.x + from.x, viewport.y + from.y, std::min(to.x, viewport.width) - from.x,
-                      std::min(to.y, viewport.height) - from.y};
-  if (part.width > 0 && part.height > 0) parts.push_back(part);
-}
-
-void BlockView::add_block_parts(std::size_t count, float lowest_m, const Viewport& viewport,
-                                std::vector<Viewport>& parts) const {
-  const glm::vec2 half = 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 at = place(i, count);
-    add_part(at + glm::vec3(-half.x, -lowest_m, -half.y), at + glm::vec3(half.x, 0.0F, half.y), viewport, parts);
-  }
-}
-
-// What of a tool is below the top lies in the block's part.
-void BlockView::add_tool_parts(const std::vector<BlockPose>& blocks, const Viewport& viewport,
-                               std::vector<Viewport>& parts) const {
-  const glm::vec3 half(0.022F, 0.0F, 0.022F);  // with the arrow beside it
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const glm::vec3 at = place(i, blocks.size());
-    const float top = std::max(kToolLength * static_cast<float>(geometry_.tool_radius_m) - blocks[i].tool_m,
-                               arrow_length_m(blocks[i]) + arrow_width_ * kArrowTip_m);
-    if (top > 0.0F) add_part(at - half, at + half + glm::vec3(0.0F, top, 0.0F), viewport, parts);
-  }
-}
-
-BlockView::TableState BlockView::table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport,
-                                             Theme theme) const {
-  TableState state{view_projection_, viewport, theme, std::min<std::size_t>(blocks.size(), 4)};
-  for (std::size_t i = 0; i < state.count; ++i) {
-    if (!blocks[i].chosen || state.count == 1) continue;
-    const glm::vec3 at = place(i, state.count);
-    state.chosen = glm::vec4(blocks[i].arrow, 1.0F);
-    state.chosen_at = {at.x, at.z};
-  }
-  return state;
-}
-
-void BlockView::draw_backdrop(const TableState& state) {
-  const Viewport& viewport = state.viewport;
-  if (!(state == backdrop_state_)) {
-    backdrop_state_ = state;
-    resting_ = false;
-    // The table lies behind and below all else: it needs no depth.
-    const bool kept = backdrop_.begin(viewport.width, viewport.height);
-    glViewport(kept ? 0 : viewport.x, kept ? 0 : viewport.y, viewport.width, viewport.height);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    const Rgb& background = palette(state.theme).background;
-    glClearColor(background.r, background.g, background.b, 1.0F);
-    glClear(GL_COLOR_BUFFER_BIT);
-    draw_table(state);
-    backdrop_.end();
-    if (!kept) {
-      backdrop_state_ = TableState{};
-      return;
-    }
-  } else if (!resting_) {
-    // The view stands still since the last frame: now it pays.
-    add_resting_blocks(state);
-  }
-  backdrop_.copy(viewport.x, viewport.y);
-}
-
-void BlockView::add_resting_blocks(const TableState& state) {
-  const Viewport& viewport = state.viewport;
-  BlockPose resting;
-  resting.tool_m = -1.0F;  // far above: no shadow
-  resting.shows_error = false;
-  std::vector<Viewport> parts;
-  add_block_parts(state.count, static_cast<float>(geometry_.height_m), {0, 0, viewport.width, viewport.height}, parts);
-  if (parts.empty()) return;
-  const Viewport whole = around(parts);
-  if (!smooth_.begin(backdrop_.framebuffer(), whole, parts)) return;
-  glViewport(-whole.x, -whole.y, viewport.width, viewport.height);
-  draw_solids([&] {
-    for (std::size_t i = 0; i < state.count; ++i) draw_block(resting, place(i, state.count));
-  });
-  smooth_.end(backdrop_.framebuffer(), whole, parts);
-  smooth_.keep(backdrop_.framebuffer(), viewport);
-  resting_ = true;
-}
-
-void BlockView::draw_table(const TableState& state) const {
+// It lies behind and below all else: it needs no depth.
+void BlockView::draw_table(const std::vector<BlockPose>& blocks, Theme theme) const {
   const auto width = static_cast<float>(geometry_.width_m);
+  const std::size_t count = std::min<std::size_t>(blocks.size(), 4);
   begin(table_shader_);
   table_shader_.set("table_y", -static_cast<float>(geometry_.height_m));
-  table_shader_.set("reach", width * (state.count <= 1 ? 2.3F : 3.2F));
-  table_shader_.set("table_colour", palette(state.theme).table);
-  table_shader_.set("background", palette(state.theme).background);
+  table_shader_.set("reach", width * (count <= 1 ? 2.3F : 3.2F));
+  table_shader_.set("table_colour", palette(theme).table);
+  table_shader_.set("background", palette(theme).background);
   table_shader_.set("half_size", 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m));
   glm::vec2 places[4];
-  for (std::size_t i = 0; i < state.count; ++i) {
-    const glm::vec3 at = place(i, state.count);
+  glm::vec4 chosen(0.0F);  // the ring's colour; alpha 0: none
+  glm::vec2 chosen_at(0.0F);
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 at = place(i, count);
     places[i] = {at.x, at.z};
+    if (!blocks[i].chosen || count == 1) continue;
+    chosen = glm::vec4(blocks[i].arrow, 1.0F);
+    chosen_at = places[i];
   }
-  table_shader_.set("block_count", static_cast<int>(state.count));
-  table_shader_.set("blocks", places, static_cast<int>(state.count));
-  table_shader_.set("chosen", state.chosen);
-  table_shader_.set("chosen_at", state.chosen_at);
+  table_shader_.set("block_count", static_cast<int>(count));
+  table_shader_.set("blocks", places, static_cast<int>(count));
+  table_shader_.set("chosen", chosen);
+  table_shader_.set("chosen_at", chosen_at);
   square_.draw();
 }
 
@@ -340,7 +196,7 @@ void BlockView::draw_block(const BlockPose& pose, const glm::vec3& at) const {
   // Shallow dents have no colour yet: there is nothing to judge.
   block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
   block_shader_.set("tool_gap", std::max(0.0F, -pose.tool_m));
-  shown_->block.draw();
+  block_.draw();
 }
 
 void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
@@ -350,13 +206,13 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
   solid_shader_.set("colour", tool_colour_);
   solid_shader_.set("shininess", 1.0F);
-  shown_->ball.draw();
+  ball_.draw();
   solid_shader_.set("colour", 0.62F * tool_colour_);
   solid_shader_.set("shininess", 0.6F);
-  shown_->sensor.draw();
+  sensor_.draw();
   solid_shader_.set("colour", 0.44F * tool_colour_);
   solid_shader_.set("shininess", 0.25F);
-  shown_->handle.draw();
+  handle_.draw();
   if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at);
 }
 
@@ -371,10 +227,10 @@ void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at) const {
   solid_shader_.set("shininess", 0.0F);
   solid_shader_.set("offset", foot);
   solid_shader_.set("stretch", glm::vec3(arrow_width_, length_m, arrow_width_));
-  shown_->shaft.draw();
+  shaft_.draw();
   solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(arrow_width_));
-  shown_->tip.draw();
+  tip_.draw();
 }
 
 }  // namespace palpate

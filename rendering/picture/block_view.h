@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "rendering/picture/backdrop.h"
 #include "rendering/picture/camera.h"
 #include "rendering/picture/mesh.h"
 #include "rendering/picture/shader.h"
@@ -59,34 +58,7 @@ class BlockView {
  private:
   float arrow_length_m(const BlockPose& pose) const;
   BlockView(const Scene& scene, Shader block, Shader solid, Shader table);
-  // All that the table's picture depends on.
-  struct TableState {
-    glm::mat4 view_projection{0.0F};
-    Viewport viewport;
-    Theme theme = Theme::light;
-    std::size_t count = 0;
-    glm::vec4 chosen{0.0F};  // colour of the ring; alpha 0: none
-    glm::vec2 chosen_at{0.0F};
-    bool operator==(const TableState&) const = default;
-  };
-  TableState table_state(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) const;
-  // As finely as it is seen.
-  struct Meshes {
-    Meshes(const BlockGeometry& block, float detail);
-    GpuMesh block, ball, sensor, handle, shaft, tip;
-  };
-  const Meshes& meshes(const Viewport& viewport, std::size_t count) const;
-  void draw_backdrop(const TableState& state);
-  void draw_table(const TableState& state) const;
-  void add_resting_blocks(const TableState& state);
-  // Adds the part of the viewport that a box lies in, if any of it does.
-  void add_part(const glm::vec3& low_m, const glm::vec3& high_m, const Viewport& viewport,
-                std::vector<Viewport>& parts) const;
-  // Where blocks are, down to `lowest_m` below their tops; where tools and arrows are.
-  void add_block_parts(std::size_t count, float lowest_m, const Viewport& viewport, std::vector<Viewport>& parts) const;
-  void add_tool_parts(const std::vector<BlockPose>& blocks, const Viewport& viewport,
-                      std::vector<Viewport>& parts) const;
-  void draw_blocks(const std::vector<BlockPose>& blocks) const;
+  void draw_table(const std::vector<BlockPose>& blocks, Theme theme) const;
   void draw_block(const BlockPose& pose, const glm::vec3& place) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place) const;
   void draw_arrow(const BlockPose& pose, const glm::vec3& place) const;
@@ -99,14 +71,9 @@ class BlockView {
   float arrow_m_per_N_;
   float arrow_width_;  // times the usual
   Shader block_shader_, solid_shader_, table_shader_;
-  Meshes fine_, coarse_;
-  const Meshes* shown_ = &fine_;
-  GpuMesh square_;
+  GpuMesh block_, ball_, sensor_, handle_, shaft_, tip_, square_;
   Camera camera_;
-  Backdrop backdrop_;
   SmoothTarget smooth_;
-  TableState backdrop_state_;
-  bool resting_ = false;  // the backdrop has the blocks as nobody presses them
   glm::mat4 view_projection_{1.0F};
 };
 

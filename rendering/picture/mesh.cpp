@@ -13,17 +13,10 @@ namespace palpate {
 namespace {
 
 // How finely a block is made.
-struct Steps {
-  explicit Steps(float detail)
-      : corner(std::max(2, static_cast<int>(14.0F * detail))),
-        side(std::max(2, static_cast<int>(10.0F * detail))),
-        rings(std::max(8, static_cast<int>(32.0F * detail))),
-        fillet(std::max(3, static_cast<int>(8.0F * detail))) {}
-  int corner;  // around each of its corners
-  int side;    // points on each of its sides, between the corners
-  int rings;   // on its top
-  int fillet;  // over its edge
-};
+constexpr int kCornerSteps = 10;  // around each of its corners
+constexpr int kSideSteps = 6;     // points on each of its sides, between the corners
+constexpr int kRings = 24;        // on its top
+constexpr int kFilletSteps = 6;   // over its edge
 constexpr float kCorner_m = 0.012F;
 constexpr float kEdge_m = 0.004F;
 // Of the height, above the ground: block.vert gives it less light, vertex by vertex.
@@ -33,16 +26,16 @@ using Outline = std::vector<Vertex>;  // position on the rim, normal outward, bo
 
 // Round corners have many points, straight sides few: as seen from the middle, from
 // the corner at +x, +z on. Points of a side lie evenly in angle.
-Outline outline(const glm::vec2& half, const Steps& steps) {
+Outline outline(const glm::vec2& half) {
   constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
   const glm::vec2 core = half - kCorner_m;
   Outline points;
   for (int corner = 0; corner < 4; ++corner) {
     const float sign_x = corner == 0 || corner == 3 ? 1.0F : -1.0F;
     const float sign_z = corner < 2 ? 1.0F : -1.0F;
-    for (int i = 0; i <= steps.corner; ++i) {
+    for (int i = 0; i <= kCornerSteps; ++i) {
       const float angle =
-          kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(steps.corner));
+          kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(kCornerSteps));
       const glm::vec3 normal(std::cos(angle), 0.0F, std::sin(angle));
       points.push_back({glm::vec3(sign_x * core.x, 0.0F, sign_z * core.y) + kCorner_m * normal, normal});
     }
@@ -53,8 +46,8 @@ Outline outline(const glm::vec2& half, const Steps& steps) {
     const float turn = kQuarter * static_cast<float>(corner + 1);
     const glm::vec3 normal(std::cos(turn), 0.0F, std::sin(turn));
     const glm::vec3 onward(-std::sin(turn), 0.0F, std::cos(turn));
-    for (int i = 1; i <= steps.side; ++i) {
-      const float angle = reach * (2.0F * static_cast<float>(i) / static_cast<float>(steps.side + 1) - 1.0F);
+    for (int i = 1; i <= kSideSteps; ++i) {
+      const float angle = reach * (2.0F * static_cast<float>(i) / static_cast<float>(kSideSteps + 1) - 1.0F);
       points.push_back({away * normal + away * std::tan(angle) * onward, normal});
     }
   }
@@ -77,12 +70,12 @@ void join_rings(Mesh& mesh, std::size_t around) {
 }
 
 // Rings from the middle, circles at first, the rim's shape in the end.
-void add_top(Mesh& mesh, const Outline& rim, int rings) {
+void add_top(Mesh& mesh, const Outline& rim) {
   const glm::vec3 up(0.0F, 1.0F, 0.0F);
   float nearest = 1e9F;
   for (const Vertex& point : rim) nearest = std::min(nearest, glm::length(point.position));
-  for (int k = 0; k <= rings; ++k) {
-    const float t = static_cast<float>(k) / static_cast<float>(rings);
+  for (int k = 0; k <= kRings; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(kRings);
     const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
     const float square = glm::smoothstep(0.4F, 1.0F, size);
     Outline ring;
@@ -108,13 +101,12 @@ void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, 
 
 }  // namespace
 
-Mesh block_mesh(float width_m, float length_m, float height_m, float detail) {
+Mesh block_mesh(float width_m, float length_m, float height_m) {
   Mesh mesh;
-  const Steps steps(detail);
-  const Outline rim = outline({0.5F * width_m - kEdge_m, 0.5F * length_m - kEdge_m}, steps);
-  add_top(mesh, rim, steps.rings);
-  for (int i = 1; i <= steps.fillet; ++i) {
-    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(steps.fillet);
+  const Outline rim = outline({0.5F * width_m - kEdge_m, 0.5F * length_m - kEdge_m});
+  add_top(mesh, rim);
+  for (int i = 1; i <= kFilletSteps; ++i) {
+    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kFilletSteps);
     add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)),
                 0.5F * std::numbers::pi_v<float> - angle);
   }

@@ -21,9 +21,8 @@ struct Mesh {
 };
 
 // A block with rounded corners and edges, its flat top at y = 0, around the y
-// axis. The top's rings lie denser towards the middle, where it is pressed. `detail`:
-// of 1 as for a block that fills the picture; half of it has a quarter of the triangles.
-Mesh block_mesh(float width_m, float length_m, float height_m, float detail = 1.0F);
+// axis. The top's rings lie denser towards the middle, where it is pressed.
+Mesh block_mesh(float width_m, float length_m, float height_m);
 
 // A body of revolution around y: `profile` has (radius, y) from bottom to top.
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides);

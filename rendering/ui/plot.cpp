@@ -44,7 +44,7 @@ std::vector<float> spread_labels(const std::vector<float>& wanted, float gap, fl
   return places;
 }
 
-Plot::Plot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes)
+LivePlot::LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes)
     : style_(style), list_(ImGui::GetWindowDrawList()), axes_(axes) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetFontSize();
@@ -56,28 +56,28 @@ Plot::Plot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes)
   list_->PushClipRect(low_, high_, true);
 }
 
-Plot::~Plot() { list_->PopClipRect(); }
+LivePlot::~LivePlot() { list_->PopClipRect(); }
 
-float Plot::x_px(double x) const noexcept {
+float LivePlot::x_px(double x) const noexcept {
   return low_.x + static_cast<float>((x - axes_.x.from) / (axes_.x.to - axes_.x.from)) * (high_.x - low_.x);
 }
 
-float Plot::y_px(double y) const noexcept {
+float LivePlot::y_px(double y) const noexcept {
   return high_.y - static_cast<float>((y - axes_.y.from) / (axes_.y.to - axes_.y.from)) * (high_.y - low_.y);
 }
 
-double Plot::x_at(float px) const noexcept {
+double LivePlot::x_at(float px) const noexcept {
   return axes_.x.from + static_cast<double>((px - low_.x) / (high_.x - low_.x)) * (axes_.x.to - axes_.x.from);
 }
 
-bool Plot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }
+bool LivePlot::hovered() const noexcept { return ImGui::IsMouseHoveringRect(low_, high_) && ImGui::IsWindowHovered(); }
 
-double Plot::shown(double value) const noexcept {
+double LivePlot::shown(double value) const noexcept {
   if (axes_.decades) return std::pow(10.0, std::round(value));
   return std::abs(value) < 1e-9 ? 0.0 : value;
 }
 
-void Plot::draw_y_axis() const {
+void LivePlot::draw_y_axis() const {
   const Range& y_range = axes_.y;
   const float line = ImGui::GetFontSize();
   char text[48];
@@ -93,7 +93,7 @@ void Plot::draw_y_axis() const {
   }
 }
 
-void Plot::draw_x_axis() const {
+void LivePlot::draw_x_axis() const {
   const Range& x_range = axes_.x;
   const float line = ImGui::GetFontSize();
   char text[48];
@@ -110,11 +110,11 @@ void Plot::draw_x_axis() const {
   }
 }
 
-void Plot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
+void LivePlot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
   if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
 }
 
-void Plot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const {
+void LivePlot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const {
   if (upper.size() < 2 || upper.size() != lower.size()) return;
   const int quads = static_cast<int>(upper.size()) - 1;
   list_->PrimReserve(6 * quads, 2 * static_cast<int>(upper.size()));
@@ -129,11 +129,11 @@ void Plot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& low
   }
 }
 
-void Plot::level(double y, ImU32 colour, float thickness) const {
+void LivePlot::level(double y, ImU32 colour, float thickness) const {
   list_->AddLine({low_.x, y_px(y)}, {high_.x, y_px(y)}, colour, thickness);
 }
 
-void Plot::caption(const std::string& text, float x, float y, ImU32 colour) const {
+void LivePlot::caption(const std::string& text, float x, float y, ImU32 colour) const {
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const ImVec2 room(high_.x - low_.x - size.x, high_.y - low_.y - size.y);
   list_->AddText({low_.x + x * room.x, low_.y + y * room.y}, colour, text.c_str());

@@ -34,14 +34,14 @@ struct PlotAxes {
   bool decades = false;     // the values are logarithms; the numbers are not
 };
 
-class Plot {
+class LivePlot {
  public:
   // Takes `size` at the cursor and draws frame, grid and numbers.
-  Plot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes);
+  LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes);
   // Ends the clipping.
-  ~Plot();
-  Plot(const Plot&) = delete;
-  Plot& operator=(const Plot&) = delete;
+  ~LivePlot();
+  LivePlot(const LivePlot&) = delete;
+  LivePlot& operator=(const LivePlot&) = delete;
 
   float x_px(double x) const noexcept;
   float y_px(double y) const noexcept;

@@ -6,9 +6,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <algorithm>
 #include <cfloat>
-#include <vector>
 
 namespace palpate {
 
@@ -38,22 +36,6 @@ void UiContext::begin_frame() {
 void UiContext::end_frame() {
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-}
-
-void UiContext::draw_again(const ImVec2& low, const ImVec2& high) const {
-  const ImDrawData* all = ImGui::GetDrawData();
-  if (all == nullptr) return;
-  std::vector<ImDrawList*> lists(all->CmdLists, all->CmdLists + all->CmdListsCount);
-  std::erase_if(lists, [&](const ImDrawList* list) {
-    return std::all_of(list->CmdBuffer.begin(), list->CmdBuffer.end(), [&](const ImDrawCmd& command) {
-      const ImVec4& clip = command.ClipRect;
-      return clip.x >= low.x && clip.y >= low.y && clip.z <= high.x && clip.w <= high.y;
-    });
-  });
-  ImDrawData some = *all;
-  some.CmdLists = lists.data();
-  some.CmdListsCount = static_cast<int>(lists.size());
-  ImGui_ImplOpenGL3_RenderDrawData(&some);
 }
 
 }  // namespace palpate

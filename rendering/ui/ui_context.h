@@ -2,8 +2,6 @@
 // Thread guarantee: the window's thread.
 #pragma once
 
-#include <imgui.h>
-
 struct GLFWwindow;
 
 namespace palpate {
@@ -19,9 +17,6 @@ class UiContext {
   void begin_frame();
   // Draws all widgets since `begin_frame`.
   void end_frame();
-  // Draws the last frame's widgets once more, but for the windows that lie within two
-  // corners, of which the picture still has a copy.
-  void draw_again(const ImVec2& low, const ImVec2& high) const;
 
  private:
   GLFWwindow* window_;

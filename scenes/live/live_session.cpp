@@ -223,6 +223,7 @@ void LiveSession::send_controls() {
   controls.acknowledged = acknowledged_;
   controls.dead_man = dead_man_;
   controls.held_s = held_s_;
+  controls.scale = scale_;
   models_.write_selection(controls);
   loop_->set_controls(controls);
 }
@@ -285,6 +286,11 @@ bool LiveSession::renders_force() const noexcept { return is_felt(*device_); }
 
 void LiveSession::use_dead_man(DeadMan what) {
   dead_man_ = what;
+  send_controls();
+}
+
+void LiveSession::use_scale(const ForceScale& scale) {
+  scale_ = scale;
   send_controls();
 }
 

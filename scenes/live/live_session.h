@@ -119,6 +119,9 @@ class LiveSession {
   DeadMan dead_man() const noexcept { return dead_man_; }
   void use_dead_man(DeadMan what);
   void hold();
+  // Of the active model's force in the hand; errors stay those of the models as they are.
+  const ForceScale& scale() const noexcept { return scale_; }
+  void use_scale(const ForceScale& scale);
 
   // Records every sample from now on, with the reference that is selected as
   // its force. Errors: the file exists, cannot be written, already recording,
@@ -158,6 +161,7 @@ class LiveSession {
   std::uint32_t recording_ = 0;  // these four as in LoopControls
   std::uint32_t acknowledged_ = 0;
   DeadMan dead_man_ = DeadMan::off;
+  ForceScale scale_;
   double held_s_ = -std::numeric_limits<double>::infinity();
   int fault_files_ = 0;
   LoopSnapshot newest_;

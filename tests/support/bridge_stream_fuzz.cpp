@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "devices/firmware/hapkit/bridge_protocol.h"
+#include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hid_endpoint.h"
 #include "devices/hid/protocol/bridge.h"
 

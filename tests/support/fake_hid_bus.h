@@ -1,4 +1,4 @@
-// A bus with one device in real time: the reference firmware, or reports that a
+// A bus with one device in real time: an OpenFFBoard, or reports that a
 // test made up; it can be unplugged, refuse to be opened and be slow to write to.
 #pragma once
 
@@ -14,12 +14,12 @@
 
 namespace palpate::test {
 
-inline HidDeviceInfo found_teensy() { return {"/dev/hidraw7", "Teensyduino RawHID", 0x16C0, 0x0486, 0xFFAB, 0x0200}; }
+inline HidDeviceInfo found_board() { return {"/dev/hidraw7", "FFBoard", 0x1209, 0xFFB0, 0xFF00, 1}; }
 inline HidDeviceInfo found_space_mouse() { return {"/dev/hidraw8", "SpaceNavigator", 0x046D, 0xC626, 1, 8}; }
 
 class FakeHidBus final : public HidBus {
  public:
-  explicit FakeHidBus(HidDeviceInfo found = found_teensy()) : found_(std::move(found)) {}
+  explicit FakeHidBus(HidDeviceInfo found = found_board()) : found_(std::move(found)) {}
 
   std::vector<HidDeviceInfo> list() override {
     return plugged_in ? std::vector<HidDeviceInfo>{found_} : std::vector<HidDeviceInfo>{};
@@ -30,13 +30,15 @@ class FakeHidBus final : public HidBus {
       --refusals;
       return Error{found_.path + ": no permission"};
     }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    board_.outbox.clear();  // nothing of before is in a queue
     return Result<std::unique_ptr<HidConnection>>(std::make_unique<Line>(*this));
   }
 
   // Any thread.
-  double motor_mA() {
+  double motor_units() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return paddle_.force_units();
+    return board_.force_units();
   }
 
   std::atomic<bool> plugged_in{true};
@@ -46,7 +48,7 @@ class FakeHidBus final : public HidBus {
   std::atomic<int> write_ms{0};  // how long each takes
   std::atomic<int> counts{0};    // of the encoder
   std::atomic<bool> silent{false};
-  Report report;  // instead of the firmware's; before the threads start
+  Report report;  // instead of the board's; before the threads start
 
  private:
   class Line final : public HidConnection {
@@ -57,7 +59,7 @@ class FakeHidBus final : public HidBus {
       if (!bus_.plugged_in) return -1;
       if (bus_.silent) return 0;
       const std::lock_guard<std::mutex> lock(bus_.mutex_);
-      const Report next = bus_.report.empty() ? bus_.from_paddle() : bus_.report;
+      const Report next = bus_.report.empty() ? bus_.from_board() : bus_.report;
       std::copy(next.begin(), next.end(), bytes);
       return static_cast<int>(next.size());
     }
@@ -66,7 +68,8 @@ class FakeHidBus final : public HidBus {
       if (!bus_.plugged_in) return false;
       ++bus_.writes;
       const std::lock_guard<std::mutex> lock(bus_.mutex_);
-      bus_.paddle_.hear(Report(bytes + 1, bytes + size));
+      bus_.step();
+      bus_.board_.hear(Report(bytes, bytes + size));
       return true;
     }
 
@@ -74,21 +77,23 @@ class FakeHidBus final : public HidBus {
     FakeHidBus& bus_;
   };
 
-  Report from_paddle() {
-    while (paddle_.outbox.empty()) {
-      const auto since = std::chrono::steady_clock::now() - start_;
-      const auto us = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
-      paddle_.step(static_cast<std::uint32_t>(us), counts);
-      if (paddle_.outbox.empty()) std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-    const Report newest = paddle_.outbox.back();
-    paddle_.outbox.clear();
+  void step() {
+    const auto since = std::chrono::steady_clock::now() - start_;
+    const auto us = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
+    board_.step(static_cast<std::uint32_t>(us), counts);
+  }
+  // Empty: nobody asked.
+  Report from_board() {
+    step();
+    if (board_.outbox.empty()) return {};
+    const Report newest = board_.outbox.back();
+    board_.outbox.clear();
     return newest;
   }
 
   HidDeviceInfo found_;
   std::mutex mutex_;
-  PaddleModel paddle_;
+  OpenFfBoardModel board_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -6,13 +6,15 @@
 #include <cstdlib>
 #include <vector>
 
-#include "devices/firmware/paddle/paddle_protocol.h"
+#include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
 #include "devices/hid/spacemouse.h"
 
 namespace palpate::test {
 namespace {
+
+constexpr unsigned kChecksumAt = bridge::kDeviceBytes - 4;
 
 void require(bool holds, const char* what) {
   if (holds) return;
@@ -40,9 +42,9 @@ void check_decoder(const HidDriver* driver, const std::uint8_t* bytes, std::size
   if (verdict != ReportVerdict::position) return;
   if (driver == &kSpaceMouseDriver) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
   if (driver == &kOpenFfBoardDriver) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
-  if (driver != &kPaddleDriver) return;
-  require(size == paddle::kReportBytes, "not 64 bytes");
-  require(paddle::crc32(bytes, paddle::kChecksumAt) == paddle::read32(bytes + paddle::kChecksumAt), "checksum");
+  if (driver != &kBridgeDriver) return;
+  require(size == bridge::kDeviceBytes, "not a frame");
+  require(wire::crc32(bytes, kChecksumAt) == wire::read32(bytes + kChecksumAt), "checksum");
 }
 
 void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_s) {
@@ -61,10 +63,10 @@ void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_
 void check_sent(const HidDriver* driver, const OutReports& reports) {
   require(reports.count <= reports.sizes.size(), "too many reports");
   for (std::size_t i = 0; i < reports.count; ++i) require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
-  if (driver != &kPaddleDriver || reports.count == 0) return;
-  paddle::FromHost out{};
-  require(paddle::decode(reports.bytes[0].data() + 1, out) == paddle::kGood, "sent a bad report");
-  require(std::abs(out.current_mA) <= 1250, "above the peak");
+  if (driver != &kBridgeDriver || reports.count == 0) return;
+  bridge::FromHost out{};
+  require(bridge::decode(reports.bytes[0].data(), out), "sent a bad frame");
+  require(std::abs(out.force_uN) <= 1250, "above the peak");
 }
 
 // One stream of reports into everything that reads them.
@@ -103,7 +105,7 @@ class Stream {
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const HidDriver* driver = kHidDrivers[data[0] % kHidDrivers.size()];
-  // A bit above: paddle reports get the checksum they need to be read.
+  // A bit above: frames of the bridge get the checksum they need to be read.
   const bool mended = (data[0] & 4) != 0;
   Stream stream(driver);
   std::size_t count = 0;
@@ -111,11 +113,10 @@ std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
     const std::size_t length = std::min<std::size_t>(data[at] % 80u, size - at - 2);
     // A copy of just its length, for the address sanitizer to watch.
     std::vector<std::uint8_t> report(data + at + 2, data + at + 2 + length);
-    if (mended && driver == &kPaddleDriver && length == paddle::kReportBytes) {
-      report[0] = paddle::kMagic;
-      report[1] = paddle::kVersion;
-      report[2] = paddle::kFromDevice;
-      paddle::write32(report.data() + paddle::kChecksumAt, paddle::crc32(report.data(), paddle::kChecksumAt));
+    if (mended && driver == &kBridgeDriver && length == bridge::kDeviceBytes) {
+      const std::uint8_t header[] = {0x50, 0x42, bridge::kVersion, bridge::kFromDevice};
+      std::copy(header, header + 4, report.begin());
+      wire::write32(report.data() + kChecksumAt, wire::crc32(report.data(), kChecksumAt));
     }
     stream.take(report.data(), report.size(), data[at + 1]);
     at += 2 + length;

@@ -12,8 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "devices/firmware/hapkit/hapkit_firmware.h"
-#include "devices/firmware/paddle/paddle_firmware.h"
+#include "devices/firmware/bridge_firmware.h"
 #include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
 #include "engine/live/live_tick.h"
@@ -29,7 +28,7 @@ inline HidCalibration example_calibration(const HidDriver* driver) {
   calibration.counts_per_metre = 50000.0;
   calibration.rest_position_m = -0.01;
   calibration.fastest_m_per_s = 5.0;
-  calibration.force_N_per_unit = driver == &kOpenFfBoardDriver ? 0.0003 : 0.004;
+  calibration.force_N_per_unit = 0.0003;
   calibration.stuck_after_s = 0.5;
   calibration.limits = {5.0, 200.0, 0.1};
   calibration.limits.continuous_N = 4.5;
@@ -53,61 +52,27 @@ class DeviceModel {
   std::deque<Report> outbox;
 };
 
-class PaddleModel final : public DeviceModel, public paddle::Board {
- public:
-  PaddleModel() { restart(); }
-  void restart() override { firmware_ = std::make_unique<paddle::Firmware>(*this, std::int16_t{1250}, ++boot_); }
-  void hear(const Report& report) override { inbox_.push_back(report); }
-  void step(std::uint32_t now_us, std::int32_t counts) override {
-    now_us_ = now_us;
-    counts_ = counts;
-    firmware_->loop();
-  }
-  double force_units() const override { return current_mA_; }
-  bool motor_fault_now = false;
-  bool grip_now = false;
-
- private:
-  std::uint32_t now_us() override { return now_us_; }
-  std::int32_t counts() override { return counts_; }
-  bool encoder_fault() override { return false; }
-  bool motor_fault() override { return motor_fault_now; }
-  bool grip() override { return grip_now; }
-  void set_current_mA(std::int16_t current_mA) override { current_mA_ = current_mA; }
-  bool receive(std::uint8_t* report) override {
-    if (inbox_.empty()) return false;
-    const Report first = inbox_.front();
-    inbox_.pop_front();
-    if (first.size() != paddle::kReportBytes) return false;
-    std::copy(first.begin(), first.end(), report);
-    return true;
-  }
-  void send(const std::uint8_t* report) override { outbox.emplace_back(report, report + paddle::kReportBytes); }
-
-  std::unique_ptr<paddle::Firmware> firmware_;
-  std::deque<Report> inbox_;
-  std::uint32_t now_us_ = 0;
-  std::int32_t counts_ = 0;
-  std::int16_t current_mA_ = 0;
-  std::uint16_t boot_ = 0;
-};
-
 // The effects manager of an OpenFFBoard, as its source has it: an effect of its own for each
 // `new`, without an end until it is given a duration, which then counts from its last start.
 class OpenFfBoardModel final : public DeviceModel {
  public:
   void hear(const Report& report) override {
     if (report.size() != 25 || report[0] != 0xA1) return;
-    const std::uint16_t object = paddle::read16(report.data() + 2);
-    const std::uint32_t command = paddle::read32(report.data() + 5);
-    const auto value = static_cast<std::int32_t>(paddle::read32(report.data() + 9));
+    const std::uint16_t object = wire::read16(report.data() + 2);
+    const std::uint32_t command = wire::read32(report.data() + 5);
+    const auto value = static_cast<std::int32_t>(wire::read32(report.data() + 9));
     if (object == 0xA03) hear_effect(command, value);
     if (object != 0xA01) return;
     Report answer = report;
     answer[1] = 10;
-    paddle::write32(answer.data() + 9, static_cast<std::uint32_t>(counts_));
-    paddle::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
+    wire::write32(answer.data() + 9, static_cast<std::uint32_t>(counts_));
+    wire::write32(answer.data() + 13, counts_ < 0 ? 0xFFFFFFFFu : 0u);
     outbox.push_back(answer);
+  }
+  // As a host that asks where the tool is.
+  void be_asked() {
+    const OutReports asking = kOpenFfBoardDriver.encode_command({});
+    hear(Report(asking.bytes[0].begin(), asking.bytes[0].begin() + static_cast<std::ptrdiff_t>(asking.sizes[0])));
   }
   void step(std::uint32_t now_us, std::int32_t counts) override {
     now_ms_ = now_us / 1000;
@@ -136,11 +101,11 @@ class OpenFfBoardModel final : public DeviceModel {
   double units_ = 0.0;
 };
 
-// The Hapkit's firmware on a board of air: a sample a millisecond, or every `period_us`.
+// The reference firmware on a board of air: a sample a millisecond, or every `period_us`.
 class BridgeModel final : public DeviceModel {
  public:
   BridgeModel() { restart(); }
-  void restart() override { firmware_ = std::make_unique<hapkit::Firmware<BridgeModel>>(*this, 5'000'000); }
+  void restart() override { firmware_ = std::make_unique<bridge::Firmware<BridgeModel>>(*this, 5'000'000); }
   void hear(const Report& report) override { inbox_.insert(inbox_.end(), report.begin(), report.end()); }
   void step(std::uint32_t now_us, std::int32_t counts) override {
     now_us_ = now_us;
@@ -152,7 +117,7 @@ class BridgeModel final : public DeviceModel {
   std::function<std::uint32_t()> next_period_us;  // of an irregular one
   std::uint32_t samples = 0;
 
-  // The board, as hapkit_firmware.h names it.
+  // The board, as bridge_firmware.h names it.
   std::uint32_t now_us() const { return now_us_; }
   bool receive(std::uint8_t& byte) {
     if (inbox_.empty()) return false;
@@ -169,11 +134,13 @@ class BridgeModel final : public DeviceModel {
     force_uN = 250'000;
     return true;
   }
+  std::uint8_t condition() const { return conditions; }
+  std::uint8_t conditions = 0;
   void push(std::int32_t force_uN) { pushed_uN_ = force_uN; }
   void send(const std::uint8_t* frame) { outbox.emplace_back(frame, frame + bridge::kDeviceBytes); }
 
  private:
-  std::unique_ptr<hapkit::Firmware<BridgeModel>> firmware_;
+  std::unique_ptr<bridge::Firmware<BridgeModel>> firmware_;
   std::deque<std::uint8_t> inbox_;
   std::uint32_t now_us_ = 0, sampled_us_ = 0;
   std::int32_t counts_ = 0, pushed_uN_ = 0;
@@ -181,8 +148,7 @@ class BridgeModel final : public DeviceModel {
 
 inline std::unique_ptr<DeviceModel> device_model(const HidDriver* driver) {
   if (driver == &kBridgeDriver) return std::make_unique<BridgeModel>();
-  if (driver == &kOpenFfBoardDriver) return std::make_unique<OpenFfBoardModel>();
-  return std::make_unique<PaddleModel>();
+  return std::make_unique<OpenFfBoardModel>();
 }
 
 // The endpoint as a device of the live tick.

@@ -10,7 +10,7 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "devices/firmware/hapkit/hapkit_firmware.h"
+#include "devices/firmware/bridge_firmware.h"
 
 namespace {
 
@@ -81,6 +81,8 @@ class Hapkit {
         fitted ? (force - kForceZero * kAdditions) * (kForce_uNPerCount / kAdditions) : palpate::bridge::kNoForce;
     return true;
   }
+
+  uint8_t condition() { return 0; }  // it can tell neither a fault nor a grip
 
   void push(int32_t force_uN) {
     const uint32_t size_uN = static_cast<uint32_t>(force_uN < 0 ? -force_uN : force_uN);
@@ -183,6 +185,6 @@ int main() {
   UCSR0B = (1 << RXEN0) | (1 << TXEN0) | (1 << RXCIE0);
   sei();
   Hapkit board;
-  palpate::hapkit::Firmware<Hapkit> firmware(board, kMost_uN);
+  palpate::bridge::Firmware<Hapkit> firmware(board, kMost_uN);
   for (;;) firmware.loop();
 }

@@ -1,56 +1,49 @@
-// Reference firmware of a haptic paddle for a Teensy 3.x or 4.x. In the Arduino
-// IDE: Tools > USB Type > Raw HID; the library Encoder comes with Teensyduino.
-// The pins and kMost_mA are those of one paddle: set them to yours, measure
-// kMost_mA, and never try it first with a hand on the handle.
-#include <EEPROM.h>
-#include <Encoder.h>
-
+// Reference firmware of a haptic paddle (teensy_paddle.h) as a device of `bridge:`, 1000
+// samples a second over the Teensy's USB serial port: `--device bridge:/dev/ttyACM0`. Copy
+// the headers of .. and of this folder into the sketch. The tool is at 0 where the board
+// started. Measure kMost_uN.
 #include "wire.h"
-#include "paddle_protocol.h"
-#include "paddle_firmware.h"
+#include "bridge_protocol.h"
+#include "bridge_firmware.h"
+#include "teensy_paddle.h"
 
-constexpr int kEncoderA = 2, kEncoderB = 3;
-constexpr int kPwm = 5, kDirection = 6, kMotorFaultPin = 7;  // low: fault
-constexpr int kGripPin = 8;                                   // low: held
-constexpr int16_t kMost_mA = 1500;
-constexpr int kFullScale_mA = 2000;  // at a duty cycle of 100 %
-constexpr int kPwmSteps = 4096;
+constexpr int32_t kNmPerCount = 20000;  // counts grow inward
+constexpr int32_t kuNPerMilliampere = 4000;
+constexpr int32_t kMost_uN = 5000000;
 
-class Teensy final : public palpate::paddle::Board {
+class Paddle : public TeensyPaddle {
  public:
-  uint32_t now_us() override { return micros(); }
-  int32_t counts() override { return encoder_.read(); }
-  bool encoder_fault() override { return false; }  // a plain quadrature encoder cannot tell
-  bool motor_fault() override { return digitalRead(kMotorFaultPin) == LOW; }
-  bool grip() override { return digitalRead(kGripPin) == LOW; }
-  void set_current_mA(int16_t current_mA) override {
-    digitalWrite(kDirection, current_mA < 0 ? HIGH : LOW);
-    const int32_t size_mA = current_mA < 0 ? -static_cast<int32_t>(current_mA) : current_mA;
-    analogWrite(kPwm, size_mA * (kPwmSteps - 1) / kFullScale_mA);
+  bool receive(uint8_t& byte) {
+    if (Serial.available() == 0) return false;
+    byte = static_cast<uint8_t>(Serial.read());
+    return true;
   }
-  bool receive(uint8_t* report) override { return RawHID.recv(report, 0) > 0; }
-  void send(const uint8_t* report) override { RawHID.send(report, 0); }
+  bool sample(uint32_t& time_us, int32_t& position_nm, int32_t& force_uN) {
+    if (micros() - sampled_us_ < 1000) return false;
+    time_us = sampled_us_ = micros();
+    position_nm = counts() * kNmPerCount;
+    force_uN = palpate::bridge::kNoForce;
+    return true;
+  }
+  // Out of the block is towards smaller counts.
+  void push(int32_t force_uN) { set_current_mA(-force_uN / kuNPerMilliampere); }
+  // What finds no room is lost: the next frame says all that is needed.
+  void send(const uint8_t* frame) {
+    if (Serial.availableForWrite() >= static_cast<int>(palpate::bridge::kDeviceBytes))
+      Serial.write(frame, palpate::bridge::kDeviceBytes);
+  }
 
  private:
-  Encoder encoder_{kEncoderA, kEncoderB};
+  uint32_t sampled_us_ = 0;
 };
 
-Teensy* board = nullptr;
-palpate::paddle::Firmware* firmware = nullptr;
+Paddle* board = nullptr;
+palpate::bridge::Firmware<Paddle>* firmware = nullptr;
 
 void setup() {
-  pinMode(kDirection, OUTPUT);
-  pinMode(kPwm, OUTPUT);
-  digitalWrite(kPwm, LOW);
-  pinMode(kMotorFaultPin, INPUT_PULLUP);
-  pinMode(kGripPin, INPUT_PULLUP);
-  analogWriteResolution(12);
-  analogWriteFrequency(kPwm, 20000);
-  uint16_t boot = 0;
-  EEPROM.get(0, boot);
-  EEPROM.put(0, ++boot);
-  board = new Teensy;
-  firmware = new palpate::paddle::Firmware(*board, kMost_mA, boot);
+  Serial.begin(1000000);
+  board = new Paddle;
+  firmware = new palpate::bridge::Firmware<Paddle>(*board, kMost_uN);
 }
 
 void loop() { firmware->loop(); }

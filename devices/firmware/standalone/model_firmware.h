@@ -11,11 +11,11 @@
 #pragma once
 
 #ifndef ARDUINO  // a sketch includes the files of its folder itself
-#include "devices/firmware/paddle/paddle_firmware.h"
+#include "devices/firmware/bridge_protocol.h"
 #endif
 
 namespace palpate {
-namespace paddle {
+namespace standalone {
 
 // palpate_force_after and palpate_reset of the exported file.
 struct ExportedModel {
@@ -23,19 +23,25 @@ struct ExportedModel {
   void (*reset)() = nullptr;
 };
 
-struct StandaloneSettings {
+struct Settings {
   int32_t surface_counts = 0;
   float metres_per_count = 1e-6F;
   float mA_per_N = 100.0F;
   int16_t most_mA = 1000;
 };
 
+// `Board`:
+//   uint32_t now_us();                         wraps
+//   int32_t counts();
+//   uint8_t condition();                       bridge::kMotorFault, kSensorFault, kGrip
+//   void set_current_mA(int32_t current_mA);
+template <typename Board>
 class ModelFirmware {
  public:
   static constexpr uint32_t kPeriod_us = 1000;
   static constexpr uint32_t kRamp_us = 300000;
 
-  ModelFirmware(Board& board, const ExportedModel& model, const StandaloneSettings& settings)
+  ModelFirmware(Board& board, const ExportedModel& model, const Settings& settings)
       : board_(board), model_(model), settings_(settings) {
     board_.set_current_mA(0);
     model_.reset();
@@ -61,15 +67,18 @@ class ModelFirmware {
     const int32_t counts = board_.counts() - settings_.surface_counts;
     // Also while nothing is driven, so that the model's filters know the motion.
     force_N_ = model_.force_after(step_s, static_cast<float>(counts) * settings_.metres_per_count);
-    if (board_.motor_fault() || board_.encoder_fault() || !(force_N_ - force_N_ == 0.0F)) fault_ = true;
-    if (!board_.grip()) {
+    const uint8_t condition = board_.condition();
+    const bool held = (condition & bridge::kGrip) != 0;
+    if ((condition & (bridge::kMotorFault | bridge::kSensorFault)) != 0 || !(force_N_ - force_N_ == 0.0F))
+      fault_ = true;
+    if (!held) {
       fault_ = false;
       held_since_us_ = now_us;
     }
-    board_.set_current_mA(fault_ || !board_.grip() ? static_cast<int16_t>(0) : current_mA(now_us - held_since_us_));
+    board_.set_current_mA(fault_ || !held ? 0 : current_mA(now_us - held_since_us_));
   }
 
-  int16_t current_mA(uint32_t held_us) {
+  int32_t current_mA(uint32_t held_us) {
     if (held_us > kRamp_us) {
       held_us = kRamp_us;
       held_since_us_ = last_us_ - kRamp_us;  // so that the counter may wrap
@@ -78,16 +87,16 @@ class ModelFirmware {
     const float commanded_mA = -force_N_ * settings_.mA_per_N * share;
     const auto most_mA = static_cast<float>(settings_.most_mA);
     const float clamped_mA = commanded_mA < -most_mA ? -most_mA : (commanded_mA > most_mA ? most_mA : commanded_mA);
-    return static_cast<int16_t>(clamped_mA);
+    return static_cast<int32_t>(clamped_mA);
   }
 
   Board& board_;
   ExportedModel model_;
-  StandaloneSettings settings_;
+  Settings settings_;
   uint32_t last_us_ = 0, held_since_us_ = 0, missed_ = 0;
   float force_N_ = 0.0F;
   bool fault_ = false;
 };
 
-}  // namespace paddle
+}  // namespace standalone
 }  // namespace palpate

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "devices/firmware/hapkit/bridge_protocol.h"
+#include "devices/firmware/bridge_protocol.h"
 
 namespace palpate {
 namespace {
@@ -58,11 +58,7 @@ OutReports stop_bridge() noexcept { return encode_bridge({}); }
 const HidDriver kBridgeDriver = {
     .name = "bridge",
     .description = "bridge",
-    .firmware = "",
-    .version = bridge::kVersion,
     .renders_force = true,
-    .reports_unasked = false,
-    .numbers_reports = true,
     .tried = "on real hardware: no; on an emulated device: yes",
     .knows_position = true,
     .matches = is_bridge,

@@ -1,4 +1,4 @@
-// The frames of `--device bridge:TARGET` (devices/firmware/hapkit/bridge_protocol.h), one
+// The frames of `--device bridge:TARGET` (devices/firmware/bridge_protocol.h), one
 // a report, as a BridgeBus finds them in a stream of bytes. A count is 1 nm, a unit 1 uN
 // towards growing positions.
 #pragma once

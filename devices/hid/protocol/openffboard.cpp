@@ -1,6 +1,9 @@
 #include "devices/hid/protocol/openffboard.h"
 
-#include "devices/firmware/paddle/paddle_protocol.h"
+#include <algorithm>
+#include <cmath>
+
+#include "devices/firmware/wire.h"
 
 namespace palpate {
 namespace {
@@ -14,7 +17,7 @@ constexpr std::uint16_t kFfbEffects = 0xA03;
 constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4, kFfbState = 0x5,
                         kFfbDuration = 0x7;
 constexpr std::uint64_t kFfbConstantForce = 1;
-// The force ends so long after it was last started, as that of a paddle does.
+// The force ends so long after it was last started, as that of a board of the bridge does.
 constexpr std::uint64_t kFfbDuration_ms = 50;
 // It is started again by every fourth command. Commands go out every 5 ms at least
 // (HidEndpoint::kRepeat_s), so that one start may be lost. Not by every command: a third
@@ -30,13 +33,18 @@ enum FfbType : std::uint8_t {
   kErr = 15
 };
 
+std::int16_t int16_units(const HidCommand& command) noexcept {
+  if (!command.drive || !std::isfinite(command.units)) return 0;
+  return static_cast<std::int16_t>(std::lround(std::clamp(command.units, -32767.0, 32767.0)));
+}
+
 bool is_openffboard(const HidDeviceInfo& info) noexcept {
   return info.vendor_id == kFfbVendor && info.product_id == kFfbProduct;
 }
 
 ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept {
-  using paddle::read16;
-  using paddle::read32;
+  using wire::read16;
+  using wire::read32;
   if (size == 0 || bytes[0] != kFfbReport) return size == 0 ? ReportVerdict::corrupt : ReportVerdict::nothing;
   if (size != kFfbBytes) return ReportVerdict::corrupt;
   const std::uint8_t type = bytes[1];
@@ -60,16 +68,18 @@ ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, De
 
 void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::uint32_t command,
                 std::uint64_t data) noexcept {
-  std::uint8_t* at = append_report(reports, kFfbReport, kFfbBytes - 1);
+  reports.sizes[reports.count] = kFfbBytes;
+  std::uint8_t* at = reports.bytes[reports.count++].data();
+  *at++ = kFfbReport;
   at[0] = type;
-  paddle::write16(at + 1, object);
+  wire::write16(at + 1, object);
   at[3] = 0;
-  paddle::write32(at + 4, command);
-  paddle::write32(at + 8, static_cast<std::uint32_t>(data));
-  paddle::write32(at + 12, static_cast<std::uint32_t>(data >> 32));
+  wire::write32(at + 4, command);
+  wire::write32(at + 8, static_cast<std::uint32_t>(data));
+  wire::write32(at + 12, static_cast<std::uint32_t>(data >> 32));
   // The address, of axis or effect 0.
-  paddle::write32(at + 16, 0);
-  paddle::write32(at + 20, 0);
+  wire::write32(at + 16, 0);
+  wire::write32(at + 20, 0);
 }
 
 void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
@@ -107,11 +117,7 @@ OutReports stop_openffboard() noexcept {
 const HidDriver kOpenFfBoardDriver = {
     .name = "openffboard",
     .description = "OpenFFBoard, one axis",
-    .firmware = "",
-    .version = 0,
     .renders_force = true,
-    .reports_unasked = false,
-    .numbers_reports = false,
     .tried = "on real hardware: no; on an emulated device: yes",
     .matches = is_openffboard,
     .decode = decode_openffboard,

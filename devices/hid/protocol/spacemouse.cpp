@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "devices/firmware/paddle/paddle_protocol.h"
+#include "devices/firmware/wire.h"
 
 namespace palpate {
 namespace {
@@ -28,10 +28,9 @@ ReportVerdict decode_space_mouse(const std::uint8_t* bytes, std::size_t size, De
   if (bytes[0] != 1) return ReportVerdict::nothing;  // rotation, buttons, battery
   if (size < 7) return ReportVerdict::corrupt;
   for (const std::size_t at : {1u, 3u, 5u}) {
-    if (std::abs(static_cast<std::int16_t>(paddle::read16(bytes + at))) > kSpaceMouseMost)
-      return ReportVerdict::corrupt;
+    if (std::abs(static_cast<std::int16_t>(wire::read16(bytes + at))) > kSpaceMouseMost) return ReportVerdict::corrupt;
   }
-  reading.counts = static_cast<std::int16_t>(paddle::read16(bytes + 5));
+  reading.counts = static_cast<std::int16_t>(wire::read16(bytes + 5));
   return ReportVerdict::position;
 }
 
@@ -43,11 +42,7 @@ OutReports no_command(const HidCommand&) noexcept { return {}; }
 const HidDriver kSpaceMouseDriver = {
     .name = "spacemouse",
     .description = "SpaceMouse, input only: no force",
-    .firmware = "",
-    .version = 0,
     .renders_force = false,
-    .reports_unasked = false,
-    .numbers_reports = false,
     .tried = "on real hardware: no; on an emulated device: yes",
     .matches = is_space_mouse,
     .decode = decode_space_mouse,

@@ -93,6 +93,9 @@ const std::vector<Injection>& injections() {
          });
        },
        kWrongFirmware, 0.0205},
+      {"motor fault",
+       [](SimulatedDevice& s) { dynamic_cast<test::BridgeModel&>(*s.model).conditions = bridge::kMotorFault; }, kOwn,
+       0.0205},
       {"jump", [](SimulatedDevice& s) { s.counts_offset = 50'000'000; }, kJump, 0.0205},
       {"started again", [](SimulatedDevice& s) { s.model->restart(); }, kReset | kOutOfOrder, 0.0205},
       {"commands do not get through", [](SimulatedDevice& s) { s.writer_hangs = true; }, kWriteStalled, 0.0705},
@@ -150,6 +153,7 @@ TEST(BridgeEndpoint, EveryFaultTakesTheForceAwayAndItComesBackByItself) {
     simulated.on_the_way_out = nullptr;
     simulated.writer_hangs = simulated.encoder_frozen = false;
     simulated.counts_offset = 0;
+    dynamic_cast<test::BridgeModel&>(*simulated.model).conditions = 0;
     if (simulated.unplugged) simulated.device.endpoint.connected(simulated.now_s);
     simulated.unplugged = false;
     simulated.tick();
@@ -195,6 +199,21 @@ TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
   EXPECT_EQ(faults, 0u);
   EXPECT_NEAR(samples, model.samples - sent_before, 10.0) << "but those on their way";
   EXPECT_NEAR(simulated.motor_N(), wanted_N(simulated), kResolution_N);
+}
+
+TEST(BridgeEndpoint, TheGripIsADeadManSwitch) {
+  SimulatedDevice simulated(&kBridgeDriver);
+  auto& board = dynamic_cast<test::BridgeModel&>(*simulated.model);
+  simulated.controls.dead_man = DeadMan::grip;
+  press(simulated);
+  EXPECT_EQ(simulated.motor_N(), 0.0);
+  EXPECT_TRUE(simulated.snapshot.dead_man_released);
+  board.conditions = bridge::kGrip;
+  simulated.run_s(1.0);
+  EXPECT_GT(simulated.motor_N(), 3.5);
+  board.conditions = 0;
+  simulated.run_s(0.02);
+  EXPECT_EQ(simulated.motor_N(), 0.0);
 }
 
 TEST(BridgeEndpoint, TheDeviceStopsByItselfWithoutFramesOrHeartbeat) {

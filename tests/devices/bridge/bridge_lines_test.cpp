@@ -254,13 +254,13 @@ void print_latencies(const char* name, SpringSession& session) {
 TEST(BridgeLines, LatenciesBesideAHidDevice) {
   if (!everything()) return;  // a measurement, which asserts nothing: PALPATE_FAULT_TABLE=1 runs it
   test::FakeHidBus bus;
-  auto opened = open_first(bus, {&kPaddleDriver});
+  auto opened = open_first(bus, {&kOpenFfBoardDriver});
   ASSERT_TRUE(opened.ok());
-  auto hid =
-      std::make_unique<HidDevice>(bus, test::patient(test::example_calibration(&kPaddleDriver)), std::move(*opened));
+  auto hid = std::make_unique<HidDevice>(bus, test::patient(test::example_calibration(&kOpenFfBoardDriver)),
+                                         std::move(*opened));
   ASSERT_TRUE(hid->open().ok());
-  SpringSession paddle(std::move(hid));
-  print_latencies("hid", paddle);
+  SpringSession board(std::move(hid));
+  print_latencies("hid", board);
   for (const char* kind : {"exec", "unix", "tcp", "pty"}) {
     const test::TemporaryFolder folder;
     const Line line(kind, folder, "none");

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/firmware/hapkit/bridge_protocol.h"
+#include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/protocol/bridge.h"
 
 namespace palpate {

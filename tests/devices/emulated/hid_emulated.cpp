@@ -1,4 +1,4 @@
-// The real libhidapi on an emulated paddle: found, opened, read, written, lost.
+// The real libhidapi on an emulated board: found, opened, read, written, lost.
 // A program of its own: it runs with the preload library of umockdev.
 #include <gtest/gtest.h>
 #include <pty.h>
@@ -15,13 +15,13 @@
 #include "devices/hid/hidapi_bus.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
-#include "tests/devices/emulated/emulated_paddle.h"
+#include "tests/devices/emulated/emulated_board.h"
 #include "tests/support/hid_ticks.h"
 
 namespace palpate {
 namespace {
 
-using test::EmulatedPaddle;
+using test::EmulatedBoard;
 using test::tick_until;
 
 class HidEmulated : public ::testing::Test {
@@ -42,79 +42,69 @@ class HidEmulated : public ::testing::Test {
 };
 
 TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
-  EmulatedPaddle paddle;
+  EmulatedBoard board;
   const std::vector<HidDeviceInfo> found = bus.list();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].path, "/dev/hidraw0");
-  EXPECT_EQ(found[0].product, "Teensyduino RawHID");
-  EXPECT_EQ(found[0].vendor_id, 0x16C0);
-  EXPECT_EQ(found[0].product_id, 0x0486);
-  EXPECT_EQ(found[0].usage_page, 0xFFAB);
-  EXPECT_EQ(found[0].usage, 0x0200);
+  EXPECT_EQ(found[0].product, "FFBoard");
+  EXPECT_EQ(found[0].vendor_id, 0x1209);
+  EXPECT_EQ(found[0].product_id, 0xFFB0);
+  EXPECT_EQ(found[0].usage_page, 0xFF00);
+  EXPECT_EQ(found[0].usage, 1);
   const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
   ASSERT_EQ(diagnosis.size(), 1u);
-  EXPECT_EQ(diagnosis[0].driver, &kPaddleDriver);
+  EXPECT_EQ(diagnosis[0].driver, &kOpenFfBoardDriver);
   EXPECT_EQ(diagnosis[0].problem, "");
 }
 
-TEST_F(HidEmulated, SaysThatTheFirmwareIsOfAnotherVersion) {
-  EmulatedPaddle paddle;
-  paddle.report_version = 3;
-  EXPECT_EQ(diagnose(bus).at(0).problem,
-            "/dev/hidraw0: wrong firmware: speaks version 3 of the paddle protocol, "
-            "expected 1; if it is a haptic paddle, install devices/firmware/paddle (it replaces what is on the board)");
-}
-
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
-  EmulatedPaddle paddle;
-  Result<HidOpened> first = open_first(bus, {&kPaddleDriver});
+  EmulatedBoard board;
+  Result<HidOpened> first = open_first(bus, {&kOpenFfBoardDriver});
   ASSERT_TRUE(first.ok());
   EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: in use by another program; close it");
 }
 
 TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
-  EmulatedPaddle paddle;
-  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
+  EmulatedBoard board;
+  Result<HidOpened> opened = open_first(bus, {&kOpenFfBoardDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   std::uint8_t bytes[65] = {};
-  ASSERT_EQ(opened->connection->read(bytes, sizeof bytes), 64);
+  ASSERT_EQ(opened->connection->read(bytes, sizeof bytes), 25);
   DeviceReading reading;
-  ASSERT_EQ(kPaddleDriver.decode(bytes, 64, reading), ReportVerdict::position);
+  ASSERT_EQ(kOpenFfBoardDriver.decode(bytes, 25, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, 1000);
-  const OutReports stop = kPaddleDriver.encode_stop();
+  const OutReports stop = kOpenFfBoardDriver.encode_stop();
   ASSERT_TRUE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
-  EXPECT_EQ(paddle.last_write_size, 65u) << "the report id comes first";
-  paddle.gone = true;
+  EXPECT_EQ(board.last_write_size, 25u) << "the report id comes first";
+  board.gone = true;
   EXPECT_LT(opened->connection->read(bytes, sizeof bytes), 0);
   EXPECT_FALSE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
 }
 
 TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
-  EmulatedPaddle paddle;
-  const HidCalibration calibration = test::patient(test::example_calibration(&kPaddleDriver));
-  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
+  EmulatedBoard board;
+  const HidCalibration calibration = test::patient(test::example_calibration(&kOpenFfBoardDriver));
+  Result<HidOpened> opened = open_first(bus, {&kOpenFfBoardDriver});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   HidDevice device(bus, calibration, std::move(*opened));
   ASSERT_TRUE(device.open().ok());
   device.start_zeroing();
   ASSERT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); }));
-  EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
+  EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return board.motor_units == -6667.0; }));
   const DeviceHealth health = device.health(steady_now_s());
-  std::printf("emulated: round trip %.2f ms, age of the sample %.2f ms\n", 1e3 * health.round_trip_s,
-              1e3 * health.sample_age_s);
-  EXPECT_GT(health.round_trip_s, 0.0);
-  paddle.gone = true;
+  std::printf("emulated: age of the sample %.2f ms\n", 1e3 * health.sample_age_s);
+  board.gone = true;
   EXPECT_TRUE(
       tick_until(device, 2.0, [](const DeviceHealth& lost) { return (lost.faults & device_fault::kUnplugged) != 0; }));
-  paddle.gone = false;
+  board.gone = false;
   EXPECT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& back) {
     return back.faults == device_fault::kUnplugged && back.zeroing == Zeroing::needed;
   }));
   device.start_zeroing();
   EXPECT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& again) { return again.may_push(); }));
-  EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return paddle.motor_mA == -500.0; }));
+  EXPECT_TRUE(tick_until(device, 2.0, [&](const DeviceHealth&) { return board.motor_units == -6667.0; }));
   device.close();
-  EXPECT_GT(paddle.writes, 10);
+  EXPECT_GT(board.writes, 10);
 }
 
 // Another process that pushes until a signal ends it; a byte through `ready` says that
@@ -122,9 +112,9 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
 [[noreturn]] void push_until_ended(HidBus& bus, int ready) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
   const StopListener listener;
-  Result<HidOpened> opened = open_first(bus, {&kPaddleDriver});
+  Result<HidOpened> opened = open_first(bus, {&kOpenFfBoardDriver});
   if (!opened) _exit(3);
-  HidDevice device(bus, test::patient(test::example_calibration(&kPaddleDriver)), std::move(*opened));
+  HidDevice device(bus, test::patient(test::example_calibration(&kOpenFfBoardDriver)), std::move(*opened));
   if (!device.open()) _exit(4);
   device.start_zeroing();
   tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });
@@ -139,7 +129,7 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
 TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
   for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
     for (const int second : {SIGINT, SIGTERM, SIGHUP}) {
-      EmulatedPaddle paddle;
+      EmulatedBoard board;
       int ready[2];
       ASSERT_EQ(pipe(ready), 0);
       const pid_t child = fork();
@@ -148,16 +138,16 @@ TEST_F(HidEmulated, ZeroForceIsTheLastReportInAnyOrderOfTwoSignals) {
       char byte = 0;
       EXPECT_EQ(read(ready[0], &byte, 1), 1);
       close(ready[0]);
-      EXPECT_EQ(paddle.told_mA, -500);
+      EXPECT_EQ(board.told_units, -6667);
       kill(child, first);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "the first only asks";
-      EXPECT_EQ(paddle.told_mA, -500) << "this program does not answer";
+      EXPECT_EQ(board.told_units, -6667) << "this program does not answer";
       kill(child, second);
       int status = 0;
       waitpid(child, &status, 0);
       EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == second) << status;
-      EXPECT_EQ(paddle.told_mA, 0) << first << " then " << second;
+      EXPECT_EQ(board.told_units, 0) << first << " then " << second;
     }
   }
 }

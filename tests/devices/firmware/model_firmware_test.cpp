@@ -1,4 +1,4 @@
-// The paddle that renders a model by itself, on a simulated board.
+// A paddle that renders a model by itself, on a simulated board.
 #include "devices/firmware/standalone/model_firmware.h"
 
 #include <gtest/gtest.h>
@@ -11,24 +11,22 @@
 #include "tests/support/compiled_model.h"
 #include "tests/support/example_model.h"
 
-namespace palpate::paddle {
+namespace palpate::standalone {
 namespace {
 
-class StandaloneBoard final : public Board {
+class StandaloneBoard {
  public:
-  uint32_t now_us() override { return time_us; }
-  int32_t counts() override { return position; }
-  bool encoder_fault() override { return false; }
-  bool motor_fault() override { return bad_motor; }
-  bool grip() override { return held; }
-  void set_current_mA(int16_t value) override { current_mA = value; }
-  bool receive(uint8_t*) override { return false; }
-  void send(const uint8_t*) override {}
+  uint32_t now_us() { return time_us; }
+  int32_t counts() { return position; }
+  uint8_t condition() {
+    return static_cast<uint8_t>((bad_motor ? bridge::kMotorFault : 0) | (held ? bridge::kGrip : 0));
+  }
+  void set_current_mA(int32_t value) { current_mA = value; }
 
   uint32_t time_us = 4'294'000'000U;  // wraps within the test
   int32_t position = 0;
   bool bad_motor = false, held = true;
-  int16_t current_mA = 99;
+  int32_t current_mA = 99;
 };
 
 struct Standalone {
@@ -41,7 +39,7 @@ struct Standalone {
   ModelData data = test::example_models().front();
   test::CompiledModel<float> model{data, {true, {30e-6, 0.0}}};
   StandaloneBoard board;
-  StandaloneSettings settings;
+  Settings settings;
 };
 
 TEST(ModelFirmware, RendersTheForcesOfReplayAtOneKilohertz) {
@@ -84,7 +82,7 @@ TEST(ModelFirmware, DrivesNothingWithoutTheGripAndAfterAFault) {
   run_ms(5);
   all.board.position = 100;  // 3 mm inside
   run_ms(10);
-  const int16_t ramping_mA = all.board.current_mA;
+  const int32_t ramping_mA = all.board.current_mA;
   run_ms(600);
   EXPECT_LT(all.board.current_mA, ramping_mA);
   EXPECT_LT(all.board.current_mA, -50);
@@ -120,4 +118,4 @@ TEST(ModelFirmware, CountsWhatItMissedAndGoesOn) {
 }
 
 }  // namespace
-}  // namespace palpate::paddle
+}  // namespace palpate::standalone

@@ -18,8 +18,8 @@ using test::SimulatedDevice;
 // Ten minutes, with losses, corruption and reports out of order on both ways,
 // stalls and restarts; whatever happens, the motor never gets a force that no
 // model could have asked for, nor a step, nor any force on old data.
-TEST(PaddleFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
-  SimulatedDevice simulated(&kPaddleDriver);
+TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
+  SimulatedDevice simulated(&kBridgeDriver);
   RandomStream random(1, 0);
   std::int64_t lost = 0, corrupted = 0, swapped = 0, restarts = 0, stalls = 0;
   int silent_in = 0, silent_out = 0;
@@ -34,7 +34,7 @@ TEST(PaddleFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
     std::vector<Report> some = {report};
     if (trouble(0.0003)) {
       ++corrupted;
-      some[0][random.index(64)] ^= static_cast<std::uint8_t>(1 + random.index(255));
+      some[0][random.index(some[0].size())] ^= static_cast<std::uint8_t>(1 + random.index(255));
     }
     if (!waiting.empty()) some.push_back(std::exchange(waiting, {}));
     if (trouble(0.0003)) {
@@ -50,7 +50,7 @@ TEST(PaddleFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
       ++lost;
       return false;
     }
-    if (trouble(0.001)) report[random.index(64)] ^= static_cast<std::uint8_t>(1 + random.index(255));
+    if (trouble(0.001)) report[random.index(report.size())] ^= static_cast<std::uint8_t>(1 + random.index(255));
     return true;
   };
   simulated.press();
@@ -59,13 +59,6 @@ TEST(PaddleFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
     if (trouble(0.0001)) silent_in = static_cast<int>(random.index(100)), ++stalls;
     if (trouble(0.0001)) silent_out = static_cast<int>(random.index(100)), ++stalls;
     if (trouble(0.00001)) simulated.model->restart(), ++restarts;
-    // Someone who zeroes it whenever it asks.
-    if (simulated.snapshot.device.zeroing == Zeroing::needed) {
-      simulated.rest = true;
-      simulated.device.start_zeroing();
-    } else if (simulated.snapshot.device.zeroing == Zeroing::done) {
-      simulated.rest = false;
-    }
     const LoopSnapshot& snapshot = simulated.tick();
     const double motor_N = simulated.motor_N();
     ASSERT_TRUE(std::isfinite(motor_N));

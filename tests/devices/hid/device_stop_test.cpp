@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "devices/firmware/paddle/paddle_protocol.h"
+#include "devices/firmware/bridge_protocol.h"
 #include "engine/base/signals.h"
 
 namespace palpate {
@@ -30,7 +30,7 @@ Ended run(void (*before)(), void (*end)()) {
   const pid_t child = fork();
   if (child == 0) {
     before();
-    register_device_stop(pipe_ends[1], kPaddleDriver.encode_stop());
+    register_device_stop(pipe_ends[1], kBridgeDriver.encode_stop());
     stop_devices_on_signals();
     end();
     _exit(7);
@@ -38,10 +38,10 @@ Ended run(void (*before)(), void (*end)()) {
   close(pipe_ends[1]);
   Ended ended;
   waitpid(child, &ended.status, 0);
-  std::uint8_t bytes[65];
-  paddle::FromHost out{};
-  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == 65 && paddle::decode(bytes + 1, out) == paddle::kGood &&
-               out.flags == 0 && out.current_mA == 0;
+  std::uint8_t bytes[bridge::kHostBytes];
+  bridge::FromHost out{};
+  ended.told = read(pipe_ends[0], bytes, sizeof bytes) == sizeof bytes && bridge::decode(bytes, out) &&
+               out.flags == 0 && out.force_uN == 0;
   close(pipe_ends[0]);
   return ended;
 }
@@ -86,7 +86,7 @@ void push_without_end(int descriptor) {
   HidCommand command;
   command.drive = true;
   command.units = 500;
-  const OutReports push = kPaddleDriver.encode_command(command);
+  const OutReports push = kBridgeDriver.encode_command(command);
   while (true) {
     if (!begin_force_write()) continue;
     poll(nullptr, 0, 2);
@@ -103,7 +103,7 @@ Ended run_two_signals(int first, int second) {
   if (child == 0) {
     nothing_ignored();
     const StopListener listener;
-    register_device_stop(ends[1], kPaddleDriver.encode_stop());
+    register_device_stop(ends[1], kBridgeDriver.encode_stop());
     stop_devices_on_signals();
     std::thread([&] { push_without_end(ends[1]); }).detach();
     poll(nullptr, 0, 10);
@@ -114,11 +114,11 @@ Ended run_two_signals(int first, int second) {
   }
   close(ends[1]);
   Ended ended;
-  std::uint8_t bytes[65];
-  paddle::FromHost out{};
+  std::uint8_t bytes[bridge::kHostBytes];
+  bridge::FromHost out{};
   int reports = 0;
-  for (; read(ends[0], bytes, sizeof bytes) == 65; ++reports) {
-    ended.told = paddle::decode(bytes + 1, out) == paddle::kGood && out.flags == 0 && out.current_mA == 0;
+  for (; read(ends[0], bytes, sizeof bytes) == sizeof bytes; ++reports) {
+    ended.told = bridge::decode(bytes, out) && out.flags == 0 && out.force_uN == 0;
   }
   EXPECT_GT(reports, 2);
   close(ends[0]);

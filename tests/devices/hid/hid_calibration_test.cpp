@@ -12,12 +12,12 @@ namespace {
 
 const std::string kAssets = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
 
-std::string good() { return test::read_text(kAssets + "/paddle.json"); }
+std::string good() { return test::read_text(kAssets + "/openffboard.json"); }
 
 std::string changed(const std::string& from, const std::string& to) { return test::replaced(good(), from, to); }
 
 std::string complaint(const std::string& text) {
-  const Result<HidCalibration> result = parse_hid_calibration(text, "paddle.json");
+  const Result<HidCalibration> result = parse_hid_calibration(text, "openffboard.json");
   return result ? "accepted" : result.error().message;
 }
 
@@ -28,40 +28,41 @@ TEST(HidCalibration, ReadsEveryKindOfTheAssets) {
     EXPECT_EQ(calibration->driver, driver);
     EXPECT_GT(calibration->counts_per_metre, 0.0);
   }
-  const Result<HidCalibration> paddle = read_hid_calibration(kAssets, kPaddleDriver);
-  EXPECT_EQ(paddle->limits.largest_N, 5.0);
-  EXPECT_EQ(paddle->limits.continuous_N, 2.0);
-  EXPECT_EQ(paddle->limits.stale_after_s, 0.008);
+  const Result<HidCalibration> board = read_hid_calibration(kAssets, kOpenFfBoardDriver);
+  EXPECT_EQ(board->limits.largest_N, 5.0);
+  EXPECT_EQ(board->limits.continuous_N, 2.0);
+  EXPECT_EQ(board->limits.stale_after_s, 0.01);
 }
 
 TEST(HidCalibration, SaysWhatIsWrongAndWhere) {
-  EXPECT_EQ(complaint("{").rfind("paddle.json:1:2: syntax error", 0), 0u) << complaint("{");
-  EXPECT_EQ(complaint("[]"), "paddle.json:1:1: found a list of 0, expected an object with \"kind\"");
+  EXPECT_EQ(complaint("{").rfind("openffboard.json:1:2: syntax error", 0), 0u) << complaint("{");
+  EXPECT_EQ(complaint("[]"), "openffboard.json:1:1: found a list of 0, expected an object with \"kind\"");
   EXPECT_EQ(complaint(changed("\"direction\": 1", "\"direction\": 0.5")),
-            "paddle.json:4:16: direction: found 0.5, expected 1 or -1");
+            "openffboard.json:4:16: direction: found 0.5, expected 1 or -1");
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 500")),
-            "paddle.json:9:13: peak_N: found 500, expected a number from 0.001 up to 100");
+            "openffboard.json:9:13: peak_N: found 500, expected a number from 0.001 up to 100");
   EXPECT_EQ(complaint(changed("\"peak_N\": 5", "\"peak_N\": 1")),
-            "paddle.json:10:19: continuous_N: found 2, expected at most peak_N");
+            "openffboard.json:10:19: continuous_N: found 2, expected at most peak_N");
   EXPECT_EQ(complaint(changed("  \"ramp_s\": 0.5,\n", "")),
-            "paddle.json:1:1: ramp_s: found no such field, expected a number from 0.05 up to 10");
+            "openffboard.json:1:1: ramp_s: found no such field, expected a number from 0.05 up to 10");
   EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": \"slow\"")),
-            "paddle.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
-  EXPECT_EQ(complaint(changed("\"paddle\"", "\"joystick\"")),
-            "paddle.json:2:11: kind: found \"joystick\", expected one of paddle, openffboard, spacemouse, bridge");
-  EXPECT_EQ(complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
-                .rfind("paddle.json:13:28: colour: found an unknown field, expected one of kind, counts_per_metre", 0),
-            0u);
+            "openffboard.json:13:13: ramp_s: found \"slow\", expected a number from 0.05 up to 10");
+  EXPECT_EQ(complaint(changed("\"openffboard\"", "\"joystick\"")),
+            "openffboard.json:2:11: kind: found \"joystick\", expected one of openffboard, spacemouse, bridge");
+  EXPECT_EQ(
+      complaint(changed("\"ramp_s\": 0.5", "\"ramp_s\": 0.5, \"colour\": 3"))
+          .rfind("openffboard.json:13:28: colour: found an unknown field, expected one of kind, counts_per_metre", 0),
+      0u);
 }
 
 TEST(HidCalibration, SaysWhenTheFileIsNotThereOrOfAnotherKind) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(read_hid_calibration(folder.path(), kOpenFfBoardDriver).error().message,
             folder.file("openffboard.json") + ": cannot read the calibration; put the file there, see assets/devices/");
-  folder.with_file("openffboard.json", good());
+  folder.with_file("openffboard.json", test::read_text(kAssets + "/bridge.json"));
   EXPECT_EQ(read_hid_calibration(folder.path(), kOpenFfBoardDriver).error().message,
             folder.file("openffboard.json") +
-                ": found the calibration of \"paddle\", expected \"openffboard\", as the file's name says");
+                ": found the calibration of \"bridge\", expected \"openffboard\", as the file's name says");
 }
 
 }  // namespace

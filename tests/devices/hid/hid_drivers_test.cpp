@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/firmware/paddle/paddle_protocol.h"
+#include "devices/firmware/wire.h"
 
 namespace palpate {
 namespace {
@@ -19,12 +19,6 @@ ReportVerdict decode(const HidDriver* driver, const Bytes& bytes, DeviceReading&
   return driver->decode(bytes.data(), bytes.size(), reading);
 }
 
-Bytes paddle_report(std::uint8_t status) {
-  Bytes bytes(64);
-  paddle::encode(paddle::FromDevice{status, 7, 1000, -55, 0, 3, 6, 0}, bytes.data());
-  return bytes;
-}
-
 Bytes ffb_answer(std::uint8_t type, std::int64_t position) {
   Bytes bytes(25, 0);
   bytes[0] = 0xA1;
@@ -34,26 +28,6 @@ Bytes ffb_answer(std::uint8_t type, std::int64_t position) {
   bytes[5] = 0x09;
   for (std::size_t i = 0; i < 8; ++i) bytes[9 + i] = static_cast<std::uint8_t>(position >> (8 * i));
   return bytes;
-}
-
-TEST(HidReports, ReadsThePaddle) {
-  DeviceReading reading;
-  ASSERT_EQ(decode(&kPaddleDriver, paddle_report(paddle::kGrip), reading), ReportVerdict::position);
-  EXPECT_EQ(reading.counts, -55);
-  EXPECT_EQ(reading.sequence, 7u);
-  EXPECT_EQ(reading.time_us, 1000u);
-  EXPECT_EQ(reading.boot, 3);
-  EXPECT_EQ(reading.confirmed, 6u);
-  EXPECT_TRUE(reading.grip);
-  EXPECT_FALSE(reading.own_fault);
-  ASSERT_EQ(decode(&kPaddleDriver, paddle_report(paddle::kMotorFault), reading), ReportVerdict::position);
-  EXPECT_TRUE(reading.own_fault);
-  Bytes other = paddle_report(0);
-  other[1] = 2;
-  EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::wrong_version);
-  other = paddle_report(0);
-  other[30] = 1;
-  EXPECT_EQ(decode(&kPaddleDriver, other, reading), ReportVerdict::corrupt);
 }
 
 TEST(HidReports, ReadsOpenFfBoard) {
@@ -95,34 +69,11 @@ TEST(HidReports, RefusesEveryOtherLength) {
   }
 }
 
-TEST(HidReports, WritesThePaddle) {
-  HidCommand command{9, 4, true, -250.4};
-  OutReports reports = kPaddleDriver.encode_command(command);
-  ASSERT_EQ(reports.count, 1u);
-  ASSERT_EQ(reports.sizes[0], 65u);
-  EXPECT_EQ(reports.bytes[0][0], 0) << "no report id";
-  paddle::FromHost out{};
-  ASSERT_EQ(paddle::decode(reports.bytes[0].data() + 1, out), paddle::kGood);
-  EXPECT_EQ(out.flags, paddle::kDrive);
-  EXPECT_EQ(out.sequence, 9u);
-  EXPECT_EQ(out.current_mA, -250);
-  EXPECT_EQ(out.heartbeat, 4);
-  command.drive = false;
-  reports = kPaddleDriver.encode_command(command);
-  ASSERT_EQ(paddle::decode(reports.bytes[0].data() + 1, out), paddle::kGood);
-  EXPECT_EQ(out.flags, 0);
-  EXPECT_EQ(out.current_mA, 0);
-}
-
-std::uint16_t ffb_object(const OutReports& reports, std::size_t i) {
-  return paddle::read16(reports.bytes[i].data() + 2);
-}
+std::uint16_t ffb_object(const OutReports& reports, std::size_t i) { return wire::read16(reports.bytes[i].data() + 2); }
 std::uint32_t ffb_command(const OutReports& reports, std::size_t i) {
-  return paddle::read32(reports.bytes[i].data() + 5);
+  return wire::read32(reports.bytes[i].data() + 5);
 }
-std::uint32_t ffb_value(const OutReports& reports, std::size_t i) {
-  return paddle::read32(reports.bytes[i].data() + 9);
-}
+std::uint32_t ffb_value(const OutReports& reports, std::size_t i) { return wire::read32(reports.bytes[i].data() + 9); }
 
 TEST(HidReports, WritesOpenFfBoard) {
   const OutReports most = kOpenFfBoardDriver.encode_command({1, 1, true, 1e9});
@@ -135,7 +86,7 @@ TEST(HidReports, WritesOpenFfBoard) {
   EXPECT_EQ(ffb_object(ffb, 1), 0xA03);
   EXPECT_EQ(ffb_command(ffb, 1), 4u);
   EXPECT_EQ(ffb_value(ffb, 1), 0xFFFFFFFEu);
-  EXPECT_EQ(paddle::read32(ffb.bytes[1].data() + 13), 0xFFFFFFFFu);
+  EXPECT_EQ(wire::read32(ffb.bytes[1].data() + 13), 0xFFFFFFFFu);
 }
 
 TEST(HidReports, TheForceOfAnOpenFfBoardHasAnEndThatIsPutOff) {
@@ -152,9 +103,9 @@ TEST(HidReports, TheForceOfAnOpenFfBoardHasAnEndThatIsPutOff) {
 }
 
 TEST(HidReports, NoNumberIsNoForce) {
-  for (const HidDriver* driver : {&kPaddleDriver, &kOpenFfBoardDriver}) {
+  for (const HidDriver* driver : {&kBridgeDriver, &kOpenFfBoardDriver}) {
     const OutReports nan = driver->encode_command({1, 1, true, std::nan("")});
-    const OutReports zero = driver->encode_command({1, 1, true, 0.0});
+    const OutReports zero = driver->encode_command({1, 1, false, 0.0});
     EXPECT_EQ(nan.bytes, zero.bytes);
     EXPECT_EQ(driver->encode_stop().count, 1u);
   }

@@ -51,7 +51,7 @@ TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "hid");
   EXPECT_EQ((*device)->note(),
-            "haptic paddle: Teensyduino RawHID, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
+            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
   EXPECT_EQ((*device)->limits().largest_N, 5.0);
   EXPECT_FALSE((*device)->health(0.0).may_push()) << "not zeroed";
   for (const DeviceDescription& description : list_devices(request_with(bus))) EXPECT_EQ(description.problem, "");
@@ -73,9 +73,9 @@ TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->note(),
             "no haptic device is plugged in: a simulated hand until the mouse or the SpaceMouse (no force) takes over");
-  test::FakeHidBus paddle;
+  test::FakeHidBus board;
   DeviceRequest request;
-  request.bus = &paddle;
+  request.bus = &board;
   device = open_device("auto", request);
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->note(),

@@ -9,25 +9,23 @@
 namespace palpate {
 namespace {
 
-MonitorSettings settings_for(bool numbered) {
+MonitorSettings settings_for(bool knows_position) {
   MonitorSettings settings;
-  settings.numbered = numbered;
+  settings.knows_position = knows_position;
   settings.counts_per_metre = 50000.0;
   settings.fastest_m_per_s = 5.0;
   return settings;
 }
 
-// Numbered readings, 1 ms apart.
+// Readings 1 ms apart; of a device that knows its position, numbered.
 struct Stream {
-  StreamMonitor monitor{settings_for(true)};
-  DeviceReading next = first_of_boot(1);
+  explicit Stream(bool knows_position = false) : monitor(settings_for(knows_position)) {
+    if (knows_position) steps(60);  // until its clock is known
+  }
+  StreamMonitor monitor;
+  DeviceReading next;
   double now_s = 10.0;
 
-  static DeviceReading first_of_boot(std::uint16_t boot) {
-    DeviceReading reading;
-    reading.boot = boot;
-    return reading;
-  }
   void send(const DeviceReading& reading, double force_N = 0.0) {
     monitor.update(ReportVerdict::position, reading, now_s, force_N);
   }
@@ -60,7 +58,7 @@ TEST(StreamMonitor, CountsAndTimesWhatItAccepts) {
 }
 
 TEST(StreamMonitor, LostReportsAreNoFault) {
-  Stream stream;
+  Stream stream(true);
   stream.steps(10);
   stream.next.sequence += 5;
   stream.next.time_us += 5000;
@@ -71,7 +69,7 @@ TEST(StreamMonitor, LostReportsAreNoFault) {
 }
 
 TEST(StreamMonitor, AnOlderReportIsNotUsed) {
-  Stream stream;
+  Stream stream(true);
   stream.steps(10);
   DeviceReading older = stream.next;
   older.sequence -= 3;
@@ -83,10 +81,13 @@ TEST(StreamMonitor, AnOlderReportIsNotUsed) {
 }
 
 TEST(StreamMonitor, SequenceMayWrap) {
-  Stream stream;
-  stream.next.sequence = 0xFFFFFFF0u;
+  Stream stream(true);
+  stream.next.sequence = 0x7FFFFFF0u;
+  stream.steps(1);
+  stream.next.sequence = 0xFFFFFFE0u;
+  const std::uint64_t before = stream.monitor.state().samples;
   stream.steps(64);
-  EXPECT_EQ(stream.monitor.state().samples, 64u);
+  EXPECT_EQ(stream.monitor.state().samples, before + 64u);
   EXPECT_EQ(stream.monitor.state().transient, 0u);
 }
 
@@ -127,16 +128,18 @@ TEST(StreamMonitor, StandingStillIsStuckOnlyUnderForce) {
   EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck);
 }
 
-TEST(StreamMonitor, AnotherBootIsAReset) {
-  Stream stream;
-  stream.zero();
-  stream.next = Stream::first_of_boot(2);
-  stream.step();
-  EXPECT_EQ(stream.monitor.state().lost, device_fault::kReset);
+TEST(StreamMonitor, ASequenceThatBeginsAnewIsAReset) {
+  Stream stream(true);
+  stream.next = {};
+  stream.steps(7);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kOutOfOrder);
+  stream.steps(5);
+  EXPECT_NE(stream.monitor.state().transient & device_fault::kReset, 0u);
+  EXPECT_EQ(stream.monitor.state().lost, 0u) << "it knows where it is";
 }
 
 TEST(StreamMonitor, FaultsAddUpWhileTheyLast) {
-  Stream stream;
+  Stream stream(true);
   stream.steps(10);
   stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
   DeviceReading older = stream.next;

@@ -2,6 +2,8 @@
 // switch, and the ticks that are kept of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -64,6 +66,64 @@ TEST(LiveTickSafety, NobodyAtTheDeadManKeyIsNoForce) {
   // The window hangs with the key down.
   EXPECT_EQ(run(250, controls).rendered_N, 0.0);
   EXPECT_TRUE(run(1, controls).dead_man_released);
+}
+
+// Into the block at up to 24 mm/s and out again.
+TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
+  PathDevice plain_device(test::strokes), device(test::strokes, {6.0, 1e9, 0.0});
+  ModelSlot<LiveModels> plain_slot, slot;
+  LiveTickSettings settings;
+  settings.passivity = false;
+  LiveTick plain(plain_device, plain_slot, settings), live(device, slot, settings);
+  plain_slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(600.0)}));
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(600.0)}));
+  double last_N = 0.0, largest_N = 0.0;
+  LoopControls controls;
+  for (int tick = 0; tick < 4000; ++tick) {
+    if (tick == 1000) controls.scale = {4.0, 10.0};
+    if (tick == 3000) controls.scale = {};
+    const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
+    const LoopSnapshot as_it_is = plain.run(kTick_s * tick, {});
+    const double force_N = as_it_is.commanded_N;
+    if (tick < 1000 || tick > 3600) {
+      ASSERT_EQ(scaled.commanded_N, force_N) << "its bits";
+    }
+    if (tick > 1600 && tick < 3000) {
+      const double damped_N = 4.0 * force_N + 10.0 * as_it_is.tick.velocity_m_per_s;
+      ASSERT_NEAR(scaled.commanded_N, as_it_is.tick.in_contact ? std::max(0.0, damped_N) : 0.0, 1e-9) << tick;
+    }
+    ASSERT_GE(scaled.rendered_N, 0.0);
+    ASSERT_LE(scaled.rendered_N, 6.0) << "the limiter comes behind it";
+    ASSERT_LE(std::abs(scaled.commanded_N - last_N), 0.4) << "no kick";
+    last_N = scaled.commanded_N;
+    largest_N = std::max(largest_N, last_N);
+  }
+  EXPECT_GT(largest_N, 9.0);
+}
+
+// In the air for a second, then shaken inside the block, as an encoder of 30 um sees it.
+double shaken(double time_s) {
+  const double position_m = time_s < 1.0 ? -1e-3 : 2e-3 + 1.5e-3 * std::sin(125.0 * time_s);
+  return 30e-6 * std::round(position_m / 30e-6);
+}
+
+TEST(LiveTickSafety, AScaledForceIsKeptAsPassiveAsThatOfAStifferModel) {
+  PathDevice stiff_device(shaken), device(shaken);
+  ModelSlot<LiveModels> stiff_slot, slot;
+  LiveTick stiff(stiff_device, stiff_slot), live(device, slot);
+  stiff_slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(4 * 750.0)}));
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(750.0)}));
+  LoopControls controls;
+  controls.scale.stiffness = 4.0;
+  double taken_N = 0.0;
+  for (int tick = 0; tick < 3000; ++tick) {
+    const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
+    const LoopSnapshot as_stiff = stiff.run(kTick_s * tick, {});
+    ASSERT_EQ(scaled.commanded_N, as_stiff.commanded_N) << tick;
+    ASSERT_EQ(scaled.rendered_N, as_stiff.rendered_N) << tick;
+    taken_N = std::max(taken_N, std::abs(scaled.passive_N - scaled.commanded_N));
+  }
+  EXPECT_GT(taken_N, 0.01) << "or the controller had nothing to do";
 }
 
 TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {

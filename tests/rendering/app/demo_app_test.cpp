@@ -1,12 +1,19 @@
 // The window as a whole: a picture, files, sizes.
 #include "rendering/app/demo_app.h"
 
+#include <imgui_internal.h>
 #include <png.h>
 
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "engine/recording/recording.h"
+#include "rendering/app/stats_file.h"
+#include "scenes/worker/slot_plan.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {
@@ -131,6 +138,90 @@ TEST_F(DemoAppTest, FollowsTheSizeOfItsWindow) {
   EXPECT_EQ(image.width, 1920u);
   EXPECT_EQ(image.height, 1080u);
   png_image_free(&image);
+}
+
+// As the program starts: the silicone block, the first line-up, a hand.
+class DefaultStart : public test::DemoWindowTest {
+ protected:
+  void open_as_started() {
+    DemoRequest request;
+    request.session.scene = "silicone_block";
+    request.session.device = "hand";
+    request.session.line_up = line_ups().front().name;
+    request.session.realtime = false;
+    auto app = DemoApp::create(request);
+    ASSERT_TRUE(app.ok()) << app.error().message;
+    app_ = std::move(*app);
+  }
+};
+
+// Ten seconds of ticks, and whatever this machine needs to fit the first model.
+TEST_F(DefaultStart, AfterTenSecondsTheVerdictIsWhatTheStatsSay) {
+  open_as_started();
+  const double began_s = app_->session().newest().loop_time_s;
+  ASSERT_TRUE(until([&] { return app_->session().newest().loop_time_s > began_s + 10.0; }));
+  nlohmann::json stats;
+  std::string verdict;
+  ASSERT_TRUE(until([&] {
+    stats = nlohmann::json::parse(stats_text(app_->session(), app_->frames()));
+    verdict = stats["verdict"];
+    return verdict.find("unnoticeable at") != std::string::npos;
+  }));
+  const bool none = verdict.rfind("None is unnoticeable. ", 0) == 0;
+  const std::string sentence = none ? verdict.substr(22) : verdict;
+  const std::string winner = sentence.substr(0, sentence.find(": "));
+  double best_share = 0.0, cheapest_ns = 1e12;
+  const nlohmann::json* found = nullptr;
+  for (const auto& model : stats["models"]) {
+    if (model["name"] == winner) found = &model;
+    if (model["samples"] < 300) continue;
+    best_share = std::max(best_share, model["within_jnd"].get<double>());
+    if (model["within_jnd"] >= 0.99) cheapest_ns = std::min(cheapest_ns, model["tick_ns"].get<double>());
+  }
+  ASSERT_NE(found, nullptr) << verdict;
+  const double share = (*found)["within_jnd"], tick_ns = (*found)["tick_ns"];
+  char expected[96];
+  std::snprintf(expected, sizeof expected, "%s: %g %% unnoticeable at %.2g us a tick", winner.c_str(),
+                std::floor(1000.0 * share) / 10.0, 1e-3 * tick_ns);
+  EXPECT_EQ(sentence.rfind(expected, 0), 0u) << verdict << "; expected " << expected;
+  EXPECT_EQ(none, share < 0.99);
+  if (none) {
+    EXPECT_EQ(share, best_share) << verdict;
+  } else {
+    EXPECT_EQ(tick_ns, cheapest_ns) << "the cheapest of the good ones: " << verdict;
+  }
+}
+
+// PALPATE_PICTURES=DIR saves what it looks like with all models, for people.
+TEST_F(DefaultStart, IsDrawnAtEverySizeInBothThemes) {
+  open_as_started();
+  const char* folder = std::getenv("PALPATE_PICTURES");
+  if (folder != nullptr) {
+    const double began_s = app_->session().newest().loop_time_s;
+    ASSERT_TRUE(until([&] {
+      return app_->session().models().all_settled() && app_->session().newest().loop_time_s > began_s + 12.0;
+    }));
+  }
+  press(GLFW_KEY_J);
+  app_->session().use_scale({1.5, 4.0});
+  for (const auto& [width, height] : {std::pair{1024, 600}, std::pair{1280, 720}, std::pair{1920, 1080}}) {
+    if (height == 1080) press(GLFW_KEY_J);
+    glfwSetWindowSize(app_->window().handle(), width, height);
+    glfwSetCursorPos(app_->window().handle(), 4.0, 0.5 * height);  // over nothing that explains itself
+    for (const Theme theme : {Theme::light, Theme::dark}) {
+      app_->view().theme = theme;
+      frames(folder != nullptr ? 60 : 4);
+      const std::string name = "window" + std::to_string(height) + (theme == Theme::dark ? "-dark.png" : ".png");
+      ASSERT_TRUE(app_->screenshot((folder != nullptr ? std::string(folder) : folder_.path()) + "/" + name, true).ok());
+      for (const char* part : {"title", "buttons", "panel"}) {
+        const ImGuiWindow* window = ImGui::FindWindowByName(part);
+        ASSERT_NE(window, nullptr) << part;
+        EXPECT_LE(window->Pos.x + window->Size.x, static_cast<float>(width)) << part;
+        EXPECT_LE(window->Pos.y + window->Size.y, static_cast<float>(height)) << part;
+        EXPECT_EQ(window->ScrollMax.y, 0.0F) << part << " does not fit into " << width;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -131,15 +131,38 @@ TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   }
 }
 
+TEST_F(DemoCommandsTest, TheForceInTheHandIsScaledUntilItIsSwitchedOff) {
+  open("hand");
+  EXPECT_EQ(app_->session().scale(), ForceScale{});
+  press(GLFW_KEY_J);
+  EXPECT_TRUE(app_->view().feel);
+  EXPECT_NE(ImGui::FindWindowByName("feel"), nullptr);
+  app_->session().use_scale({2.0, 5.0});
+  EXPECT_EQ(scale_words(app_->session().scale()), "in the hand: stiffness x 2.00, damping + 5.0");
+  frames(2);
+  press(GLFW_KEY_J);
+  EXPECT_EQ(app_->session().scale(), ForceScale{});
+}
+
 TEST_F(DemoCommandsTest, SavesWhatTheCurvesShow) {
   open("hand");
   frames(30);
   press(GLFW_KEY_S);
-  ASSERT_TRUE(told("saved"));
+  ASSERT_TRUE(until([&] { return told(".svg and .csv"); }));
   std::size_t figures = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.file("palpate")))
     figures += entry.path().extension() == ".svg" || entry.path().extension() == ".csv" ? 1 : 0;
   EXPECT_EQ(figures, 2u);
+}
+
+TEST_F(DemoCommandsTest, WithoutGnuplotTheCurvesAreSavedAsData) {
+  open("hand");
+  frames(30);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder_.path().c_str(), 1);
+  press(GLFW_KEY_S);
+  EXPECT_TRUE(until([&] { return told(".csv without a figure: found no gnuplot in PATH, which draws the figures"); }));
+  setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(DemoCommandsTest, SavesTheModelInTheHand) {

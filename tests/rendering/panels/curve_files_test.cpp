@@ -28,19 +28,20 @@ TEST(CurveFiles, WhatIsEqualInTheTableIsEqualInTheFigure) {
   const ForceHistory history = example();
   CurveColumns columns;
   columns.gather(history, {}, 1, 100.0, 102.0, 100);
-  const CurveSource source{"scene", "hand", "truth", {}, 100.0, {{0, "model", Rgb(0.0F)}}};
-  const std::string svg = curve_svg(columns, source, 100.0, 102.0);
-  std::vector<std::string> paths;
-  for (std::size_t at = svg.find("<path d='M"); at != std::string::npos; at = svg.find("<path d='M", at + 1)) {
-    const std::string path = svg.substr(at + 9, svg.find('\'', at + 9) - at - 9);
-    if (path.find('L') != std::string::npos) paths.push_back(path);
+  const CurveSource source{"scene", "hand", "truth", {}, 100.0, {{0, "model", kInkColour}}};
+  const Plot plot = curve_plot(columns, source, 100.0, 102.0);
+  const std::vector<Series>& force = plot.panels.at(0).series;
+  ASSERT_EQ(force.size(), 3u) << "band, reference, model";
+  ASSERT_GT(force[1].rows.size(), 90u);
+  for (std::size_t i = 0; i < force[1].rows.size(); ++i) {
+    EXPECT_EQ(force[1].rows[i].y, force[2].rows[i].y);
+    EXPECT_EQ(plot.panels.at(1).series.at(1).rows[i].y, 0.0);
+    EXPECT_NEAR(force[0].rows[i].high - force[1].rows[i].y, JndLine{}.at(force[1].rows[i].y), 1e-6);
   }
-  ASSERT_EQ(paths.size(), 3u) << "reference, model, difference";
-  EXPECT_EQ(paths[0], paths[1]);
 }
 
 TEST(CurveFiles, EveryRowSaysWhatItsReferenceWas) {
-  const CurveSource source{"scene", "hand", "truth", {}, 100.0, {{0, "model", Rgb(0.0F)}}};
+  const CurveSource source{"scene", "hand", "truth", {}, 100.0, {{0, "model", kInkColour}}};
   std::istringstream csv(curve_csv(example(), source, 100.0, 102.0));
   std::string line;
   std::getline(csv, line);

@@ -59,9 +59,9 @@ class ExhibitTest : public test::DemoWindowTest {
 
   // The handle of a force device into the block and out again, no faster than a hand.
   void stroke_device() {
-    for (const int to : {1150, 0}) {
+    for (const int to : {460, 0}) {
       ASSERT_TRUE(until([&] {
-        bus_.counts += std::clamp(to - bus_.counts, -50, 50);
+        bus_.counts += std::clamp(to - bus_.counts, -20, 20);
         return bus_.counts == to && app_->session().newest().tick.in_contact == (to > 0);
       }));
     }

@@ -1,6 +1,6 @@
-// A haptic paddle as the system would show it: sysfs and a hidraw node made by
+// An OpenFFBoard as the system would show it: sysfs and a hidraw node made by
 // umockdev, which the real libhidapi enumerates, opens, reads and writes. Behind
-// the node runs the reference firmware.
+// the node is what is known of its firmware.
 //
 // What umockdev 0.17 cannot do: its node never polls readable, so that only a
 // blocking hid_read gets a report.
@@ -20,22 +20,21 @@
 
 namespace palpate::test {
 
-class EmulatedPaddle {
+class EmulatedBoard {
  public:
-  EmulatedPaddle();
-  EmulatedPaddle(const EmulatedPaddle&) = delete;
-  EmulatedPaddle& operator=(const EmulatedPaddle&) = delete;
-  ~EmulatedPaddle();
+  EmulatedBoard();
+  EmulatedBoard(const EmulatedBoard&) = delete;
+  EmulatedBoard& operator=(const EmulatedBoard&) = delete;
+  ~EmulatedBoard();
 
   // Asked by the node; the thread of umockdev.
   bool ioctl(UMockdevIoctlClient* client);
   bool read(UMockdevIoctlClient* client);
   bool write(UMockdevIoctlClient* client);
 
-  std::atomic<bool> gone{false};       // reads and writes fail
-  std::atomic<int> report_version{1};  // of the protocol
-  std::atomic<double> motor_mA{0.0};
-  std::atomic<int> told_mA{0};  // by the last report that was written
+  std::atomic<bool> gone{false};  // reads and writes fail
+  std::atomic<double> motor_units{0.0};
+  std::atomic<int> told_units{0};  // by the last force that was written
   std::atomic<int> reads{0};
   std::atomic<int> writes{0};
   std::atomic<std::size_t> last_write_size{0};
@@ -43,7 +42,7 @@ class EmulatedPaddle {
  private:
   UMockdevTestbed* testbed_;
   UMockdevIoctlBase* handler_;
-  PaddleModel paddle_;
+  OpenFfBoardModel board_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

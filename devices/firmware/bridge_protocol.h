@@ -5,7 +5,9 @@
 // machine. Thread guarantee: pure functions and values, wait-free, never throw.
 #pragma once
 
-#include "devices/firmware/paddle/wire.h"
+#ifndef ARDUINO  // a sketch includes the files of its folder itself
+#include "devices/firmware/wire.h"
+#endif
 
 namespace palpate {
 namespace bridge {

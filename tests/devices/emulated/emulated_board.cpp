@@ -1,24 +1,25 @@
-#include "tests/devices/emulated/emulated_paddle.h"
+#include "tests/devices/emulated/emulated_board.h"
 
 #include <cerrno>
 #include <cstring>
 
 namespace {
 
-// Vendor-defined page 0xFFAB, usage 0x0200, 64 bytes each way.
-constexpr guint8 kDescriptor[] = {0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 0x08, 0x15, 0x00, 0x26, 0xFF,
-                                  0x00, 0x95, 0x40, 0x09, 0x01, 0x81, 0x02, 0x95, 0x40, 0x09, 0x02, 0x91, 0x02, 0xC0};
+// Vendor-defined page 0xFF00, usage 1, report 0xA1 of 24 bytes each way.
+constexpr guint8 kDescriptor[] = {0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x85, 0xA1, 0x75,
+                                  0x08, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x95, 0x18, 0x09, 0x01,
+                                  0x81, 0x02, 0x95, 0x18, 0x09, 0x02, 0x91, 0x02, 0xC0};
 
 constexpr char kDescription[] =
     "P: /devices/usb1/1-1\n"
     "N: bus/usb/001/002\n"
     "E: DEVTYPE=usb_device\n"
     "E: SUBSYSTEM=usb\n"
-    "A: idVendor=16c0\n"
-    "A: idProduct=0486\n"
+    "A: idVendor=1209\n"
+    "A: idProduct=ffb0\n"
     "A: bcdDevice=0100\n"
-    "A: manufacturer=Teensyduino\n"
-    "A: product=Teensyduino RawHID\n"
+    "A: manufacturer=OpenFFBoard\n"
+    "A: product=FFBoard\n"
     "A: serial=12345\n"
     "\n"
     "P: /devices/usb1/1-1/1-1:1.0\n"
@@ -26,23 +27,23 @@ constexpr char kDescription[] =
     "E: SUBSYSTEM=usb\n"
     "A: bInterfaceNumber=00\n"
     "\n"
-    "P: /devices/usb1/1-1/1-1:1.0/0003:16C0:0486.0001\n"
+    "P: /devices/usb1/1-1/1-1:1.0/0003:1209:FFB0.0001\n"
     "E: SUBSYSTEM=hid\n"
-    "E: HID_ID=0003:000016C0:00000486\n"
-    "E: HID_NAME=Teensyduino RawHID\n"
+    "E: HID_ID=0003:00001209:0000FFB0\n"
+    "E: HID_NAME=FFBoard\n"
     "E: HID_UNIQ=12345\n"
-    "H: report_descriptor=06ABFF0A0002A1017508150026FF00954009018102954009029102C0\n"
+    "H: report_descriptor=0600FF0901A10185A17508150026FF00951809018102951809029102C0\n"
     "\n"
-    "P: /devices/usb1/1-1/1-1:1.0/0003:16C0:0486.0001/hidraw/hidraw0\n"
+    "P: /devices/usb1/1-1/1-1:1.0/0003:1209:FFB0.0001/hidraw/hidraw0\n"
     "N: hidraw0\n"
-    "L: device=../../../0003:16C0:0486.0001\n"
+    "L: device=../../../0003:1209:FFB0.0001\n"
     "E: SUBSYSTEM=hidraw\n"
     "E: DEVNAME=/dev/hidraw0\n";
 
 // The subclass of UMockdevIoctlBase that passes everything on.
 struct NodeHandler {
   UMockdevIoctlBase parent;
-  palpate::test::EmulatedPaddle* paddle;
+  palpate::test::EmulatedBoard* board;
 };
 struct NodeHandlerClass {
   UMockdevIoctlBaseClass parent;
@@ -52,20 +53,18 @@ G_GNUC_BEGIN_IGNORE_DEPRECATIONS
 G_DEFINE_TYPE(NodeHandler, node_handler, UMOCKDEV_TYPE_IOCTL_BASE)
 G_GNUC_END_IGNORE_DEPRECATIONS
 
-palpate::test::EmulatedPaddle& paddle_of(UMockdevIoctlBase* self) {
-  return *reinterpret_cast<NodeHandler*>(self)->paddle;
-}
+palpate::test::EmulatedBoard& board_of(UMockdevIoctlBase* self) { return *reinterpret_cast<NodeHandler*>(self)->board; }
 
 void node_handler_init(NodeHandler*) {}
 void node_handler_class_init(NodeHandlerClass* type) {
   type->parent.handle_ioctl = [](UMockdevIoctlBase* self, UMockdevIoctlClient* client) -> gboolean {
-    return paddle_of(self).ioctl(client);
+    return board_of(self).ioctl(client);
   };
   type->parent.handle_read = [](UMockdevIoctlBase* self, UMockdevIoctlClient* client) -> gboolean {
-    return paddle_of(self).read(client);
+    return board_of(self).read(client);
   };
   type->parent.handle_write = [](UMockdevIoctlBase* self, UMockdevIoctlClient* client) -> gboolean {
-    return paddle_of(self).write(client);
+    return board_of(self).write(client);
   };
 }
 
@@ -73,9 +72,9 @@ void node_handler_class_init(NodeHandlerClass* type) {
 
 namespace palpate::test {
 
-EmulatedPaddle::EmulatedPaddle()
+EmulatedBoard::EmulatedBoard()
     : testbed_(umockdev_testbed_new()), handler_(UMOCKDEV_IOCTL_BASE(g_object_new(node_handler_get_type(), nullptr))) {
-  reinterpret_cast<NodeHandler*>(handler_)->paddle = this;
+  reinterpret_cast<NodeHandler*>(handler_)->board = this;
   GError* error = nullptr;
   if (!umockdev_testbed_add_from_string(testbed_, kDescription, &error) ||
       !umockdev_testbed_attach_ioctl(testbed_, "/dev/hidraw0", handler_, &error)) {
@@ -83,13 +82,13 @@ EmulatedPaddle::EmulatedPaddle()
   }
 }
 
-EmulatedPaddle::~EmulatedPaddle() {
+EmulatedBoard::~EmulatedBoard() {
   umockdev_testbed_detach_ioctl(testbed_, "/dev/hidraw0", nullptr);
   g_object_unref(handler_);
   g_object_unref(testbed_);
 }
 
-bool EmulatedPaddle::ioctl(UMockdevIoctlClient* client) {
+bool EmulatedBoard::ioctl(UMockdevIoctlClient* client) {
   UMockdevIoctlData* const argument = umockdev_ioctl_client_get_arg(client);
   const gulong request = umockdev_ioctl_client_get_request(client);
   if (request == HIDIOCGRDESCSIZE) {
@@ -110,22 +109,20 @@ bool EmulatedPaddle::ioctl(UMockdevIoctlClient* client) {
   return true;
 }
 
-bool EmulatedPaddle::read(UMockdevIoctlClient* client) {
+bool EmulatedBoard::read(UMockdevIoctlClient* client) {
   ++reads;
   if (gone) {
     umockdev_ioctl_client_complete(client, -1, EIO);
     return true;
   }
-  while (paddle_.outbox.empty()) {
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-    const auto since = std::chrono::steady_clock::now() - start_;
-    const auto us = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
-    paddle_.step(static_cast<std::uint32_t>(us), 1000);
-  }
-  motor_mA = paddle_.force_units();
-  Report report = paddle_.outbox.back();
-  paddle_.outbox.clear();
-  report[1] = static_cast<std::uint8_t>(report_version);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto since = std::chrono::steady_clock::now() - start_;
+  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
+  board_.step(static_cast<std::uint32_t>(us), 1000);
+  motor_units = board_.force_units();
+  board_.be_asked();
+  Report report = board_.outbox.back();
+  board_.outbox.clear();
   UMockdevIoctlData* const data = umockdev_ioctl_client_get_arg(client);
   const gint size = std::min(data->data_len, static_cast<gint>(report.size()));
   umockdev_ioctl_data_update(data, 0, report.data(), size);
@@ -133,7 +130,7 @@ bool EmulatedPaddle::read(UMockdevIoctlClient* client) {
   return true;
 }
 
-bool EmulatedPaddle::write(UMockdevIoctlClient* client) {
+bool EmulatedBoard::write(UMockdevIoctlClient* client) {
   UMockdevIoctlData* const data = umockdev_ioctl_client_get_arg(client);
   ++writes;
   last_write_size = static_cast<std::size_t>(data->data_len);
@@ -141,9 +138,9 @@ bool EmulatedPaddle::write(UMockdevIoctlClient* client) {
     umockdev_ioctl_client_complete(client, -1, EIO);
     return true;
   }
-  paddle::FromHost told{};
-  if (paddle::decode(data->data + 1, told) == paddle::kGood) told_mA = told.current_mA;
-  paddle_.hear(Report(data->data + 1, data->data + data->data_len));
+  const bool force = wire::read16(data->data + 2) == 0xA03 && wire::read32(data->data + 5) == 4;
+  if (force) told_units = static_cast<int>(wire::read32(data->data + 9));
+  board_.hear(Report(data->data, data->data + data->data_len));
   umockdev_ioctl_client_complete(client, data->data_len, 0);
   return true;
 }

@@ -1,5 +1,5 @@
-// What the protocols of this folder's boards have in common: little-endian numbers,
-// their checksum, and the time after which a silent host no longer counts.
+// What boards and HID reports have in common: little-endian numbers, a checksum, and the time after which a silent host
+// no longer counts.
 //
 // C++11 without a library beyond stdint, so that an Arduino compiles it.
 // Thread guarantee: pure functions and values, wait-free, never throw.
