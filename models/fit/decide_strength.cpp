@@ -47,7 +47,7 @@ LeftOutRows left_out_rows(const ModelData& common, const TrendRows& rows, const 
 constexpr std::size_t kFewest = 50;
 constexpr double kHeld = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
-constexpr double kLeastShape_N = 1e-3;  // something is left to multiply
+constexpr double kLeastShape_N = 1e-3;      // something is left to multiply
 // A force of 10 mN counts as none (prepare_training.cpp), and nothing is held closer: without
 // it the bound held 77 to 90 % on skin, 83 on one trial of silicone; with it 97 to 100.
 constexpr double kLeastFloor_N = 0.01;

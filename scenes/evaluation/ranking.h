@@ -1,6 +1,7 @@
 // Which model to take, of some that were evaluated over the same samples:
 //   best     the smallest 99 % error; of equal ones the smallest RMS
-//   tied     those whose paired difference from the best cannot be told from 0
+//   tied     those that cannot be told from the best: their paired difference not from 0, or
+//            both not by a hand, the 99 % errors being within the JND (95 %, one-sided)
 //   chosen   the tied one that is cheapest to evaluate
 // Thread guarantee: pure functions.
 #pragma once

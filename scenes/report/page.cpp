@@ -143,7 +143,8 @@ std::string notes_html(const ReportData& data) {
   const Evidence& errors = data.models[data.choice.chosen].errors;
   notes.push_back("Chosen on " + data.choice.chosen_on +
                   (data.choice.tied.size() > 1
-                       ? ", where " + std::to_string(data.choice.tied.size()) + " models are tied: the smallest."
+                       ? ", where " + std::to_string(data.choice.tied.size()) +
+                             " models are tied or differ by less than a hand notices: the cheapest."
                        : "."));
   if (data.folds > 0)
     notes.push_back("No test recording: " + std::to_string(data.folds) + "-fold cross-validation over the training.");

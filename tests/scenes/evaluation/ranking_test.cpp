@@ -37,5 +37,13 @@ TEST(Rank, CheapnessDoesNotOutweighAnErrorThatCanBeTold) {
   EXPECT_EQ(ranking.tied, (std::vector<std::size_t>{1}));
 }
 
+TEST(Rank, WhatNoHandNoticesIsTied) {
+  const Evidence good = evidence(0.1, 0.0);
+  const Evidence unnoticed = evidence(0.1, 0.005);  // told from the good one, and far within the JND
+  const Ranking ranking = rank({{&unnoticed, 0}, {&good, 1000}});
+  EXPECT_EQ(ranking.best, 1u);
+  EXPECT_EQ(ranking.chosen, 0u);
+}
+
 }  // namespace
 }  // namespace palpate
