@@ -26,14 +26,32 @@ using Vector = hn::Vec<Doubles>;
 // 1e-54 (cubic) and 1e-90 (quintic).
 constexpr double kSmallestSquared = 1e-36;
 
-template <KernelKind kKind>
+// r from r^2. The square root unit is the bottleneck; AVX-512 has an estimate y of 1/r good to
+// 14 bits as well, and takes turns between the unit and
+//   r = r^2 y (1 + e/2 + 3 e^2/8 + 5 e^3/16),  e = 1 - r^2 y^2, |e| <= 2^-13.
+template <bool kSeries>
+HWY_INLINE Vector root(Vector squared) {
+#if HWY_TARGET == HWY_AVX3
+  if constexpr (kSeries) {
+    const Doubles d;
+    const Vector y{_mm512_rsqrt14_pd(squared.raw)};
+    const Vector r = hn::Mul(squared, y);
+    const Vector e = hn::NegMulAdd(r, y, hn::Set(d, 1.0));
+    const Vector inner = hn::MulAdd(e, hn::Set(d, 0.3125), hn::Set(d, 0.375));
+    return hn::MulAdd(hn::Mul(r, e), hn::MulAdd(e, inner, hn::Set(d, 0.5)), r);
+  }
+#endif
+  return hn::Sqrt(squared);
+}
+
+template <KernelKind kKind, bool kSeries = false>
 HWY_INLINE Vector kernel_of_squared(Vector squared) {
   const Doubles d;
   if constexpr (kKind == KernelKind::thin_plate) {
     // r^2 log r = r^2 log(r^2) / 2
     return hn::Mul(hn::Mul(hn::Set(d, 0.5), squared), hn::Log(d, squared));
   } else {
-    const Vector r = hn::Sqrt(squared);
+    const Vector r = root<kSeries>(squared);
     if constexpr (kKind == KernelKind::linear) return r;
     if constexpr (kKind == KernelKind::cubic) return hn::Mul(squared, r);
     if constexpr (kKind == KernelKind::quintic) return hn::Mul(hn::Mul(squared, squared), r);
@@ -69,9 +87,9 @@ HWY_INLINE Vector squared_distance(const Points& points, size_t i, const Broadca
   return hn::Max(sum, hn::Set(d, kSmallestSquared));
 }
 
-template <KernelKind kKind, int kDimension>
+template <KernelKind kKind, int kDimension, bool kSeries = false>
 HWY_INLINE Vector kernel_at(const Points& points, size_t i, const Broadcast<kDimension>& x) {
-  return kernel_of_squared<kKind>(squared_distance<kDimension>(points, i, x));
+  return kernel_of_squared<kKind, kSeries>(squared_distance<kDimension>(points, i, x));
 }
 
 template <KernelKind kKind, int kDimension>
@@ -87,7 +105,8 @@ double evaluate(const Points& points, const double* weights, const double* tail,
   size_t i = 0;
   for (; i + 2 * lanes <= points.padded; i += 2 * lanes) {
     sum = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
-    more = hn::MulAdd(hn::Load(d, weights + i + lanes), kernel_at<kKind, kDimension>(points, i + lanes, query), more);
+    const Vector by_series = kernel_at<kKind, kDimension, true>(points, i + lanes, query);
+    more = hn::MulAdd(hn::Load(d, weights + i + lanes), by_series, more);
   }
   if (i < points.padded)
     sum = hn::MulAdd(hn::Load(d, weights + i), kernel_at<kKind, kDimension>(points, i, query), sum);
