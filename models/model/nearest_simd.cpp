@@ -80,7 +80,7 @@ HWY_INLINE size_t leaf_number(const NearTree& tree, const double* x) {
 template <int kDimension>
 HWY_INLINE size_t leaf_number(const NearTree& tree, const double* x) {
   float q[kDimension];
-  for (int k = 0; k < kDimension; ++k) q[k] = nearest_float(x[k] - tree.centre[k]);
+  for (int k = 0; k < kDimension; ++k) q[k] = nearest_float(x[k] - tree.centre.data()[k]);
   size_t node = 0;
   for (size_t level = 0; level < kNearLevels; ++level)
     node = 2 * node + 1 + (q[tree.split_coordinate[node]] >= tree.split_at[node] ? 1 : 0);
@@ -99,7 +99,7 @@ bool near_point(const NearTree& tree, const float* leaf_of_x, const double* x) n
   FloatVector coordinate[kDimension];
   FloatVector squared = hn::Zero(d);
   for (int k = 0; k < kDimension; ++k) {
-    coordinate[k] = hn::Set(d, nearest_float(x[k] - tree.centre[k]));
+    coordinate[k] = hn::Set(d, nearest_float(x[k] - tree.centre.data()[k]));
     squared = hn::MulAdd(coordinate[k], coordinate[k], squared);
   }
   const FloatVector limit = hn::MulSub(hn::Set(d, tree.half), squared, hn::Set(d, tree.half_squared));
