@@ -261,10 +261,8 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
 
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {
   out.add("\n/* ---- trend: a nonlinear viscoelastic solid ---- */\n\n");
-  const std::string rising =
-      write_curve(out, "elastic", trend.elastic_N, trend.has_elastic_knots, trend.elastic_knot_N, "u");
   const std::string elastic =
-      trend.preload_N == 0.0 ? rising : "(u > R(0.0) ? " + out.number(trend.preload_N) + " : R(0.0)) + " + rising;
+      write_curve(out, "elastic", trend.elastic_N, trend.has_elastic_knots, trend.elastic_knot_N, "u");
   out.list("viscosity", Eigen::Map<const Eigen::VectorXd>(trend.viscosity_Ns_per_m.data(), kViscosityCoefficients));
   out.list("thinning", Eigen::Map<const Eigen::VectorXd>(trend.thinning_Ns_per_m.data(), kViscosityCoefficients));
   const std::string limit = out.number(trend.velocity_limit_m_per_s);

@@ -48,9 +48,6 @@ constexpr std::size_t kFewest = 50;
 constexpr double kHeld = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
 constexpr double kLeastShape_N = 1e-3;      // something is left to multiply
-// A force of 10 mN counts as none (prepare_training.cpp), and nothing is held closer: without
-// it the bound held 77 to 90 % on skin, 83 on one trial of silicone; with it 97 to 100.
-constexpr double kLeastFloor_N = 0.01;
 
 }  // namespace
 
@@ -78,7 +75,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
   const double factor = ratios[rank];
-  bound.floor_N = std::max(factor * bound.floor_N, kLeastFloor_N);
+  bound.floor_N = std::max(factor * bound.floor_N, kNoForceFloor_N);
   bound.per_force *= factor;
   bound.per_distance_N = std::max(factor * bound.per_distance_N, kLeastPerDistance * largest_force_N);
   return bound;

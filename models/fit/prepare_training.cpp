@@ -19,7 +19,6 @@ namespace {
 // "No measured force" is at or below three standard deviations of the force
 // sensor's noise, and at least 10 mN.
 constexpr double kNoForceDeviations = 3.0;
-constexpr double kNoForceFloor_N = 0.01;
 // A quick fit stands in for the model while one-sided samples find their side.
 constexpr Eigen::Index kQuickCentres = 100;
 constexpr int kOneSidedPasses = 3;
@@ -160,8 +159,14 @@ Result<double> find_surfaces(MotionSource& source, const TrainingRequest& reques
     provenance.surfaces.push_back(
         {source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N, found->lag_s});
   }
-  source.correct(std::move(corrections));
-  return found->surface_position_m;
+  source.correct(corrections);
+  const auto extent = measure_extent(source, control);
+  if (!extent) return extent.error();
+  const auto beginning_m = find_beginning(source, *extent, request.jnd, control);
+  if (!beginning_m) return beginning_m.error();
+  for (RowCorrection& one : corrections) one.offset_m += *beginning_m;
+  if (*beginning_m != 0.0) source.correct(std::move(corrections));
+  return found->surface_position_m + *beginning_m;
 }
 
 // Keeps samples to evaluate the fit with, of as many in contact as there will be.

@@ -32,8 +32,7 @@ double Trend::at(const double* features, const TrendInputs& inputs) const noexce
   const double u = depth_m / reference_depth_m;
   const double speed = std::clamp(velocity_m_per_s, -velocity_limit_m_per_s, velocity_limit_m_per_s);
   const double inside = std::min(u, 1.0);
-  return (depth_m > 0.0 ? preload_N : 0.0) + elastic_force_N(*this, u) +
-         polynomial(viscosity_Ns_per_m, inside) * speed +
+  return elastic_force_N(*this, u) + polynomial(viscosity_Ns_per_m, inside) * speed +
          polynomial(thinning_Ns_per_m, inside) * thinned_velocity(speed, thinning_velocity_m_per_s) + branches_N;
 }
 

@@ -2,10 +2,9 @@
 // radial basis functions correct near the data and which stands alone away
 // from it.
 //
-//   T(x) = P + E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum y
+//   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum y
 //
-// P the force where depth begins, of recordings that begin to count depth under load;
-// d > 0 depth, v velocity, z_b the force of Maxwell branch b (engine/tick/features.h),
+// d depth, v velocity, z_b the force of Maxwell branch b (engine/tick/features.h),
 // all taken from the feature vector; v_0 is the recording's RMS velocity, so
 // that the two viscous terms together follow a viscosity that falls with speed.
 // z_b also of a maxwell_spectrum, y the force of bristles, stops and those that creep. E
@@ -47,7 +46,6 @@ struct TrendInputs {
 
 struct Trend {
   double reference_depth_m = 1.0;                        // greatest recorded depth; u = d / reference_depth_m
-  double preload_N = 0.0;                                // P, any sign
   std::array<double, kElasticCoefficients> elastic_N{};  // E = sum e_k u^(k+1)
   bool has_elastic_knots = false;
   std::array<double, kDriveKnots> elastic_knot_N{};  // of a cubic spline, on top (engine/tick/rising_curve.h)

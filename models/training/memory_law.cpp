@@ -126,7 +126,6 @@ Result<TrendRows> gather_rows(MotionSource& source, const FoldDealer& dealer, co
       },
       control, fraction);
   if (!status) return status.error();
-  rows.decide_preload(problem.jnd);
   return rows;
 }
 

@@ -27,6 +27,8 @@ namespace {
 constexpr double kLeastPulls = 10.0;
 constexpr double kPullShare = 1e-3;
 constexpr double kPullNoises = 5.0;
+// Of the greatest depth: less than a tenth of the first piece of the trend's elastic response.
+constexpr double kShallow = 0.01;
 
 }  // namespace
 
@@ -61,6 +63,30 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   // A tool that never moved still needs a scale: 1 um/s.
   extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
   return extent;
+}
+
+Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                              const FitControl& control) {
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth and force
+  const Status status = source.for_each(
+      [&](const MotionRow& row) {
+        const double depth_m = row.motion.position_m;
+        if (!(depth_m > 0.0) || depth_m > kShallow * extent.depth_m) return true;
+        n += 1.0, x += depth_m, y += row.force_N;
+        xx += depth_m * depth_m, xy += depth_m * row.force_N, yy += row.force_N * row.force_N;
+        return true;
+      },
+      control, 0.05);
+  if (!status) return status.error();
+  const double spread = n * xx - x * x;
+  if (n < 3.0 || !(spread > 0.0)) return 0.0;
+  const double slope = (n * xy - x * y) / spread;
+  const double force_N = (y - slope * x) / n;
+  const double variance = std::max(0.0, yy - force_N * y - slope * xy) / (n - 2.0);
+  const double felt_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
+  const bool told = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
+  const double out_m = force_N / slope;
+  return told && out_m < extent.depth_m ? -out_m : 0.0;
 }
 
 Result<DecisionRows> DecisionRows::of(MotionSource& source, const TrainingExtent& extent, const FitControl& control,

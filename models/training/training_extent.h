@@ -8,6 +8,7 @@
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
+#include "engine/tick/jnd.h"
 #include "models/training/fold_dealer.h"
 #include "models/training/motion_source.h"
 
@@ -31,6 +32,15 @@ FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent);
 
 // Errors: those of the source; interrupted.
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);
+
+// Where depth has to begin so that the force begins at 0, m; 0 where that is at the zero of
+// positions already, or cannot be told. Many rigs count depth from a preload. The straight line
+// through what is shallower than a hundredth of the greatest depth has its zero there; it is
+// believed where its force at the zero of positions is one that a hand notices, and that and
+// its slope are beyond two of their standard errors. Not farther out than the recordings go in.
+// Errors: those of the source; interrupted.
+Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                              const FitControl& control);
 
 class DecisionRows {
  public:

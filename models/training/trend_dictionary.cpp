@@ -58,8 +58,7 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   std::copy(spline.coefficient_N.begin(), spline.coefficient_N.end(), trend.elastic_N.begin());
   trend.has_elastic_knots = true;
   trend.elastic_knot_N = spline.knot_N;
-  trend.preload_N = rows.preload_sign() * x(TrendRows::kPreload);
-  Eigen::Index column = TrendRows::kFirstViscous;
+  auto column = static_cast<Eigen::Index>(kSplineTerms);
   if (rows.viscous_columns() > 0) {
     trend.thinning_velocity_m_per_s = rows.thinning_velocity_m_per_s();
     for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
@@ -138,8 +137,7 @@ TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rm
 std::vector<FeatureColumns> feature_columns(const FeatureList& list, const TrendRows& rows) {
   std::vector<FeatureColumns> groups;
   if (list.velocity) {
-    groups.push_back(
-        {FeatureKind::velocity, "velocity", columns_from(TrendRows::kFirstViscous, rows.viscous_columns())});
+    groups.push_back({FeatureKind::velocity, "velocity", columns_from(kSplineTerms, rows.viscous_columns())});
   }
   std::size_t first = rows.first_branch();
   const auto add = [&](FeatureKind kind, std::string name, std::size_t parts) {

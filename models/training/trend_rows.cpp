@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "models/model/bernstein.h"
@@ -27,32 +26,6 @@ constexpr auto kViscousBasis = [] {
   for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein<kViscosityCoefficients - 1>(k);
   return basis;
 }();
-
-// Of the greatest depth: an eighth of the first piece of the elastic response, in which that
-// hardly bends.
-constexpr double kShallow = 0.01;
-
-// The least-squares line through points, by its value at 0 and the standard error of that.
-class LineFit {
- public:
-  void add(double x, double y) {
-    const std::array<double, 6> terms{1.0, x, y, x * x, x * y, y * y};
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += terms[i];
-  }
-
-  std::pair<double, double> at_zero() const {
-    const auto& [n, x, y, xx, xy, yy] = sums_;
-    const double spread = n * xx - x * x;
-    if (n < 3.0 || !(spread > 0.0)) return {0.0, 0.0};
-    const double slope = (n * xy - x * y) / spread;
-    const double value = (y - slope * x) / n;
-    const double variance = std::max(0.0, yy - value * y - slope * xy) / (n - 2.0);
-    return {value, std::sqrt(variance * xx / spread)};
-  }
-
- private:
-  std::array<double, 6> sums_{};  // of 1, x, y, x^2, x y, y^2
-};
 
 constexpr std::size_t kSplinePieces = kDriveKnots + 1;
 constexpr double kSplinePiece = 1.0 / kSplinePieces;
@@ -213,7 +186,6 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   values_.resize(values_.size() + columns_);
   double* to = values_.data() + (values_.size() - columns_);
   for (const DriveCurve& curve : elastic_basis_) *to++ = curve.at(depth_m);
-  *to++ = depth_m > 0.0 ? preload_sign_ : 0.0;
   if (viscous_columns() > 0) {
     for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, terms_.thinning_velocity_m_per_s)}) {
       for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
@@ -227,17 +199,6 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   lag_m_.push_back(surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m);
   fold_.push_back(fold);
   if (count() > most_rows_) halve();
-}
-
-void TrendRows::decide_preload(const JndLine& jnd) {
-  LineFit line;
-  for (std::size_t i = 0; i < count(); ++i) {
-    if (depth_m_[i] <= kShallow * terms_.reference_depth_m) line.add(depth_m_[i], force_N_[i]);
-  }
-  const auto [force_N, standard_error_N] = line.at_zero();
-  const bool felt = std::abs(force_N) > std::max(jnd.at(0.0), 2.0 * standard_error_N);
-  preload_sign_ = felt ? std::copysign(1.0, force_N) : 0.0;
-  for (std::size_t i = 0; i < count(); ++i) values_[i * columns_ + kPreload] *= preload_sign_;
 }
 
 void TrendRows::halve() {

@@ -3,7 +3,6 @@
 //
 // Each row holds the trend's basis at one sample in contact:
 //   elastic    int_0^u of the quadratic B-splines on kDriveKnots inner knots
-//   preload    +-1 N, of recordings whose force where depth begins is felt; else 0
 //   viscous    v B_k,2(min(u, 1))      k = 0..2, when the scene has velocity,
 //              then the same with v / (1 + |v| / v_0)
 //   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
@@ -22,7 +21,6 @@
 #include <vector>
 
 #include "engine/tick/features.h"
-#include "engine/tick/jnd.h"
 #include "engine/tick/tool_sample.h"
 #include "models/model/trend.h"
 #include "models/training/branch_ladder.h"
@@ -43,7 +41,7 @@ inline constexpr std::size_t kSplineTerms = kDriveKnots + 3;
 std::vector<DriveCurve> spline_basis(double reference_depth_m);
 DriveCurve combined_spline(const double* weights, double reference_depth_m);
 
-// What a trend may consist of besides its elastic response and a preload, and in which basis.
+// What a trend may consist of besides its elastic response, and in which basis.
 struct TrendTerms {
   double reference_depth_m = 1.0;
   double thinning_velocity_m_per_s = 0.0;  // v_0; 0: no viscosity
@@ -73,13 +71,6 @@ class TrendRows {
   // A sample that only moves the filters and makes no row.
   void advance(const ToolSample& sample, const MotionEstimate& motion);
 
-  // When all rows are there: whether depth begins under load (an indenter whose zero is its
-  // preload, a force zero that is off in every recording). The straight line through what is
-  // shallower than a hundredth of the greatest depth says so, where its value at depth 0 is
-  // beyond both what a hand notices and two of its standard errors; the column of the
-  // preload takes its sign, or becomes 0.
-  void decide_preload(const JndLine& jnd);
-
   std::size_t columns() const { return columns_; }
   std::size_t viscous_columns() const;
   std::size_t count() const { return force_N_.size(); }
@@ -89,16 +80,12 @@ class TrendRows {
   double depth_m(std::size_t index) const { return depth_m_[index]; }
   double lag_m(std::size_t index) const { return lag_m_[index]; }
   int fold(std::size_t index) const { return fold_[index]; }
-  // +1, -1, or 0 without one.
-  double preload_sign() const { return preload_sign_; }
   const TrendTerms& terms() const { return terms_; }
   double reference_depth_m() const { return terms_.reference_depth_m; }
   double thinning_velocity_m_per_s() const { return terms_.thinning_velocity_m_per_s; }
   const std::vector<double>& relaxation_times_s() const { return terms_.relaxation_times_s; }
   // Where the columns of each kind begin; those of the elastic response begin at 0.
-  static constexpr std::size_t kPreload = kSplineTerms;
-  static constexpr std::size_t kFirstViscous = kPreload + 1;
-  std::size_t first_branch() const { return kFirstViscous + viscous_columns(); }
+  std::size_t first_branch() const { return kSplineTerms + viscous_columns(); }
   std::size_t first_stop() const { return first_branch() + kBranchTerms * terms_.relaxation_times_s.size(); }
   std::size_t first_creep() const { return first_stop() + kBristleTerms * terms_.stop_thresholds_m.size(); }
 
@@ -112,7 +99,6 @@ class TrendRows {
   std::vector<FeatureFilter> bristles_;  // kBristleTerms values each
   std::vector<DriveCurve> elastic_basis_;
   std::size_t columns_;
-  double preload_sign_ = 1.0;
   std::vector<double> values_;
   std::vector<double> force_N_;
   std::vector<double> velocity_m_per_s_;

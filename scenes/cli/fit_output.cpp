@@ -105,6 +105,9 @@ void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double se
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
             << "after reduction     " << provenance.samples_after_reduction << "\n";
   print_surfaces(provenance);
+  // The depth comes first among the features.
+  if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
+    std::cout << "depth begins        at " << fixed(1e3 * begins_m, 3) << " mm, where the recordings' force does\n";
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
             << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"

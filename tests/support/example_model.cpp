@@ -193,7 +193,6 @@ std::vector<ModelData> example_models() {
   models.back().name = "paper-recipe";
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
   models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
-  models.back().trend.preload_N = 0.25;
   models.back().trend.has_elastic_knots = true;
   models.back().trend.elastic_knot_N = models.back().features[1].drive.knot_N;
   models.back().features[0].surface_position_m = 0.4e-3;

@@ -9,8 +9,8 @@
 //   {nodes, values_N}, or trend_alone, or what another kind in the table of
 //   models/model/correction.h writes.
 // Every field is required but error_bound, sensor, provenance.surfaces (and the
-// standard_error_m of one), a feature's slowing and surface_position_m, the trend's preload_N,
-// and the knots of a curve. Others are refused (but provenance.fit_seconds, which older files have).
+// standard_error_m of one), a feature's slowing and surface_position_m, and the knots of a
+// curve. Others are refused (but provenance.fit_seconds, which older files have).
 // Centres, weights and cover points stand one to a line, so that two models can
 // be compared line by line. Numbers are the shortest decimals that read back as
 // the same double, so a model read back gives bit-identical forces. "filters" in

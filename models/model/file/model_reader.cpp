@@ -181,7 +181,6 @@ class ModelReader : private JsonFields {
 
   void read_trend(const JsonNode& node) {
     data_.trend.reference_depth_m = number(node, "reference_depth_m", Sign::kPositive);
-    if (optional_member(node, "preload_N").value != nullptr) data_.trend.preload_N = number(node, "preload_N");
     coefficients(node, "elastic_N", data_.trend.elastic_N);
     data_.trend.has_elastic_knots = optional_member(node, "elastic_knot_N").value != nullptr;
     if (data_.trend.has_elastic_knots) coefficients(node, "elastic_knot_N", data_.trend.elastic_knot_N);

@@ -60,7 +60,6 @@ std::string domain(const ModelData& data) {
 std::string trend(const ModelData& data) {
   const Trend& trend = data.trend;
   return "{\n    \"reference_depth_m\": " + json_number(trend.reference_depth_m) +
-         (trend.preload_N != 0.0 ? ",\n    \"preload_N\": " + json_number(trend.preload_N) : "") +
          ",\n    \"elastic_N\": " + json_list(trend.elastic_N) +
          (trend.has_elastic_knots ? ",\n    \"elastic_knot_N\": " + json_list(trend.elastic_knot_N) : "") +
          ",\n    \"viscosity_Ns_per_m\": " + json_list(trend.viscosity_Ns_per_m) +

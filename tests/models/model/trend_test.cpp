@@ -37,15 +37,6 @@ TEST(Trend, IsItsClosedFormInsideTheData) {
   }
 }
 
-TEST(Trend, APreloadIsThereWhereverDepthIs) {
-  Trend trend = example_trend();
-  const double without_N = at(trend, 2e-3, 0.01);
-  trend.preload_N = -0.7;
-  EXPECT_NEAR(at(trend, 2e-3, 0.01), without_N - 0.7, 1e-15);
-  EXPECT_EQ(at(trend, 0.0, 0.0), 0.0);
-  EXPECT_NEAR(at(trend, 1e-9, 0.0), -0.7, 1e-6);
-}
-
 TEST(Trend, BranchesAddTheirForceAndLowPassesNothing) {
   const Trend trend = example_trend();
   const double x[] = {2e-3, 0.01, 0.3, 0.4};

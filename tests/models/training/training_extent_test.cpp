@@ -31,6 +31,28 @@ TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
   EXPECT_TRUE(extent->turns_round());
 }
 
+// So many newtons more than the spring gives, and every other sample more or less by the noise.
+double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) {
+  Recording recording = presses(10000);
+  for (std::size_t i = 0; i < recording.rows.size(); ++i) {
+    RecordingRow& row = recording.rows[i];
+    row.force_N = preload_N + (i % 2 == 0 ? noise_N : -noise_N) + stiffness_N_per_m * row.position_m;
+  }
+  MotionSource source({{"", std::make_shared<const Recording>(recording)}});
+  const auto extent = measure_extent(source, {});
+  const auto beginning_m = find_beginning(source, *extent, {}, {});
+  return beginning_m.ok() ? *beginning_m : 1.0;
+}
+
+TEST(FindBeginning, IsWhereAForceThatIsFeltBeginsAndElseTheZeroOfPositions) {
+  EXPECT_NEAR(beginning_of(0.3, 0.0, 500.0), -0.6e-3, 0.03e-3);
+  EXPECT_EQ(beginning_of(0.0, 0.0, 500.0), 0.0);
+  EXPECT_EQ(beginning_of(0.05, 0.0, 500.0), 0.0);  // nobody feels it
+  EXPECT_EQ(beginning_of(0.3, 3.0, 500.0), 0.0);   // within two standard errors of nothing
+  EXPECT_EQ(beginning_of(3.0, 0.0, 500.0), 0.0);   // 6 mm farther out than the recording goes in
+  EXPECT_EQ(beginning_of(-8.0, 0.0, 500.0), 0.0);  // a force zero, or a pull: not a load
+}
+
 TEST(DecisionRows, AreTheSourceWhereItIsShortAndASampleWhereItIsLong) {
   MotionSource source({{"", std::make_shared<const Recording>(presses(40000))}});
   const auto extent = measure_extent(source, {});

@@ -30,7 +30,7 @@ Step step_at(int i) {
 TEST(TrendRows, ColumnsAreTheTrendsTerms) {
   TrendRows rows({kDepth_m, kThinning_m_per_s, {0.17, 1.27}, {}});
   const std::vector<DriveCurve> elastic = spline_basis(kDepth_m);
-  ASSERT_EQ(rows.columns(), kSplineTerms + 1 + 2 * kViscosityCoefficients + 2 * kBranchTerms);
+  ASSERT_EQ(rows.columns(), kSplineTerms + 2 * kViscosityCoefficients + 2 * kBranchTerms);
   FeatureFilter first(branch_basis(0.17, kDepth_m));
   FeatureFilter second(branch_basis(1.27, kDepth_m));
   rows.begin_recording();
@@ -46,8 +46,7 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
     const double u = motion.position_m / kDepth_m;
     const double v = motion.velocity_m_per_s;
     for (std::size_t k = 0; k < kSplineTerms; ++k) ASSERT_EQ(row[k], elastic[k].at(motion.position_m));
-    ASSERT_EQ(row[TrendRows::kPreload], motion.position_m > 0.0 ? 1.0 : 0.0);
-    row += TrendRows::kFirstViscous;
+    row += kSplineTerms;
     const double basis[] = {(1 - u) * (1 - u), 2 * u * (1 - u), u * u};
     for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
       ASSERT_NEAR(row[k], v * basis[k], 1e-15);
@@ -107,34 +106,8 @@ TEST(TrendRows, ALadderIsItsBranches) {
 
 TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
   TrendRows rows({kDepth_m, 0.0, {}, {}});
-  EXPECT_EQ(rows.columns(), kSplineTerms + 1);
+  EXPECT_EQ(rows.columns(), kSplineTerms);
   EXPECT_EQ(rows.viscous_columns(), 0u);
-}
-
-// Presses of a spring of 2 N/mm with so much force where depth begins, some of it noise.
-TrendRows presses(double preload_N, double noise_N, double stiffness_N_per_m) {
-  TrendRows rows({kDepth_m, 0.0, {}, {}});
-  rows.begin_recording();
-  for (int i = 0; i < 6000; ++i) {
-    const auto [sample, motion] = step_at(i);
-    const double noise = (i % 2 == 0 ? 1.0 : -1.0) * noise_N;
-    rows.add(sample, motion, preload_N + noise + stiffness_N_per_m * sample.position_m, 0);
-  }
-  rows.decide_preload({0.065, 0.0633});
-  return rows;
-}
-
-TEST(TrendRows, APreloadIsWhatIsFeltWhereDepthBegins) {
-  EXPECT_EQ(presses(0.0, 0.0, 2e3).preload_sign(), 0.0);
-  EXPECT_EQ(presses(0.05, 0.0, 2e3).preload_sign(), 0.0);  // nobody feels it
-  EXPECT_EQ(presses(0.3, 0.0, 2e3).preload_sign(), 1.0);
-  EXPECT_EQ(presses(-8.0, 0.0, 2e3).preload_sign(), -1.0);
-  EXPECT_EQ(presses(0.3, 2.0, 2e3).preload_sign(), 0.0);  // within two standard errors of nothing
-  EXPECT_EQ(presses(0.0, 0.0, 2e5).preload_sign(), 0.0);  // steep is not loaded
-  const TrendRows rows = presses(-8.0, 0.0, 2e3);
-  for (std::size_t i = 0; i < rows.count(); ++i) {
-    ASSERT_EQ(rows.row(i)[TrendRows::kPreload], rows.depth_m(i) > 0.0 ? -1.0 : 0.0);
-  }
 }
 
 TEST(TrendRows, HalvingBoundsTheRowsAndKeepsEvenOnesInOrder) {

@@ -55,7 +55,6 @@ TEST(ModelIo, FeaturesWithPartsSplinesSofteningAndTheErrorBoundAreKept) {
   FeatureSpec lag{FeatureKind::surface_lag};
   lag.drive = spectrum.parts[1].drive;
   ModelData data = example_model("greedy", KernelKind::cubic, {FeatureSpec{}, spectrum, stops, creep, lag}, 11);
-  data.trend.preload_N = 5.25;
   data.trend.has_elastic_knots = true;
   data.trend.elastic_knot_N = lag.drive.knot_N;
   data.error_bound = ErrorBound{0.01, 0.02, 0.3};
