@@ -269,7 +269,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   const Variant& best = *std::min_element(variants.begin(), variants.end(),
                                           [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
   const Variant* chosen = &none;
-  if (is_worth_it(best.fold_squares, none.fold_squares)) {
+  if (best.total() < none.total() && is_certainly_worse(none.fold_squares, best.fold_squares)) {
     // The shortest reach that is as good, and there the most smoothing. (Strokes that are
     // all alike say nothing of how far the correction may reach.)
     chosen = &best;

@@ -5,29 +5,15 @@
 #include <numeric>
 
 #include "models/surface/surface_numbers.h"
+#include "models/training/acceptance.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kLeastBlock = 0.1;  // of a mean block: smaller differences are noise
 constexpr std::size_t kMostValleys = 4;
 constexpr double kGolden = 0.6180339887498949;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
-
-// Every block has one voice, whatever it costs.
-bool as_good(const BlockCosts& one, const BlockCosts& best) {
-  const auto count = static_cast<double>(one.size());
-  const double least = kLeastBlock * sum(best) / count;
-  double mean = 0.0;
-  double squares = 0.0;
-  for (std::size_t b = 0; b < one.size(); ++b) {
-    const double share = (one[b] - best[b]) / (one[b] + best[b] + least);
-    mean += share / count;
-    squares += share * share;
-  }
-  return mean <= kSignificantErrors * std::sqrt((squares / count - mean * mean) / std::max(1.0, count - 1.0));
-}
 
 struct Place {
   double at = 0.0;
@@ -42,7 +28,7 @@ class Search {
     scan();
     const Place zero = place(0.0);
     if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(),
-                                         [&](const Place& one) { return as_good(zero.costs, one.costs); })) {
+                                         [&](const Place& one) { return !is_certainly_worse(zero.costs, one.costs); })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
     }
     refine_valleys();
@@ -58,7 +44,7 @@ class Search {
       found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.imitated && as_good(zero.costs, best_.costs)) found.told = false;
+    if (found.not_zero && zero_counts && range_.imitated && !is_certainly_worse(zero.costs, best_.costs)) found.told = false;
     if (!found.told) found.standard_error = kUnknownError;
     if (found.told && found.not_zero) found.at = best_.at;
     return found;
@@ -93,7 +79,7 @@ class Search {
     best_ = *std::min_element(bottoms.begin(), bottoms.end(),
                               [](const Place& a, const Place& b) { return sum(a.costs) < sum(b.costs); });
     alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Place& one) {
-      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && as_good(one.costs, best_.costs);
+      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_certainly_worse(one.costs, best_.costs);
     });
   }
 
@@ -124,7 +110,7 @@ class Search {
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
 
-  bool certainly_worse(double at) const { return !as_good(cost_(at), best_.costs); }
+  bool certainly_worse(double at) const { return is_certainly_worse(cost_(at), best_.costs); }
 
   // Quenouille (1956), Tukey (1958): a block left out at a time.
   double jackknife_error() const {

@@ -6,12 +6,11 @@
 // is the jackknife's: how far the minimum moves when one block after the other is left out
 // (Quenouille 1956; Tukey 1958), sqrt((n - 1)/n sum_b (x_b - mean)^2). Not told is a place
 // whose two standard errors reach an edge of the range or are wider than `widest`, and
-// one of two valleys as good as each other: the mean over blocks of
-// r_b = (J_b(x) - J_b(y)) / (J_b(x) + J_b(y)) is within two of its standard errors of 0.
+// one of two valleys as good as each other, neither certainly worse (acceptance.h).
 // Within two standard errors of 0 it is 0: what was recorded stands until the evidence is
 // against it, or lies outside of the range.
 // What a material imitates (friction a shift, viscosity a lag) errs in all blocks alike, which no
-// jackknife sees: such a place is told when 0 is certainly worse, not as good in the sense above;
+// jackknife sees: such a place is told when 0 is certainly worse;
 // and where the material imitates within `blur`, when all that far from it is certainly worse and
 // 0 further away.
 // Thread guarantee: slow side, pure.
@@ -26,7 +25,7 @@ using BlockCosts = std::vector<double>;
 
 struct Located {
   double at = 0.0;              // 0 where it is not told
-  bool not_zero = false;        // 0 is not as good as the best place, told or not
+  bool not_zero = false;        // 0 is not the best place, told or not
   double standard_error = 0.0;  // infinite: not told
   bool told = false;
   double cost = 0.0;  // J there, and at 0

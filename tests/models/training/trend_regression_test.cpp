@@ -85,5 +85,17 @@ TEST(Acceptance, TakesTheLessSimpleForTwoStandardErrorsAlone) {
   EXPECT_FALSE(is_as_good({11.0, 13.0, 12.0, 14.0, 10.0}, simple));
 }
 
+TEST(Acceptance, EveryBlockHasOneVoiceWhereCandidatesDifferInKind) {
+  // Trend and corrected trend on two presses of a foam slab whose force begins below 0: by the
+  // sum, 610 with a standard error of 421, it could not be told.
+  const std::vector<double> trend{470.0, 102.0, 51.6, 3.57, 5.50};
+  const std::vector<double> corrected{18.7, 3.07, 0.59, 0.40, 0.37};
+  EXPECT_FALSE(is_worth_it(corrected, trend));
+  EXPECT_TRUE(is_certainly_worse(trend, corrected));
+  EXPECT_FALSE(is_certainly_worse(corrected, trend));
+  EXPECT_FALSE(is_certainly_worse(trend, trend));
+  EXPECT_FALSE(is_certainly_worse({9.0, 1.0, 1.0, 1.0, 1.0}, {1.0, 1.3, 1.2, 1.2, 1.1})) << "one block's gain";
+}
+
 }  // namespace
 }  // namespace palpate
