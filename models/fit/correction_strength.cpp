@@ -23,7 +23,6 @@ constexpr Eigen::Index kCentres = 200;
 constexpr Eigen::Index kBlockRows = 512;  // of the design at a time
 constexpr int kLowestDecade = -9;         // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
-constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 
 // The left-out fits for every smoothing. Rows stand by fold.
@@ -259,9 +258,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     const double smoothing = fits.unit() * std::pow(10.0, kHighestDecade - part);
     predictions[at] = fits.predictions(smoothing);
     for (const double factor : kRadiusFactors) {
-      for (const double strength : kStrengths) {
-        of_decade[at].push_back(score(smoothing, strength, factor * input.least_radius, predictions[at]));
-      }
+      of_decade[at].push_back(score(smoothing, 1.0, factor * input.least_radius, predictions[at]));
     }
   });
   std::vector<Variant> variants;  // from the most smoothing to the least
@@ -274,7 +271,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     // all alike say nothing of how far the correction may reach.)
     chosen = &best;
     for (const Variant& variant : variants) {
-      if (variant.strength != best.strength || !is_as_good(variant.fold_squares, best.fold_squares)) continue;
+      if (!is_as_good(variant.fold_squares, best.fold_squares)) continue;
       if (variant.inner_radius < chosen->inner_radius ||
           (variant.inner_radius == chosen->inner_radius && variant.smoothing > chosen->smoothing)) {
         chosen = &variant;

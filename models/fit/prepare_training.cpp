@@ -3,11 +3,8 @@
 #include <limits>
 #include <utility>
 
-#include "engine/base/parallel.h"
-#include "models/fit/choose_centres.h"
 #include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
-#include "models/solve/solve_weights.h"
 #include "models/surface/surface_registration.h"
 #include "models/training/relaxation_times.h"
 #include "models/training/training_extent.h"
@@ -19,9 +16,6 @@ namespace {
 // "No measured force" is at or below three standard deviations of the force
 // sensor's noise, and at least 10 mN.
 constexpr double kNoForceDeviations = 3.0;
-// A quick fit stands in for the model while one-sided samples find their side.
-constexpr Eigen::Index kQuickCentres = 100;
-constexpr int kOneSidedPasses = 3;
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumEvaluationSamples = 100000;
 // Of the trend's regression: the noise of so many averages out.
@@ -76,36 +70,7 @@ std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
   return times;
 }
 
-// Keeps the targets of one-sided sites on their side: where the model stays
-// below zero the site asks for nothing.
-void release_one_sided(PreparedTraining& prepared, const RbfEvaluator& model, const Eigen::VectorXd& base_N) {
-  const bool corrects = prepared.common.corrects_trend;
-  for (std::size_t i = 0; i < prepared.set.sites.size(); ++i) {
-    if (!prepared.set.sites[i].no_force) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    const double correction_N = model.evaluate(prepared.sites.points.col(k).data());
-    const double predicted_N = correction_N + (corrects ? base_N(k) : 0.0);
-    const double measured_N = prepared.set.sites[i].force_N - (corrects ? base_N(k) : 0.0);
-    prepared.sites.target_N(k) = predicted_N < 0.0 ? correction_N : measured_N;
-  }
-}
-
-// The centres of the quick fit stay, and so they are chosen once.
-Status find_sides(PreparedTraining& prepared, const Eigen::VectorXd& base_N) {
-  const Eigen::Index n = prepared.sites.count();
-  MethodRequest quick;
-  quick.centres = static_cast<int>(std::min(kQuickCentres, std::max<Eigen::Index>(1, n / 4)));
-  const auto sequence = choose_random(prepared.sites, quick);
-  if (!sequence) return sequence.error();
-  for (int pass = 0; pass < kOneSidedPasses; ++pass) {
-    const auto fitted = solve_weights(prepared.sites, quick.kernel, sequence->pool);
-    if (!fitted) return fitted.error();
-    release_one_sided(prepared, RbfEvaluator(fitted->function), base_N);
-  }
-  return {};
-}
-
-Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
+void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const TrainingSet& set = prepared.set;
   const auto n = static_cast<Eigen::Index>(set.sites.size());
   const auto d = static_cast<Eigen::Index>(set.features.size());
@@ -115,7 +80,6 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   sites.row_scale.resize(n);
   sites.group.resize(set.sites.size());
   Eigen::VectorXd base_N(n);
-  bool any_one_sided = false;
   for (std::size_t i = 0; i < set.sites.size(); ++i) {
     const TrainingSite& site = set.sites[i];
     const auto k = static_cast<Eigen::Index>(i);
@@ -124,25 +88,19 @@ Status make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     base_N(k) = prepared.common.trend.at(site.features.data(), set.features);
     const double residual_N = site.force_N - base_N(k);
     sites.target_N(k) = prepared.common.corrects_trend ? residual_N : site.force_N;
+    // Where nothing was measured and the trend is below 0, that is told already.
     if (site.no_force && base_N(k) < 0.0 && prepared.common.corrects_trend) sites.target_N(k) = 0.0;
     sites.row_scale(k) =
         row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
     sites.group[i] = prepared.strength ? site.fold : site.stroke;
-    any_one_sided = any_one_sided || site.no_force;
   }
-  Status sides;
-  parallel_for(2, [&](int part) {
-    if (part == 0 && any_one_sided && n > 1) sides = find_sides(prepared, base_N);
-    if (part == 1) prepared.common.cover = make_cover(sites.points);
-  });
-  if (!sides) return sides;
+  prepared.common.cover = make_cover(sites.points);
   double largest_N = 0.0;
   for (Eigen::Index k = 0; k < n; ++k) {
     const double correction_N = sites.target_N(k) - (prepared.common.corrects_trend ? 0.0 : base_N(k));
     largest_N = std::max(largest_N, std::abs(correction_N));
   }
   prepared.common.correction_limit_N = kCorrectionMargin * largest_N;
-  return {};
 }
 
 // Moves every recording to where depth counts from; returns where that is, m.
@@ -282,7 +240,7 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   common.upper = prepared.set.normalisation.upper;
   common.jnd = request.jnd;
   if (!papers) prepared.strength.emplace();
-  if (Status status = make_sites(prepared, request); !status) return status;
+  make_sites(prepared, request);
   if (!papers) decide_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
   return {};
 }
