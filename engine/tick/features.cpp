@@ -51,21 +51,16 @@ double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
 
 std::string feature_name(const FeatureSpec& spec) {
   std::string name("feature_");
-  name.append(feature_kind_name(spec.kind));
+  name.append(facts_of(spec.kind).name);
+  if (has_time(spec.kind)) name.append("_").append(general(spec.relaxation_time_s, 4));
   if (has_parts(spec.kind)) {
-    const bool stops = spec.kind == FeatureKind::stops;
     const auto constant = [&](const FeaturePart& part) {
-      return general(stops ? 1e3 * part.threshold_m : part.relaxation_time_s, 4);
+      return general(spec.kind == FeatureKind::stops ? 1e3 * part.threshold_m : part.relaxation_time_s, 4);
     };
     name.append("_").append(constant(spec.parts[0]));
     if (spec.part_count > 1) name.append("-").append(constant(spec.parts[spec.part_count - 1]));
-    return name.append(stops ? "mm_N" : "s_N");
   }
-  if (has_time(spec.kind)) {
-    const bool lowpass = spec.kind == FeatureKind::lowpass_velocity;
-    return name.append("_").append(general(spec.relaxation_time_s, 4)).append(lowpass ? "s_m_per_s" : "s_N");
-  }
-  return name.append(spec.kind == FeatureKind::velocity ? "_m_per_s" : "_m");
+  return name.append(facts_of(spec.kind).unit);
 }
 
 FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)

@@ -89,16 +89,35 @@ enum class FeatureKind {
   creep,
   surface_lag
 };
-inline constexpr std::array kFeatureKinds{
-    FeatureKind::depth,          FeatureKind::velocity,         FeatureKind::lowpass_velocity,
-    FeatureKind::maxwell_branch, FeatureKind::maxwell_spectrum, FeatureKind::stops,
-    FeatureKind::creep,          FeatureKind::surface_lag};
-// In model files and column names, in the order of the kinds.
-inline constexpr std::array<std::string_view, kFeatureKinds.size()> kFeatureKindNames{
-    "depth", "velocity", "lowpass_velocity", "maxwell_branch", "maxwell_spectrum", "stops", "creep", "surface_lag"};
-constexpr std::string_view feature_kind_name(FeatureKind kind) noexcept {
-  return kFeatureKindNames[static_cast<std::size_t>(kind)];
+
+struct FeatureKindFacts {
+  std::string_view name;   // in model files and column names
+  std::string_view unit;   // as a column name ends
+  bool has_time = false;   // one time constant
+  bool has_drive = false;  // a drive of its own
+  bool has_parts = false;
+  bool is_branch = false;   // made of Maxwell branches
+  bool is_bristle = false;  // or of bristles
+};
+// One row a kind, in their order.
+inline constexpr std::array<FeatureKindFacts, 8> kFeatureKinds{{
+    {.name = "depth", .unit = "_m"},
+    {.name = "velocity", .unit = "_m_per_s"},
+    {.name = "lowpass_velocity", .unit = "s_m_per_s", .has_time = true},
+    {.name = "maxwell_branch", .unit = "s_N", .has_time = true, .has_drive = true, .is_branch = true},
+    {.name = "maxwell_spectrum", .unit = "s_N", .has_parts = true, .is_branch = true},
+    {.name = "stops", .unit = "mm_N", .has_parts = true, .is_bristle = true},
+    {.name = "creep", .unit = "s_N", .has_parts = true, .is_bristle = true},
+    {.name = "surface_lag", .unit = "_m", .has_drive = true},
+}};
+constexpr const FeatureKindFacts& facts_of(FeatureKind kind) noexcept {
+  return kFeatureKinds[static_cast<std::size_t>(kind)];
 }
+constexpr bool has_time(FeatureKind kind) noexcept { return facts_of(kind).has_time; }
+constexpr bool has_drive(FeatureKind kind) noexcept { return facts_of(kind).has_drive; }
+constexpr bool has_parts(FeatureKind kind) noexcept { return facts_of(kind).has_parts; }
+constexpr bool is_branch(FeatureKind kind) noexcept { return facts_of(kind).is_branch; }
+constexpr bool is_bristle(FeatureKind kind) noexcept { return facts_of(kind).is_bristle; }
 
 // g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
 // u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
@@ -133,25 +152,6 @@ struct FeatureSpec {
 
   bool operator==(const FeatureSpec&) const = default;
 };
-
-// Whether the kind has one time constant, parts, a drive of its own, and is made of
-// Maxwell branches.
-constexpr bool has_time(FeatureKind kind) noexcept {
-  return kind == FeatureKind::lowpass_velocity || kind == FeatureKind::maxwell_branch;
-}
-constexpr bool is_bristle(FeatureKind kind) noexcept {
-  return kind == FeatureKind::stops || kind == FeatureKind::creep;
-}
-constexpr bool has_parts(FeatureKind kind) noexcept {
-  return kind == FeatureKind::maxwell_spectrum || is_bristle(kind);
-}
-
-constexpr bool has_drive(FeatureKind kind) noexcept {
-  return kind == FeatureKind::maxwell_branch || kind == FeatureKind::surface_lag;
-}
-constexpr bool is_branch(FeatureKind kind) noexcept {
-  return kind == FeatureKind::maxwell_branch || kind == FeatureKind::maxwell_spectrum;
-}
 
 // The material's surface halfway through a step: between the last surface and the tool, or,
 // where the tool had left it and has not come back, still there.

@@ -118,7 +118,7 @@ TEST(TrendEnergy, NoMotionFromRestEverGetsOutMoreThanWasPutIn) {
     std::printf("energy, trend of %s: at the lowest %.1e of what was put in\n", material, worst);
   }
   for (const FeatureKind kind : {FeatureKind::stops, FeatureKind::creep}) {
-    EXPECT_NE(kinds & (1U << static_cast<unsigned>(kind)), 0U) << feature_kind_name(kind) << " was never chosen";
+    EXPECT_NE(kinds & (1U << static_cast<unsigned>(kind)), 0U) << facts_of(kind).name << " was never chosen";
   }
 }
 

@@ -119,8 +119,10 @@ class ModelReader : private JsonFields {
     const JsonNode kind = member(node, "kind", "a text");
     if (kind.value != nullptr && *kind.value == "fading_peak") {
       complain(kind.pointer, "found \"fading_peak\", a feature that fits no longer use; fit again (palpate fit)");
-    } else if (const auto known = choice(kind, {kFeatureKindNames.begin(), kFeatureKindNames.end()})) {
-      spec.kind = kFeatureKinds[*known];
+    } else {
+      std::vector<std::string> names;
+      for (const FeatureKindFacts& one : kFeatureKinds) names.emplace_back(one.name);
+      if (const auto known = choice(kind, names)) spec.kind = static_cast<FeatureKind>(*known);
     }
     if (has_time(spec.kind)) spec.relaxation_time_s = number(node, "relaxation_time_s", Sign::kPositive);
     if (is_branch(spec.kind) && optional_member(node, "slowing").value != nullptr)

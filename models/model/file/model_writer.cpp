@@ -34,7 +34,7 @@ std::string parts(const FeatureSpec& spec) {
 std::string features(const std::vector<FeatureSpec>& specs) {
   std::vector<std::string> items;
   for (const FeatureSpec& spec : specs) {
-    std::string text = "{\"kind\": " + json_quoted(std::string(feature_kind_name(spec.kind)));
+    std::string text = "{\"kind\": " + json_quoted(std::string(facts_of(spec.kind).name));
     if (has_time(spec.kind)) text += ", \"relaxation_time_s\": " + json_number(spec.relaxation_time_s);
     if (spec.surface_position_m != 0.0) text += ", \"surface_position_m\": " + json_number(spec.surface_position_m);
     if (is_branch(spec.kind) && spec.slowing != 0.0) text += ", \"slowing\": " + json_number(spec.slowing);
