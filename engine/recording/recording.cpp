@@ -1,58 +1,42 @@
 #include "engine/recording/recording.h"
 
+#include <algorithm>
 #include <filesystem>
-#include <utility>
+#include <system_error>
 
-#include "engine/base/csv_scanner.h"
-#include "engine/base/whole_file.h"
-#include "engine/recording/recording_parser.h"
+#include "engine/recording/recording_reader.h"
 
 namespace palpate {
 namespace {
 
-// Rows returned at a time by read_recording: enough to forget the calls.
+// Rows returned at a time by read_recording: they stay in the cache on their way.
 constexpr std::size_t kBatchRows = 4096;
+constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
+constexpr std::size_t kMostExpected = 6000000;
 
-std::string name_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+// Room for all rows that may come: what stays untouched takes no memory, and a vector that
+// grows holds its rows twice now and then.
+std::size_t rows_to_expect(const std::string& path) {
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  return unknown ? 0 : std::min<std::size_t>(bytes / kShortestRow, kMostExpected);
+}
 
 }  // namespace
 
-struct RecordingReader::State {
-  std::string name;
-  RecordingParser parser;
-};
-
-RecordingReader::RecordingReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
-RecordingReader::RecordingReader(RecordingReader&&) noexcept = default;
-RecordingReader& RecordingReader::operator=(RecordingReader&&) noexcept = default;
-RecordingReader::~RecordingReader() = default;
-
-Result<RecordingReader> RecordingReader::open(const std::string& path) {
-  const Result<int> descriptor = open_plain_file(path, "a recording (CSV)");
-  if (!descriptor) return descriptor.error();
-  auto parser = RecordingParser::start(std::make_unique<DescriptorSource>(*descriptor), path);
-  if (!parser) return parser.error();
-  return RecordingReader(std::make_unique<State>(State{name_of(path), std::move(*parser)}));
-}
-
-const std::string& RecordingReader::name() const { return state_->name; }
-RecordingColumns RecordingReader::columns() const { return state_->parser.columns(); }
-
-Result<std::size_t> RecordingReader::read(RecordingRow* rows, std::size_t capacity) {
-  return state_->parser.read(rows, capacity);
-}
-
-Result<Recording> read_recording(const std::string& path) {
+Result<Recording> read_recording(const std::string& path, std::size_t most_rows) {
   auto reader = RecordingReader::open(path);
   if (!reader) return reader.error();
   Recording recording{reader->name(), reader->columns(), {}};
+  recording.rows.reserve(rows_to_expect(path));
   std::vector<RecordingRow> batch(kBatchRows);
-  for (;;) {
-    const auto count = reader->read(batch.data(), batch.size());
+  while (recording.rows.size() < most_rows) {
+    const auto count = reader->read(batch.data(), std::min(batch.size(), most_rows - recording.rows.size()));
     if (!count) return count.error();
-    if (*count == 0) return recording;
+    if (*count == 0) break;
     recording.rows.insert(recording.rows.end(), batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(*count));
   }
+  return recording;
 }
 
 }  // namespace palpate

@@ -17,7 +17,7 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -49,36 +49,10 @@ struct Recording {
 };
 
 inline constexpr std::size_t kRecordingMinimumRows = 10;
+inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 
-// Reads a recording row by row in bounded memory, whatever its length.
-class RecordingReader {
- public:
-  // Opens the file and reads its header. Errors: no such file, not readable,
-  // a folder, a pipe or a device, not text, no header, missing or duplicate
-  // column.
-  static Result<RecordingReader> open(const std::string& path);
-
-  RecordingReader(RecordingReader&&) noexcept;
-  RecordingReader& operator=(RecordingReader&&) noexcept;
-  ~RecordingReader();
-
-  const std::string& name() const;
-  RecordingColumns columns() const;
-
-  // Reads `capacity` rows (at least 1) into `rows`; returns how many: fewer at the
-  // end only. Errors: any row that breaks a rule above; fewer than 10 rows in
-  // all; a rate outside the range, known at row 1,000 or at the end, so after
-  // earlier rows were returned. After an error each call repeats it.
-  Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
-
- private:
-  struct State;
-  explicit RecordingReader(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
-};
-
-// Reads a whole recording into memory; errors as RecordingReader.
-Result<Recording> read_recording(const std::string& path);
+// Reads a recording into memory, or so many of its first rows; errors as RecordingReader.
+Result<Recording> read_recording(const std::string& path, std::size_t most_rows = kAllRows);
 
 // Writes `recording` to `path` atomically: a temporary file beside it, flushed
 // to disk, then renamed. Numbers are written so that reading them back gives

@@ -1,4 +1,4 @@
-// The slow side of the recording parser: the header, and why a row was refused.
+// The slow side of the recording reader: the header, and why a row was refused.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
-#include "engine/recording/recording_parser.h"
+#include "engine/recording/recording_reader.h"
 
 namespace palpate {
 namespace {

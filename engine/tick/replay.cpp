@@ -51,7 +51,6 @@ void run(HapticsTick& tick, double least_contact_N, const RecordingRow* rows, st
     snapshot.in_contact = sample.position_m > 0.0 || std::abs(rows[i].force_N) > least_contact_N;
     ++summary.samples;
     if (snapshot.in_contact) ++summary.contact_samples;
-    if (snapshot.fault != TickFault::none) ++summary.faults;
     if (visitor) visitor(rows[i], snapshot, tick);
   }
 }

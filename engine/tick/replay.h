@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/recording/recording.h"
+#include "engine/recording/recording_reader.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/tool_sample.h"
 
@@ -37,7 +37,6 @@ struct ReplaySummary {
   SensorSpec sensor;
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
-  std::uint64_t faults = 0;  // ticks with a fault of any kind
 };
 
 // `surface_offset_m` is subtracted from every position before the tick; the

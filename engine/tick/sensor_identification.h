@@ -12,7 +12,7 @@
 
 #include <cstddef>
 
-#include "engine/recording/recording.h"
+#include "engine/recording/recording_reader.h"
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {

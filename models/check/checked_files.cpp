@@ -1,25 +1,12 @@
 // Recordings read and checked, for the verbs.
 #include <algorithm>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "models/check/check_recording.h"
 
 namespace palpate {
 namespace {
-
-constexpr std::size_t kReadRows = 4096;  // stay in the cache on their way
-constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
-
-// Room for all rows that may come: what stays untouched takes no memory, and a vector that
-// grows holds its rows twice now and then.
-std::size_t most_rows(const std::string& path) {
-  std::error_code unknown;
-  const auto bytes = std::filesystem::file_size(path, unknown);
-  return unknown ? 0 : std::min<std::size_t>(bytes / kShortestRow, kMostCheckedRows) + kReadRows;
-}
 
 void add_repetitions(std::vector<CheckedFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -44,23 +31,11 @@ std::string finding_line(const CheckedFile& file, const Finding& finding) {
 }  // namespace
 
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {
-  auto reader = RecordingReader::open(path);
-  if (!reader) return reader.error();
-  CheckedFile file{path, {reader->name(), reader->columns(), {}}, true, {}};
-  auto& rows = file.recording.rows;
-  rows.reserve(most_rows(path));
-  std::vector<RecordingRow> some(kReadRows);
-  for (;;) {
-    const auto count = reader->read(some.data(), some.size());
-    if (!count) return count.error();
-    if (*count == 0) break;
-    rows.insert(rows.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(*count));
-    if (rows.size() < kMostCheckedRows) continue;
-    file.whole = false;
-    break;
-  }
-  file.check = check_recording(file.recording, request);
-  return file;
+  auto recording = read_recording(path, kMostCheckedRows);
+  if (!recording) return recording.error();
+  const bool whole = recording->rows.size() < kMostCheckedRows;
+  RecordingCheck check = check_recording(*recording, request);
+  return CheckedFile{path, std::move(*recording), whole, std::move(check)};
 }
 
 Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::string>& paths,

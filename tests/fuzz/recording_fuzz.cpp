@@ -2,9 +2,9 @@
 // of the repository, in an empty folder CORPUS:
 //   clang++ -std=c++20 -O1 -g -fsanitize=fuzzer,address,undefined
 //     -fno-sanitize-recover=all -I. tests/fuzz/recording_fuzz.cpp
-//     tests/support/recording_fuzz.cpp engine/recording/recording_parser.cpp
+//     tests/support/recording_fuzz.cpp engine/recording/recording_reader.cpp
 //     engine/recording/recording_messages.cpp engine/recording/recording_rules.cpp
-//     engine/base/csv_scanner.cpp -o recording_fuzz
+//     engine/base/csv_scanner.cpp engine/base/whole_file.cpp -o recording_fuzz
 //   ./recording_fuzz -dict=tests/fuzz/recording.dict -max_len=4096 CORPUS
 #include "tests/support/recording_fuzz.h"
 

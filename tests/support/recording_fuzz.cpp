@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/recording/recording_parser.h"
+#include "engine/recording/recording_reader.h"
 
 namespace palpate::test {
 namespace {
@@ -30,7 +30,7 @@ struct Outcome {
 
 Outcome parse(std::string_view text, std::size_t piece_bytes, std::size_t batch_rows) {
   Outcome outcome;
-  auto parser = RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv", kBufferBytes);
+  auto parser = RecordingReader::from(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv", kBufferBytes);
   if (!parser) return {{}, parser.error().message};
   std::vector<RecordingRow> batch(batch_rows);
   for (;;) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "engine/recording/recording_parser.h"
+#include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
 
 namespace palpate {
@@ -11,7 +11,7 @@ namespace {
 
 // What the parser says about `text`, or "accepted".
 std::string verdict(const std::string& text, std::size_t piece_bytes) {
-  auto parser = RecordingParser::start(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
+  auto parser = RecordingReader::from(std::make_unique<MemorySource>(text, piece_bytes), "rec.csv");
   if (!parser) return parser.error().message;
   RecordingRow rows[7];
   for (;;) {

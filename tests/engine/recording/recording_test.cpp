@@ -7,6 +7,7 @@
 #include <clocale>
 #include <filesystem>
 
+#include "engine/recording/recording_reader.h"
 #include "tests/support/broken_recordings.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,11 +1,14 @@
-#include "engine/recording/recording_parser.h"
+#include "engine/recording/recording_reader.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <utility>
+
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
@@ -49,15 +52,21 @@ std::size_t field_column(std::string_view text, std::size_t index) {
   return static_cast<std::size_t>((is_empty ? at : value) - text.data()) + 1;
 }
 
-Result<RecordingParser> RecordingParser::start(std::unique_ptr<ByteSource> source, std::string label,
-                                               std::size_t buffer_bytes) {
+Result<RecordingReader> RecordingReader::open(const std::string& path) {
+  const Result<int> descriptor = open_plain_file(path, "a recording (CSV)");
+  if (!descriptor) return descriptor.error();
+  return from(std::make_unique<DescriptorSource>(*descriptor), path);
+}
+
+Result<RecordingReader> RecordingReader::from(std::unique_ptr<ByteSource> source, std::string label,
+                                              std::size_t buffer_bytes) {
   LineScanner scanner(std::move(source), std::move(label), buffer_bytes);
   CsvLine line;
   while (scanner.next(line)) {
     if (line.text.starts_with('#')) continue;
     auto header = parse_recording_header(scanner, line);
     if (!header) return header.error();
-    return RecordingParser(std::move(scanner), std::move(*header));
+    return RecordingReader(std::move(scanner), std::move(*header));
   }
   if (scanner.error()) return *scanner.error();
   const std::string found = scanner.lines() == 0 ? "an empty file" : "the end of the file";
@@ -67,25 +76,27 @@ Result<RecordingParser> RecordingParser::start(std::unique_ptr<ByteSource> sourc
                               "check that the recording was saved");
 }
 
-RecordingParser::RecordingParser(LineScanner scanner, RecordingHeader header)
-    : scanner_(std::move(scanner)), header_(std::move(header)) {
+RecordingReader::RecordingReader(LineScanner scanner, RecordingHeader header)
+    : name_(std::filesystem::path(scanner.label()).stem().string()),
+      scanner_(std::move(scanner)),
+      header_(std::move(header)) {
   const auto time = std::find(header_.roles.begin(), header_.roles.end(), ColumnRole::kTime);
   time_index_ = static_cast<std::size_t>(time - header_.roles.begin());
 }
 
-RecordingColumns RecordingParser::columns() const {
+RecordingColumns RecordingReader::columns() const {
   const auto has = [this](ColumnRole role) {
     return std::find(header_.roles.begin(), header_.roles.end(), role) != header_.roles.end();
   };
   return {has(ColumnRole::kVelocity), has(ColumnRole::kAcceleration)};
 }
 
-bool RecordingParser::fail(Error error) {
+bool RecordingReader::fail(Error error) {
   error_ = std::move(error);
   return false;
 }
 
-bool RecordingParser::fail(const RowFault& fault, const CsvLine& line) {
+bool RecordingReader::fail(const RowFault& fault, const CsvLine& line) {
   switch (fault.place) {
     case RowFault::Place::kEnd:
       return fail(scanner_.error_at(scanner_.lines() + 1, 1, fault.text));
@@ -100,7 +111,7 @@ bool RecordingParser::fail(const RowFault& fault, const CsvLine& line) {
 }
 
 // Every field of one row, or false; then `explain_recording_row` knows why.
-bool RecordingParser::parse(std::string_view text, RecordingRow& row) const {
+bool RecordingReader::parse(std::string_view text, RecordingRow& row) const {
   std::array<double, kKnownColumns> values{};
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -119,7 +130,7 @@ bool RecordingParser::parse(std::string_view text, RecordingRow& row) const {
 }
 
 // Blank lines are forgiven at the very end of the file only.
-bool RecordingParser::skip_last_blank_lines(const CsvLine& blank) {
+bool RecordingReader::skip_last_blank_lines(const CsvLine& blank) {
   const std::uint64_t number = blank.number;
   CsvLine line;
   while (scanner_.next(line)) {
@@ -131,7 +142,7 @@ bool RecordingParser::skip_last_blank_lines(const CsvLine& blank) {
   return finish();
 }
 
-bool RecordingParser::finish() {
+bool RecordingReader::finish() {
   if (scanner_.error()) return fail(*scanner_.error());
   ended_ = true;
   if (const auto fault = rules_.finish()) return fail(*fault, CsvLine{});
@@ -139,7 +150,7 @@ bool RecordingParser::finish() {
 }
 
 // The next row; false at the end and on an error.
-bool RecordingParser::next(RecordingRow& row) {
+bool RecordingReader::next(RecordingRow& row) {
   CsvLine line;
   if (!scanner_.next(line)) return finish();
   if (!parse(line.text, row)) {
@@ -154,7 +165,7 @@ bool RecordingParser::next(RecordingRow& row) {
   return true;
 }
 
-Result<std::size_t> RecordingParser::read(RecordingRow* rows, std::size_t capacity) {
+Result<std::size_t> RecordingReader::read(RecordingRow* rows, std::size_t capacity) {
   assert(capacity > 0);
   std::size_t count = 0;
   while (!ended_ && !error_ && count < capacity && next(rows[count])) ++count;

@@ -1,5 +1,4 @@
-// Recordings out of any source of bytes: RecordingReader without the file.
-// Internal to engine/recording; tests and the fuzz target use it from memory.
+// Recordings row by row, out of a file or any other source of bytes.
 //
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
@@ -29,7 +28,7 @@ struct RecordingHeader {
 // column twice, another separator than the comma.
 Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const CsvLine& line);
 
-// Says what is wrong with a row that `RecordingParser` could not read: one
+// Says what is wrong with a row that `RecordingReader` could not read: one
 // sentence with its place. Slow, and only ever called once per file.
 Error explain_recording_row(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header);
 
@@ -42,19 +41,29 @@ const char* parse_recording_number(const char* begin, const char* end, double& v
 // before a value are skipped.
 std::size_t field_column(std::string_view text, std::size_t index);
 
-class RecordingParser {
+// Reads a recording row by row in bounded memory, whatever its length.
+class RecordingReader {
  public:
-  // Reads comments and the header. `label` names the source in messages.
-  static Result<RecordingParser> start(std::unique_ptr<ByteSource> source, std::string label,
-                                       std::size_t buffer_bytes = kScannerBufferBytes);
+  // Opens the file and reads its header. Errors: no such file, not readable,
+  // a folder, a pipe or a device, not text, no header, missing or duplicate
+  // column.
+  static Result<RecordingReader> open(const std::string& path);
+  // The same of any source; `label` names it in messages.
+  static Result<RecordingReader> from(std::unique_ptr<ByteSource> source, std::string label,
+                                      std::size_t buffer_bytes = kScannerBufferBytes);
 
+  // Of the file, without folder and ending.
+  const std::string& name() const { return name_; }
   RecordingColumns columns() const;
 
-  // As RecordingReader::read. After an error every further call repeats it.
+  // Reads `capacity` rows (at least 1) into `rows`; returns how many: fewer at the
+  // end only. Errors: any row that breaks a rule of recording.h; fewer than 10 rows in
+  // all; a rate outside the range, known at row 1,000 or at the end, so after
+  // earlier rows were returned. After an error each call repeats it.
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:
-  RecordingParser(LineScanner scanner, RecordingHeader header);
+  RecordingReader(LineScanner scanner, RecordingHeader header);
   bool next(RecordingRow& row);
   bool parse(std::string_view text, RecordingRow& row) const;
   bool finish();
@@ -62,6 +71,7 @@ class RecordingParser {
   bool fail(Error error);
   bool fail(const RowFault& fault, const CsvLine& line);
 
+  std::string name_;
   LineScanner scanner_;
   RecordingHeader header_;
   RowRules rules_;

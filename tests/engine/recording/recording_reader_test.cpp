@@ -1,4 +1,4 @@
-#include "engine/recording/recording_parser.h"
+#include "engine/recording/recording_reader.h"
 
 #include <gtest/gtest.h>
 
