@@ -1,6 +1,5 @@
 #include "engine/recording/recording_writer.h"
 
-#include <charconv>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,12 +33,6 @@ void append_comment(std::string& out, std::string_view comment) {
   }
 }
 
-void append_number(std::string& out, double value) {
-  char text[32];  // the longest double takes 24
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  out.append(text, end.ptr);
-}
-
 void append_header(std::string& out, RecordingColumns columns) {
   out += columns.force ? "time_s,position_m,force_N" : "time_s,position_m";
   if (columns.velocity) out += ",velocity_m_per_s";
@@ -48,12 +41,10 @@ void append_header(std::string& out, RecordingColumns columns) {
 }
 
 void append_row(std::string& out, RecordingColumns columns, const RecordingRow& row) {
-  append_number(out, row.time_s);
-  out += ',';
-  append_number(out, row.position_m);
-  if (columns.force) append_number(out += ',', row.force_N);
-  if (columns.velocity) append_number(out += ',', row.velocity_m_per_s);
-  if (columns.acceleration) append_number(out += ',', row.acceleration_m_per_s2);
+  out += shortest(row.time_s) + ',' + shortest(row.position_m);
+  if (columns.force) out += ',' + shortest(row.force_N);
+  if (columns.velocity) out += ',' + shortest(row.velocity_m_per_s);
+  if (columns.acceleration) out += ',' + shortest(row.acceleration_m_per_s2);
   out += '\n';
 }
 
@@ -63,19 +54,6 @@ Status check_comments(const std::string& path, const std::vector<std::string>& c
     return Error{path + ": found a comment of " + std::to_string(comment.size()) + " bytes, expected at most " +
                  std::to_string(kMaximumCommentBytes) + "; shorten it"};
   }
-  return {};
-}
-
-// A file that the reader would refuse is not written at all.
-Status check_writable(const std::string& path, const Recording& recording, const std::vector<std::string>& comments) {
-  if (Status checked = check_comments(path, comments); !checked) return checked;
-  RowRules rules;
-  for (const RecordingRow& row : recording.rows) {
-    if (const auto fault = rules.check(row)) {
-      return Error{path + ": cannot write row " + std::to_string(rules.rows() + 1) + ": " + fault->text};
-    }
-  }
-  if (const auto fault = rules.finish()) return Error{path + ": cannot write: " + fault->text};
   return {};
 }
 
@@ -98,11 +76,13 @@ Result<RecordingWriter> RecordingWriter::create(const std::string& path, Recordi
   return writer;
 }
 
-bool RecordingWriter::add(const RecordingRow& row) {
-  if (rules_.check(row)) return false;
+Status RecordingWriter::add(const RecordingRow& row) {
+  if (const auto fault = rules_.check(row)) {
+    return Error{path_ + ": cannot write row " + std::to_string(rules_.rows() + 1) + ": " + fault->text};
+  }
   append_row(piece_, columns_, row);
   if (piece_.size() >= kPieceBytes) flush();
-  return true;
+  return {};
 }
 
 void RecordingWriter::flush() {
@@ -128,10 +108,11 @@ Status RecordingWriter::commit() {
 
 Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
                        bool overwrite) {
-  if (Status checked = check_writable(path, recording, comments); !checked) return checked;
   auto writer = RecordingWriter::create(path, recording.columns, comments, overwrite);
   if (!writer) return writer.error();
-  for (const RecordingRow& row : recording.rows) writer->add(row);
+  for (const RecordingRow& row : recording.rows) {
+    if (Status added = writer->add(row); !added) return added;
+  }
   return writer->commit();
 }
 

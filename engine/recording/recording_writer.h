@@ -21,9 +21,9 @@ class RecordingWriter {
   static Result<RecordingWriter> create(const std::string& path, RecordingColumns columns,
                                         const std::vector<std::string>& comments, bool overwrite);
 
-  // Buffered. False: the reader would refuse the row (engine/recording/recording.h has the
-  // rules); it is left out.
-  bool add(const RecordingRow& row);
+  // Buffered. Errors: the reader would refuse the row (engine/recording/recording.h has the
+  // rules), which is left out.
+  Status add(const RecordingRow& row);
 
   std::uint64_t rows() const { return rules_.rows(); }
   // Whether the disk has refused something already; commit says what.

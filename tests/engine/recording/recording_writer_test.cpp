@@ -188,7 +188,7 @@ TEST(RecordingWriter, RefusesTooFewRows) {
   const TemporaryFolder folder;
   auto writer = RecordingWriter::create(folder.file("rec.csv"), {}, {}, false);
   ASSERT_TRUE(writer.ok());
-  for (int i = 0; i < 9; ++i) writer->add({1e-3 * i, 0.0, 0.0, 0.0, 0.0});
+  for (int i = 0; i < 9; ++i) ASSERT_TRUE(writer->add({1e-3 * i, 0.0, 0.0, 0.0, 0.0}));
   EXPECT_FALSE(writer->commit().ok());
   EXPECT_TRUE(folder.entries().empty());
 }
