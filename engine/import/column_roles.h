@@ -15,7 +15,6 @@
 
 namespace palpate {
 
-enum class Role { time, position, force };
 inline constexpr std::size_t kRoles = 3;
 inline constexpr std::array<const char*, kRoles> kRoleNames = {"time", "position", "force"};
 

@@ -68,53 +68,38 @@ std::string_view encoding_name(TextEncoding encoding) {
   return kNames[static_cast<std::size_t>(encoding)];
 }
 
-Status ForeignText::interpret(std::string_view bytes, const std::string& label) {
+Result<ForeignText> decode_foreign_text(std::string bytes, const std::string& label) {
   if (bytes.empty()) return wrong_kind(label, "an empty file", "check that the recording was saved");
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0")) {
     return wrong_kind(label, "an Excel workbook or another archive", "save the sheet as CSV");
   }
-  const std::string_view sample = bytes.substr(0, kEncodingSampleBytes);
+  const std::string_view sample = std::string_view(bytes).substr(0, kEncodingSampleBytes);
   const bool marked_big = bytes.starts_with("\xFE\xFF");
   const bool marked = marked_big || bytes.starts_with("\xFF\xFE");
   const bool zeros_first = share_of_zeros(sample, 0) > 0.9;
+  std::size_t bad_offset = 0;
+  ForeignText foreign;
   if (marked || zeros_first || share_of_zeros(sample, 1) > 0.9) {
     const bool big_endian = marked ? marked_big : zeros_first;
-    auto decoded = std::make_shared<const std::string>(decode_utf16(bytes.substr(marked ? 2 : 0), big_endian));
-    text_ = *decoded;
-    storage_ = std::move(decoded);
-    encoding_ = TextEncoding::utf16;
+    foreign = {decode_utf16(std::string_view(bytes).substr(marked ? 2 : 0), big_endian), TextEncoding::utf16};
+  } else if (!is_utf8(sample, bad_offset) && (sample.size() == bytes.size() || bad_offset + 4 <= sample.size())) {
+    // A sequence that the end of the sample cuts would be no fault.
+    foreign.encoding = TextEncoding::latin1;
+    for (const char c : bytes) append_utf8(foreign.text, static_cast<unsigned char>(c));
   } else {
-    text_ = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
-    std::size_t bad_offset = 0;
-    // A sequence that the end of the sample cuts is no fault.
-    const bool valid = is_utf8(sample, bad_offset) || (sample.size() < bytes.size() && bad_offset + 4 > sample.size());
-    encoding_ = valid ? TextEncoding::utf8 : TextEncoding::latin1;
+    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
+    foreign.text = std::move(bytes);
   }
-  if (text_.substr(0, kEncodingSampleBytes).find('\0') != std::string_view::npos) {
+  if (std::string_view(foreign.text).substr(0, kEncodingSampleBytes).find('\0') != std::string_view::npos) {
     return wrong_kind(label, "a binary file", "export it as CSV from the program that wrote it");
   }
-  return {};
+  return foreign;
 }
 
-Result<ForeignText> ForeignText::from_memory(std::string bytes, const std::string& label) {
-  ForeignText text;
-  auto kept = std::make_shared<const std::string>(std::move(bytes));
-  text.storage_ = kept;
-  if (const Status status = text.interpret(*kept, label); !status) return status.error();
-  return text;
-}
-
-Result<ForeignText> ForeignText::open(const std::string& path) {
+Result<ForeignText> read_foreign_text(const std::string& path) {
   auto bytes = read_plain_file(path, "a table as text (CSV, TXT)");
   if (!bytes) return bytes.error();
-  return from_memory(std::move(*bytes), path);
-}
-
-std::string ForeignText::to_utf8(std::string_view piece) const {
-  if (encoding_ != TextEncoding::latin1) return std::string(piece);
-  std::string out;
-  for (const char c : piece) append_utf8(out, static_cast<unsigned char>(c));
-  return out;
+  return decode_foreign_text(std::move(*bytes), path);
 }
 
 }  // namespace palpate

@@ -21,8 +21,10 @@ constexpr auto kNoColumn = static_cast<std::size_t>(-1);
 
 class Importer {
  public:
-  Importer(const ForeignText& text, std::string label, const ImportRequest& request)
-      : text_(text), label_(std::move(label)), request_(request) {}
+  Importer(const ForeignText& foreign, std::string label, const ImportRequest& request)
+      : text_(foreign.text), label_(std::move(label)), request_(request) {
+    table_.encoding = foreign.encoding;
+  }
 
   Result<ImportedTable> run();
 
@@ -51,7 +53,7 @@ class Importer {
   Status read_rows();
   void describe_time();
 
-  const ForeignText& text_;
+  std::string_view text_;
   std::string label_;
   ImportRequest request_;
   ImportedTable table_;
@@ -78,7 +80,7 @@ const Unit* requested_unit(const ImportRequest& request, Quantity quantity) {
 // LabVIEW's text files say above the table what their columns are in, and how far apart
 // the rows are where the table has no times.
 void Importer::read_labview_head() {
-  std::string_view head = text_.text().substr(0, table_.layout.data_offset);
+  std::string_view head = text_.substr(0, table_.layout.data_offset);
   std::vector<std::string_view> fields;
   std::string_view step;
   bool times = true;
@@ -98,17 +100,17 @@ void Importer::read_labview_head() {
 
 Status Importer::find_columns() {
   const TableLayout& layout = table_.layout;
-  std::string_view rest = text_.text().substr(layout.data_offset);
+  std::string_view rest = text_.substr(layout.data_offset);
   std::vector<std::string_view> first_row;
   split_table_fields(next_line(rest), layout.delimiter, first_row);
   const bool has_header = !layout.names.empty();
   for (std::size_t i = 0; i < layout.columns; ++i) {
     ForeignColumn column;
     const std::string_view name = has_header ? layout.names[i] : i < first_row.size() ? first_row[i] : "";
-    column.header = text_.to_utf8(name);
+    column.header = name;
     if (has_header) column.parts = split_name_and_unit(column.header);
     if (!layout.units.empty() && i < layout.units.size()) {
-      if (const auto unit = find_unit(text_.to_utf8(layout.units[i]))) column.parts.unit = unit;
+      if (const auto unit = find_unit(layout.units[i])) column.parts.unit = unit;
     }
     header_.push_back(std::move(column));
   }
@@ -164,7 +166,7 @@ bool Importer::parse_time(std::string_view field, TableTime& time) const {
 // A clock, a unit from the header or the user, or the only unit in which the rate is
 // that of a recording.
 Status Importer::find_time_unit() {
-  std::string_view rest = text_.text().substr(table_.layout.data_offset);
+  std::string_view rest = text_.substr(table_.layout.data_offset);
   std::vector<double> steps;
   TableTime last;
   for (std::size_t row = 0; row < kTimeUnitRows && !rest.empty(); ++row) {
@@ -258,7 +260,7 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) {
     if (good) continue;
     const std::string_view field = trimmed(fields_[role]);
     const std::string found =
-        field.empty() ? "an empty field" : std::string("\"").append(printable(text_.to_utf8(field))).append("\"");
+        field.empty() ? "an empty field" : std::string("\"").append(printable(field)).append("\"");
     return fail_at(number,
                    "found " + found + " in column " + std::to_string(index_[role] + 1) + quoted_name(role) +
                        ", expected the " + kRoleNames[role] +
@@ -295,7 +297,7 @@ Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRo
 // Every row in one pass. Lines that are no rows may stand at the end only, but for as
 // many bad rows as the request allows.
 Status Importer::read_rows() {
-  std::string_view rest = text_.text().substr(table_.layout.data_offset);
+  std::string_view rest = text_.substr(table_.layout.data_offset);
   auto& rows = table_.recording.rows;
   std::uint64_t number = table_.layout.data_line - 1;
   std::uint64_t comments = 0;
@@ -345,7 +347,7 @@ Status Importer::read_rows() {
   if (bad_rows > 0) note(count_of(bad_rows, "row") + " that could not be read left out");
   if (footer_lines > 0) {
     note(count_of(footer_lines, "line") + " behind the table left out, from line " + std::to_string(footer_line) +
-         " \"" + printable(text_.to_utf8(footer)) + "\"");
+         " \"" + printable(footer) + "\"");
   }
   return {};
 }
@@ -360,10 +362,9 @@ void Importer::describe_time() {
 }
 
 Result<ImportedTable> Importer::run() {
-  auto layout = find_table_layout(text_.text(), request_.layout);
+  auto layout = find_table_layout(text_, request_.decimal);
   if (!layout) return fail(layout.error().message);
   table_.layout = std::move(*layout);
-  table_.encoding = text_.encoding();
   read_labview_head();
   if (const Status status = find_columns(); !status) return status.error();
   if (!request_.rate_Hz) {
@@ -392,7 +393,7 @@ Result<ImportedTable> import_table(const ForeignText& text, const std::string& l
 }
 
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request) {
-  const auto text = ForeignText::open(path);
+  const auto text = read_foreign_text(path);
   if (!text) return text.error();
   return import_table(*text, path, request);
 }

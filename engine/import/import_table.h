@@ -26,7 +26,7 @@
 namespace palpate {
 
 struct ImportRequest {
-  LayoutRequest layout;
+  std::optional<char> decimal;  // mark; none: found out
   RoleRequest columns;
   std::vector<Unit> units;        // at most one for each quantity; they beat the header's
   std::optional<double> rate_Hz;  // evenly spaced rows; the file's time is not used

@@ -286,12 +286,6 @@ Status check_decimal_comma(const Reading& reading, const std::vector<SampleLine>
 
 std::string_view delimiter_name(Delimiter delimiter) { return kDelimiterNames[static_cast<std::size_t>(delimiter)]; }
 
-std::optional<Delimiter> delimiter_from_name(std::string_view name) {
-  const auto found = std::find(kDelimiterNames.begin(), kDelimiterNames.end(), name);
-  if (found == kDelimiterNames.end()) return std::nullopt;
-  return static_cast<Delimiter>(found - kDelimiterNames.begin());
-}
-
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   std::string_view line = text.substr(0, end);
@@ -317,13 +311,12 @@ void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
 }
 
-Result<TableLayout> find_table_layout(std::string_view text, const LayoutRequest& request) {
+Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> said) {
   const std::vector<SampleLine> lines = sample_lines(text);
   Reading best;
   for (const Delimiter delimiter : kDelimiters) {
-    if (request.delimiter && *request.delimiter != delimiter) continue;
     for (const char decimal : {'.', ','}) {
-      if (request.decimal && *request.decimal != decimal) continue;
+      if (said && *said != decimal) continue;
       if (delimiter == Delimiter::comma && decimal == ',') continue;
       const Reading reading = read_as(lines, delimiter, decimal);
       if (reading.rows > 0 && (best.rows == 0 || reading.better_than(best))) best = reading;
@@ -336,7 +329,7 @@ Result<TableLayout> find_table_layout(std::string_view text, const LayoutRequest
   }
   skip_short_rows(best, lines);
   find_header(best, lines);
-  if (best.layout.decimal == ',' && !request.decimal) {
+  if (best.layout.decimal == ',' && !said) {
     if (const Status status = check_decimal_comma(best, lines); !status) return status.error();
   }
   return best.layout;

@@ -22,7 +22,6 @@ namespace palpate {
 
 enum class Delimiter { comma, semicolon, tab, blanks };
 std::string_view delimiter_name(Delimiter delimiter);
-std::optional<Delimiter> delimiter_from_name(std::string_view name);
 
 struct TableLayout {
   Delimiter delimiter = Delimiter::comma;
@@ -35,15 +34,9 @@ struct TableLayout {
   std::size_t data_offset = 0;  // in the text
 };
 
-// What the user has said; the rest is found out.
-struct LayoutRequest {
-  std::optional<Delimiter> delimiter;
-  std::optional<char> decimal;
-};
-
-// Errors (without the file's name): no rows of numbers; a comma that may be a decimal
-// mark or a thousands mark.
-Result<TableLayout> find_table_layout(std::string_view text, const LayoutRequest& request);
+// `said`: the decimal mark, where the user has said which. Errors (without the file's name):
+// no rows of numbers; a comma that may be a decimal mark or a thousands mark.
+Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> said);
 
 // The fields of one line, without blanks and quotes around them. `fields` is filled
 // anew; empty fields at the end of the line are left out.

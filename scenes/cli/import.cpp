@@ -24,7 +24,6 @@ struct ImportOptions {
   std::vector<std::string> columns;
   std::vector<std::string> units;
   std::vector<std::string> flips;
-  std::string delimiter;
   std::string decimal;
   double rate_Hz = 0.0;
   double gain_N_per_V = 0.0;
@@ -70,8 +69,7 @@ ImportRequest import_request(const ImportOptions& options) {
     request.flip_position = request.flip_position || flip != "force";
     request.flip_force = request.flip_force || flip != "position";
   }
-  if (!options.delimiter.empty()) request.layout.delimiter = delimiter_from_name(options.delimiter);
-  if (!options.decimal.empty()) request.layout.decimal = options.decimal == "comma" ? ',' : '.';
+  if (!options.decimal.empty()) request.decimal = options.decimal == "comma" ? ',' : '.';
   if (options.rate_Hz > 0.0) request.rate_Hz = options.rate_Hz;
   if (options.gain_N_per_V != 0.0) request.gain_N_per_V = options.gain_N_per_V;
   request.skip_bad_rows = options.skip_bad_rows;
@@ -201,8 +199,6 @@ void add_import(CLI::App& app, Verbs& verbs) {
       ->type_name("N_PER_V");
   verb->add_option("--skip-bad-rows", options->skip_bad_rows, "So many rows that do not parse may be left out")
       ->type_name("N");
-  verb->add_option("--delimiter", options->delimiter, "Instead of the guess: comma, semicolon, tab or blanks")
-      ->check(CLI::IsMember({"comma", "semicolon", "tab", "blanks"}));
   verb->add_option("--decimal", options->decimal, "Instead of the guess: point or comma")
       ->check(CLI::IsMember({"point", "comma"}));
   verb->add_flag("--json", options->json, "Print one JSON object");

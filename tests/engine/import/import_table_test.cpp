@@ -94,7 +94,7 @@ std::string rows_of(const std::string& separator, int count = 12) {
 }
 
 std::string message(const std::string& bytes, const ImportRequest& request = {}) {
-  const auto text = ForeignText::from_memory(bytes, "rig.txt");
+  const auto text = decode_foreign_text(bytes, "rig.txt");
   if (!text) return text.error().message;
   const auto table = import_table(*text, "rig.txt", request);
   return table ? "accepted" : table.error().message;
@@ -139,7 +139,7 @@ TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
 }
 
 TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
-  const auto text = ForeignText::from_memory("t [s],pos [mm],F [N]\n" + rows_of(","), "rig.txt");
+  const auto text = decode_foreign_text("t [s],pos [mm],F [N]\n" + rows_of(","), "rig.txt");
   const auto table = import_table(*text, "rig.txt", {});
   ASSERT_TRUE(table.ok());
   EXPECT_EQ(table->recording.rows.front().time_s, 0.0);
