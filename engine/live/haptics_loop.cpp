@@ -32,7 +32,7 @@ Status HapticsLoop::start() {
     thread_ = std::thread([this, granted = std::move(granted)]() mutable {
       RtStatus status;
       if (settings_.realtime) {
-        status = make_this_thread_realtime(settings_.rt);
+        status = make_this_thread_realtime({});
       } else {
         status.scheduling = "normal, as asked";
         status.fine_timers = system_rt_calls().set_timer_slack_1ns() == 0;

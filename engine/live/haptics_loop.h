@@ -30,7 +30,6 @@ struct LoopSettings {
   // have lost, and a sleep ends late. 0: it sleeps until the deadline.
   std::int64_t rehearse_ns = 0;
   bool realtime = true;  // ask for it
-  RtRequest rt;
   JndLine jnd;
   ForceSource* source = nullptr;  // outlives the loop; null: the models
 };

@@ -22,8 +22,6 @@ class SpscRing {
   SpscRing(const SpscRing&) = delete;
   SpscRing& operator=(const SpscRing&) = delete;
 
-  static constexpr std::size_t capacity() noexcept { return N; }
-
   // Producer thread. Wait-free. False: full, dropped and counted.
   bool push(const T& value) noexcept {
     const std::uint64_t written = written_.load(std::memory_order_relaxed);

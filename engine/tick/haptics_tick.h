@@ -99,8 +99,6 @@ class HapticsTick {
   // The features that model `index` was last given.
   const FeatureVector& features_of(std::size_t index) const noexcept { return filters_[filter_of_[index]].vector(); }
   std::size_t filter_count() const noexcept { return filters_.size(); }
-  const FeatureFilter& filter(std::size_t index) const noexcept { return filters_[index]; }
-  const FeatureVector& vector(std::size_t index) const noexcept { return filters_[index].vector(); }
 
  private:
   void evaluate_models() noexcept;

@@ -52,14 +52,4 @@ template <typename Number>
 }
 
 }  // namespace normal_table
-
-// `x` >= 0.
-inline NormalTail normal_tail(double x) noexcept {
-  if (!(x <= normal_table::kEnd)) return {};
-  const std::size_t node = normal_table::nearest(x);
-  NormalTail tail = normal_table::nodes[node];
-  normal_table::continue_to(x, normal_table::place(node), tail.probability, tail.density);
-  return tail;
-}
-
 }  // namespace palpate
