@@ -1,9 +1,12 @@
-// Vectors and points from an untrusted JSON text, for readers of parts of a model.
-// Thread guarantee: as JsonFields.
+// Numbers, vectors and points of a model file: read from an untrusted JSON text, and
+// written as the shortest decimals that read back as the same double, one item to a line
+// where models are to be compared by lines.
+// Thread guarantee: as JsonFields; what writes is pure, slow side (allocates).
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "engine/json/json_fields.h"
 
@@ -17,5 +20,20 @@ Eigen::VectorXd read_vector(JsonFields& fields, const JsonNode& object, const ch
 // The member `key`: a list of at least one point, each a list of `dimension` numbers;
 // one point a column.
 Eigen::MatrixXd read_points(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index dimension);
+
+// The shortest decimal, but never "-0": as a JSON integer it would lose its sign.
+std::string json_number(double value);
+std::string json_quoted(const std::string& text);
+// "[1, 2.5]"
+template <typename Values>
+std::string json_list(const Values& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + json_number(value);
+  return "[" + text + "]";
+}
+// A list of `items`, each on its own line.
+std::string json_lines(const std::vector<std::string>& items);
+// A list of the columns, each on its own line.
+std::string json_columns(const Eigen::MatrixXd& matrix);
 
 }  // namespace palpate

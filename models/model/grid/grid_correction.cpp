@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/json/json_fields.h"
-#include "models/model/file/json_text.h"
+#include "models/model/file/json_arrays.h"
 
 namespace palpate {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "engine/json/json_fields.h"
 #include "models/model/file/json_arrays.h"
-#include "models/model/file/json_text.h"
 
 namespace palpate {
 namespace {

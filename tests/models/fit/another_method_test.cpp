@@ -7,7 +7,6 @@
 
 #include "models/fit/fit.h"
 #include "models/model/file/json_arrays.h"
-#include "models/model/file/json_text.h"
 #include "models/model/file/model_io.h"
 #include "scenes/report/figures.h"
 #include "scenes/report/plan.h"

@@ -193,8 +193,9 @@ TEST(ModelReader, RefusesAFieldThatItDoesNotKnow) {
       {
           {"\"tail\"", "\"tails\": 3,\n\"tail\"",
            "m.json:50:12: tails: found an unknown field, expected one of format, version, name, method, features, "
-           "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, lowest_force_N, jnd, "
-           "provenance, domain, kernel, tail, centres, weights; fit the model again"},
+           "normalisation, trend, corrects_trend, correction_limit_N, largest_force_N, jnd, "
+           "provenance, domain, lowest_force_N, sensor, error_bound, kernel, tail, centres, weights; fit the model "
+           "again"},
           {"{\"kind\": \"depth\"}", "{\"kind\": \"depth\", \"time\": 1}",
            "m.json:7:31: features[0].time: found an unknown field, expected one of kind, surface_position_m; fit the "
            "model again"},

@@ -1,0 +1,434 @@
+// The text of a model file, read and written by one description of it: `describe` names
+// every member once, in the file's order, to a reader or a writer. The text may come from
+// anywhere, so nothing in it is believed before it was checked.
+#include "models/model/file/model_json.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "engine/json/json_fields.h"
+#include "models/model/file/json_arrays.h"
+
+namespace palpate {
+namespace {
+
+constexpr const char* kFitAgain = "; fit the model again";
+constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
+
+// Whether members, or items, stand on a line each or all on one.
+enum class Layout { lines, one_line };
+
+// What is wrong with the name of a model or a method, empty if nothing is. It heads a column of a
+// CSV file, so it holds nothing that would break a line into other columns.
+std::string name_fault(const std::string& name) {
+  const std::string expected =
+      "expected 1 to " + std::to_string(kModelNameBytes) + " bytes without control characters, commas and quotes";
+  if (name.empty()) return "found an empty text, " + expected;
+  if (name.size() > kModelNameBytes) return "found " + std::to_string(name.size()) + " bytes, " + expected;
+  const bool plain = std::none_of(name.begin(), name.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
+  });
+  return plain ? "" : "found a control character, comma or quote, " + expected;
+}
+
+// ---- what a model file holds; File: a ModelReader or a ModelWriter ----
+
+template <typename File, typename Item, typename Body>
+void describe_each(File& file, const char* key, std::vector<Item>& items, std::size_t most, Layout layout,
+                   const Body& body) {
+  std::size_t count = items.size();
+  file.each(key, count, most, layout, [&](std::size_t i) {
+    if (i == items.size()) items.emplace_back();
+    body(items[i]);
+  });
+}
+
+template <typename File>
+void describe_drive(File& file, DriveCurve& curve) {
+  file.object("drive", "an object with reference_depth_m and coefficient_N", Layout::one_line, [&] {
+    file.number("reference_depth_m", curve.reference_depth_m, Sign::kPositive);
+    file.list("coefficient_N", curve.coefficient_N);
+    curve.has_knots = file.has("knot_N", curve.has_knots);
+    if (curve.has_knots) file.list("knot_N", curve.knot_N);
+  });
+}
+
+template <typename File>
+void describe_feature(File& file, FeatureSpec& spec) {
+  file.kind(spec.kind);
+  if (has_time(spec.kind)) file.number("relaxation_time_s", spec.relaxation_time_s, Sign::kPositive);
+  if (spec.kind == FeatureKind::depth && file.has("surface_position_m", spec.surface_position_m != 0.0)) {
+    file.number("surface_position_m", spec.surface_position_m);
+  }
+  if (is_branch(spec.kind) && file.has("slowing", spec.slowing != 0.0)) file.number("slowing", spec.slowing);
+  if (has_drive(spec.kind)) describe_drive(file, spec.drive);
+  if (!has_parts(spec.kind)) return;
+  file.each("parts", spec.part_count, kMaxFeatureParts, Layout::one_line, [&](std::size_t p) {
+    FeaturePart& part = spec.parts[p];
+    if (is_bristle(spec.kind)) file.number("threshold_m", part.threshold_m, Sign::kPositive);
+    if (spec.kind != FeatureKind::stops) file.number("relaxation_time_s", part.relaxation_time_s, Sign::kPositive);
+    describe_drive(file, part.drive);
+  });
+}
+
+template <typename File>
+void describe_trend(File& file, Trend& trend) {
+  file.object("trend", "an object", Layout::lines, [&] {
+    file.number("reference_depth_m", trend.reference_depth_m, Sign::kPositive);
+    file.list("elastic_N", trend.elastic_N);
+    trend.has_elastic_knots = file.has("elastic_knot_N", trend.has_elastic_knots);
+    if (trend.has_elastic_knots) file.list("elastic_knot_N", trend.elastic_knot_N);
+    file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
+    file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
+    file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, Sign::kPositive);
+    file.number("velocity_limit_m_per_s", trend.velocity_limit_m_per_s, Sign::kNotNegative);
+  });
+}
+
+template <typename File>
+void describe_surface(File& file, RecordingSurface& surface) {
+  file.text("name", surface.name);
+  file.number("surface_offset_m", surface.offset_m);
+  if (file.has("standard_error_m", std::isfinite(surface.standard_error_m))) {
+    file.number("standard_error_m", surface.standard_error_m, Sign::kNotNegative);
+  } else {
+    surface.standard_error_m = std::numeric_limits<double>::infinity();
+  }
+  file.number("force_zero_N", surface.force_zero_N);
+  if (file.has("force_lag_s", surface.lag_s != 0.0)) file.number("force_lag_s", surface.lag_s);
+}
+
+template <typename File>
+void describe_provenance(File& file, Provenance& from) {
+  file.object("provenance", "an object", Layout::lines, [&] {
+    file.names("recordings", from.recordings);
+    // Models of positions as recorded have no such list.
+    if (file.has("surfaces", !from.surfaces.empty())) {
+      describe_each(file, "surfaces", from.surfaces, 0, Layout::lines,
+                    [&](RecordingSurface& surface) { describe_surface(file, surface); });
+    }
+    file.text("scene", from.scene);
+    file.count("samples", from.samples);
+    file.count("contact_samples", from.contact_samples);
+    file.count("samples_after_reduction", from.samples_after_reduction);
+    file.count("seed", from.seed);
+    file.has("fit_seconds", false);  // older files
+    file.text("weighting", from.weighting);
+    file.text("reduction", from.reduction);
+    file.text("relaxation", from.relaxation);
+    describe_each(file, "relaxation_times", from.relaxation_times, 0, Layout::one_line, [&](RelaxationTime& time) {
+      file.number("time_s", time.time_s, Sign::kPositive);
+      file.number("standard_error_s", time.standard_error_s, Sign::kNotNegative);
+    });
+    file.number("training_within_jnd", from.training_within_jnd, Sign::kNotNegative);
+  });
+}
+
+template <typename File>
+void describe_names(File& file, ModelData& data) {
+  file.text("name", data.name);
+  file.text("method", data.method);
+}
+
+template <typename File>
+void describe_features(File& file, ModelData& data) {
+  describe_each(file, "features", data.features, kMaxFeatures, Layout::lines,
+                [&](FeatureSpec& spec) { describe_feature(file, spec); });
+}
+
+// All whose size depends on the features, and the rest, but for the correction.
+template <typename File>
+void describe_rest(File& file, ModelData& data) {
+  file.object("normalisation", "an object with offset and scale", Layout::lines, [&] {
+    file.per_feature("offset", data.offset);
+    file.per_feature("scale", data.scale);
+  });
+  describe_trend(file, data.trend);
+  file.flag("corrects_trend", data.corrects_trend);
+  file.number("correction_limit_N", data.correction_limit_N, Sign::kNotNegative);
+  file.number("largest_force_N", data.largest_force_N, Sign::kNotNegative);
+  file.object("jnd", "an object with offset_N and weber_fraction", Layout::one_line, [&] {
+    file.number("offset_N", data.jnd.offset_N, Sign::kPositive);
+    file.number("weber_fraction", data.jnd.weber_fraction, Sign::kNotNegative);
+  });
+  describe_provenance(file, data.provenance);
+  file.object("domain", "an object", Layout::lines, [&] {
+    file.per_feature("lower", data.lower);
+    file.per_feature("upper", data.upper);
+    file.number("inner_radius", data.cover.inner_radius, Sign::kNotNegative);
+    file.number("outer_radius", data.cover.outer_radius, Sign::kPositive);
+    file.points("points", data.cover.points);
+  });
+  if (file.has("lowest_force_N", data.lowest_force_N < 0.0)) file.number("lowest_force_N", data.lowest_force_N);
+  if (file.has("sensor", data.sensor.has_value())) {
+    PositionSensor& sensor = data.sensor ? *data.sensor : data.sensor.emplace();
+    file.object("sensor", "an object", Layout::one_line, [&] {
+      file.number("encoder_step_m", sensor.encoder_step_m, Sign::kNotNegative);
+      file.number("position_noise_m", sensor.position_noise_m, Sign::kNotNegative);
+    });
+  }
+  if (file.has("error_bound", data.error_bound.has_value())) {
+    ErrorBound& bound = data.error_bound ? *data.error_bound : data.error_bound.emplace();
+    file.object("error_bound", "an object", Layout::one_line, [&] {
+      file.number("floor_N", bound.floor_N, Sign::kNotNegative);
+      file.number("per_force", bound.per_force, Sign::kNotNegative);
+      file.number("per_distance_N", bound.per_distance_N, Sign::kNotNegative);
+    });
+  }
+}
+
+// ---- reading ----
+
+class ModelReader {
+ public:
+  ModelReader(const nlohmann::json& document, std::string_view text, const std::string& path)
+      : fields_(text, path, kFitAgain), top_{&document, ""}, at_(top_) {}
+
+  Result<ModelData> read() {
+    ModelData data;
+    read_document(data);
+    if (fields_.error()) return *fields_.error();
+    return data;
+  }
+
+  // About the members of the object that is being read. Whether there is such a one:
+  bool has(const char* key, bool) { return fields_.optional_member(at_, key).value != nullptr; }
+  void text(const char* key, std::string& value) { value = fields_.text(at_, key); }
+  void flag(const char* key, bool& value) { value = fields_.boolean(at_, key); }
+  void count(const char* key, std::uint64_t& value) { value = fields_.count(at_, key); }
+  void number(const char* key, double& value, Sign sign = Sign::kAny) { value = fields_.number(at_, key, sign); }
+  template <std::size_t n>
+  void list(const char* key, std::array<double, n>& values) {
+    fields_.fill(fields_.member(at_, key, "a list of numbers"), n, "coefficients", values.data());
+  }
+  void per_feature(const char* key, Eigen::VectorXd& values) {
+    values = read_vector(fields_, at_, key, dimension_, "numbers, one per feature");
+  }
+  void points(const char* key, Eigen::MatrixXd& values) { values = read_points(fields_, at_, key, dimension_); }
+
+  void names(const char* key, std::vector<std::string>& values) {
+    const JsonNode list = fields_.list(at_, key, "a list of names");
+    for (std::size_t i = 0; list.value != nullptr && i < list.value->size(); ++i) {
+      const JsonNode name = JsonFields::entry(list, i);
+      if (!name.value->is_string()) return fields_.complain(name.pointer, found(*name.value) + ", expected a text");
+      values.push_back(name.value->get<std::string>());
+    }
+  }
+
+  void kind(FeatureKind& value) {
+    const JsonNode node = fields_.member(at_, "kind", "a text");
+    if (node.value != nullptr && *node.value == "fading_peak") {
+      fields_.complain(node.pointer,
+                       "found \"fading_peak\", a feature that fits no longer use; fit again (palpate fit)");
+      return;
+    }
+    std::vector<std::string> names;
+    for (const FeatureKindFacts& one : kFeatureKinds) names.emplace_back(one.name);
+    if (const auto known = fields_.choice(node, names)) value = static_cast<FeatureKind>(*known);
+  }
+
+  template <typename Body>
+  void object(const char* key, const char* expected, Layout, const Body& body) {
+    inside(fields_.member(at_, key, expected), body);
+  }
+
+  // `most`: 0 for any number of items, none among them.
+  template <typename Body>
+  void each(const char* key, std::size_t& count, std::size_t most, Layout, const Body& body) {
+    const std::string expected = most == 0 ? "a list" : "a list of 1 to " + std::to_string(most) + " " + key;
+    const JsonNode list = fields_.list(at_, key, expected);
+    count = list.value != nullptr ? list.value->size() : 0;
+    if (list.value != nullptr && most > 0 && (count == 0 || count > most)) {
+      fields_.complain(list.pointer, found(*list.value) + ", expected " + expected);
+      count = 0;
+    }
+    for (std::size_t i = 0; i < count; ++i) inside(JsonFields::entry(list, i), [&] { body(i); });
+  }
+
+ private:
+  template <typename Body>
+  void inside(const JsonNode& node, const Body& body) {
+    const JsonNode outer = std::exchange(at_, node);
+    body();
+    at_ = outer;
+  }
+
+  void read_document(ModelData& data) {
+    if (!read_format()) return;
+    describe_names(*this, data);
+    if (const std::string fault = name_fault(data.name); !fault.empty()) fields_.complain("/name", fault);
+    if (const std::string fault = name_fault(data.method); !fault.empty()) fields_.complain("/method", fault);
+    const std::size_t named = fields_.error_count();
+    describe_features(*this, data);
+    if (fields_.error_count() > named) return;  // every size below depends on the features
+    dimension_ = static_cast<Eigen::Index>(data.features.size());
+    describe_rest(*this, data);
+    read_correction(data);
+    // After another error not all that may be there was asked for.
+    if (fields_.error_count() == 0) fields_.refuse_unknown(top_);
+  }
+
+  bool read_format() {
+    const char* advice = "; name a file that palpate fit wrote";
+    const JsonNode format = fields_.optional_member(top_, "format");
+    if (format.value == nullptr || *format.value != "palpate-model") {
+      const bool none = format.value == nullptr;
+      fields_.complain(none ? "" : format.pointer,
+                       (none ? "found no \"format\"" : found(*format.value)) + ", expected \"palpate-model\"", advice);
+      return false;
+    }
+    const JsonNode version = fields_.member(top_, "version", std::to_string(kModelVersion));
+    if (version.value != nullptr && *version.value != kModelVersion) {
+      fields_.complain(version.pointer, found(*version.value) + ", expected " + std::to_string(kModelVersion),
+                       "; fit the model again with this program, or read it with the one that wrote it");
+    }
+    return !fields_.error();
+  }
+
+  // Exactly one of the fields that tell the kinds of correction apart.
+  void read_correction(ModelData& data) {
+    const auto quoted = [](const CorrectionKind& kind) { return std::string("\"").append(kind.key).append("\""); };
+    std::vector<const CorrectionKind*> present;
+    std::string known;
+    for (const CorrectionKind& kind : correction_kinds()) {
+      known += (known.empty() ? "" : ", ") + quoted(kind);
+      if (top_.value->contains(kind.key)) present.push_back(&kind);
+    }
+    if (present.size() > 1) {
+      fields_.complain("",
+                       "found both " + quoted(*present[0]) + " and " + quoted(*present[1]) + ", expected one of them");
+    } else if (present.empty()) {
+      fields_.complain("", "found none of " + known + ", expected one of them");
+    } else {
+      data.correction = present[0]->read(fields_, top_, static_cast<int>(dimension_));
+    }
+  }
+
+  JsonFields fields_;
+  JsonNode top_;
+  JsonNode at_;
+  Eigen::Index dimension_ = 0;
+};
+
+// ---- writing ----
+
+class ModelWriter {
+ public:
+  bool has(const char*, bool there) { return there; }
+  void text(const char* key, const std::string& value) { add(key, json_quoted(value)); }
+  void flag(const char* key, bool value) { add(key, value ? "true" : "false"); }
+  void count(const char* key, std::uint64_t value) { add(key, std::to_string(value)); }
+  void number(const char* key, double value, Sign = Sign::kAny) { add(key, json_number(value)); }
+  template <typename Values>
+  void list(const char* key, const Values& values) {
+    add(key, json_list(values));
+  }
+  void per_feature(const char* key, const Eigen::VectorXd& values) { list(key, values); }
+  void points(const char* key, const Eigen::MatrixXd& values) { add(key, json_columns(values)); }
+  void kind(FeatureKind value) { text("kind", std::string(facts_of(value).name)); }
+
+  void names(const char* key, const std::vector<std::string>& values) {
+    std::vector<std::string> quoted;
+    for (const std::string& value : values) quoted.push_back(json_quoted(value));
+    add(key, joined("[", quoted, ", ", "]"));
+  }
+
+  template <typename Body>
+  void object(const char* key, const char*, Layout layout, const Body& body) {
+    add(key, layout == Layout::lines ? members("{\n    ", ",\n    ", "\n  }", body) : members("{", ", ", "}", body));
+  }
+
+  template <typename Body>
+  void each(const char* key, std::size_t count, std::size_t, Layout layout, const Body& body) {
+    std::vector<std::string> items;
+    for (std::size_t i = 0; i < count; ++i) items.push_back(members("{", ", ", "}", [&] { body(i); }));
+    add(key, layout == Layout::lines ? json_lines(items) : joined("[", items, ", ", "]"));
+  }
+
+  void add(const std::string& key, const std::string& value) {
+    members_.push_back(std::string("\"").append(key).append("\": ").append(value));
+  }
+  // The text of the object whose members `body` adds.
+  template <typename Body>
+  std::string members(const char* open, const char* between, const char* close, const Body& body) {
+    std::vector<std::string> outer = std::exchange(members_, {});
+    body();
+    std::swap(members_, outer);
+    return joined(open, outer, between, close);
+  }
+
+ private:
+  static std::string joined(const char* open, const std::vector<std::string>& items, const char* between,
+                            const char* close) {
+    std::string text = open;
+    for (std::size_t i = 0; i < items.size(); ++i) text.append(i == 0 ? "" : between).append(items[i]);
+    return text.append(close);
+  }
+
+  std::vector<std::string> members_;  // of the object that is being written
+};
+
+// File name without its folders.
+std::string stem_of(const std::string& name) { return name.substr(name.find_last_of("/\\") + 1); }
+
+Status check(const ModelData& data) {
+  if (Status status = validate_model(data); !status) return status;
+  if (const std::string fault = name_fault(data.name); !fault.empty()) return Error{"name: " + fault};
+  if (const std::string fault = name_fault(data.method); !fault.empty()) return Error{"method: " + fault};
+  const Provenance& from = data.provenance;
+  bool plausible = from.training_within_jnd >= 0.0 && from.training_within_jnd <= 1.0;
+  for (const RelaxationTime& time : from.relaxation_times) {
+    plausible = plausible && time.time_s > 0.0 && std::isfinite(time.time_s) && time.standard_error_s >= 0.0 &&
+                std::isfinite(time.standard_error_s);
+  }
+  for (const RecordingSurface& surface : from.surfaces) {
+    plausible = plausible && std::isfinite(surface.offset_m) && std::isfinite(surface.force_zero_N) &&
+                surface.standard_error_m >= 0.0;
+  }
+  if (!plausible) return Error{"provenance: found a number that is negative or not finite, expected finite ones"};
+  return {};
+}
+
+}  // namespace
+
+Result<ModelData> read_model_text(std::string_view text, const std::string& path) {
+  try {
+    const Result<nlohmann::json> document = parse_json(text, path, kModelNesting, {kFitAgain, kDamaged});
+    if (!document) return document.error();
+    Result<ModelData> data = ModelReader(*document, text, path).read();
+    if (!data) return data;
+    if (const Status status = validate_model(*data); !status) {
+      return Error{path + ": " + status.error().message + kFitAgain};
+    }
+    return data;
+  } catch (const std::bad_alloc&) {
+    return Error{path + ": found more data than memory holds, expected a model file" + kDamaged};
+  } catch (const std::exception& error) {
+    return Error{path + ": " + error.what()};
+  }
+}
+
+Result<std::string> write_model_text(const ModelData& data) {
+  if (const Status status = check(data); !status) return status.error();
+  ModelData written = data;
+  for (std::string& name : written.provenance.recordings) name = stem_of(name);
+  for (RecordingSurface& surface : written.provenance.surfaces) surface.name = stem_of(surface.name);
+  ModelWriter file;
+  return file.members("{\n  ", ",\n  ", "\n}\n", [&] {
+    file.text("format", "palpate-model");
+    file.add("version", std::to_string(kModelVersion));
+    describe_names(file, written);
+    describe_features(file, written);
+    describe_rest(file, written);
+    for (const auto& [key, value] : data.correction->file_fields()) file.add(key, value);
+  });
+}
+
+}  // namespace palpate
