@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "models/fit/methods.h"
-#include "models/model/no_correction.h"
 
 namespace palpate {
 namespace {

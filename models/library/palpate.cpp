@@ -11,12 +11,14 @@
 
 #include "engine/base/result.h"
 #include "engine/live/force_limiter.h"
-#include "engine/recording/recording.h"
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/sensor_identification.h"
 #include "models/library/error_text.h"
-#include "models/library/model_handle.h"
 #include "models/model/file/model_io.h"
+
+struct palpate_model {
+  std::shared_ptr<const palpate::FittedModel> model;
+};
 
 struct palpate_stream {
   palpate_stream(const palpate::SensorSpec& spec, std::shared_ptr<const palpate::ForceModel> model)

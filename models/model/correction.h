@@ -41,6 +41,16 @@ class Correction {
   virtual FileFields file_fields() const = 0;
 };
 
+// That of a model which is its trend alone.
+class NoCorrection final : public Correction {
+ public:
+  double evaluate(const double*) const noexcept override { return 0.0; }
+  int size() const noexcept override { return 0; }
+  bool is_none() const noexcept override { return true; }
+  Status validate(int) const override { return {}; }
+  FileFields file_fields() const override { return {{"trend_alone", "true"}}; }
+};
+
 using CorrectionPtr = std::shared_ptr<const Correction>;
 
 // How a kind is found in a model file and read from it.

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "models/model/fitted_model.h"
-#include "models/model/grid/voxel_lookup.h"
+#include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/model/rbf/rbf_simd.h"
 #include "models/solve/fill_grid.h"

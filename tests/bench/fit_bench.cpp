@@ -9,7 +9,7 @@
 
 #include "models/fit/fit_direct.h"
 #include "models/fit/nested_fit.h"
-#include "models/model/grid/voxel_lookup.h"
+#include "models/model/grid/voxel_grid.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/fill_grid.h"
 #include "tests/bench/bench_data.h"

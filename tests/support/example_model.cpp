@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/model/no_correction.h"
 #include "tests/support/random_points.h"
 
 namespace palpate::test {

@@ -7,7 +7,6 @@
 
 #include "models/model/correction.h"
 #include "models/model/grid/voxel_grid.h"
-#include "models/model/grid/voxel_lookup.h"
 
 namespace palpate {
 

@@ -1,12 +1,17 @@
-// A rectilinear grid of precomputed forces, interpolated linearly in each of
-// its d dimensions (voxel_lookup.h).
-// Thread guarantee: a value type.
+// A rectilinear grid of precomputed forces, and the look-up in it: linear in each of its d
+// dimensions between the 2^d nodes around x. The loops are compiled for each dimension, and
+// widths are divided by beforehand.
+// Thread guarantee: a value type; the look-up is immutable.
+// Source: Hoever & Harders (2009), section 3.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/tick/features.h"
 
 namespace palpate {
 
@@ -21,5 +26,38 @@ struct VoxelGrid {
 
 // Errors: names the array, what was found and what was expected.
 Status validate_voxel_grid(const VoxelGrid& grid, int dimension);
+
+class VoxelLookup {
+ public:
+  // `grid` must pass validate_voxel_grid; it is copied.
+  explicit VoxelLookup(const VoxelGrid& grid);
+
+  // The grid's value at x, d values; coordinates outside the box count as
+  // those of its edge, NaN as the lower edge. Haptics thread, wait-free, no
+  // allocation, O(2^d + d log nodes).
+  double evaluate(const double* x) const noexcept { return (this->*interpolate_)(x); }
+
+ private:
+  struct Axis {
+    std::vector<double> nodes;
+    std::vector<double> reciprocal_width;  // of the cell that begins at each node but the last
+    std::size_t stride = 0;                // in values
+  };
+  struct Place {
+    std::size_t offset = 0;
+    double fraction = 0.0;
+  };
+
+  static Place locate(const Axis& axis, double x) noexcept;
+  template <int kDimension>
+  double interpolate(const double* x) const noexcept;
+
+  using Interpolate = double (VoxelLookup::*)(const double*) const noexcept;
+  static Interpolate pick(int dimension);
+
+  std::vector<double> values_;
+  std::array<Axis, kMaxFeatures> axes_;
+  Interpolate interpolate_ = nullptr;
+};
 
 }  // namespace palpate

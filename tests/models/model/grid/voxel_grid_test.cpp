@@ -1,4 +1,4 @@
-#include "models/model/grid/voxel_lookup.h"
+#include "models/model/grid/voxel_grid.h"
 #include "models/solve/fill_grid.h"
 
 #include <gtest/gtest.h>
