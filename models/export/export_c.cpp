@@ -12,8 +12,8 @@ namespace {
 // Of kMotionC on a quantised sample, estimated from its source.
 constexpr TickOperations kMotionOperations{
     .arithmetic = 1500, .divisions = 60, .roots = 3, .exponentials = 20, .logarithms = 6};
-// Filters, their mixture, features and the last sample.
-constexpr std::size_t kMotionNumbers = 2 * 3 * 13 + 8;
+// Filters, features and the last sample.
+constexpr std::size_t kMotionNumbers = 3 * 13 + 8;
 
 // Text that may stand in a C comment.
 std::string in_comment(const std::string& text) {

@@ -18,7 +18,6 @@ typedef struct {
 } Filter;
 
 static Filter filters[3];
-static Filter mixed[3];
 static real last_time_s;
 static real last_position_m;
 static real position_estimate_m;
@@ -108,13 +107,11 @@ static real normal_between(real a, real b) { /* probability of a standard normal
 }
 
 static void start_motion(real position_m) {
+  static const Filter nothing = {{R(0.0)}, {{R(0.0)}}, R(0.0)};
   const real resolution_m = larger(R(PALPATE_ENCODER_STEP_M), R(1e-9));
-  int f, i, j;
+  int f;
   for (f = 0; f < 3; ++f) {
-    for (i = 0; i < 3; ++i) {
-      filters[f].mean[i] = R(0.0);
-      for (j = 0; j < 3; ++j) filters[f].covariance[i][j] = R(0.0);
-    }
+    filters[f] = nothing;
     filters[f].mean[0] = position_m;
     filters[f].covariance[0][0] =
         resolution_m * resolution_m / R(12.0) + R(PALPATE_POSITION_NOISE_M) * R(PALPATE_POSITION_NOISE_M);
@@ -131,38 +128,30 @@ static void start_motion(real position_m) {
 static void mix_filters(real step_s) {
   const real stay = EXP(-step_s / R(0.2));
   const real change = (R(1.0) - stay) / R(2.0);
+  const Filter before[3] = {filters[0], filters[1], filters[2]};
   int to, from, i, j;
   for (to = 0; to < 3; ++to) {
-    Filter *const into = &mixed[to];
+    Filter *const into = &filters[to];
     real weight[3];
-    real total = R(0.0);
+    into->probability = R(0.0);
+    for (from = 0; from < 3; ++from) {
+      weight[from] = (from == to ? stay : change) * before[from].probability;
+      into->probability += weight[from];
+    }
+    for (from = 0; from < 3; ++from) weight[from] /= into->probability;
     for (i = 0; i < 3; ++i) {
       into->mean[i] = R(0.0);
-      for (j = 0; j < 3; ++j) into->covariance[i][j] = R(0.0);
-    }
-    for (from = 0; from < 3; ++from) {
-      weight[from] = (from == to ? stay : change) * filters[from].probability;
-      total += weight[from];
-    }
-    into->probability = total;
-    for (from = 0; from < 3; ++from) {
-      weight[from] /= total;
-      for (i = 0; i < 3; ++i) into->mean[i] += weight[from] * filters[from].mean[i];
-    }
-    for (from = 0; from < 3; ++from) {
-      real spread[3];
-      for (i = 0; i < 3; ++i) spread[i] = filters[from].mean[i] - into->mean[i];
-      for (i = 0; i < 3; ++i) {
-        for (j = 0; j <= i; ++j) {
-          into->covariance[i][j] += weight[from] * (filters[from].covariance[i][j] + spread[i] * spread[j]);
+      for (from = 0; from < 3; ++from) into->mean[i] += weight[from] * before[from].mean[i];
+      for (j = 0; j <= i; ++j) {
+        real sum = R(0.0);
+        for (from = 0; from < 3; ++from) {
+          const real spread = (before[from].mean[i] - into->mean[i]) * (before[from].mean[j] - into->mean[j]);
+          sum += weight[from] * (before[from].covariance[i][j] + spread);
         }
+        into->covariance[i][j] = into->covariance[j][i] = sum;
       }
     }
-    for (i = 0; i < 3; ++i) {
-      for (j = 0; j < i; ++j) into->covariance[j][i] = into->covariance[i][j];
-    }
   }
-  for (to = 0; to < 3; ++to) filters[to] = mixed[to];
 }
 
 /* Exact discretisation of a white-jerk motion over `h` seconds, density q. */
