@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "engine/live/pacer.h"
-#include "rendering/app/screenshot.h"
 #include "rendering/panels/panel_parts.h"
 #include "rendering/panels/panel_views.h"
 #include "scenes/scene/assets.h"
@@ -254,7 +253,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
   draw();
-  return save_screenshot(*window_, path, overwrite);
+  return window_->save_frame(path, overwrite);
 }
 
 }  // namespace palpate

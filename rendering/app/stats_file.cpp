@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "rendering/panels/panel_verdict.h"
+#include "rendering/panels/panel_errors.h"
 
 namespace palpate {
 namespace {

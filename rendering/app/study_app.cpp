@@ -5,10 +5,11 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <utility>
 
-#include "rendering/app/screenshot.h"
 #include "scenes/scene/local_time.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
@@ -22,6 +23,29 @@ constexpr Theme kTheme = Theme::dark;     // nothing glares in a dim room
 
 constexpr auto kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav;
+
+// What the subject can do in a state of the session: a button and its key.
+struct Choice {
+  StudyState state;
+  int key;
+  const char* label;
+  void (*run)(StudySession& session);
+};
+void go_on(StudySession& session) { session.proceed(); }
+constexpr Choice kChoices[] = {
+    {StudyState::consent, GLFW_KEY_Y, "I have read this and agree (Y)",
+     [](StudySession& session) { session.accept_consent(local_time_text("%Y-%m-%d %H:%M")); }},
+    {StudyState::ready, GLFW_KEY_ENTER, "Go on (Enter)", go_on},
+    {StudyState::rest, GLFW_KEY_ENTER, "Go on (Enter)", go_on},
+    {StudyState::answering, GLFW_KEY_1, "The first (1)", [](StudySession& session) { session.answer(false); }},
+    {StudyState::answering, GLFW_KEY_2, "The second (2)", [](StudySession& session) { session.answer(true); }},
+    {StudyState::unsaved, GLFW_KEY_R, "Try again (R)", [](StudySession& session) { session.retry(); }}};
+
+// Of a key on the keypad, the other that means the same.
+int usual_key(int key) {
+  if (key == GLFW_KEY_KP_ENTER) return GLFW_KEY_ENTER;
+  return key == GLFW_KEY_KP_1 || key == GLFW_KEY_KP_2 ? GLFW_KEY_1 + key - GLFW_KEY_KP_1 : key;
+}
 
 // Between what belongs together and what comes next.
 void gap() { ImGui::Dummy({1.0F, 0.6F * ImGui::GetFontSize()}); }
@@ -59,8 +83,6 @@ void StudyApp::begin(const std::string& code) {
   request.header.subject = code;
   request.path = "study-" + code + ".csv";
   if (request_.strokes != nullptr) {
-    request.header.procedure = ProcedureKind::discriminate;
-    request.header.timing = stroke_timing(*request_.strokes);
     request.header.strokes = request_.strokes;
     request.path = "discriminate-" + code + ".csv";
   }
@@ -88,48 +110,25 @@ void StudyApp::handle_keys() {
         code_ += static_cast<char>(std::toupper(static_cast<unsigned char>(typed.letter)));
       }
     } else if (study_ == nullptr) {
-      handle_entry_key(typed.key);
+      handle_entry_key(usual_key(typed.key));
     } else {
-      handle_key(typed.key);
+      handle_key(usual_key(typed.key));
     }
   }
 }
 
 void StudyApp::handle_entry_key(int key) {
-  if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) begin(code_);
+  if (key == GLFW_KEY_ENTER) begin(code_);
   if (key == GLFW_KEY_BACKSPACE && !code_.empty()) code_.pop_back();
 }
 
 void StudyApp::handle_key(int key) {
   StudySession& session = study_->session();
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-      session.abort();
-      break;
-    case GLFW_KEY_Y:
-      session.accept_consent(local_time_text("%Y-%m-%d %H:%M"));
-      break;
-    case GLFW_KEY_ENTER:
-    case GLFW_KEY_KP_ENTER:
-      session.proceed();
-      break;
-    case GLFW_KEY_1:
-    case GLFW_KEY_KP_1:
-      session.answer(false);
-      break;
-    case GLFW_KEY_2:
-    case GLFW_KEY_KP_2:
-      session.answer(true);
-      break;
-    case GLFW_KEY_R:
-      session.retry();
-      break;
-    case GLFW_KEY_Z:
-      study_->start_zeroing();
-      break;
-    default:
-      break;
-  }
+  if (key == GLFW_KEY_ESCAPE) session.abort();
+  if (key == GLFW_KEY_Z) study_->start_zeroing();
+  const auto asked = [&](const Choice& choice) { return choice.state == session.state() && choice.key == key; };
+  if (const auto* choice = std::find_if(std::begin(kChoices), std::end(kChoices), asked); choice != std::end(kChoices))
+    choice->run(session);
 }
 
 void StudyApp::draw() {
@@ -260,33 +259,14 @@ void StudyApp::draw_intervals(const StudyView& view) {
 }
 
 void StudyApp::draw_choices(const StudyView& view) {
-  switch (view.state) {
-    case StudyState::consent:
-      button("I have read this and agree (Y)", GLFW_KEY_Y);
-      break;
-    case StudyState::ready:
-      button("Go on (Enter)", GLFW_KEY_ENTER);
-      break;
-    case StudyState::rest:
-      if (view.rest_ticks_left > 0) {
-        ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
-      } else {
-        button("Go on (Enter)", GLFW_KEY_ENTER);
-      }
-      break;
-    case StudyState::answering:
-      button("The first (1)", GLFW_KEY_1);
-      ImGui::SameLine();
-      button("The second (2)", GLFW_KEY_2);
-      break;
-    case StudyState::unsaved:
-      button("Try again (R)", GLFW_KEY_R);
-      break;
-    case StudyState::presenting:
-    case StudyState::done:
-    case StudyState::aborted:
-      break;
+  bool first = true;
+  for (const Choice& choice : kChoices) {
+    if (choice.state != view.state || view.rest_ticks_left > 0) continue;
+    if (!std::exchange(first, false)) ImGui::SameLine();
+    button(choice.label, choice.key);
   }
+  if (view.rest_ticks_left > 0)
+    ImGui::TextDisabled("%llu s left", static_cast<unsigned long long>((view.rest_ticks_left + 999) / 1000));
   if (view.state == StudyState::done || view.state == StudyState::aborted) return;
   gap();
   ImGui::PushFont(style_.fonts().body);
@@ -296,7 +276,7 @@ void StudyApp::draw_choices(const StudyView& view) {
 
 Status StudyApp::screenshot(const std::string& path, bool overwrite) {
   draw();
-  return save_screenshot(*window_, path, overwrite);
+  return window_->save_frame(path, overwrite);
 }
 
 }  // namespace palpate

@@ -48,6 +48,9 @@ class Window {
   // Shows what was drawn and waits until the next frame is due: the display's own
   // pace where the driver waits for it, else 60 Hz.
   void show_frame();
+  // Likewise, and saves it as a PNG file, whole or not at all. Errors: it exists and
+  // `overwrite` is false; the disk refuses.
+  Status save_frame(const std::string& path, bool overwrite);
   void set_fullscreen(bool fullscreen);
   bool fullscreen() const noexcept;
 
