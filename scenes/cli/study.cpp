@@ -16,6 +16,7 @@
 #include "scenes/scene/scene.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
+#include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_figure.h"
 
 namespace palpate::cli {
@@ -24,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPopulationStream = 51;
+constexpr SubjectTraits kPopulation{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as the paper's
 
 void print_analysis(const StudyAnalysis& analysis) {
   std::printf("%-13s %8s %12s %22s\n", "reference [N]", "subjects", "mean JND [%]", "all answers [%], 95 %");
@@ -91,12 +93,11 @@ void print_discrimination(const DiscriminationAnalysis& analysis) {
               strokes.comparison.c_str(), strokes.recording.c_str(), strokes.from_s, strokes.to_s);
   std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
               strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
-  std::printf("%-8s %7s %9s %14s %6s %12s\n", "subject", "answers", "right [%]", "95 %", "d'", "p, guessing");
+  std::printf("%-8s %7s %9s %14s\n", "subject", "answers", "right [%]", "95 %");
   const auto print = [](const Discrimination& one) {
     const ShareInterval interval = wilson_interval(one.correct, one.trials);
-    std::printf("%-8s %7zu %9.1f %6.1f to %4.1f %6.2f %12.3g\n", one.subject.c_str(), one.trials, 100.0 * one.share(),
-                100.0 * interval.low, 100.0 * interval.high, d_prime(one.correct, one.trials),
-                guessing_probability(one.correct, one.trials));
+    std::printf("%-8s %7zu %9.1f %6.1f to %4.1f\n", one.subject.c_str(), one.trials, 100.0 * one.share(),
+                100.0 * interval.low, 100.0 * interval.high);
   };
   for (const Discrimination& subject : analysis.subjects) print(subject);
   if (analysis.subjects.size() > 1) print(analysis.all);
@@ -138,21 +139,11 @@ Status run_analyse(const StudyOptions& options) {
 }
 
 // One of the population: the JND's factor spreads as e^normal.
-SubjectTraits drawn_subject(const StudyOptions& options, RandomStream& random) {
-  SubjectTraits traits = options.traits;
-  const double factor = std::exp(options.spread * random.normal());
-  traits.jnd = {factor * traits.jnd.offset_N, factor * traits.jnd.weber_fraction};
-  return traits;
-}
-
-std::string file_text(const StudyHeader& header, const std::vector<StudyRecord>& records) {
-  std::string text =
-      study_header_text(header) + "# consent accepted, simulated\n" + study_columns(header.procedure) + "\n";
-  for (StudyRecord record : records) {
-    record.device = "simulated";
-    text += study_row(record, header.procedure);
-  }
-  return text;
+SubjectTraits drawn_subject(double spread, RandomStream& random) {
+  const double factor = std::exp(spread * random.normal());
+  return {{factor * kPopulation.jnd.offset_N, factor * kPopulation.jnd.weber_fraction},
+          kPopulation.order_bias_jnd,
+          kPopulation.lapse_rate};
 }
 
 Status run_simulate(const StudyOptions& options) {
@@ -165,16 +156,17 @@ Status run_simulate(const StudyOptions& options) {
     for (int i = 1; i <= options.subjects; ++i) {
       if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
       RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
-      const SubjectTraits traits = drawn_subject(options, random);
+      const SubjectTraits traits = drawn_subject(options.spread, random);
       char code[16];
       std::snprintf(code, sizeof code, "S%02d", i);
       header->subject = code;
-      const auto records = run_simulated_session(*header, traits, random.next());
-      if (!records) return records.error();
-      const std::string path = options.out + "/" + code + ".csv";
-      const Status written = write_file_atomically(path, file_text(*header, *records), options.force);
+      StudyData data{*header, "simulated", simulated_answers(*header, traits, random.next()), 0};
+      std::string text =
+          study_header_text(data.header) + "# consent accepted, simulated\n" + study_columns(data.header) + "\n";
+      for (const StudyRecord& record : data.records) text += study_row(record, data.header);
+      const Status written = write_file_atomically(options.out + "/" + code + ".csv", text, options.force);
       if (!written) return written;
-      files.push_back({*header, "simulated", *records, 0});
+      files.push_back(std::move(data));
     }
   }
   return analyse_files(files, options);
@@ -244,20 +236,8 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
   verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
   add_stroke_options(verb, options);
   verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
-  verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
-      ->check(CLI::Range(0.001, 1.0))
-      ->capture_default_str();
-  verb->add_option("--weber", options->traits.jnd.weber_fraction, "What it grows by with the force")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
   verb->add_option("--spread", options->spread, "How the subjects differ: standard deviation of ln JND")
       ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  verb->add_option("--bias", options->traits.order_bias_jnd, "What they add to the second force, multiples of the JND")
-      ->check(CLI::Range(-2.0, 2.0))
-      ->capture_default_str();
-  verb->add_option("--lapse", options->traits.lapse_rate, "Share of answers that are wrong whatever the force")
-      ->check(CLI::Range(0.0, 0.2))
       ->capture_default_str();
   add_output_options(verb, *options);
   verbs.emplace_back(verb, [options] { return run_simulate(*options); });
@@ -272,9 +252,7 @@ Result<StudyHeader> study_header(const StudyOptions& options) {
   if (!scene) return scene.error();
   const auto strokes = prepare_strokes({*scene, options.models, options.recording});
   if (!strokes) return strokes.error();
-  header.procedure = ProcedureKind::discriminate;
   header.strokes = *strokes;
-  header.timing = stroke_timing(**strokes);
   return header;
 }
 

@@ -10,17 +10,14 @@
 namespace palpate {
 namespace {
 
-constexpr double kLevel = 0.95;
-
 bool is_usable(const StudyRecord& record, const JndLine& jnd) { return record.worst_N <= 0.5 * jnd.at(0.0); }
 
 std::string row_of(const Discrimination& result, const StrokePair& strokes) {
   const ShareInterval interval = wilson_interval(result.correct, result.trials);
   char text[320];
-  std::snprintf(text, sizeof text, "%s,%zu,%zu,%zu,%.4f,%.4f,%.4f,%.3f,%.3g,%.4f,%.4f\n", result.subject.c_str(),
-                result.trials, result.correct, result.unusable, result.share(), interval.low, interval.high,
-                d_prime(result.correct, result.trials), guessing_probability(result.correct, result.trials),
-                strokes.mean_over_jnd, strokes.max_over_jnd);
+  std::snprintf(text, sizeof text, "%s,%zu,%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f\n", result.subject.c_str(), result.trials,
+                result.correct, result.unusable, result.share(), interval.low, interval.high, strokes.mean_over_jnd,
+                strokes.max_over_jnd);
   return text;
 }
 
@@ -55,7 +52,7 @@ Status check_discrimination_files(const std::vector<StudyData>& files) {
   for (const StudyData& file : files) {
     const StudyHeader& header = file.header;
     if (header.strokes == nullptr) {
-      return Error{"found the procedure " + std::string(procedure_name(header.procedure)) + " in the file of subject " +
+      return Error{"found the procedure " + std::string(header.procedure()) + " in the file of subject " +
                    header.subject + ", expected discriminate as in the others; analyse them apart"};
     }
     const StrokePair& first = *files.front().header.strokes;
@@ -77,24 +74,10 @@ double Discrimination::share() const noexcept {
 ShareInterval wilson_interval(std::size_t correct, std::size_t trials) noexcept {
   if (trials == 0) return {};
   const double n = static_cast<double>(trials), share = static_cast<double>(correct) / n;
-  const double z = normal_quantile(0.5 + 0.5 * kLevel), z2 = z * z / n;
+  const double z = normal_quantile(0.5 + 0.5 * kIntervalLevel), z2 = z * z / n;
   const double middle = (share + 0.5 * z2) / (1.0 + z2);
   const double half = std::sqrt(share * (1.0 - share) * z2 + 0.25 * z2 * z2) / (1.0 + z2);
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
-
-double d_prime(std::size_t correct, std::size_t trials) noexcept {
-  return std::sqrt(2.0) * normal_quantile((static_cast<double>(correct) + 0.5) / (static_cast<double>(trials) + 1.0));
-}
-
-double guessing_probability(std::size_t correct, std::size_t trials) noexcept {
-  const double n = static_cast<double>(trials);
-  double sum = 0.0;
-  for (std::size_t k = correct; k <= trials; ++k) {
-    const double right = static_cast<double>(k);
-    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(right + 1.0) - std::lgamma(n - right + 1.0) - n * std::log(2.0));
-  }
-  return std::min(1.0, sum);
 }
 
 Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
@@ -115,12 +98,10 @@ Discrimination discrimination_of(const std::string& subject, const std::vector<S
 std::string discrimination_verdict(const Discrimination& result, const StrokePair& strokes) {
   if (result.trials == 0) return prediction_words(strokes) + "No usable answers yet.";
   const ShareInterval interval = wilson_interval(result.correct, result.trials);
-  const double guessing = guessing_probability(result.correct, result.trials);
   char text[200];
-  std::snprintf(text, sizeof text,
-                "%.0f %% right [%.0f to %.0f], %s (p %.2g); 75 %% would be one JND: ", 100.0 * result.share(),
+  std::snprintf(text, sizeof text, "%.0f %% right [%.0f to %.0f], %s; 75 %% would be one JND: ", 100.0 * result.share(),
                 100.0 * interval.low, 100.0 * interval.high,
-                guessing < 1.0 - kLevel ? "more than by guessing" : "as by guessing", guessing);
+                interval.low > 0.5 ? "more than by guessing" : "as by guessing");
   return prediction_words(strokes) + text + agreement_words(predicted_side(strokes), found_side(interval));
 }
 
@@ -142,7 +123,7 @@ Result<DiscriminationAnalysis> analyse_discrimination(const std::vector<StudyDat
 
 std::string discrimination_table(const DiscriminationAnalysis& analysis) {
   std::string text =
-      "subject,trials,correct,unusable,share_correct,share_low,share_high,d_prime,p_guessing,predicted_mean_over_jnd,"
+      "subject,trials,correct,unusable,share_correct,share_low,share_high,predicted_mean_over_jnd,"
       "predicted_max_over_jnd\n";
   for (const Discrimination& subject : analysis.subjects) text += row_of(subject, *analysis.strokes);
   return text + row_of(analysis.all, *analysis.strokes);

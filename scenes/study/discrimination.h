@@ -3,10 +3,6 @@
 // Of n answers k are right; chance is one half.
 //   interval   of the share right, by E. B. Wilson (1927), Journal of the American
 //              Statistical Association 22, 209-212
-//   d'         sqrt(2) Phi^-1((k + 0.5) / (n + 1)), as for 2AFC (study_plan.h says
-//              why), with M. J. Hautus's (1995) correction, Behavior Research Methods 27,
-//              46-51, so that all right is not infinitely much
-//   p          how often a guesser has k right or more (binomial, exact)
 // One JND is kJndCriterion, 75 % right. So the strokes were below the JND when the whole
 // interval lies below 75 %, above it when the whole lies above, and else there are too
 // few answers to say. The prediction is "below" when the error is nowhere more than one
@@ -42,16 +38,13 @@ struct ShareInterval {
 };
 // `correct` of `trials`; 95 %. Without trials 0 to 1.
 ShareInterval wilson_interval(std::size_t correct, std::size_t trials) noexcept;
-double d_prime(std::size_t correct, std::size_t trials) noexcept;
-// Probability of `correct` or more of `trials` by guessing.
-double guessing_probability(std::size_t correct, std::size_t trials) noexcept;
 
 Discrimination discrimination_of(const std::string& subject, const std::vector<StudyRecord>& records,
                                  const StrokePair& strokes);
 
 // What was predicted, what came out, and whether that agrees, in plain words; e.g.
-// "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing
-// (p 0.38); 75 % would be one JND: consistent."
+// "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing;
+// 75 % would be one JND: consistent."
 std::string discrimination_verdict(const Discrimination& result, const StrokePair& strokes);
 
 struct DiscriminationAnalysis {

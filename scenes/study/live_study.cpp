@@ -9,16 +9,6 @@
 
 namespace palpate {
 
-// The session as the loop sees it.
-class LiveStudy::Presented final : public ForceSource {
- public:
-  explicit Presented(StudySession& session) : session_(session) {}
-  double next_force_N(double rendered_N) noexcept override { return session_.tick(rendered_N); }
-
- private:
-  StudySession& session_;
-};
-
 namespace {
 
 Result<std::unique_ptr<Device>> open_study_device(const std::string& name) {
@@ -51,14 +41,14 @@ Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& reque
   std::unique_ptr<LiveStudy> study(new LiveStudy(std::move(*device), std::move(*session)));
   LoopSettings settings;
   settings.realtime = request.realtime;
-  settings.source = study->presented_.get();
+  settings.source = study->session_.get();
   study->loop_ = std::make_unique<HapticsLoop>(*study->device_, settings);
   if (Status status = study->loop_->start(); !status) return status.error();
   return study;
 }
 
 LiveStudy::LiveStudy(std::unique_ptr<Device> device, std::unique_ptr<StudySession> session)
-    : device_(std::move(device)), session_(std::move(session)), presented_(std::make_unique<Presented>(*session_)) {}
+    : device_(std::move(device)), session_(std::move(session)) {}
 
 LiveStudy::~LiveStudy() {
   if (loop_ != nullptr) loop_->stop();

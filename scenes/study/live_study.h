@@ -43,8 +43,6 @@ class LiveStudy {
 
   StudySession& session() noexcept { return *session_; }
   const LoopSnapshot& newest() const noexcept { return newest_; }
-  LoopStatistics statistics() const noexcept { return loop_->statistics(); }
-  const RtStatus& scheduling() const noexcept { return loop_->scheduling(); }
   // Whether a hand can feel it; else this is a rehearsal.
   bool device_pushes() const noexcept { return session_->header().rendered; }
   // What the device needs first, or what it is; may be empty.
@@ -52,12 +50,10 @@ class LiveStudy {
   void start_zeroing() { device_->start_zeroing(); }
 
  private:
-  class Presented;
   LiveStudy(std::unique_ptr<Device> device, std::unique_ptr<StudySession> session);
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<StudySession> session_;
-  std::unique_ptr<Presented> presented_;
   std::unique_ptr<HapticsLoop> loop_;
   LoopSnapshot newest_;
 };

@@ -4,13 +4,17 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <thread>
 #include <utility>
 
+#include "engine/base/csv_scanner.h"
 #include "engine/tick/replay.h"
 #include "scenes/evaluation/error_figures.h"
 #include "scenes/material/rig.h"
+#include "scenes/study/study_presenter.h"
 #include "scenes/worker/model_worker.h"
 #include "scenes/worker/slot_plan.h"
 
@@ -19,15 +23,14 @@ namespace {
 
 constexpr std::uint64_t kTrainingSeed = 1;  // as the window has it
 constexpr std::uint64_t kTestSeed = 2;
-constexpr std::size_t kSmoothing_ticks = 10;                                   // to either side
-constexpr std::array<std::size_t, 4> kWindow_ticks = {2000, 1500, 1000, 500};  // ramps included
-constexpr std::size_t kBetweenWindows_ticks = 100;
-constexpr double kAboutAsHard = 0.75;
+constexpr std::size_t kSmoothing_ticks = 10;  // to either side
+constexpr std::size_t kBetweenPieces_ticks = 100;
 // Away from what the presenter's limiter allows: the ramps add to the slope.
 constexpr double kLargestStroke_N = 0.95 * kLargestStudyForce_N;
 constexpr double kFastestStroke_N_per_s = 0.9 * kFastestStudyForce_N_per_s;
 constexpr double kStrongestStroke_N = 2.5;  // root mean square; with the pauses 2 N, see assets/devices
 constexpr auto kLookAgain = std::chrono::milliseconds(5);
+constexpr std::size_t kLongestName = 200;
 constexpr double kLongestRecording_s = 3600.0;  // one value per ms of it is kept
 
 using Model = std::shared_ptr<const ForceModel>;
@@ -62,11 +65,11 @@ Result<std::vector<Sample>> samples_of(const Recording& recording, const Model& 
 }
 
 std::vector<double> smoothed(const std::vector<double>& values) {
-  constexpr double kPi = 3.141592653589793;
   std::array<double, 2 * kSmoothing_ticks + 1> window{};
   double sum = 0.0;
   for (std::size_t i = 0; i < window.size(); ++i) {
-    window[i] = 1.0 - std::cos(2.0 * kPi * static_cast<double>(i + 1) / static_cast<double>(window.size() + 1));
+    window[i] =
+        1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i + 1) / static_cast<double>(window.size() + 1));
     sum += window[i];
   }
   std::vector<double> result(values.size(), 0.0);
@@ -102,101 +105,56 @@ Traces traces_of(const std::vector<Sample>& samples) {
   return traces;
 }
 
-struct Window {
-  std::size_t from = 0;
-  std::size_t ticks = 0;
-};
-
-StudyTiming timing_for(std::size_t ticks) {
-  StudyTiming timing;
-  timing.hold = static_cast<std::uint32_t>(ticks) - 2 * timing.ramp;
-  return timing;
-}
-
-bool can_be_presented(const std::vector<double>& force_N, const Window& window) {
-  const StudyTiming timing = timing_for(window.ticks);
+// From the tick `from` on, for an interval.
+bool can_be_presented(const std::vector<double>& force_N, std::size_t from) {
   double before_N = 0.0, squares_N2 = 0.0;
-  for (std::size_t i = 0; i < window.ticks; ++i) {
-    const double now_N = force_N[window.from + i] * interval_share(timing, static_cast<std::uint32_t>(i));
+  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
+    const double now_N = force_N[from + i] * interval_share(i);
     if (std::abs(now_N) > kLargestStroke_N || std::abs(now_N - before_N) > kFastestStroke_N_per_s * kStudyTick_s)
       return false;
     before_N = now_N;
     squares_N2 += now_N * now_N;
   }
-  return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * static_cast<double>(window.ticks);
+  return squares_N2 <= kStrongestStroke_N * kStrongestStroke_N * kInterval_ticks;
 }
 
 // The errors as a hand is given them, ramps included.
-ErrorFigures errors_in(const Traces& traces, const Window& window, const JndLine& jnd) {
-  const StudyTiming timing = timing_for(window.ticks);
+ErrorFigures errors_from(const Traces& traces, std::size_t from, const JndLine& jnd) {
   ErrorFigures errors;
-  for (std::size_t i = 0; i < window.ticks; ++i) {
-    if (!traces.contact[window.from + i]) continue;
-    const double share = interval_share(timing, static_cast<std::uint32_t>(i));
-    errors.add(share * traces.comparison_N[window.from + i], share * traces.reference_N[window.from + i], false, jnd);
+  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
+    if (!traces.contact[from + i]) continue;
+    const double share = interval_share(i);
+    errors.add(share * traces.comparison_N[from + i], share * traces.reference_N[from + i], false, jnd);
   }
   return errors;
 }
 
-// From before each touch to after the release: the whole when it is short enough, and
-// all pieces.
-std::vector<Window> windows_in(const Traces& traces) {
-  const std::size_t ramp = StudyTiming{}.ramp, all = traces.contact.size();
-  std::vector<Window> windows;
-  for (std::size_t touch = 0; touch < all;) {
-    if (!traces.contact[touch]) {
-      ++touch;
-      continue;
-    }
-    std::size_t release = touch;
-    while (release < all && traces.contact[release]) ++release;
-    const std::size_t begin = touch - std::min(touch, ramp), end = std::min(all, release + ramp);
-    const std::size_t whole = end - begin;
-    if (whole >= kWindow_ticks.back() && whole <= kWindow_ticks.front()) windows.push_back({begin, whole});
-    for (const std::size_t ticks : kWindow_ticks) {
-      for (std::size_t from = begin; from + ticks <= end; from += kBetweenWindows_ticks)
-        windows.push_back({from, ticks});
-    }
-    touch = release;
+// Where the piece with the largest difference begins; none: nothing to present.
+std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jnd) {
+  std::optional<std::size_t> hardest;
+  double most = -1.0;
+  for (std::size_t from = 0; from + kInterval_ticks <= traces.contact.size(); from += kBetweenPieces_ticks) {
+    const ErrorFigures errors = errors_from(traces, from, jnd);
+    if (errors.samples() == 0 || errors.max_error_over_jnd() <= most) continue;
+    if (!can_be_presented(traces.reference_N, from) || !can_be_presented(traces.comparison_N, from)) continue;
+    hardest = from;
+    most = errors.max_error_over_jnd();
   }
-  return windows;
-}
-
-// The longest of those with about the largest difference; none: nothing to present.
-std::optional<Window> hardest_window(const Traces& traces, const JndLine& jnd) {
-  std::vector<std::pair<double, Window>> candidates;
-  double most = 0.0;
-  for (const Window& window : windows_in(traces)) {
-    if (!can_be_presented(traces.reference_N, window) || !can_be_presented(traces.comparison_N, window)) continue;
-    candidates.emplace_back(errors_in(traces, window, jnd).max_error_over_jnd(), window);
-    most = std::max(most, candidates.back().first);
-  }
-  std::optional<Window> best;
-  double best_ratio = 0.0;
-  for (const auto& [ratio, window] : candidates) {
-    if (ratio < kAboutAsHard * most) continue;
-    const bool longer = !best || window.ticks > best->ticks;
-    if (!longer && (window.ticks < best->ticks || ratio <= best_ratio)) continue;
-    best = window;
-    best_ratio = ratio;
-  }
-  return best;
+  return hardest;
 }
 
 // What is written is what it was: forces to 0.1 mN, times to 1 ms, ratios to 1e-4.
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-std::vector<double> cut(const std::vector<double>& force_N, const Window& window) {
+std::vector<double> cut(const std::vector<double>& force_N, std::size_t from) {
   std::vector<double> part;
-  for (std::size_t i = 0; i < window.ticks; ++i) part.push_back(rounded(force_N[window.from + i], 1e4));
+  for (std::size_t i = 0; i < kInterval_ticks; ++i) part.push_back(rounded(force_N[from + i], 1e4));
   return part;
 }
 
 double held_mean_N(const std::vector<double>& force_N) {
-  const StudyTiming timing = timing_for(force_N.size());
-  double sum = 0.0;
-  for (std::size_t i = timing.ramp; i < timing.ramp + timing.hold; ++i) sum += force_N[i];
-  return rounded(sum / timing.hold, 1e4);
+  const auto held = force_N.begin() + kRamp_ticks;
+  return rounded(std::accumulate(held, held + kHold_ticks, 0.0) / kHold_ticks, 1e4);
 }
 
 std::uint32_t checksum_of(const StrokePair& strokes) {
@@ -208,13 +166,6 @@ std::uint32_t checksum_of(const StrokePair& strokes) {
     }
   }
   return hash;
-}
-
-// What stands in one line of a file.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char letter) { return static_cast<unsigned char>(letter) < 0x20; }, '?');
-  return text.empty() ? "?" : text;
 }
 
 // The models of the plans, made by the worker that makes those of the window.
@@ -268,29 +219,27 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
   const Result<std::vector<Sample>> samples = samples_of(recording, reference, comparison);
   if (!samples) return samples.error();
   const Traces traces = traces_of(*samples);
-  const std::optional<Window> best = hardest_window(traces, jnd);
-  if (!best) {
-    return Error{"found no stroke of 0.5 s or more, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " +
+  const std::optional<std::size_t> from = hardest_piece(traces, jnd);
+  if (!from) {
+    return Error{"found no piece of a stroke of 1.1 s, up to 3.8 N (2.5 N root mean square) and 90 N/s, in " +
                  recording.name + ", expected one that a still hand can be given; name another recording"};
   }
   auto strokes = std::make_shared<StrokePair>();
-  strokes->reference = one_line(reference != nullptr ? reference->name() : kRecordedForce);
-  strokes->comparison = one_line(comparison->name());
-  strokes->recording = one_line(recording.name);
-  strokes->from_s = rounded(traces.from_s + kStudyTick_s * static_cast<double>(best->from), 1e3);
-  strokes->to_s = rounded(strokes->from_s + kStudyTick_s * static_cast<double>(best->ticks), 1e3);
+  strokes->reference = printable(reference != nullptr ? reference->name() : kRecordedForce, kLongestName);
+  strokes->comparison = printable(comparison->name(), kLongestName);
+  strokes->recording = printable(recording.name, kLongestName);
+  strokes->from_s = rounded(traces.from_s + kStudyTick_s * static_cast<double>(*from), 1e3);
+  strokes->to_s = rounded(strokes->from_s + kStudyTick_s * kInterval_ticks, 1e3);
   strokes->jnd = jnd;
-  const ErrorFigures errors = errors_in(traces, *best, jnd);
+  const ErrorFigures errors = errors_from(traces, *from, jnd);
   strokes->mean_over_jnd = rounded(errors.mean_error_over_jnd(), 1e4);
   strokes->max_over_jnd = rounded(errors.max_error_over_jnd(), 1e4);
-  strokes->reference_N = cut(traces.reference_N, *best);
-  strokes->comparison_N = cut(traces.comparison_N, *best);
+  strokes->reference_N = cut(traces.reference_N, *from);
+  strokes->comparison_N = cut(traces.comparison_N, *from);
   strokes->reference_mean_N = held_mean_N(strokes->reference_N);
   strokes->comparison_mean_N = held_mean_N(strokes->comparison_N);
   strokes->checksum = checksum_of(*strokes);
   return std::shared_ptr<const StrokePair>(std::move(strokes));
 }
-
-StudyTiming stroke_timing(const StrokePair& strokes) { return timing_for(strokes.reference_N.size()); }
 
 }  // namespace palpate

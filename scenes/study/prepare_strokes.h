@@ -5,11 +5,10 @@
 // (engine/tick/replay.h). What the models and the force sensor say is brought to one value
 // per ms and passed through the same zero-phase low-pass, 21 ms of a Hann window (half
 // the amplitude at 50 Hz): the sensor's noise is no force of the block, and told apart
-// it would be at once. Taken is the stroke, from before the touch to after the release,
-// or the piece of one, 2, 1.5, 1 or 0.5 s long, in which the two differ most in multiples of
-// the JND, or a longer one with three quarters of that: the prediction is put to a hard
-// test. Left out is what a study may not
-// present (4 N, 100 N/s) or a small motor does not bear with the pauses (2.5 N, root mean square).
+// it would be at once. Taken is the piece, as long as an interval (study_presenter.h), in
+// which the two differ most in multiples of the JND: the prediction is put to a hard test.
+// Left out is what a study may not present (4 N, 100 N/s) or a small motor does not bear
+// with the pauses (2.5 N, root mean square).
 //
 // A still hand is given the force over time. It does not move the tool, so this tests
 // the discrimination of forces as the JND study does, whose thresholds the errors are
@@ -26,7 +25,6 @@
 #include "engine/tick/force_model.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/stroke_pair.h"
-#include "scenes/study/study_presenter.h"
 
 namespace palpate {
 
@@ -52,8 +50,5 @@ Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
                                                      const std::shared_ptr<const ForceModel>& reference,
                                                      const std::shared_ptr<const ForceModel>& comparison,
                                                      const JndLine& jnd);
-
-// How a pair is presented: its length as ramps and hold, all else as by default.
-StudyTiming stroke_timing(const StrokePair& strokes);
 
 }  // namespace palpate

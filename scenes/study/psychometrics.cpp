@@ -217,7 +217,7 @@ PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size
   return fit;
 }
 
-Estimate bias_corrected_interval(double value, std::vector<double> replicates, double level) {
+Estimate bias_corrected_interval(double value, std::vector<double> replicates) {
   std::sort(replicates.begin(), replicates.end());
   const double count = static_cast<double>(replicates.size());
   const double below =
@@ -230,7 +230,7 @@ Estimate bias_corrected_interval(double value, std::vector<double> replicates, d
     const std::size_t upper = std::min(lower + 1, replicates.size() - 1);
     return replicates[lower] + (place - static_cast<double>(lower)) * (replicates[upper] - replicates[lower]);
   };
-  const double low = percentile(0.5 * (1.0 - level)), high = percentile(0.5 * (1.0 + level));
+  const double low = percentile(0.5 * (1.0 - kIntervalLevel)), high = percentile(0.5 * (1.0 + kIntervalLevel));
   return {value, low, high, true};
 }
 
@@ -238,7 +238,7 @@ std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const P
                                    const IntervalSettings& settings) {
   // The JND is this many standard deviations, whatever the fit.
   const double deviations = normal_quantile(settings.criterion);
-  const double quantile = normal_quantile(0.5 * (1.0 + settings.level));
+  const double quantile = normal_quantile(0.5 * (1.0 + kIntervalLevel));
   const double least_likelihood = fit.log_likelihood - 0.5 * quantile * quantile;
   std::vector<Estimate> estimates;
   for (std::size_t r = 0; r < fit.functions.size(); ++r) {

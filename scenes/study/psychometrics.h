@@ -26,6 +26,8 @@
 namespace palpate {
 
 inline constexpr double kJndCriterion = 0.75;
+// Of all intervals.
+inline constexpr double kIntervalLevel = 0.95;
 
 // Phi and its inverse; `probability` above 0 and below 1.
 double normal_cdf(double z) noexcept;
@@ -77,14 +79,13 @@ struct Estimate {
 
 struct IntervalSettings {
   double criterion = kJndCriterion;
-  double level = 0.95;
   int resamples = 999;  // of the subjects, for the JND of all together
 };
 
 // The relative JND at each reference force with the interval of all slopes that explain
 // the answers nearly as well as the best, by the likelihood ratio (profile likelihood;
 // D. J. Venzon & S. H. Moolgavkar 1988, Applied Statistics 37(1), 87-94):
-//   2 (log L(best) - max log L(slope)) <= Phi^-1((1 + level) / 2)^2,
+//   2 (log L(best) - max log L(slope)) <= Phi^-1((1 + kIntervalLevel) / 2)^2,
 // the maximum over all other parameters. An end of the range of slopes is in it when the
 // answers do not exclude it. (The parametric bootstrap held the truth in 91 % and not
 // 95 % of the cases at 2.5 N, 600 simulated subjects: where the best slope is that end,
@@ -94,6 +95,6 @@ std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const P
 
 // Bias-corrected percentiles of `replicates` (at least one, any order) around
 // `value`.
-Estimate bias_corrected_interval(double value, std::vector<double> replicates, double level);
+Estimate bias_corrected_interval(double value, std::vector<double> replicates);
 
 }  // namespace palpate

@@ -1,11 +1,9 @@
 #include "scenes/study/simulated_subject.h"
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <utility>
 
 #include "scenes/study/psychometrics.h"
-#include "scenes/study/study_session.h"
 
 namespace palpate {
 namespace {
@@ -13,6 +11,10 @@ namespace {
 double noise_N(const JndLine& jnd, double force_N) {
   static const double kPerJnd = 1.0 / (normal_quantile(kJndCriterion) * std::sqrt(2.0));
   return kPerJnd * jnd.at(force_N);
+}
+
+double felt_N(const Stimulus& stroke, std::uint32_t tick) {
+  return stroke.size * interval_share(tick) * (*stroke.stroke_N)[tick];
 }
 
 }  // namespace
@@ -27,60 +29,43 @@ bool SimulatedSubject::second_feels_larger(double first_N, double second_N) noex
   return missed ? guess : second_felt_N + bias_N > first_felt_N;
 }
 
-bool SimulatedSubject::second_feels_like(const std::vector<double>& reference_N, const std::vector<double>& first_N,
-                                         const std::vector<double>& second_N) noexcept {
-  std::size_t moment = 0;
-  double most = -1.0;
-  for (std::size_t i = 0; i < reference_N.size(); ++i) {
-    const double difference = std::abs(first_N[i] - second_N[i]) / traits_.jnd.at(reference_N[i]);
+bool SimulatedSubject::answers_second(const Stimuli& stimuli) noexcept {
+  if (stimuli.reminder.stroke_N == nullptr) return second_feels_larger(stimuli.first.size, stimuli.second.size);
+  double most = -1.0, reference_N = 0.0, first_N = 0.0, second_N = 0.0;
+  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
+    const double reminder_N = felt_N(stimuli.reminder, i);
+    const double one_N = felt_N(stimuli.first, i), other_N = felt_N(stimuli.second, i);
+    const double difference = std::abs(one_N - other_N) / traits_.jnd.at(reminder_N);
     if (difference <= most) continue;
     most = difference;
-    moment = i;
+    reference_N = reminder_N;
+    first_N = one_N;
+    second_N = other_N;
   }
-  const double reference = reference_N[moment], first = first_N[moment], second = second_N[moment];
-  const bool reference_is_larger = 2.0 * reference > first + second;
-  return second_feels_larger(first, second) == reference_is_larger;
+  return second_feels_larger(first_N, second_N) == (2.0 * reference_N > first_N + second_N);
 }
 
-namespace {
-
-// What the hand was given in the presentation that is going on, tick by tick.
-struct Felt {
-  std::vector<double> reminder_N, first_N, second_N;
-
-  void take(const PresentationState& state, double force_N) {
-    if (state.phase == PresentationPhase::lead_in) *this = {};
-    if (state.phase == PresentationPhase::reminder) reminder_N.push_back(force_N);
-    if (state.phase == PresentationPhase::first) first_N.push_back(force_N);
-    if (state.phase == PresentationPhase::second) second_N.push_back(force_N);
-  }
-};
-
-}  // namespace
-
-Result<std::vector<StudyRecord>> run_simulated_session(const StudyHeader& header, const SubjectTraits& traits,
-                                                       std::uint64_t seed) {
-  constexpr std::uint64_t kRest_ticks = 1;
-  auto session = StudySession::create(header, std::make_unique<MemoryStore>(), kRest_ticks);
-  if (!session) return session.error();
-  StudySession& study = **session;
+std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed) {
+  const StudyPlan plan = plan_study(header.subject, header.strokes.get());
   SimulatedSubject subject(traits, seed);
-  Felt felt;
-  study.accept_consent("simulated");
-  double rendered_N = 0.0;
-  while (study.state() != StudyState::done) {
-    rendered_N = study.tick(rendered_N);
-    study.update();
-    const PresentationState& state = study.presentation();
-    if (header.strokes != nullptr) felt.take(state, rendered_N);
-    if (study.state() == StudyState::answering) {
-      study.answer(header.strokes != nullptr
-                       ? subject.second_feels_like(felt.reminder_N, felt.first_N, felt.second_N)
-                       : subject.second_feels_larger(state.first_rendered_N, state.second_rendered_N));
+  std::vector<StudyRecord> records;
+  const auto answer = [&](const std::vector<StudyTrial>& trials, bool training) {
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      StudyRecord record;
+      record.training = training;
+      record.number = i + 1;
+      record.trial = trials[i];
+      record.first_rendered_N = trials[i].first_N();
+      record.second_rendered_N = trials[i].second_N();
+      if (header.strokes != nullptr) record.reminder_rendered_N = trials[i].reference_N;
+      record.answered_second = subject.answers_second(plan.stimuli(trials[i], training));
+      record.device = "simulated";
+      records.push_back(std::move(record));
     }
-    study.proceed();
-  }
-  return study.store().records();
+  };
+  answer(plan.training, true);
+  answer(plan.trials, false);
+  return records;
 }
 
 }  // namespace palpate

@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "engine/base/random_stream.h"
-#include "engine/base/result.h"
 #include "engine/tick/jnd.h"
 #include "scenes/study/study_store.h"
 
@@ -37,9 +36,8 @@ class SimulatedSubject {
       : traits_(traits), random_(seed, kStream) {}
 
   bool second_feels_larger(double first_N, double second_N) noexcept;
-  // "The second was like the reference." The forces of each tick, all of one length.
-  bool second_feels_like(const std::vector<double>& reference_N, const std::vector<double>& first_N,
-                         const std::vector<double>& second_N) noexcept;
+  // Of two forces the second was the larger, of two strokes it was like the reminder.
+  bool answers_second(const Stimuli& stimuli) noexcept;
 
  private:
   static constexpr std::uint64_t kStream = 31;
@@ -47,9 +45,7 @@ class SimulatedSubject {
   RandomStream random_;
 };
 
-// A whole session, tick by tick, from consent to the end, training included. Errors:
-// as StudySession::create.
-Result<std::vector<StudyRecord>> run_simulated_session(const StudyHeader& header, const SubjectTraits& traits,
-                                                       std::uint64_t seed);
+// All answers of one subject, training included, to forces that were rendered as planned.
+std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed);
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "scenes/study/study_analysis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -12,10 +13,13 @@ namespace {
 
 constexpr std::uint64_t kPooledSeed = 4711;
 
-// The usable answers of one subject.
+constexpr std::size_t kReferences = kReferenceForces_N.size();
+
+// The usable answers of one subject; references count as in kReferenceForces_N.
 struct SubjectAnswers {
-  std::vector<const StudyRecord*> records;
-  std::vector<AnswerCell> cells;  // their reference counts in `references`
+  std::vector<AnswerCell> cells;
+  std::array<std::size_t, kReferences> trials{};
+  std::array<double, kReferences> rendered_N{};  // summed up
   std::size_t unusable = 0;
 };
 
@@ -24,27 +28,12 @@ bool is_usable(const StudyRecord& record) {
          record.second_rendered_N > 0.5 * record.trial.second_N();
 }
 
-double rendered_reference_N(const StudyRecord& record) {
-  return record.trial.comparison_first ? record.second_rendered_N : record.first_rendered_N;
+std::size_t index_of(double reference_N) {
+  const auto& planned_N = kReferenceForces_N;
+  return static_cast<std::size_t>(std::find(planned_N.begin(), planned_N.end(), reference_N) - planned_N.begin());
 }
 
-// The reference forces with usable answers, in order.
-std::vector<double> references_in(const std::vector<const StudyData*>& files) {
-  std::set<double> forces_N;
-  for (const StudyData* file : files) {
-    for (const StudyRecord& record : file->records) {
-      if (!record.training && is_usable(record)) forces_N.insert(record.trial.reference_N);
-    }
-  }
-  return {forces_N.begin(), forces_N.end()};
-}
-
-std::size_t index_of(const std::vector<double>& references_N, double reference_N) {
-  return static_cast<std::size_t>(std::find(references_N.begin(), references_N.end(), reference_N) -
-                                  references_N.begin());
-}
-
-SubjectAnswers usable_answers(const StudyData& data, const std::vector<double>& references_N) {
+SubjectAnswers usable_answers(const StudyData& data) {
   SubjectAnswers answers;
   for (const StudyRecord& record : data.records) {
     if (record.training) continue;
@@ -52,9 +41,11 @@ SubjectAnswers usable_answers(const StudyData& data, const std::vector<double>& 
       ++answers.unusable;
       continue;
     }
-    answers.records.push_back(&record);
-    add_answers(answers.cells, {index_of(references_N, record.trial.reference_N), record.rendered_difference(),
-                                record.trial.comparison_first, record.comparison_judged_larger() ? 1.0 : 0.0, 1.0});
+    const std::size_t r = index_of(record.trial.reference_N);
+    ++answers.trials[r];
+    answers.rendered_N[r] += record.trial.comparison_first ? record.second_rendered_N : record.first_rendered_N;
+    add_answers(answers.cells, {r, record.rendered_difference(), record.trial.comparison_first,
+                                record.comparison_judged_larger() ? 1.0 : 0.0, 1.0});
   }
   return answers;
 }
@@ -63,40 +54,54 @@ Estimate scaled(Estimate relative, double reference_N) {
   return {relative.value * reference_N, relative.low * reference_N, relative.high * reference_N, relative.determined};
 }
 
+SubjectJnd jnds_of(const std::string& subject, const SubjectAnswers& answers, const IntervalSettings& settings) {
+  SubjectJnd result{subject, answers.unusable, {}};
+  const std::vector<Estimate> relative =
+      profile_jnds(answers.cells, fit_psychometric(answers.cells, kReferences), settings);
+  for (std::size_t r = 0; r < kReferences; ++r) {
+    if (answers.trials[r] == 0) continue;
+    const double rendered_N = answers.rendered_N[r] / static_cast<double>(answers.trials[r]);
+    result.references.push_back(
+        {kReferenceForces_N[r], rendered_N, answers.trials[r], scaled(relative[r], rendered_N)});
+  }
+  return result;
+}
+
 using Group = std::vector<const std::vector<AnswerCell>*>;
 
-PsychometricFit fit_group(const Group& group, std::size_t references) {
+PsychometricFit fit_group(const Group& group) {
   std::vector<AnswerCell> cells;
   for (const auto* subject : group) {
     for (const AnswerCell& cell : *subject) add_answers(cells, cell);
   }
-  return fit_psychometric(cells, references);
+  return fit_psychometric(cells, kReferences);
 }
 
 // One function for the answers of a group; the intervals by drawing its members.
-std::vector<Estimate> pooled_relative_jnds(const Group& group, std::size_t references, const IntervalSettings& settings,
-                                           RandomStream random, const std::function<bool(double)>& progress) {
-  const PsychometricFit fit = fit_group(group, references);
+std::vector<Estimate> pooled_relative_jnds(const Group& group, const IntervalSettings& settings,
+                                           const std::function<bool(double)>& progress) {
+  const PsychometricFit fit = fit_group(group);
   if (group.size() == 1) return profile_jnds(*group.front(), fit, settings);
-  std::vector<std::vector<double>> replicates(references);
+  RandomStream random(kPooledSeed, 1);
+  std::vector<std::vector<double>> replicates(kReferences);
   for (int i = 0; i < settings.resamples; ++i) {
     if (!progress(static_cast<double>(i) / settings.resamples)) return {};
     Group drawn;
     for (std::size_t k = 0; k < group.size(); ++k) drawn.push_back(group[random.index(group.size())]);
-    const PsychometricFit again = fit_group(drawn, references);
-    for (std::size_t r = 0; r < references; ++r) replicates[r].push_back(again.functions[r].jnd(settings.criterion));
+    const PsychometricFit again = fit_group(drawn);
+    for (std::size_t r = 0; r < kReferences; ++r) replicates[r].push_back(again.functions[r].jnd(settings.criterion));
   }
   std::vector<Estimate> estimates;
-  for (std::size_t r = 0; r < references; ++r) {
-    estimates.push_back(
-        bias_corrected_interval(fit.functions[r].jnd(settings.criterion), replicates[r], settings.level));
+  for (std::size_t r = 0; r < kReferences; ++r) {
+    estimates.push_back(bias_corrected_interval(fit.functions[r].jnd(settings.criterion), replicates[r]));
     estimates.back().determined = fit.determined[r];
   }
   return estimates;
 }
 
-// Mean and standard error of the subjects' own JNDs at one reference force.
-void average_subjects(const std::vector<SubjectJnd>& subjects, PooledJnd& pooled) {
+// Mean and standard error of the subjects' own JNDs at one reference force; false: nobody
+// was asked there.
+bool average_subjects(const std::vector<SubjectJnd>& subjects, PooledJnd& pooled) {
   std::vector<double> values;
   double rendered = 0.0, all = 0.0;
   for (const SubjectJnd& subject : subjects) {
@@ -109,12 +114,12 @@ void average_subjects(const std::vector<SubjectJnd>& subjects, PooledJnd& pooled
   }
   pooled.rendered_N = rendered / all;
   pooled.subjects = values.size();
-  if (values.empty()) return;
   const double count = static_cast<double>(values.size());
   for (const double value : values) pooled.mean_N += value / count;
   double squares = 0.0;
   for (const double value : values) squares += (value - pooled.mean_N) * (value - pooled.mean_N);
   if (values.size() > 1) pooled.standard_error_N = std::sqrt(squares / (count - 1.0) / count);
+  return all > 0.0;
 }
 
 Status check_files(const std::vector<StudyData>& files) {
@@ -126,8 +131,7 @@ Status check_files(const std::vector<StudyData>& files) {
                    ", expected constant as in the first; analyse them apart"};
     }
     for (const StudyRecord& record : file.records) {
-      const auto& planned_N = kReferenceForces_N;
-      if (std::find(planned_N.begin(), planned_N.end(), record.trial.reference_N) != planned_N.end()) continue;
+      if (index_of(record.trial.reference_N) < kReferences) continue;
       return Error{"found a reference force of " + shortest(record.trial.reference_N) + " N in the file of subject " +
                    subject + ", expected 0.3, 0.5, 1 or 2.5 N"};
     }
@@ -150,49 +154,27 @@ std::string row(const std::string& who, const std::string& how, double reference
 }  // namespace
 
 SubjectJnd analyse_subject(const StudyData& data, const IntervalSettings& settings) {
-  const std::vector<double> references_N = references_in({&data});
-  const SubjectAnswers answers = usable_answers(data, references_N);
-  SubjectJnd result{data.header.subject, answers.unusable, {}};
-  if (references_N.empty()) return result;
-  const std::vector<Estimate> relative =
-      profile_jnds(answers.cells, fit_psychometric(answers.cells, references_N.size()), settings);
-  for (std::size_t r = 0; r < references_N.size(); ++r) {
-    ReferenceJnd reference{references_N[r], 0.0, 0, {}};
-    for (const StudyRecord* record : answers.records) {
-      if (record->trial.reference_N != references_N[r]) continue;
-      reference.rendered_N += rendered_reference_N(*record);
-      ++reference.trials;
-    }
-    reference.rendered_N /= static_cast<double>(reference.trials);
-    reference.jnd_N = scaled(relative[r], reference.rendered_N);
-    result.references.push_back(reference);
-  }
-  return result;
+  return jnds_of(data.header.subject, usable_answers(data), settings);
 }
 
 Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const IntervalSettings& settings,
                                     bool with_published, const std::function<bool(double)>& progress) {
   if (const Status checked = check_files(files); !checked) return checked.error();
-  std::vector<const StudyData*> pointers;
-  for (const StudyData& file : files) pointers.push_back(&file);
-  const std::vector<double> references_N = references_in(pointers);
   StudyAnalysis analysis;
-  analysis.settings = settings;
   std::vector<SubjectAnswers> answers;
   Group group;
-  for (const StudyData& file : files) answers.push_back(usable_answers(file, references_N));
-  for (const SubjectAnswers& subject : answers) group.push_back(&subject.cells);
+  for (const StudyData& file : files) answers.push_back(usable_answers(file));
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!progress(0.5 * static_cast<double>(i) / static_cast<double>(files.size()))) return Error{"interrupted"};
-    analysis.subjects.push_back(analyse_subject(files[i], settings));
+    group.push_back(&answers[i].cells);
+    analysis.subjects.push_back(jnds_of(files[i].header.subject, answers[i], settings));
   }
   const std::vector<Estimate> pooled_relative =
-      pooled_relative_jnds(group, references_N.size(), settings, RandomStream(kPooledSeed, 1),
-                           [&](double share) { return progress(0.5 + 0.5 * share); });
+      pooled_relative_jnds(group, settings, [&](double share) { return progress(0.5 + 0.5 * share); });
   if (pooled_relative.empty()) return Error{"interrupted"};
-  for (std::size_t r = 0; r < references_N.size(); ++r) {
-    PooledJnd pooled{references_N[r], 0.0, 0, 0.0, 0.0, {}};
-    average_subjects(analysis.subjects, pooled);
+  for (std::size_t r = 0; r < kReferences; ++r) {
+    PooledJnd pooled{kReferenceForces_N[r], 0.0, 0, 0.0, 0.0, {}};
+    if (!average_subjects(analysis.subjects, pooled)) continue;
     pooled.jnd_N = scaled(pooled_relative[r], pooled.rendered_N);
     analysis.pooled.push_back(pooled);
     if (pooled.subjects == 0) continue;

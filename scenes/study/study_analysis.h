@@ -47,7 +47,6 @@ struct PooledJnd {
 };
 
 struct StudyAnalysis {
-  IntervalSettings settings;
   std::vector<SubjectJnd> subjects;
   std::vector<PooledJnd> pooled;
   std::vector<JndPoint> points;

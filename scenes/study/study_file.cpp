@@ -11,7 +11,6 @@
 #include <set>
 #include <system_error>
 
-#include "engine/base/csv_scanner.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
@@ -58,43 +57,6 @@ void flush_folder_of(const std::string& path) {
 }
 
 }  // namespace
-
-std::string study_header_text(const StudyHeader& header) {
-  const StudyTiming& timing = header.timing;
-  std::string text = "# palpate-study 1\n# subject " + header.subject + "\n# procedure " +
-                     procedure_name(header.procedure) + "\n# timing_ms lead_in " + std::to_string(timing.lead_in) +
-                     " ramp " + std::to_string(timing.ramp) + " hold " + std::to_string(timing.hold) + " pause " +
-                     std::to_string(timing.pause) + "\n";
-  if (header.strokes == nullptr) return text;
-  const StrokePair& strokes = *header.strokes;
-  text += "# reference " + strokes.reference + "\n# comparison " + strokes.comparison + "\n# stroke from_s " +
-          shortest(strokes.from_s) + " to_s " + shortest(strokes.to_s) + " of " + strokes.recording + "\n";
-  text += "# forces reference_mean_N " + shortest(strokes.reference_mean_N) + " comparison_mean_N " +
-          shortest(strokes.comparison_mean_N) + " checksum " + std::to_string(strokes.checksum) + "\n";
-  return text + "# predicted mean_over_jnd " + shortest(strokes.mean_over_jnd) + " max_over_jnd " +
-         shortest(strokes.max_over_jnd) + " jnd_offset_N " + shortest(strokes.jnd.offset_N) + " jnd_weber_fraction " +
-         shortest(strokes.jnd.weber_fraction) + "\n";
-}
-
-std::string study_columns(ProcedureKind procedure) {
-  std::string columns(kStudyColumns);
-  if (procedure == ProcedureKind::discriminate) columns += kStrokeColumns;
-  return columns.append(kDeviceColumns);
-}
-
-std::string study_row(const StudyRecord& record, ProcedureKind procedure) {
-  std::string row = record.training ? "training," : "study,";
-  row += std::to_string(record.number) + "," + shortest(record.trial.reference_N) + "," +
-         shortest(record.trial.comparison_N) + (record.trial.comparison_first ? ",1," : ",0,") +
-         shortest(record.first_rendered_N) + "," + shortest(record.second_rendered_N) +
-         (record.limited ? ",1," : ",0,") + (record.answered_second ? "second," : "first,") +
-         std::to_string(record.response_ms);
-  if (procedure == ProcedureKind::discriminate) {
-    row += ',';
-    row += shortest(record.reminder_rendered_N) + "," + shortest(record.worst_N);
-  }
-  return row + "," + record.device + (record.rendered ? ",true\n" : ",false\n");
-}
 
 Status check_subjects(const std::vector<StudyData>& files) {
   if (files.empty()) return Error{"found no study file, expected one or more"};
@@ -144,14 +106,15 @@ Status StudyFile::take_up() {
   if (const Status locked = lock(); !locked) return locked;
   const std::optional<std::string> text = read_whole_file(path_);
   if (!text) return Error{"cannot read " + path_};
-  if (is_cut_header(*text, study_header_text(header_), study_columns(header_.procedure))) return {};
+  if (is_cut_header(*text, study_header_text(header_), study_columns(header_))) return {};
   const Result<StudyData> data = parse_study(*text, path_);
   if (!data) return data.error();
   const StudyHeader& found = data->header;
-  if (found.subject != header_.subject || found.procedure != header_.procedure || !(found.timing == header_.timing)) {
-    return Error{path_ + ": found a study of subject " + found.subject + ", procedure " +
-                 procedure_name(found.procedure) + ", expected subject " + header_.subject + ", procedure " +
-                 procedure_name(header_.procedure) + " and the same timing; take another folder or subject code"};
+  const std::string procedure = header_.procedure();
+  if (found.subject != header_.subject || found.procedure() != procedure) {
+    return Error{path_ + ": found a study of subject " + found.subject + ", procedure " + found.procedure() +
+                 ", expected subject " + header_.subject + ", procedure " + procedure +
+                 "; take another folder or subject code"};
   }
   if (header_.strokes != nullptr && !same_strokes(*found.strokes, *header_.strokes)) {
     return Error{path_ + ": found strokes of \"" + found.strokes->reference + "\" and \"" + found.strokes->comparison +
@@ -192,8 +155,7 @@ Status StudyFile::consent(const std::string& text, const std::string& when) {
   if (ftruncate(descriptor_, 0) != 0) return failure(errno);
   const std::string consent_line =
       "# consent accepted, text " + checksum(text) + (when.empty() ? "" : ", " + when) + "\n";
-  const Status written =
-      write_whole(study_header_text(header_) + consent_line + study_columns(header_.procedure) + "\n");
+  const Status written = write_whole(study_header_text(header_) + consent_line + study_columns(header_) + "\n");
   if (!written) return written;
   flush_folder_of(path_);
   consented_ = true;
@@ -207,7 +169,7 @@ Status StudyFile::append(const StudyRecord& record) {
   on_device.rendered = header_.rendered;
   // What a refused row may have left behind.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
-  if (const Status written = write_whole(study_row(on_device, header_.procedure)); !written) return written;
+  if (const Status written = write_whole(study_row(on_device, header_)); !written) return written;
   records_.push_back(on_device);
   return {};
 }

@@ -8,14 +8,9 @@
 //   part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,response_ms,device,rendered
 //   training,1,0.3,0.18,1,0.18,0.3,0,second,731,paddle,true
 //
-// With strokes (procedure discriminate) five more lines stand behind the timing and two
-// more columns at the end; the forces and which is which:
-//   # reference recorded force
-//   # comparison greedy-100
-//   # stroke from_s 12.3 to_s 14.1 of silicone_2
-//   # forces reference_mean_N 1.2 comparison_mean_N 1.21 checksum 2350029213
-//   # predicted mean_over_jnd 0.1 max_over_jnd 0.6 jnd_offset_N 0.065 jnd_weber_fraction 0.0633
-//   part,...,response_ms,reminder_rendered_N,worst_N,device,rendered
+// With strokes (procedure discriminate) a line `# strokes {...}` stands behind the timing,
+// a StrokePair without its forces, as JSON; rows have two more columns before the device,
+// reminder_rendered_N and worst_N, and their forces are the strokes' means.
 //
 // The consent's text is named by a checksum (FNV-1a), the time is the caller's word.
 // Nothing is written before the consent. A row is appended in one go and flushed to
@@ -34,12 +29,6 @@
 
 namespace palpate {
 
-inline constexpr std::string_view kStudyColumns =
-    "part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,"
-    "response_ms";
-inline constexpr std::string_view kStrokeColumns = ",reminder_rendered_N,worst_N";
-inline constexpr std::string_view kDeviceColumns = ",device,rendered";
-
 struct StudyData {
   StudyHeader header;
   std::string consent;  // "text 8c1f2a9d, 2024-05-06 10:20"
@@ -51,11 +40,10 @@ struct StudyData {
 Result<StudyData> parse_study(std::string_view text, const std::string& path);
 Result<StudyData> read_study(const std::string& path);
 
-// The lines above the consent, and the columns' names.
+// The lines above the consent; the columns' names; one row, with its line end.
 std::string study_header_text(const StudyHeader& header);
-std::string study_columns(ProcedureKind procedure);
-// One row of the table, with its line end.
-std::string study_row(const StudyRecord& record, ProcedureKind procedure);
+std::string study_columns(const StudyHeader& header);
+std::string study_row(const StudyRecord& record, const StudyHeader& header);
 // Errors: no file; two of one subject.
 Status check_subjects(const std::vector<StudyData>& files);
 
@@ -65,7 +53,7 @@ std::size_t remove_rehearsals(StudyData& data);
 class StudyFile final : public StudyStore {
  public:
   // Takes up `path`, or makes it once there is consent. Errors: another session has
-  // it; not a study file, or of another subject, procedure or timing; not readable.
+  // it; not a study file, or of another subject or procedure; not readable.
   static Result<std::unique_ptr<StudyFile>> open(const std::string& path, const StudyHeader& header);
 
   StudyFile(const StudyFile&) = delete;

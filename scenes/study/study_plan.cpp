@@ -1,6 +1,10 @@
 #include "scenes/study/study_plan.h"
 
 #include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "engine/base/random_stream.h"
 
 namespace palpate {
 namespace {
@@ -13,6 +17,7 @@ constexpr std::uint64_t kTrainingStream = 2;
 constexpr std::uint64_t kDiscriminationStream = 4;
 constexpr std::uint64_t kDiscriminationTrainingStream = 5;
 constexpr std::size_t kDiscriminationTraining = 4;
+constexpr double kEasyShare = 0.5;
 
 bool is_code(const std::string& text) {
   std::size_t letters = 0;
@@ -23,25 +28,20 @@ bool is_code(const std::string& text) {
          letters + digits == text.size();
 }
 
-}  // namespace
-
-double percent_of(double reference_N, double percent) noexcept {
-  return std::round(reference_N * percent * 100.0) / 1e4;
-}
-
-Status check_subject_code(const std::string& code) {
-  if (is_code(code)) return {};
-  return Error{"found the subject \"" + code +
-               "\", expected a code of one to three capital letters and one to four digits, such as S01; "
-               "names are not stored"};
-}
-
+// Random numbers of this subject; `stream` tells the uses apart.
 RandomStream subject_random(const std::string& code, std::uint64_t stream) noexcept {
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
   for (const char letter : code) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
   return {hash ^ kStudySeed, stream};
 }
 
+// Shuffled in place (Fisher & Yates).
+template <typename T>
+void shuffle(std::vector<T>& values, RandomStream& random) {
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);
+}
+
+// `count` flags (even), half of them set, shuffled.
 std::vector<bool> balanced_flags(std::size_t count, RandomStream& random) {
   std::vector<std::uint8_t> flags(count, 0);
   for (std::size_t i = 0; i < count / 2; ++i) flags[i] = 1;
@@ -49,7 +49,8 @@ std::vector<bool> balanced_flags(std::size_t count, RandomStream& random) {
   return {flags.begin(), flags.end()};
 }
 
-std::vector<StudyTrial> plan_constant_trials(const std::string& code) {
+// The 320 trials.
+std::vector<StudyTrial> constant_trials(const std::string& code) {
   RandomStream random = subject_random(code, kConstantStream);
   std::vector<std::vector<StudyTrial>> rounds(kRepetitions);
   for (const double reference_N : kReferenceForces_N) {
@@ -68,7 +69,8 @@ std::vector<StudyTrial> plan_constant_trials(const std::string& code) {
   return trials;
 }
 
-std::vector<StudyTrial> plan_training_trials(const std::string& code) {
+// Each reference against 60 % and 140 %.
+std::vector<StudyTrial> constant_training(const std::string& code) {
   RandomStream random = subject_random(code, kTrainingStream);
   const std::vector<bool> first = balanced_flags(2 * kReferenceForces_N.size(), random);
   std::vector<StudyTrial> trials;
@@ -81,52 +83,48 @@ std::vector<StudyTrial> plan_training_trials(const std::string& code) {
   return trials;
 }
 
-std::vector<StudyTrial> plan_discrimination_trials(const std::string& code, double reference_mean_N,
-                                                   double comparison_mean_N) {
-  RandomStream random = subject_random(code, kDiscriminationStream);
+// `count` trials of these two, in each block the comparison first as often as second.
+std::vector<StudyTrial> stroke_trials(RandomStream random, double reference_N, double comparison_N, std::size_t count,
+                                      std::size_t block) {
   std::vector<StudyTrial> trials;
-  while (trials.size() < kDiscriminationTrials) {
-    for (const bool first : balanced_flags(kDiscriminationBlock, random)) {
-      trials.push_back({reference_mean_N, comparison_mean_N, first});
-    }
+  while (trials.size() < count) {
+    for (const bool first : balanced_flags(block, random)) trials.push_back({reference_N, comparison_N, first});
   }
   return trials;
 }
 
-std::vector<StudyTrial> plan_discrimination_training(const std::string& code, double reference_mean_N) {
-  RandomStream random = subject_random(code, kDiscriminationTrainingStream);
-  std::vector<StudyTrial> trials;
-  for (const bool first : balanced_flags(kDiscriminationTraining, random)) {
-    trials.push_back({reference_mean_N, percent_of(reference_mean_N, 100.0 * kEasyShare), first});
-  }
-  return trials;
+}  // namespace
+
+double percent_of(double reference_N, double percent) noexcept {
+  return std::round(reference_N * percent * 100.0) / 1e4;
 }
 
-const char* procedure_name(ProcedureKind kind) noexcept {
-  return kind == ProcedureKind::constant ? "constant" : "discriminate";
+Status check_subject_code(const std::string& code) {
+  if (is_code(code)) return {};
+  return Error{"found the subject \"" + code +
+               "\", expected a code of one to three capital letters and one to four digits, such as S01; "
+               "names are not stored"};
 }
 
-Result<ProcedureKind> find_procedure(const std::string& name) {
-  for (const ProcedureKind kind : {ProcedureKind::constant, ProcedureKind::discriminate}) {
-    if (name == procedure_name(kind)) return kind;
-  }
-  return Error{"found the procedure \"" + name + "\", expected constant or discriminate"};
-}
-
-StudyPlan plan_study(ProcedureKind kind, const std::string& code, const StrokePair* strokes) {
-  if (kind == ProcedureKind::constant) return {kind, plan_training_trials(code), plan_constant_trials(code)};
-  return {kind, plan_discrimination_training(code, strokes->reference_mean_N),
-          plan_discrimination_trials(code, strokes->reference_mean_N, strokes->comparison_mean_N),
-          kDiscriminationBlock};
+StudyPlan plan_study(const std::string& code, const StrokePair* strokes) {
+  if (strokes == nullptr) return {nullptr, constant_training(code), constant_trials(code)};
+  const double reference_N = strokes->reference_mean_N;
+  StudyPlan plan{strokes, {}, {}, kDiscriminationBlock};
+  plan.training =
+      stroke_trials(subject_random(code, kDiscriminationTrainingStream), reference_N,
+                    percent_of(reference_N, 100.0 * kEasyShare), kDiscriminationTraining, kDiscriminationTraining);
+  plan.trials = stroke_trials(subject_random(code, kDiscriminationStream), reference_N, strokes->comparison_mean_N,
+                              kDiscriminationTrials, kDiscriminationBlock);
+  return plan;
 }
 
 Stimuli StudyPlan::stimuli(const StudyTrial& trial, bool in_training) const {
-  if (kind == ProcedureKind::constant) return {{trial.first_N()}, {trial.second_N()}, false, {}};
-  const Stimulus reference{1.0, StimulusKind::reference};
+  if (strokes == nullptr) return {{trial.first_N()}, {trial.second_N()}, {}};
+  const Stimulus reference{1.0, &strokes->reference_N};
   const Stimulus comparison =
-      in_training ? Stimulus{kEasyShare, StimulusKind::reference} : Stimulus{1.0, StimulusKind::comparison};
-  return {trial.comparison_first ? comparison : reference, trial.comparison_first ? reference : comparison, true,
-          reference};
+      in_training ? Stimulus{kEasyShare, &strokes->reference_N} : Stimulus{1.0, &strokes->comparison_N};
+  if (trial.comparison_first) return {comparison, reference, reference};
+  return {reference, comparison, reference};
 }
 
 }  // namespace palpate

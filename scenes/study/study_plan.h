@@ -24,12 +24,11 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "engine/base/random_stream.h"
 #include "engine/base/result.h"
+#include "scenes/study/stroke_pair.h"
 #include "scenes/study/study_presenter.h"
 
 namespace palpate {
@@ -55,49 +54,22 @@ double percent_of(double reference_N, double percent) noexcept;
 // and one to four digits, such as S01. Errors: anything else.
 Status check_subject_code(const std::string& code);
 
-// Random numbers of this subject; `stream` tells the uses apart.
-RandomStream subject_random(const std::string& code, std::uint64_t stream) noexcept;
-
-// Shuffled in place (Fisher & Yates).
-template <typename T>
-void shuffle(std::vector<T>& values, RandomStream& random) {
-  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[random.index(i)]);
-}
-
-// `count` flags (even), half of them set, shuffled.
-std::vector<bool> balanced_flags(std::size_t count, RandomStream& random);
-
-// The 320 trials.
-std::vector<StudyTrial> plan_constant_trials(const std::string& code);
-
-// Eight easy trials to learn the task: each reference against 60 % and 140 %.
-std::vector<StudyTrial> plan_training_trials(const std::string& code);
-
-// Which of two strokes is which: 100 trials, in each kDiscriminationBlock of which the
-// comparison comes first as often as second. The forces are the strokes' means.
+// How many trials with two strokes, and how many of them between two breaks; in each such
+// block the comparison comes first as often as second.
 inline constexpr std::size_t kDiscriminationTrials = 100;
 inline constexpr std::size_t kDiscriminationBlock = 20;
-std::vector<StudyTrial> plan_discrimination_trials(const std::string& code, double reference_mean_N,
-                                                   double comparison_mean_N);
-// Four to learn the task: the reference stroke against itself at kEasyShare.
-inline constexpr double kEasyShare = 0.5;
-std::vector<StudyTrial> plan_discrimination_training(const std::string& code, double reference_mean_N);
-
-enum class ProcedureKind : std::uint8_t { constant, discriminate };
-const char* procedure_name(ProcedureKind kind) noexcept;  // "constant", "discriminate"
-// Errors: neither of them.
-Result<ProcedureKind> find_procedure(const std::string& name);
 
 struct StudyPlan {
-  ProcedureKind kind = ProcedureKind::constant;
-  std::vector<StudyTrial> training;
+  const StrokePair* strokes = nullptr;  // null: constant stimuli
+  std::vector<StudyTrial> training;     // easy ones, to learn the task
   std::vector<StudyTrial> trials;
   std::size_t trials_per_block = 64;  // between two breaks: two repetitions of each pair
 
   // What is presented in a trial, of the training or not.
   Stimuli stimuli(const StudyTrial& trial, bool in_training) const;
 };
-// `strokes`: for discriminate, else ignored.
-StudyPlan plan_study(ProcedureKind kind, const std::string& code, const StrokePair* strokes);
+// The trials of a subject; those with strokes, which outlive the plan, have the means of
+// their forces, and in the training the reference against half of it.
+StudyPlan plan_study(const std::string& code, const StrokePair* strokes);
 
 }  // namespace palpate

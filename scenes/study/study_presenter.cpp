@@ -2,39 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
+#include <numbers>
 
 namespace palpate {
-namespace {
 
-constexpr double kPi = 3.141592653589793;
-constexpr std::uint32_t kShortestRamp = 60;  // 3.5 N x pi / 2 / 60 ms is 92 N/s
-constexpr std::uint32_t kLongestWait = 60000;
-
-Error wrong(const char* what, std::uint32_t found, const std::string& expected) {
-  return Error{std::string("found a ") + what + " of " + std::to_string(found) + " ms, expected " + expected};
-}
-
-}  // namespace
-
-Status check_study_timing(const StudyTiming& timing) {
-  if (timing.ramp < kShortestRamp || timing.ramp > kLongestStudyForce_ticks) {
-    return wrong("ramp", timing.ramp, "60 to 5000 ms");
-  }
-  if (timing.hold < 1 || timing.hold > kLongestStudyForce_ticks || timing.interval() > kLongestStudyForce_ticks) {
-    return wrong("hold", timing.hold, "1 ms or more, and 5000 ms at most together with both ramps");
-  }
-  if (timing.lead_in > kLongestWait) return wrong("lead-in", timing.lead_in, "60000 ms at most");
-  if (timing.pause > kLongestWait) return wrong("pause", timing.pause, "60000 ms at most");
-  return {};
-}
-
-double interval_share(const StudyTiming& timing, std::uint32_t tick) noexcept {
-  const std::uint32_t left = timing.interval() - 1 - tick;
-  const std::uint32_t from_edge = tick < left ? tick : left;
-  if (from_edge >= timing.ramp) return 1.0;
-  return 0.5 - 0.5 * std::cos(kPi * static_cast<double>(from_edge) / static_cast<double>(timing.ramp));
+double interval_share(std::uint32_t tick) noexcept {
+  const std::uint32_t from_edge = std::min(tick, kInterval_ticks - 1 - tick);
+  if (from_edge >= kRamp_ticks) return 1.0;
+  return 0.5 - 0.5 * std::cos(std::numbers::pi * static_cast<double>(from_edge) / kRamp_ticks);
 }
 
 std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
@@ -45,10 +20,10 @@ std::uint64_t StudyPresenter::present(const Stimuli& stimuli) noexcept {
 std::uint32_t StudyPresenter::length(PresentationPhase phase) const noexcept {
   const bool reminds = phase == PresentationPhase::reminder || phase == PresentationPhase::reminder_pause;
   const bool pauses = phase == PresentationPhase::pause || phase == PresentationPhase::reminder_pause;
-  if (phase == PresentationPhase::lead_in) return timing_.lead_in;
-  if (reminds && !order_.stimuli.has_reminder) return 0;
+  if (phase == PresentationPhase::lead_in) return kLeadIn_ticks;
+  if (reminds && order_.stimuli.reminder.stroke_N == nullptr) return 0;
   if (phase == PresentationPhase::idle || phase >= PresentationPhase::finished) return 0;
-  return pauses ? timing_.pause : timing_.interval();
+  return pauses ? kPause_ticks : kInterval_ticks;
 }
 
 const Stimulus* StudyPresenter::stimulus() const noexcept {
@@ -59,18 +34,15 @@ const Stimulus* StudyPresenter::stimulus() const noexcept {
 }
 
 bool StudyPresenter::is_held() const noexcept {
-  return stimulus() != nullptr && in_phase_ >= timing_.ramp && in_phase_ < timing_.ramp + timing_.hold;
+  return stimulus() != nullptr && in_phase_ >= kRamp_ticks && in_phase_ < kRamp_ticks + kHold_ticks;
 }
 
 double StudyPresenter::commanded_N() const noexcept {
   const Stimulus* now = stimulus();
   if (now == nullptr) return 0.0;
-  const double force_N = now->size * interval_share(timing_, in_phase_);
-  if (now->kind == StimulusKind::constant) return force_N;
-  if (strokes_ == nullptr) return 0.0;
-  const std::vector<double>& stroke_N =
-      now->kind == StimulusKind::reference ? strokes_->reference_N : strokes_->comparison_N;
-  return in_phase_ < stroke_N.size() ? force_N * stroke_N[in_phase_] : 0.0;
+  const double force_N = now->size * interval_share(in_phase_);
+  if (now->stroke_N == nullptr) return force_N;
+  return in_phase_ < now->stroke_N->size() ? force_N * (*now->stroke_N)[in_phase_] : 0.0;
 }
 
 void StudyPresenter::read_orders() noexcept {
@@ -96,7 +68,7 @@ void StudyPresenter::record(double rendered_N) noexcept {
   double& mean_N = sent_phase_ == PresentationPhase::first    ? state_.first_rendered_N
                    : sent_phase_ == PresentationPhase::second ? state_.second_rendered_N
                                                               : state_.reminder_rendered_N;
-  mean_N += rendered_N / static_cast<double>(timing_.hold);
+  mean_N += rendered_N / kHold_ticks;
 }
 
 void StudyPresenter::advance() noexcept {

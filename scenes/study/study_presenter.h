@@ -6,11 +6,11 @@
 //   any  --stop-----> stopped, for good
 //
 // Time is counted in ticks of 1 ms, never read from a clock. Within an interval the
-// force, constant or one of a pair of strokes, is let in for `ramp` ticks as half a
-// cosine, let through for `hold` and taken away for `ramp`; everywhere else it is zero,
-// so that no force outlasts the one interval whatever the slow side does. Behind it a ForceLimiter has the last word:
-// 4 N at most, 100 N/s at most, which also takes the force away gently (40 ms at
-// most) when the presentation is stopped in the middle.
+// force, constant or one of a pair of strokes, is let in as half a cosine, held, and taken
+// away likewise; everywhere else it is zero, so that no force outlasts the one interval
+// whatever the slow side does. Behind it a ForceLimiter has the last word: 4 N at most,
+// 100 N/s at most, which also takes the force away gently (40 ms at most) when the
+// presentation is stopped in the middle.
 // Positive forces push towards the hand.
 // Thread guarantee: `tick` on the haptics thread, `stop` on any, both wait-free
 // and without allocation; the rest on one slow thread.
@@ -18,52 +18,37 @@
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
-#include <utility>
+#include <vector>
 
-#include "engine/base/result.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/triple_buffer.h"
-#include "scenes/study/stroke_pair.h"
 
 namespace palpate {
 
 inline constexpr double kStudyTick_s = 1e-3;
 inline constexpr double kLargestStudyForce_N = 4.0;
 inline constexpr double kFastestStudyForce_N_per_s = 100.0;
-inline constexpr std::uint32_t kLongestStudyForce_ticks = 5000;  // ramps included
-
-// Ticks.
-struct StudyTiming {
-  std::uint32_t lead_in = 400;
-  std::uint32_t ramp = 100;
-  std::uint32_t hold = 900;
-  std::uint32_t pause = 500;
-
-  std::uint32_t interval() const noexcept { return 2 * ramp + hold; }
-  // Without a reminder.
-  std::uint32_t presentation() const noexcept { return lead_in + 2 * interval() + pause; }
-  bool operator==(const StudyTiming&) const = default;
-};
-
-// Errors: a ramp so short that the limiter would bend it (60 ticks at least), no
-// hold, a force above the time cap, a lead-in or pause above a minute.
-Status check_study_timing(const StudyTiming& timing);
+// Of every presentation, in ticks. The ramp is so long that the limiter does not bend it:
+// 3.5 N x pi / 2 / 100 ms is 55 N/s.
+inline constexpr std::uint32_t kLeadIn_ticks = 400;
+inline constexpr std::uint32_t kRamp_ticks = 100;
+inline constexpr std::uint32_t kHold_ticks = 900;
+inline constexpr std::uint32_t kPause_ticks = 500;
+inline constexpr std::uint32_t kInterval_ticks = 2 * kRamp_ticks + kHold_ticks;
 
 // How much of the force is let through at the tick of an interval.
-double interval_share(const StudyTiming& timing, std::uint32_t tick) noexcept;
+double interval_share(std::uint32_t tick) noexcept;
 
-// What an interval presents: a force of `size` newtons, or a stroke `size` times.
-enum class StimulusKind : std::uint8_t { constant, reference, comparison };
+// What an interval presents: so many newtons, or so many times a stroke, which has a force
+// for each tick of an interval and outlives the presentation.
 struct Stimulus {
   double size = 0.0;
-  StimulusKind kind = StimulusKind::constant;
+  const std::vector<double>* stroke_N = nullptr;
 };
 struct Stimuli {
   Stimulus first;
   Stimulus second;
-  bool has_reminder = false;
-  Stimulus reminder;
+  Stimulus reminder;  // a stroke, or none
 };
 
 enum class PresentationPhase : std::uint8_t {
@@ -84,7 +69,7 @@ struct PresentationState {
   std::uint64_t finished_at = 0;   // tick at which the second interval had ended
   PresentationPhase phase = PresentationPhase::idle;
   double force_N = 0.0;  // wanted now
-  // What was rendered: the mean over the ticks of `hold`.
+  // What was rendered: the mean over the held ticks.
   double first_rendered_N = 0.0;
   double second_rendered_N = 0.0;
   double reminder_rendered_N = 0.0;
@@ -94,10 +79,7 @@ struct PresentationState {
 
 class StudyPresenter {
  public:
-  // `timing`: one that check_study_timing accepts. `strokes`: forces for each tick of
-  // an interval, or null when all stimuli are constant.
-  explicit StudyPresenter(const StudyTiming& timing, std::shared_ptr<const StrokePair> strokes = nullptr) noexcept
-      : timing_(timing), strokes_(std::move(strokes)), limiter_(kLimits) {}
+  StudyPresenter() noexcept : limiter_(kLimits) {}
 
   // Slow side. Begins a presentation at the next tick (one that runs is given up);
   // returns its number.
@@ -123,8 +105,6 @@ class StudyPresenter {
   void record(double rendered_N) noexcept;
   void advance() noexcept;
 
-  StudyTiming timing_;
-  std::shared_ptr<const StrokePair> strokes_;
   TripleBuffer<Order> orders_;
   TripleBuffer<PresentationState> states_;
   std::atomic<bool> stopped_{false};

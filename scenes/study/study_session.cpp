@@ -17,34 +17,27 @@ Error unexpected_answer(const StudyRecord& record) {
                "version, or changed? Start a new file"};
 }
 
-Status check_strokes(const StudyHeader& header) {
-  if (header.procedure != ProcedureKind::discriminate) return {};
-  const std::size_t expected = header.timing.interval();
-  if (header.strokes != nullptr && header.strokes->reference_N.size() == expected &&
-      header.strokes->comparison_N.size() == expected) {
-    return {};
-  }
-  return Error{"found no two strokes of " + std::to_string(expected) + " ms, expected them to be told apart"};
+Status check_strokes(const StrokePair* strokes) {
+  if (strokes == nullptr) return {};
+  if (strokes->reference_N.size() == kInterval_ticks && strokes->comparison_N.size() == kInterval_ticks) return {};
+  return Error{"found no two strokes of " + std::to_string(kInterval_ticks) + " ms, expected them to be told apart"};
 }
 
 }  // namespace
 
-const std::string& study_consent_text(ProcedureKind procedure) {
-  static const std::string kBegin =
-      "In this study you hold a device that pushes gently against your hand, with at most 4 N (the weight "
-      "of 400 g). ";
-  static const std::string kEnd =
-      " Hold your hand still. There are breaks.\n"
-      "Stored are your answers, how long they took and the code that you were given; not your name.\n"
-      "Taking part is voluntary. You can stop at any time and without a reason with the abort key; the "
-      "force then goes away at once.\n"
-      "Do you agree to take part?";
-  static const std::string kForces =
-      kBegin + "Each time you feel two pushes, one after the other, and say which was the larger." + kEnd;
-  static const std::string kStrokes =
-      kBegin +
-      "Each time you feel three pushes, one after the other, and say which of the last two was like the first." + kEnd;
-  return procedure == ProcedureKind::discriminate ? kStrokes : kForces;
+std::string study_consent_text(bool strokes) {
+  const std::string task =
+      strokes
+          ? "Each time you feel three pushes, one after the other, and say which of the last two was like the first."
+          : "Each time you feel two pushes, one after the other, and say which was the larger.";
+  return "In this study you hold a device that pushes gently against your hand, with at most 4 N (the weight "
+         "of 400 g). " +
+         task +
+         " Hold your hand still. There are breaks.\n"
+         "Stored are your answers, how long they took and the code that you were given; not your name.\n"
+         "Taking part is voluntary. You can stop at any time and without a reason with the abort key; the "
+         "force then goes away at once.\n"
+         "Do you agree to take part?";
 }
 
 double StudyRecord::rendered_difference() const noexcept {
@@ -56,8 +49,7 @@ double StudyRecord::rendered_difference() const noexcept {
 Result<std::unique_ptr<StudySession>> StudySession::create(const StudyHeader& header, std::unique_ptr<StudyStore> store,
                                                            std::uint64_t rest_ticks) {
   if (const Status code = check_subject_code(header.subject); !code) return code.error();
-  if (const Status timing = check_study_timing(header.timing); !timing) return timing.error();
-  if (const Status strokes = check_strokes(header); !strokes) return strokes.error();
+  if (const Status strokes = check_strokes(header.strokes.get()); !strokes) return strokes.error();
   std::unique_ptr<StudySession> session(new StudySession(header, std::move(store), rest_ticks));
   if (const Status resumed = session->resume(); !resumed) return resumed.error();
   return session;
@@ -67,8 +59,7 @@ StudySession::StudySession(const StudyHeader& header, std::unique_ptr<StudyStore
     : header_(header),
       store_(std::move(store)),
       rest_ticks_(rest_ticks),
-      plan_(plan_study(header.procedure, header.subject, header.strokes.get())),
-      presenter_(header.timing, header.strokes) {}
+      plan_(plan_study(header.subject, header.strokes.get())) {}
 
 // Gives the stored answers again; each must be to the trial of the plan.
 Status StudySession::resume() {
@@ -85,7 +76,7 @@ Status StudySession::resume() {
 
 void StudySession::accept_consent(const std::string& when) {
   if (state_ != StudyState::consent) return;
-  const Status written = store_->consent(study_consent_text(header_.procedure), when);
+  const Status written = store_->consent(study_consent_text(header_.strokes != nullptr), when);
   problem_ = written ? "" : written.error().message;
   if (written) state_ = StudyState::ready;
 }
@@ -201,7 +192,7 @@ StudyView StudySession::view() {
 std::string StudySession::message(const StudyView& view) const {
   switch (state_) {
     case StudyState::consent:
-      return problem_.empty() ? study_consent_text(header_.procedure) : problem_;
+      return problem_.empty() ? study_consent_text(header_.strokes != nullptr) : problem_;
     case StudyState::ready:
       if (!view.training) return "Now the study itself. Go on when you are ready.";
       return view.has_reminder

@@ -6,14 +6,14 @@
 //                                      unsaved (the disk refused the answer)
 //   any of them -> aborted
 //
-// How to drive it: the haptics thread calls `tick` once per ms and renders what it
+// How to drive it: the haptics thread calls `next_force_N` once per ms and renders what it
 // returns. The slow thread calls `update` in every frame, draws `view`, and passes on
 // what the subject does. `ready` comes before the training, before the study proper,
 // and first of all when a session is resumed; a break lasts at least `rest` ticks. An
 // answer counts once the store has it: `answer` returns after that, or the session is
 // `unsaved` and goes no further until `retry` succeeds. An abort can so lose only an
 // answer that the disk has refused, and it tries once more.
-// Thread guarantee: `tick` on the haptics thread, wait-free, no allocation; the rest
+// Thread guarantee: `next_force_N` on the haptics thread, wait-free, no allocation; the rest
 // on one slow thread.
 #pragma once
 
@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/live/live_tick.h"
 #include "scenes/study/study_plan.h"
 #include "scenes/study/study_presenter.h"
 #include "scenes/study/study_store.h"
@@ -30,7 +31,7 @@
 namespace palpate {
 
 // What a subject reads before anything else.
-const std::string& study_consent_text(ProcedureKind procedure);
+std::string study_consent_text(bool strokes);
 
 enum class StudyState : std::uint8_t { consent, ready, presenting, answering, unsaved, rest, done, aborted };
 
@@ -49,13 +50,12 @@ struct StudyView {
   std::string message;  // one or two sentences for the subject
 };
 
-class StudySession {
+class StudySession final : public ForceSource {
  public:
   static constexpr std::uint64_t kRest_ticks = 30000;
 
-  // Takes up where `store` ends. Errors: a code that is none, a timing that is not
-  // accepted, strokes that do not fill it, answers in the store that this plan did not
-  // ask for.
+  // Takes up where `store` ends. Errors: a code that is none, strokes that do not
+  // fill an interval, answers in the store that this plan did not ask for.
   static Result<std::unique_ptr<StudySession>> create(const StudyHeader& header, std::unique_ptr<StudyStore> store,
                                                       std::uint64_t rest_ticks = kRest_ticks);
 
@@ -74,10 +74,9 @@ class StudySession {
   // What is being presented or asked about.
   const StudyTrial& trial() const noexcept { return trial_; }
   bool training() const noexcept { return trained_ < plan_.training.size(); }
-  const PresentationState& presentation() noexcept { return presenter_.newest(); }
 
   // Haptics thread; see StudyPresenter.
-  double tick(double rendered_N) noexcept { return presenter_.tick(rendered_N); }
+  double next_force_N(double rendered_N) noexcept override { return presenter_.tick(rendered_N); }
 
  private:
   StudySession(const StudyHeader& header, std::unique_ptr<StudyStore> store, std::uint64_t rest_ticks);

@@ -12,20 +12,20 @@
 #include "engine/base/result.h"
 #include "scenes/study/stroke_pair.h"
 #include "scenes/study/study_plan.h"
-#include "scenes/study/study_presenter.h"
 
 namespace palpate {
 
 // What all trials of one subject have in common.
 struct StudyHeader {
   std::string subject;
-  ProcedureKind procedure = ProcedureKind::constant;
-  StudyTiming timing;
-  std::shared_ptr<const StrokePair> strokes = nullptr;  // of ProcedureKind::discriminate
+  std::shared_ptr<const StrokePair> strokes = nullptr;  // to tell apart; null: constant stimuli
   // What new answers are given on, and whether it renders force; of each row, for a study
   // may go on with another device.
   std::string device = "unknown";
   bool rendered = true;
+
+  // As files call it.
+  const char* procedure() const noexcept { return strokes != nullptr ? "discriminate" : "constant"; }
 };
 
 // One answered trial.
@@ -67,25 +67,6 @@ class StudyStore {
   // When it returns without an error the answer is on the disk. Errors: it is not,
   // and may be given again.
   virtual Status append(const StudyRecord& record) = 0;
-};
-
-// Keeps them in memory, for simulations.
-class MemoryStore final : public StudyStore {
- public:
-  bool consented() const noexcept override { return consented_; }
-  const std::vector<StudyRecord>& records() const noexcept override { return records_; }
-  Status consent(const std::string&, const std::string&) override {
-    consented_ = true;
-    return {};
-  }
-  Status append(const StudyRecord& record) override {
-    records_.push_back(record);
-    return {};
-  }
-
- private:
-  bool consented_ = false;
-  std::vector<StudyRecord> records_;
 };
 
 }  // namespace palpate

@@ -5,46 +5,62 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "scenes/study/study_session.h"
 
 namespace palpate::test {
 
-// Forces of a few ticks, for tests that have hundreds of trials.
-inline constexpr StudyTiming kQuickTiming{5, 60, 20, 5};
+// Keeps answers in memory.
+class MemoryStore final : public StudyStore {
+ public:
+  bool consented() const noexcept override { return consented_; }
+  const std::vector<StudyRecord>& records() const noexcept override { return records_; }
+  Status consent(const std::string&, const std::string&) override {
+    consented_ = true;
+    return {};
+  }
+  Status append(const StudyRecord& record) override {
+    records_.push_back(record);
+    return {};
+  }
 
-// A force that grows from 1 N by 0.01 N a tick, and `share` of it, for an interval.
-inline std::shared_ptr<const StrokePair> example_strokes(double share, const StudyTiming& timing = kQuickTiming) {
+ private:
+  bool consented_ = false;
+  std::vector<StudyRecord> records_;
+};
+
+// A force that grows from 1 N by 1 mN a tick, and `share` of it, for an interval.
+inline std::shared_ptr<const StrokePair> example_strokes(double share) {
   auto strokes = std::make_shared<StrokePair>();
   strokes->reference = "recorded force";
   strokes->comparison = "greedy-100";
   strokes->recording = "silicone 2";
   strokes->from_s = 12.3;
-  strokes->to_s = 12.44;
+  strokes->to_s = 13.4;
   strokes->checksum = static_cast<std::uint32_t>(std::lround(1000.0 * share));
   double sum_N = 0.0;
-  for (std::uint32_t i = 0; i < timing.interval(); ++i) {
-    const double force_N = 1.0 + 0.01 * i;
+  for (std::uint32_t i = 0; i < kInterval_ticks; ++i) {
+    const double force_N = 1.0 + 0.001 * i;
     strokes->reference_N.push_back(force_N);
     strokes->comparison_N.push_back(share * force_N);
-    if (i >= timing.ramp && i < timing.ramp + timing.hold) sum_N += force_N / timing.hold;
+    if (i >= kRamp_ticks && i < kRamp_ticks + kHold_ticks) sum_N += force_N / kHold_ticks;
   }
   strokes->reference_mean_N = std::round(1e4 * sum_N) / 1e4;
   strokes->comparison_mean_N = std::round(1e4 * share * sum_N) / 1e4;
-  // Largest at the largest force, 1.7 N while it is let through whole.
-  strokes->mean_over_jnd = strokes->max_over_jnd = std::abs(share - 1.0) * 1.7 / strokes->jnd.at(1.7);
+  // Largest at the largest force, 2 N while it is let through whole.
+  strokes->mean_over_jnd = strokes->max_over_jnd = std::abs(share - 1.0) * 2.0 / strokes->jnd.at(2.0);
   return strokes;
 }
 
-inline StudyHeader discrimination_header(double share) {
-  return {"S01", ProcedureKind::discriminate, kQuickTiming, example_strokes(share)};
-}
+inline StudyHeader discrimination_header(double share) { return {"S01", example_strokes(share)}; }
 
 // Ticks until the session wants something of the subject (at most one minute).
 inline void run_until_asked(StudySession& session) {
   double rendered_N = 0.0;
   for (int i = 0; i < 60000 && session.state() == StudyState::presenting; ++i) {
-    rendered_N = session.tick(rendered_N);
+    rendered_N = session.next_force_N(rendered_N);
     session.update();
   }
 }

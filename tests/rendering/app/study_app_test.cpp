@@ -21,7 +21,6 @@ namespace palpate {
 namespace {
 
 constexpr double kPatience_s = 60.0;
-const StudyTiming kStrokeTiming{400, 100, 50, 500};  // as stroke_timing has it
 
 class StudyAppTest : public ::testing::Test {
  protected:
@@ -89,7 +88,7 @@ TEST_F(StudyAppTest, GoesFromTheConsentToAStoredAnswer) {
 }
 
 TEST_F(StudyAppTest, AsksForTheStrokeThatWasLikeTheReference) {
-  start(test::example_strokes(0.8, kStrokeTiming));
+  start(test::example_strokes(0.8));
   app_->begin("S01");
   ASSERT_NE(app_->study(), nullptr) << app_->problem();
   press(GLFW_KEY_Y);
@@ -112,14 +111,11 @@ TEST_F(StudyAppTest, AsksForTheStrokeThatWasLikeTheReference) {
 }
 
 TEST_F(StudyAppTest, ShowsTheResultAtTheEnd) {
-  const StudyHeader header{"S01", ProcedureKind::discriminate, kStrokeTiming,
-                           test::example_strokes(0.8, kStrokeTiming)};
-  const auto records = run_simulated_session(header, {}, 1);
-  ASSERT_TRUE(records.ok());
+  const StudyHeader header{"S01", test::example_strokes(0.8)};
   {
     auto file = StudyFile::open("discriminate-S01.csv", header);
     ASSERT_TRUE(file.ok() && (*file)->consent("", "").ok());
-    for (const StudyRecord& record : *records) ASSERT_TRUE((*file)->append(record).ok());
+    for (const StudyRecord& record : simulated_answers(header, {}, 1)) ASSERT_TRUE((*file)->append(record).ok());
   }
   start(header.strokes);
   app_->begin("S01");

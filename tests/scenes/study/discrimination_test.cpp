@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
+#include <string>
 
 #include "scenes/study/simulated_subject.h"
 #include "tests/support/study_driving.h"
@@ -36,22 +36,6 @@ TEST(Discrimination, IntervalIsWilsons) {
   EXPECT_EQ(wilson_interval(0, 0).high, 1.0);
 }
 
-TEST(Discrimination, GuessersAreCountedExactly) {
-  EXPECT_NEAR(guessing_probability(3, 3), 0.125, 1e-12);
-  EXPECT_NEAR(guessing_probability(2, 3), 0.5, 1e-12);
-  EXPECT_NEAR(guessing_probability(0, 3), 1.0, 1e-12);
-  EXPECT_NEAR(guessing_probability(8, 10), 56.0 / 1024.0, 1e-12);
-  EXPECT_NEAR(guessing_probability(100, 100), std::ldexp(1.0, -100), 1e-40);
-}
-
-TEST(Discrimination, DPrimeIsThatOf2Afc) {
-  EXPECT_NEAR(d_prime(50, 100), 0.0, 1e-9);
-  // The share of 2AFC is Phi(d' / sqrt(2)) = erfc(-d' / 2) / 2.
-  for (const std::size_t correct : {0u, 52u, 75u, 100u}) {
-    EXPECT_NEAR(0.5 * std::erfc(-0.5 * d_prime(correct, 100)), (static_cast<double>(correct) + 0.5) / 101.0, 1e-7);
-  }
-}
-
 TEST(Discrimination, CountsWhatWasRendered) {
   std::vector<StudyRecord> records = answers(60, 100);
   records[0].training = true;
@@ -68,14 +52,12 @@ TEST(Discrimination, SaysWhetherThePredictionHeld) {
   strokes.mean_over_jnd = 0.2;
   strokes.max_over_jnd = 0.71;
   const auto verdict = [&](std::size_t correct) { return discrimination_verdict({"S01", 100, correct, 0}, strokes); };
-  EXPECT_EQ(
-      verdict(52),
-      "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing (p 0.38); 75 % would be "
-      "one JND: consistent.");
-  EXPECT_EQ(
-      verdict(70),
-      "Predicted below the JND (at most 0.71 of it). 70 % right [60 to 78], more than by guessing (p 3.9e-05); 75 % "
-      "would be one JND: too few answers to tell, the interval holds 75 %.");
+  EXPECT_EQ(verdict(52),
+            "Predicted below the JND (at most 0.71 of it). 52 % right [42 to 62], as by guessing; 75 % would be "
+            "one JND: consistent.");
+  EXPECT_EQ(verdict(70),
+            "Predicted below the JND (at most 0.71 of it). 70 % right [60 to 78], more than by guessing; 75 % "
+            "would be one JND: too few answers to tell, the interval holds 75 %.");
   EXPECT_EQ(verdict(97).substr(verdict(97).find("75 % would")), "75 % would be one JND: not consistent.");
   strokes.max_over_jnd = 3.0;
   EXPECT_EQ(verdict(52).substr(0, 70), "Above the JND for a moment only (at most 3.00 of it, on average 0.20).");
@@ -108,7 +90,7 @@ TEST(Discrimination, AnalysesFilesOfTheSameStrokesAlone) {
       analyse_discrimination({one, two}).error().message,
       "found other strokes in the file of subject S02, expected \"recorded force\" and \"greedy-100\" in silicone 2 "
       "as in the first; analyse them apart");
-  two.header = {"S02", ProcedureKind::constant, {}};
+  two.header = {"S02"};
   EXPECT_EQ(analyse_discrimination({one, two}).error().message,
             "found the procedure constant in the file of subject S02, expected discriminate as in the others; analyse "
             "them apart");
@@ -121,12 +103,9 @@ double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
   const auto strokes = example_strokes(stroke_share);
   double right = 0.0;
   for (int i = 0; i < sessions; ++i) {
-    char code[16];
-    std::snprintf(code, sizeof code, "S%02d", i + 1);
-    const StudyHeader header{code, ProcedureKind::discriminate, test::kQuickTiming, strokes};
-    const auto records = run_simulated_session(header, {jnd, 0.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
-    if (!records) return -1.0;
-    right += discrimination_of(code, *records, *strokes).share() / sessions;
+    const std::string code = "S" + std::to_string(i + 1);
+    const auto records = simulated_answers({code, strokes}, {jnd, 0.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
+    right += discrimination_of(code, records, *strokes).share() / sessions;
   }
   return right;
 }
@@ -135,9 +114,9 @@ double simulated_share(double stroke_share, const JndLine& jnd, int sessions) {
 TEST(Discrimination, SimulatedSubjectsAnswerAsTheirJndSays) {
   const JndLine jnd{0.1, 0.0};
   EXPECT_NEAR(simulated_share(1.0, jnd, 40), 0.5, 0.024) << "the same stroke twice";
-  // The largest force that is let through whole is 1.79 N; noise alike at all forces.
-  EXPECT_NEAR(simulated_share(1.0 - 0.1 / 1.79, jnd, 40), 0.75, 0.024) << "one JND there";
-  EXPECT_NEAR(simulated_share(1.0 + 0.1 / 1.79, jnd, 40), 0.75, 0.024) << "the larger one";
+  // The largest force that is let through whole is 2 N; noise alike at all forces.
+  EXPECT_NEAR(simulated_share(1.0 - 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "one JND there";
+  EXPECT_NEAR(simulated_share(1.0 + 0.1 / 2.0, jnd, 40), 0.75, 0.024) << "the larger one";
   EXPECT_GT(simulated_share(0.5, jnd, 5), 0.99) << "grossly different";
 }
 

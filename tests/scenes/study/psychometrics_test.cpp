@@ -132,11 +132,11 @@ TEST(Psychometrics, IntervalIsThatOfTheLikelihoodRatio) {
 TEST(Psychometrics, PercentilesAreCorrectedForBias) {
   std::vector<double> replicates;
   for (int i = 0; i < 999; ++i) replicates.push_back(i);
-  const Estimate centred = bias_corrected_interval(499.5, replicates, 0.95);
+  const Estimate centred = bias_corrected_interval(499.5, replicates);
   EXPECT_NEAR(centred.low, 24.0, 2.0);
   EXPECT_NEAR(centred.high, 974.0, 2.0);
   // Replicates that come out high say that the estimate does: both ends go down.
-  const Estimate shifted = bias_corrected_interval(300.0, replicates, 0.95);
+  const Estimate shifted = bias_corrected_interval(300.0, replicates);
   EXPECT_LT(shifted.low, centred.low);
   EXPECT_LT(shifted.high, centred.high - 20.0);
 }

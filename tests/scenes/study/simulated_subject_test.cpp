@@ -32,14 +32,18 @@ TEST(SimulatedSubject, HasBiasAndLapses) {
   EXPECT_NEAR(share_of_second({{0.01, 0.0}, 0.0, 0.05}, 1.0, 2.0), 0.95, 0.011);
 }
 
-TEST(SimulatedSubject, RunsAWholeSessionAndRepeatsIt) {
-  const StudyHeader header{"S01", ProcedureKind::constant, test::kQuickTiming};
-  const auto one = run_simulated_session(header, {}, 7);
-  ASSERT_TRUE(one.ok());
-  EXPECT_EQ(one->size(), 328u);
-  EXPECT_EQ(*one, *run_simulated_session(header, {}, 7));
-  EXPECT_NE(*one, *run_simulated_session(header, {}, 8));
-  EXPECT_FALSE(run_simulated_session({"Anna", ProcedureKind::constant, {}}, {}, 7).ok());
+TEST(SimulatedSubject, GivesAllAnswersOfAPlanAndRepeatsThem) {
+  const auto one = simulated_answers({"S01"}, {}, 7);
+  EXPECT_EQ(one.size(), 328u);
+  EXPECT_EQ(one, simulated_answers({"S01"}, {}, 7));
+  EXPECT_NE(one, simulated_answers({"S01"}, {}, 8));
+  // A session takes them up as given: they are to its plan.
+  auto store = std::make_unique<test::MemoryStore>();
+  ASSERT_TRUE(store->consent("", "").ok());
+  for (const StudyRecord& record : one) ASSERT_TRUE(store->append(record).ok());
+  const auto session = StudySession::create({"S01"}, std::move(store));
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  EXPECT_EQ((*session)->state(), StudyState::done);
 }
 
 }  // namespace

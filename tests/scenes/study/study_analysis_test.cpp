@@ -13,13 +13,13 @@
 namespace palpate {
 namespace {
 
-const IntervalSettings kQuick{kJndCriterion, 0.95, 50};
+const IntervalSettings kQuick{kJndCriterion, 50};
 bool may_continue(double) { return true; }
 
 // A session of a subject whose answers come out exactly as often as they should:
 // `repetitions` of each pair in each order.
 StudyData average_subject(const std::string& code, const std::vector<double>& relative_jnds, int repetitions) {
-  StudyData data{{code, ProcedureKind::constant, {}}, "", {}, 0};
+  StudyData data{{code}, "", {}, 0};
   for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
     const PsychometricFunction truth{normal_quantile(kJndCriterion) / relative_jnds[r], 0.1, 0.0};
     for (const int percent : kComparisonPercent) {
@@ -101,9 +101,8 @@ TEST(StudyAnalysis, RefusesWhatCannotBeAnalysed) {
             "found no study file, expected one or more");
   EXPECT_EQ(analyse_study({data, data}, kQuick, false, may_continue).error().message,
             "found two files of subject S01, expected one; leave one of them out");
-  EXPECT_EQ(
-      analyse_study({{{"S02", ProcedureKind::constant, {}}, "", {}, 0}}, kQuick, false, may_continue).error().message,
-      "found no usable answer of subject S02; leave the file out");
+  EXPECT_EQ(analyse_study({{{"S02"}, "", {}, 0}}, kQuick, false, may_continue).error().message,
+            "found no usable answer of subject S02; leave the file out");
   StudyData other = data;
   other.records[3].trial.reference_N = 0.7;
   EXPECT_EQ(analyse_study({other}, kQuick, false, may_continue).error().message,
@@ -121,10 +120,8 @@ TEST(StudyAnalysis, IntervalsHoldTheTruthOfKnownSubjects) {
     const SubjectTraits traits{{random.uniform(0.03, 0.065), random.uniform(0.05, 0.12)},
                                random.uniform(-0.5, 0.5),
                                random.uniform(0.0, 0.03)};
-    const StudyHeader header{"R" + std::to_string(i), ProcedureKind::constant, test::kQuickTiming};
-    const auto records = run_simulated_session(header, traits, random.next());
-    ASSERT_TRUE(records.ok());
-    const SubjectJnd found = analyse_subject({header, "", *records, 0}, {});
+    const StudyHeader header{"R" + std::to_string(i)};
+    const SubjectJnd found = analyse_subject({header, "", simulated_answers(header, traits, random.next()), 0}, {});
     for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
       const double truth_N = traits.jnd.at(kReferenceForces_N[r]);
       const Estimate& jnd_N = found.references[r].jnd_N;
@@ -141,11 +138,10 @@ TEST(StudyAnalysis, IntervalsHoldTheTruthOfKnownSubjects) {
 }
 
 TEST(StudyAnalysis, TakesFilesThatEndEarly) {
-  const StudyHeader header{"S01", ProcedureKind::constant, test::kQuickTiming};
-  auto records = run_simulated_session(header, {}, 1);
-  ASSERT_TRUE(records.ok());
+  const StudyHeader header{"S01"};
+  const std::vector<StudyRecord> records = simulated_answers(header, {}, 1);
   for (const std::size_t kept : {9u, 12u, 60u}) {
-    const StudyData cut{header, "", {records->begin(), records->begin() + static_cast<std::ptrdiff_t>(kept)}, 0};
+    const StudyData cut{header, "", {records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept)}, 0};
     const auto analysis = analyse_study({cut}, kQuick, false, may_continue);
     ASSERT_TRUE(analysis.ok()) << analysis.error().message;
     EXPECT_GE(analysis->pooled.size(), 1u);

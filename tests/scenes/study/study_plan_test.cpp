@@ -22,7 +22,7 @@ TEST(StudyPlan, TakesCodesAndNoNames) {
 
 TEST(StudyPlan, PresentsEachPairTenTimesBalancedForOrder) {
   for (const char* code : {"S01", "S02", "AB7"}) {
-    const std::vector<StudyTrial> trials = plan_constant_trials(code);
+    const std::vector<StudyTrial> trials = plan_study(code, nullptr).trials;
     ASSERT_EQ(trials.size(), 320u);
     std::map<std::pair<double, double>, std::pair<int, int>> count;
     for (const StudyTrial& trial : trials) {
@@ -46,22 +46,18 @@ TEST(StudyPlan, PresentsEachPairTenTimesBalancedForOrder) {
 }
 
 TEST(StudyPlan, EachSubjectHasAnOrderOfItsOwnThatStays) {
-  EXPECT_EQ(plan_constant_trials("S01"), plan_constant_trials("S01"));
-  EXPECT_NE(plan_constant_trials("S01"), plan_constant_trials("S02"));
-  EXPECT_EQ(plan_training_trials("S01").size(), 8u);
-  EXPECT_NE(plan_training_trials("S01"), plan_training_trials("S02"));
-}
-
-TEST(StudyPlan, ProceduresHaveNames) {
-  EXPECT_EQ(*find_procedure("constant"), ProcedureKind::constant);
-  EXPECT_EQ(*find_procedure(procedure_name(ProcedureKind::discriminate)), ProcedureKind::discriminate);
-  EXPECT_EQ(find_procedure("staircase").error().message,
-            "found the procedure \"staircase\", expected constant or discriminate");
+  EXPECT_EQ(plan_study("S01", nullptr).trials, plan_study("S01", nullptr).trials);
+  EXPECT_NE(plan_study("S01", nullptr).trials, plan_study("S02", nullptr).trials);
+  EXPECT_EQ(plan_study("S01", nullptr).training.size(), 8u);
+  EXPECT_NE(plan_study("S01", nullptr).training, plan_study("S02", nullptr).training);
 }
 
 TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
+  StrokePair strokes;
+  strokes.reference_mean_N = 1.2;
+  strokes.comparison_mean_N = 1.3;
   for (const char* code : {"S01", "S02", "AB1234"}) {
-    const std::vector<StudyTrial> trials = plan_discrimination_trials(code, 1.2, 1.3);
+    const std::vector<StudyTrial> trials = plan_study(code, &strokes).trials;
     ASSERT_EQ(trials.size(), kDiscriminationTrials);
     for (std::size_t from = 0; from < trials.size(); from += kDiscriminationBlock) {
       const auto block = trials.begin() + static_cast<std::ptrdiff_t>(from);
@@ -71,10 +67,10 @@ TEST(StudyPlan, DiscriminationsAreBalancedInEveryBlock) {
     }
     EXPECT_EQ(trials[7].reference_N, 1.2);
     EXPECT_EQ(trials[7].comparison_N, 1.3);
-    EXPECT_EQ(trials, plan_discrimination_trials(code, 1.2, 1.3));
+    EXPECT_EQ(trials, plan_study(code, &strokes).trials);
   }
-  EXPECT_NE(plan_discrimination_trials("S01", 1.2, 1.3), plan_discrimination_trials("S02", 1.2, 1.3));
-  const std::vector<StudyTrial> training = plan_discrimination_training("S01", 1.2);
+  EXPECT_NE(plan_study("S01", &strokes).trials, plan_study("S02", &strokes).trials);
+  const std::vector<StudyTrial> training = plan_study("S01", &strokes).training;
   ASSERT_EQ(training.size(), 4u);
   EXPECT_EQ(training[0].comparison_N, 0.6);
 }

@@ -8,10 +8,10 @@ namespace palpate {
 namespace {
 
 using test::answer_trials;
-using test::kQuickTiming;
+using test::MemoryStore;
 using test::truly_larger;
 
-StudyHeader header(ProcedureKind procedure = ProcedureKind::constant) { return {"S01", procedure, kQuickTiming}; }
+StudyHeader header() { return {"S01"}; }
 
 std::unique_ptr<StudySession> begun(const StudyHeader& with, std::unique_ptr<StudyStore> store,
                                     std::uint64_t rest = 0) {
@@ -42,10 +42,10 @@ TEST(StudySession, NothingIsPresentedBeforeTheConsent) {
   auto session = StudySession::create(header(), std::make_unique<MemoryStore>());
   ASSERT_TRUE(session.ok());
   EXPECT_EQ((*session)->state(), StudyState::consent);
-  EXPECT_EQ((*session)->view().message, study_consent_text(ProcedureKind::constant));
+  EXPECT_EQ((*session)->view().message, study_consent_text(false));
   (*session)->proceed();
   (*session)->answer(true);
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ((*session)->tick(0.0), 0.0);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ((*session)->next_force_N(0.0), 0.0);
   EXPECT_EQ((*session)->state(), StudyState::consent);
 }
 
@@ -88,14 +88,14 @@ TEST(StudySession, ShowsWhichForceIsPresentedAndCountsTheResponse) {
   const auto session = begun(header(), std::make_unique<MemoryStore>());
   session->proceed();
   std::vector<int> intervals;
-  for (int i = 0; session->state() == StudyState::presenting && i < 1000; ++i) {
-    session->tick(0.0);
+  for (int i = 0; session->state() == StudyState::presenting && i < 10000; ++i) {
+    session->next_force_N(0.0);
     session->update();
     if (intervals.empty() || session->view().interval != intervals.back())
       intervals.push_back(session->view().interval);
   }
   EXPECT_EQ(intervals, (std::vector<int>{0, 1, 0, 2, 0}));
-  for (int i = 0; i < 730; ++i) session->tick(0.0);
+  for (int i = 0; i < 730; ++i) session->next_force_N(0.0);
   session->answer(true);
   EXPECT_EQ(session->store().records().front().response_ms, 731u);
 }
@@ -105,10 +105,10 @@ TEST(StudySession, BreaksLastTheirTime) {
   answer_trials(*session, 8 + 64, truly_larger);
   ASSERT_EQ(session->state(), StudyState::rest);
   EXPECT_EQ(session->view().rest_ticks_left, 500u);
-  for (int i = 0; i < 499; ++i) session->tick(0.0);
+  for (int i = 0; i < 499; ++i) session->next_force_N(0.0);
   session->proceed();
   EXPECT_EQ(session->state(), StudyState::rest);
-  session->tick(0.0);
+  session->next_force_N(0.0);
   session->proceed();
   EXPECT_EQ(session->state(), StudyState::presenting);
 }
@@ -150,11 +150,11 @@ TEST(StudySession, AbortWorksInEveryState) {
   for (int trials = 0; trials < 12; ++trials) {
     const auto session = begun(header(), std::make_unique<MemoryStore>());
     answer_trials(*session, static_cast<std::size_t>(trials), truly_larger);
-    for (int i = 0; i < 100; ++i) session->tick(0.0);
+    for (int i = 0; i < 600; ++i) session->next_force_N(0.0);
     session->abort();
     EXPECT_EQ(session->state(), StudyState::aborted);
-    for (int i = 0; i < 40; ++i) session->tick(0.0);
-    for (int i = 0; i < 1000; ++i) ASSERT_EQ(session->tick(0.0), 0.0);
+    for (int i = 0; i < 40; ++i) session->next_force_N(0.0);
+    for (int i = 0; i < 1000; ++i) ASSERT_EQ(session->next_force_N(0.0), 0.0);
     session->proceed();
     session->answer(true);
     EXPECT_EQ(session->state(), StudyState::aborted);
@@ -192,11 +192,7 @@ TEST(StudySession, RefusesAnswersThatThePlanDidNotAskFor) {
             "file made by another version, or changed? Start a new file");
 }
 
-TEST(StudySession, RefusesNamesAndTimings) {
-  EXPECT_FALSE(StudySession::create({"Anna", ProcedureKind::constant, {}}, std::make_unique<MemoryStore>()).ok());
-  EXPECT_FALSE(
-      StudySession::create({"S01", ProcedureKind::constant, {0, 0, 0, 0}}, std::make_unique<MemoryStore>()).ok());
-}
+TEST(StudySession, RefusesNames) { EXPECT_FALSE(StudySession::create({"Anna"}, std::make_unique<MemoryStore>()).ok()); }
 
 TEST(StudySession, StrokesGoFromConsentToTheEnd) {
   const StudyHeader with = test::discrimination_header(0.8);
@@ -219,8 +215,8 @@ TEST(StudySession, ShowsTheReferenceBeforeTheTwoAndTellsRightFromWrongInTheTrain
   const auto session = begun(test::discrimination_header(0.8), std::make_unique<MemoryStore>());
   session->proceed();
   std::vector<int> shown;
-  for (int i = 0; session->state() == StudyState::presenting && i < 1000; ++i) {
-    session->tick(0.0);
+  for (int i = 0; session->state() == StudyState::presenting && i < 10000; ++i) {
+    session->next_force_N(0.0);
     session->update();
     const int now = session->view().reminder ? 9 : session->view().interval;
     if (shown.empty() || now != shown.back()) shown.push_back(now);
@@ -236,12 +232,10 @@ TEST(StudySession, ShowsTheReferenceBeforeTheTwoAndTellsRightFromWrongInTheTrain
 }
 
 TEST(StudySession, RefusesStrokesOfAnotherLength) {
-  StudyHeader with = test::discrimination_header(0.8);
-  with.timing.hold += 1;
-  EXPECT_EQ(StudySession::create(with, std::make_unique<MemoryStore>()).error().message,
-            "found no two strokes of 141 ms, expected them to be told apart");
-  with.strokes = nullptr;
-  EXPECT_FALSE(StudySession::create(with, std::make_unique<MemoryStore>()).ok());
+  auto longer = std::make_shared<StrokePair>(*test::example_strokes(0.8));
+  longer->comparison_N.push_back(1.0);
+  EXPECT_EQ(StudySession::create({"S01", longer}, std::make_unique<MemoryStore>()).error().message,
+            "found no two strokes of 1100 ms, expected them to be told apart");
 }
 
 }  // namespace
