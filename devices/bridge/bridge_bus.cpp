@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "devices/hid/device_stop.h"
-#include "devices/hid/protocol/bridge.h"
+#include "devices/hid/hid_drivers.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"

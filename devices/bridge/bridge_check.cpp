@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/protocol/bridge.h"
+#include "devices/hid/hid_drivers.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 

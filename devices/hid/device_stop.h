@@ -2,7 +2,7 @@
 // No handler covers SIGKILL, a power cut or a hung system. A device whose host falls
 // silent takes its force away by itself, as far as its firmware lives:
 //   bridge       50 ms after the last valid frame or beat of the haptics thread
-//   OpenFFBoard  50 ms after the host last started its effect anew (protocol/openffboard.h)
+//   OpenFFBoard  50 ms after the host last started its effect anew (protocol/openffboard.cpp)
 //   SpaceMouse   has no force
 // Nothing here covers firmware that hangs while its motor is driven.
 #pragma once

@@ -43,11 +43,13 @@ struct OutReports {
   std::size_t count = 0;
 };
 
+// What each driver was tried on, in words.
+inline constexpr const char* kHidTried = "on real hardware: no; on an emulated device: yes";
+
 struct HidDriver {
   const char* name;         // of its calibration file and in messages
   const char* description;  // in words
   bool renders_force;
-  const char* tried;  // in words: on real hardware and on an emulated device
   // Counts are nm from the surface on, units uN: nothing is zeroed. Reports have a sequence,
   // a time and a confirmation, and come at any rate that they like; else arrival is all
   // there is.

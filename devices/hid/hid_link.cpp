@@ -61,7 +61,7 @@ HidLink::HidLink(HidBus& bus, HidListener& listener, HidOpened opened)
 HidLink::~HidLink() { stop(); }
 
 std::string HidLink::description() const {
-  return std::string(driver_.description) + ": " + info_.product + ", " + info_.path + "; tried " + driver_.tried;
+  return std::string(driver_.description) + ": " + info_.product + ", " + info_.path + "; tried " + kHidTried;
 }
 
 std::shared_ptr<HidConnection> HidLink::connection() noexcept {

@@ -32,9 +32,9 @@ class AutoDevice final : public Device, public ToolInput {
     if (space_mouse_ != nullptr) space_mouse_->stop();
   }
   std::string note() const override { return note_; }
-  SensorSpec sensor() const noexcept override { return simulated_sensor(); }
+  SensorSpec sensor() const noexcept override { return hand_.sensor(); }
   bool renders_force() const noexcept override { return true; }
-  ForceLimits limits() const noexcept override { return simulated_limits(); }
+  ForceLimits limits() const noexcept override { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
 

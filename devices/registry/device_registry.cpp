@@ -35,30 +35,24 @@ Result<HidCalibration> calibration_of(const DeviceRequest& request, const HidDri
   return read_hid_calibration(request.calibrations, driver);
 }
 
-// A device that pushes. `none_found`: there is none to open.
-Made make_haptic(const DeviceRequest& request, bool& none_found) {
-  Result<HidOpened> opened = open_first(bus_of(request), drivers_that(true), &none_found);
+// An open HID device with its calibration, made a `T` of; one that pushes, or one that does
+// not. `none_found`: there is none to open.
+template <typename T>
+Result<std::unique_ptr<T>> make_hid_device(const DeviceRequest& request, bool renders_force, bool& none_found) {
+  Result<HidOpened> opened = open_first(bus_of(request), drivers_that(renders_force), &none_found);
   if (!opened) return opened.error();
   const Result<HidCalibration> calibration = calibration_of(request, *opened->driver);
   if (!calibration) return calibration.error();
-  return Made(std::make_unique<HidDevice>(bus_of(request), *calibration, std::move(*opened)));
-}
-
-Result<std::unique_ptr<SpaceMouse>> make_space_mouse(const DeviceRequest& request, bool& none_found) {
-  Result<HidOpened> opened = open_first(bus_of(request), drivers_that(false), &none_found);
-  if (!opened) return opened.error();
-  const Result<HidCalibration> calibration = calibration_of(request, *opened->driver);
-  if (!calibration) return calibration.error();
-  return Result<std::unique_ptr<SpaceMouse>>(
-      std::make_unique<SpaceMouse>(bus_of(request), *calibration, std::move(*opened)));
+  return std::make_unique<T>(bus_of(request), *calibration, std::move(*opened));
 }
 
 Made make_hid(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
-  Made haptic = make_haptic(request, no_haptic);
-  if (haptic || !no_haptic) return haptic;
+  auto haptic = make_hid_device<HidDevice>(request, true, no_haptic);
+  if (haptic) return Made(std::move(*haptic));
+  if (!no_haptic) return haptic.error();
   bool no_mouse = false;
-  Result<std::unique_ptr<SpaceMouse>> mouse = make_space_mouse(request, no_mouse);
+  auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
   if (mouse) return Made(std::make_unique<SpaceMouseDevice>(std::move(*mouse)));
   if (!no_mouse) return mouse.error();
   return Error{"no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)"};
@@ -66,12 +60,12 @@ Made make_hid(const std::string&, const DeviceRequest& request) {
 
 Made make_auto(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
-  Made haptic = make_haptic(request, no_haptic);
-  if (haptic) return haptic;
+  auto haptic = make_hid_device<HidDevice>(request, true, no_haptic);
+  if (haptic) return Made(std::move(*haptic));
   auto device = std::make_unique<AutoDevice>(request.seed, request.hand);
   std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
   bool no_mouse = false;
-  Result<std::unique_ptr<SpaceMouse>> mouse = make_space_mouse(request, no_mouse);
+  auto mouse = make_hid_device<SpaceMouse>(request, false, no_mouse);
   if (!mouse && !no_mouse) note += "; " + mouse.error().message;
   note += std::string(": a simulated hand until the mouse") + (mouse ? " or the SpaceMouse (no force)" : "") +
           " takes over";

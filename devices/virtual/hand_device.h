@@ -30,38 +30,54 @@ class LearningHand final : public HandMotion {
   double stiffness_N_per_m_ = 800.0;  // secant, at the forces felt of late; a guess at first
 };
 
-// Advances `hand` from `from_s` to `to_s` against a constant force, in steps that
-// keep its integration accurate; 20 ms at most, a longer gap is a stall in which
-// nothing moved. Returns the time simulated, seconds.
-double advance_hand(HandMotion& hand, double from_s, double to_s, double force_N) noexcept;
+// What a simulated tool may be given.
+inline constexpr ForceLimits kSimulatedLimits{40.0, 5000.0, 0.3};
 
-class HandDevice final : public Device {
+// A simulated tool: time goes on between reads, 20 ms at most; a longer gap is a stall in
+// which nothing moved.
+class SimulatedDevice : public Device {
  public:
-  explicit HandDevice(std::uint64_t seed = 1, const HandSettings& settings = {});
+  explicit SimulatedDevice(const char* name) : name_(name) {}
 
-  const std::string& name() const noexcept override { return name_; }
-  SensorSpec sensor() const noexcept override;
-  bool renders_force() const noexcept override { return true; }
-  ForceLimits limits() const noexcept override;
+  const std::string& name() const noexcept final { return name_; }
+  // Exact up to these.
+  SensorSpec sensor() const noexcept final;
+  bool renders_force() const noexcept final { return true; }
+  ForceLimits limits() const noexcept final { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override { force_N_ = force_N; }
 
-  // Haptics thread: see HandMotion::resume_at; `now_s` as for read.
-  void resume_at(double position_m, double now_s) noexcept;
-  double position_m() const noexcept { return hand_.position_m(); }
-  double velocity_m_per_s() const noexcept { return hand_.velocity_m_per_s(); }
+  virtual double position_m() const noexcept = 0;
+  virtual double velocity_m_per_s() const noexcept = 0;
+
+ protected:
+  // Haptics thread: against a constant force, in steps that keep it accurate.
+  virtual void advance(double gap_s, double force_N) noexcept = 0;
+  void start_at(double now_s) noexcept {
+    now_s_ = now_s;
+    started_ = true;
+  }
 
  private:
-  std::string name_ = "hand";
-  LearningHand hand_;
+  std::string name_;
   double force_N_ = 0.0;
   double now_s_ = 0.0;
   bool started_ = false;
 };
 
-// What a simulated sensor on a simulated tool says: exact up to these.
-SensorSpec simulated_sensor() noexcept;
-// What a simulated tool may be given.
-ForceLimits simulated_limits() noexcept;
+class HandDevice final : public SimulatedDevice {
+ public:
+  explicit HandDevice(std::uint64_t seed = 1, const HandSettings& settings = {})
+      : SimulatedDevice("hand"), hand_(settings, seed) {}
+
+  // Haptics thread: see HandMotion::resume_at; `now_s` as for read.
+  void resume_at(double position_m, double now_s) noexcept;
+  double position_m() const noexcept override { return hand_.position_m(); }
+  double velocity_m_per_s() const noexcept override { return hand_.velocity_m_per_s(); }
+
+ private:
+  void advance(double gap_s, double force_N) noexcept override;
+  LearningHand hand_;
+};
 
 }  // namespace palpate

@@ -4,27 +4,22 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/virtual/hand_device.h"
-
 namespace palpate {
 namespace {
 
 constexpr double kMouseStart_m = -0.006;
 // A twentieth of the coupling's shortest time, m / c.
 constexpr double kMouseSubstep_s = 250e-6;
-constexpr double kLongestMouseStep_s = 0.02;
 
 }  // namespace
 
 MouseDevice::MouseDevice(const MouseSettings& settings)
-    : settings_(settings),
+    : SimulatedDevice("mouse"),
+      settings_(settings),
       target_m_(kMouseStart_m),
       last_input_s_(-std::numeric_limits<double>::infinity()),
       smooth_m_(kMouseStart_m),
       position_m_(kMouseStart_m) {}
-
-SensorSpec MouseDevice::sensor() const noexcept { return simulated_sensor(); }
-ForceLimits MouseDevice::limits() const noexcept { return simulated_limits(); }
 
 void MouseDevice::set_target(double position_m, double now_s) noexcept {
   if (!std::isfinite(position_m)) return;
@@ -45,35 +40,21 @@ bool MouseDevice::idle(double now_s) const noexcept {
 void MouseDevice::resume_at(double position_m, double velocity_m_per_s, double now_s) noexcept {
   smooth_m_ = position_m_ = position_m;
   velocity_m_per_s_ = velocity_m_per_s;
-  now_s_ = now_s;
-  started_ = true;
+  start_at(now_s);
 }
 
 // Semi-implicit Euler: stable far beyond this step for these constants.
-void MouseDevice::advance(double step_s) noexcept {
-  const double target_m = target_m_.load(std::memory_order_relaxed);
-  const double drift_m_per_s = (target_m - smooth_m_) / settings_.smoothing_time_s;
-  smooth_m_ += drift_m_per_s * step_s;
-  const double drive_N = settings_.stiffness_N_per_m * (smooth_m_ - position_m_) +
-                         settings_.damping_Ns_per_m * (drift_m_per_s - velocity_m_per_s_);
-  velocity_m_per_s_ += step_s * (drive_N - force_N_) / settings_.mass_kg;
-  position_m_ += step_s * velocity_m_per_s_;
-}
-
-bool MouseDevice::read(double now_s, DeviceSample& sample) noexcept {
-  if (started_ && !(now_s > now_s_)) return false;
-  if (started_) {
-    const double gap_s = std::min(now_s - now_s_, kLongestMouseStep_s);
-    const int steps = static_cast<int>(std::ceil(gap_s / kMouseSubstep_s));
-    for (int i = 0; i < steps; ++i) advance(gap_s / steps);
+void MouseDevice::advance(double gap_s, double force_N) noexcept {
+  const int steps = static_cast<int>(std::ceil(gap_s / kMouseSubstep_s));
+  for (int i = 0; i < steps; ++i) {
+    const double step_s = gap_s / steps;
+    const double drift_m_per_s = (target_m() - smooth_m_) / settings_.smoothing_time_s;
+    smooth_m_ += drift_m_per_s * step_s;
+    const double drive_N = settings_.stiffness_N_per_m * (smooth_m_ - position_m_) +
+                           settings_.damping_Ns_per_m * (drift_m_per_s - velocity_m_per_s_);
+    velocity_m_per_s_ += step_s * (drive_N - force_N) / settings_.mass_kg;
+    position_m_ += step_s * velocity_m_per_s_;
   }
-  started_ = true;
-  now_s_ = now_s;
-  sample = {};
-  sample.tool.time_s = now_s;
-  sample.tool.position_m = position_m_;
-  sample.tool.velocity_m_per_s = velocity_m_per_s_;
-  return true;
 }
 
 }  // namespace palpate

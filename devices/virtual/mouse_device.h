@@ -7,9 +7,8 @@
 #pragma once
 
 #include <atomic>
-#include <string>
 
-#include "engine/live/device.h"
+#include "devices/virtual/hand_device.h"
 
 namespace palpate {
 
@@ -23,16 +22,10 @@ struct MouseSettings {
   double idle_time_s = 20.0;
 };
 
-class MouseDevice final : public Device, public ToolInput {
+class MouseDevice final : public SimulatedDevice, public ToolInput {
  public:
   explicit MouseDevice(const MouseSettings& settings = {});
 
-  const std::string& name() const noexcept override { return name_; }
-  SensorSpec sensor() const noexcept override;
-  bool renders_force() const noexcept override { return true; }
-  ForceLimits limits() const noexcept override;
-  bool read(double now_s, DeviceSample& sample) noexcept override;
-  void write(double force_N) noexcept override { force_N_ = force_N; }
   ToolInput* mouse() noexcept override { return this; }
 
   // One thread, the window's; wait-free. `now_s`: steady clock. A target that is
@@ -49,12 +42,12 @@ class MouseDevice final : public Device, public ToolInput {
 
   // Haptics thread: takes the tool over where it is.
   void resume_at(double position_m, double velocity_m_per_s, double now_s) noexcept;
-  double position_m() const noexcept { return position_m_; }
+  double position_m() const noexcept override { return position_m_; }
+  double velocity_m_per_s() const noexcept override { return velocity_m_per_s_; }
 
  private:
-  void advance(double step_s) noexcept;
+  void advance(double gap_s, double force_N) noexcept override;
 
-  std::string name_ = "mouse";
   MouseSettings settings_;
   std::atomic<double> target_m_;
   std::atomic<double> last_input_s_;
@@ -63,9 +56,6 @@ class MouseDevice final : public Device, public ToolInput {
   double smooth_m_;
   double position_m_;
   double velocity_m_per_s_ = 0.0;
-  double force_N_ = 0.0;
-  double now_s_ = 0.0;
-  bool started_ = false;
 };
 
 }  // namespace palpate

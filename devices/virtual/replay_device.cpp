@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "devices/virtual/hand_device.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
@@ -21,8 +20,6 @@ ReplayDevice::ReplayDevice(Recording recording)
       sensor_(identify_sensor(recording_.rows.data(), recording_.rows.size(), recording_.columns)) {
   if (!recording_.rows.empty()) duration_s_ = recording_.rows.back().time_s - recording_.rows.front().time_s;
 }
-
-ForceLimits ReplayDevice::limits() const noexcept { return simulated_limits(); }
 
 void ReplayDevice::set_speed(double speed) noexcept {
   if (!std::isfinite(speed)) return;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 
+#include "devices/virtual/hand_device.h"
 #include "engine/live/device.h"
 #include "engine/recording/recording.h"
 
@@ -28,7 +29,7 @@ class ReplayDevice final : public Device, public ReplayControl {
   SensorSpec sensor() const noexcept override { return sensor_; }
   bool renders_force() const noexcept override { return false; }
   bool measures_force() const noexcept override { return true; }
-  ForceLimits limits() const noexcept override;
+  ForceLimits limits() const noexcept override { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double) noexcept override {}
   ReplayControl* replay() noexcept override { return this; }

@@ -20,7 +20,7 @@ void print_hid_drivers() {
   std::printf("\nWHAT hid KNOWS\n");
   for (const HidDriver* driver : kHidDrivers) {
     if (driver->knows_position) continue;  // of a bridge, not of hid
-    std::printf("  %s: %s; tried %s\n", driver->name, driver->description, driver->tried);
+    std::printf("  %s: %s; tried %s\n", driver->name, driver->description, kHidTried);
   }
 }
 

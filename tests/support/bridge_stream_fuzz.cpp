@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "devices/firmware/bridge_protocol.h"
+#include "devices/hid/hid_drivers.h"
 #include "devices/hid/hid_endpoint.h"
-#include "devices/hid/protocol/bridge.h"
 
 namespace palpate::test {
 namespace {

@@ -1,10 +1,12 @@
-#include "devices/hid/protocol/bridge.h"
-
+// The frames of `--device bridge:TARGET` (devices/firmware/bridge_protocol.h), one
+// a report, as a BridgeBus finds them in a stream of bytes. A count is 1 nm, a unit 1 uN
+// towards growing positions.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "devices/firmware/bridge_protocol.h"
+#include "devices/hid/hid_drivers.h"
 
 namespace palpate {
 namespace {
@@ -59,7 +61,6 @@ const HidDriver kBridgeDriver = {
     .name = "bridge",
     .description = "bridge",
     .renders_force = true,
-    .tried = "on real hardware: no; on an emulated device: yes",
     .knows_position = true,
     .matches = is_bridge,
     .decode = decode_bridge,

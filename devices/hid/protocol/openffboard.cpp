@@ -1,9 +1,14 @@
-#include "devices/hid/protocol/openffboard.h"
-
+// OpenFFBoard: vendor report 0xA1, 25 bytes: type u8, class u16, instance u8, command
+// u32, data u64, address u64; firmware in its mode "HID Gamepad (Ext FFB)": position
+// of axis 0, one constant force in 1/32767 of full force. The force ends 50 ms after the
+// host last renewed it; firmware that does not know durations refuses the command, which
+// counts as a fault of the device.
+// Source: its published list of commands and the source of its effects manager.
 #include <algorithm>
 #include <cmath>
 
 #include "devices/firmware/wire.h"
+#include "devices/hid/hid_drivers.h"
 
 namespace palpate {
 namespace {
@@ -118,7 +123,6 @@ const HidDriver kOpenFfBoardDriver = {
     .name = "openffboard",
     .description = "OpenFFBoard, one axis",
     .renders_force = true,
-    .tried = "on real hardware: no; on an emulated device: yes",
     .matches = is_openffboard,
     .decode = decode_openffboard,
     .encode_start = start_openffboard,

@@ -1,10 +1,11 @@
-#include "devices/hid/protocol/spacemouse.h"
-
+// 3Dconnexion's SpaceMouse: report 1 begins with three int16 translations; z is
+// used, positive when pushed down. Nothing is ever written to it.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
 #include "devices/firmware/wire.h"
+#include "devices/hid/hid_drivers.h"
 
 namespace palpate {
 namespace {
@@ -43,7 +44,6 @@ const HidDriver kSpaceMouseDriver = {
     .name = "spacemouse",
     .description = "SpaceMouse, input only: no force",
     .renders_force = false,
-    .tried = "on real hardware: no; on an emulated device: yes",
     .matches = is_space_mouse,
     .decode = decode_space_mouse,
     .encode_start = no_report,

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "devices/firmware/bridge_protocol.h"
-#include "devices/hid/protocol/bridge.h"
+#include "devices/hid/hid_drivers.h"
 
 namespace palpate {
 namespace {
