@@ -63,11 +63,8 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
     const Rgb colour =
         slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme());
     const float pad = 0.25F * height_of(font);
-    ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
-                                                  {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad},
-                                                  ink(style.colours().panel, 0.88F), 6.0F);
-    ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - 0.5F * pad},
-                                                  {at.x - 1.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour), 3.0F);
+    draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, 0.5F * pad}, ink(style.colours().panel, 0.88F),
+               colour);
     text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
     if (slots.size() < 2 || !chosen) continue;
     const std::string active = "active model";

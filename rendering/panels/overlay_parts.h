@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,11 @@ inline ImVec2 text_size(ImFont* font, const std::string& text, float wrap = 0.0F
 inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::string& text, float wrap = 0.0F) {
   ImGui::GetBackgroundDrawList()->AddText(font, height_of(font), at, colour, text.c_str(), nullptr, wrap);
 }
+
+// Behind text of that place and size, on `list`: a plate with a margin, and at its left a
+// stripe of a colour, where one is given.
+void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
+                std::optional<Rgb> stripe = std::nullopt);
 
 // Over the blocks, and above what lies at the lower edge, so high.
 void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view, const UiStyle& style,

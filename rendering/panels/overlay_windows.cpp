@@ -8,6 +8,14 @@
 #include "scenes/scene/scene.h"
 
 namespace palpate::overlay {
+
+void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
+                std::optional<Rgb> stripe) {
+  const ImVec2 low(at.x - margin.x, at.y - margin.y), high(at.x + size.x + margin.x, at.y + size.y + margin.y);
+  list.AddRectFilled(low, high, colour, 6.0F);
+  if (stripe) list.AddRectFilled(low, {at.x - 0.55F * margin.x, high.y}, ink(*stripe), 3.0F);
+}
+
 void begin_in_the_middle() {
   const ImVec2 all = ImGui::GetIO().DisplaySize;
   const float margin = ImGui::GetFontSize();
@@ -24,9 +32,8 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
   for (const Toast& toast : toasts) {
     const ImVec2 size = font->CalcTextSizeA(height_of(font), 1e6F, wrap, toast.text.c_str());
     const float x = area.at.x + 0.5F * (area.size.x - size.x);
-    list.AddRectFilled({x - pad, y - pad}, {x + size.x + pad, y + size.y + pad}, ink(style.colours().raised), 6.0F);
-    list.AddRectFilled({x - pad, y - pad}, {x - 0.6F * pad, y + size.y + pad},
-                       ink(toast.problem ? style.colours().fault : kReferenceColour), 3.0F);
+    draw_plate(list, {x, y}, size, {pad, pad}, ink(style.colours().raised),
+               toast.problem ? style.colours().fault : kReferenceColour);
     list.AddText(font, height_of(font), {x, y}, ink(style.colours().text), toast.text.c_str(), nullptr, wrap);
     y += size.y + 2.6F * pad;
   }
@@ -39,9 +46,7 @@ void draw_data_warning(const LiveSession& session, const UiStyle& style, const S
   const ImVec2 size = text_size(style.fonts().body, text, wrap);
   const float pad = 0.4F * height_of(style.fonts().body);
   const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 3.6F * height_of(style.fonts().heading));
-  ImGui::GetBackgroundDrawList()->AddRectFilled({at.x - 2.0F * pad, at.y - pad},
-                                                {at.x + size.x + 2.0F * pad, at.y + size.y + pad},
-                                                ink(style.colours().raised), 6.0F);
+  draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, pad}, ink(style.colours().raised));
   text_at(style.fonts().body, at, ink(style.colours().text), text, wrap);
 }
 
@@ -64,34 +69,33 @@ void draw_device_words(LiveSession& session, bool offered, const UiStyle& style,
 
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
   if (!view.help) return;
-  const std::vector<HelpLine> lines = help_lines(commands);
   float keys = 0.0F;
   float text = 0.0F;
-  for (const HelpLine& line : lines) {
-    keys = std::max(keys, ImGui::CalcTextSize(line.keys.c_str()).x);
-    text = std::max(text, ImGui::CalcTextSize(line.text.c_str()).x);
+  for (const WindowCommand& command : commands) {
+    keys = std::max(keys, ImGui::CalcTextSize(shown_keys(command).c_str()).x);
+    text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
   begin_in_the_middle();
   ImGui::SetNextWindowFocus();
   ImGui::Begin("Keys", &view.help, kDialog);
   // Beside each other where they are too many below each other.
   const ImVec2 all = ImGui::GetIO().DisplaySize;
-  const float high = (static_cast<float>(lines.size()) + 3.0F) * ImGui::GetTextLineHeightWithSpacing();
+  const float high = (static_cast<float>(commands.size()) + 3.0F) * ImGui::GetTextLineHeightWithSpacing();
   const std::size_t columns = high > all.y ? 2 : 1;
   const float room =
       (all.x - 4.0F * ImGui::GetFontSize()) / static_cast<float>(columns) - keys - 2.0F * ImGui::GetFontSize();
-  const std::size_t rows = (lines.size() + columns - 1) / columns;
+  const std::size_t rows = (commands.size() + columns - 1) / columns;
   if (ImGui::BeginTable("keys", 2 * static_cast<int>(columns), ImGuiTableFlags_NoSavedSettings)) {
     for (std::size_t column = 0; column < columns; ++column) {
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, keys + 0.5F * ImGui::GetFontSize());
       ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, std::min(text, room));
     }
     for (std::size_t row = 0; row < rows; ++row) {
-      for (std::size_t i = row; i < lines.size(); i += rows) {
+      for (std::size_t i = row; i < commands.size(); i += rows) {
         ImGui::TableNextColumn();
-        ImGui::TextColored(paint(style.colours().text), "%s", lines[i].keys.c_str());
+        ImGui::TextColored(paint(style.colours().text), "%s", shown_keys(commands[i]).c_str());
         ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", lines[i].text.c_str());
+        ImGui::TextWrapped("%s", commands[i].help.c_str());
       }
     }
     ImGui::EndTable();

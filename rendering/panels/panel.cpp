@@ -8,7 +8,6 @@
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/panels/panel_verdict.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {
@@ -17,25 +16,6 @@ namespace {
 constexpr auto kPanelWindow = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                               ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
                               ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
-
-void apply(const TableAction& action, LiveSession& session) {
-  switch (action.kind) {
-    case TableAction::Kind::none:
-      break;
-    case TableAction::Kind::select:
-      session.select(action.slot);
-      break;
-    case TableAction::Kind::rename:
-      session.rename(action.slot, action.name);
-      break;
-    case TableAction::Kind::claim:
-      session.claim(action.slot);
-      break;
-    case TableAction::Kind::remove:
-      session.remove(action.slot);
-      break;
-  }
-}
 
 // How many centres the active model has, or all that have a number of them.
 void draw_centres(LiveSession& session, const ModelsView& models, ViewState& view) {
@@ -84,7 +64,7 @@ void SidePanel::draw(LiveSession& session, ViewState& view, const UiStyle& style
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_room - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
   curves_.draw(force_view(session, until_s), view, style, rest * (bins ? 0.29F : 0.48F), rest * (bins ? 0.33F : 0.52F));
-  apply(draw_model_table(models, view.table, style, table), session);
+  draw_model_table(session, models, view.table, style, table);
   if (centres > 0.0F) draw_centres(session, models, view);
   if (bins) {
     section_title(style, view.verdict ? "ERROR / JND AGAINST TIME" : "ERROR AGAINST FORCE");

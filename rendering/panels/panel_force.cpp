@@ -68,6 +68,16 @@ struct ForceCurves::Scene {
     }
     if (models.active() != nullptr) draw(models.selected);
   }
+  template <typename Low, typename High>
+  void paint_slot(const CurvePainter& paint_on, std::size_t slot, Low low, High high) const {
+    const bool selected = slot == force.models.selected;
+    paint_on.curve(ink(colour(slot), selected ? 1.0F : faint()),
+                   (selected ? kSelectedLine_px : kModelLine_px) * style.scale(), low, high);
+  }
+  template <typename Value>
+  void paint_slot(const CurvePainter& paint_on, std::size_t slot, Value value) const {
+    paint_slot(paint_on, slot, value, value);
+  }
   PlotAxes axes(const Range& y, const char* unit, bool x_numbers) const {
     return {{end_s - view.time.shown_s - view.time.zero_s, end_s - view.time.zero_s},
             y,
@@ -183,10 +193,7 @@ void ForceCurves::draw_force(const Scene& scene, float height) {
   paint_on.curve(ink(kReferenceColour), kReferenceLine_px * thin,
                  [](const CurveColumn& c) { return c.tick.reference_N; });
   scene.for_each_slot([&](std::size_t slot) {
-    const bool selected = slot == scene.force.models.selected;
-    paint_on.curve(ink(scene.colour(slot), selected ? 1.0F : scene.faint()),
-                   (selected ? kSelectedLine_px : kModelLine_px) * thin,
-                   [slot](const CurveColumn& c) { return c.tick.force_N[slot]; });
+    scene.paint_slot(paint_on, slot, [slot](const CurveColumn& c) { return c.tick.force_N[slot]; });
   });
   paint_on.troubles(ink(p.quiet), ink(p.fault), 6.0F * thin);
   finish_plot(
@@ -205,11 +212,8 @@ void ForceCurves::draw_difference(const Scene& scene, float height) {
       [](const CurveColumn& c) { return c.predicted_over_jnd; });
   if (!scene.predicts()) plot.level(0.0, ink(kReferenceColour), kReferenceLine_px * thin);
   scene.for_each_slot([&](std::size_t slot) {
-    const bool selected = slot == scene.force.models.selected;
-    const ImU32 colour = ink(scene.colour(slot), selected ? 1.0F : scene.faint());
-    paint_on.curve(
-        colour, (selected ? kSelectedLine_px : kModelLine_px) * thin,
-        [slot](const CurveColumn& c) { return c.low_over_jnd[slot]; },
+    scene.paint_slot(
+        paint_on, slot, [slot](const CurveColumn& c) { return c.low_over_jnd[slot]; },
         [slot](const CurveColumn& c) { return c.high_over_jnd[slot]; });
   });
   finish_plot(
@@ -232,16 +236,13 @@ void ForceCurves::draw_felt(const Scene& scene, float height) {
   scene.paint_prediction(
       paint_on, [](const CurveColumn&) { return 0.0F; }, [](const CurveColumn& c) { return c.predicted_over_jnd; });
   scene.for_each_slot([&](std::size_t slot) {
-    const bool selected = slot == scene.force.models.selected;
     for (const CurveColumn& column : curves_.columns()) {
       if (!(column.error_over_jnd[slot] > 1.0F)) continue;
       const ImVec2 at(plot.x_px(column.time_s - scene.view.time.zero_s),
                       std::max(plot.y_px(static_cast<double>(column.error_over_jnd[slot])), plot.top() + thin));
       plot.list().AddRectFilled({at.x - thin, at.y - thin}, {at.x + thin, at.y + thin}, ink(scene.colour(slot), 0.35F));
     }
-    paint_on.curve(ink(scene.colour(slot), selected ? 1.0F : scene.faint()),
-                   (selected ? kSelectedLine_px : kModelLine_px) * thin,
-                   [slot](const CurveColumn& c) { return c.felt_over_jnd[slot]; });
+    scene.paint_slot(paint_on, slot, [slot](const CurveColumn& c) { return c.felt_over_jnd[slot]; });
   });
   finish_plot(
       scene, plot, [](const CurveColumn& c, std::size_t slot) { return c.felt_over_jnd[slot]; }, " JND");

@@ -6,62 +6,80 @@
 
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/ui/plot.h"
+#include "scenes/live/live_session.h"
 
 namespace palpate {
 namespace {
 
-enum Column : int { kName, kForce, kError, kP99, kWithin, kTime, kCentres, kColumns };
-
-struct Heading {
-  const char* text;
-  const char* tip;
-  const char* widest;  // what its column must hold
-  int dropped;         // where there is no room: 1 goes first; 0 stays
-};
-constexpr Heading kHeadings[kColumns] = {
-    {"model", "Click, or press its number, to make a model the active one.", "      greedy-10 '09", 0},
-    {"N", "Force at the right edge of the curves, newtons", "12.34", 4},
-    {"mN off", "Model minus reference there, millinewtons", "+1234", 1},
-    {"99 %",
-     "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
-     "Above 1 a hand could tell. The big number and the plot below are this one.",
-     "12.34", 5},
-    {"% in JND",
-     "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
-     "The same samples for all models: those inside the data of each.",
-     "100.00", 0},
-    {"ns", "Time of a whole tick of this model alone, nanoseconds, measured when it became ready", "12,345", 3},
-    {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2}};
+using Slot = std::size_t;
 
 // Of the tick that the curves end with; NaN: none.
-double force_now_N(const ModelsView& models, std::size_t slot) {
+double force_now_N(const ModelsView& models, Slot slot) {
   return models.now != nullptr ? static_cast<double>(models.now->force_N[slot]) : std::nan("");
 }
-double error_now_N(const ModelsView& models, std::size_t slot) {
+
+double error_now_N(const ModelsView& models, Slot slot) {
   const bool any = models.now != nullptr && !std::isnan(models.now->difference_over_jnd(slot, models.jnd));
   if (!any) return std::nan("");
   return models.now->in_contact ? force_now_N(models, slot) - static_cast<double>(models.now->reference_N) : 0.0;
 }
 
-double sort_value(const ModelsView& models, std::size_t index, int column) {
-  const SlotView& slot = *models.slots[index];
-  switch (column) {
-    case kForce:
-      return force_now_N(models, index);
-    case kError:
-      return std::abs(error_now_N(models, index));
-    case kP99:
-      return slot.quantile.p99();
-    case kWithin:
-      return slot.errors.within_jnd();
-    case kTime:
-      return slot.tick_ns;
-    case kCentres:
-      return slot.centres;
-    default:
-      return 0.0;
-  }
+// Over the samples so far; NaN: there are none.
+double p99_over_jnd(const ModelsView& models, Slot slot) {
+  return models.slots[slot]->errors.samples() > 0 ? models.slots[slot]->quantile.p99() : std::nan("");
+}
+
+double percent_within(const ModelsView& models, Slot slot) {
+  const ErrorFigures& errors = models.slots[slot]->errors;
+  return errors.samples() > 0 ? 100.0 * errors.within_jnd() : std::nan("");
+}
+
+double tick_ns(const ModelsView& models, Slot slot) {
+  return models.slots[slot]->tick_ns > 0.0 ? models.slots[slot]->tick_ns : std::nan("");
+}
+
+double centres(const ModelsView& models, Slot slot) { return models.slots[slot]->centres; }
+
+std::string format(const char* pattern, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+std::string whole(double value) { return grouped(static_cast<std::uint64_t>(value)); }
+std::string two_decimals(double value) { return format("%.2f", value); }
+std::string signed_mN(double value_N) { return format("%+.0f", 1e3 * value_N); }
+
+struct Column {
+  const char* heading;
+  const char* tip;
+  const char* widest;                                    // what it must hold
+  int dropped;                                           // where there is no room: 1 goes first; 0 stays
+  double (*value)(const ModelsView& models, Slot slot);  // null: the name
+  std::string (*text)(double value);
+};
+constexpr int kName = 0, kColumns = 7;
+constexpr Column kTable[kColumns] = {
+    {"model", "Click, or press its number, to make a model the active one.", "      greedy-10 '09", 0, nullptr,
+     nullptr},
+    {"N", "Force at the right edge of the curves, newtons", "12.34", 4, force_now_N, two_decimals},
+    {"mN off", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
+    {"99 %",
+     "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
+     "Above 1 a hand could tell. The big number and the plot below are this one.",
+     "12.34", 5, p99_over_jnd, jnd_text},
+    {"% in JND",
+     "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
+     "The same samples for all models: those inside the data of each.",
+     "100.00", 0, percent_within, two_decimals},
+    {"ns", "Time of a whole tick of this model alone, nanoseconds, measured when it became ready", "12,345", 3, tick_ns,
+     whole},
+    {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
+
+// By the size of it, whatever its sign; what is not there comes first.
+double sort_value(const ModelsView& models, Slot slot, int column) {
+  const double value = kTable[column].value(models, slot);
+  return std::isnan(value) ? -1.0 : std::abs(value);
 }
 
 std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState& sort) {
@@ -75,14 +93,10 @@ std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState
   return order;
 }
 
-void right_aligned(const std::string& text, const ImVec4* colour = nullptr) {
+void right_aligned(const std::string& text, const Rgb& colour) {
   const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0F, room));
-  if (colour != nullptr) {
-    ImGui::TextColored(*colour, "%s", text.c_str());
-  } else {
-    ImGui::TextUnformatted(text.c_str());
-  }
+  ImGui::TextColored(paint(colour), "%s", text.c_str());
 }
 
 // A small triangle over the middle of a heading that its column is sorted by.
@@ -100,7 +114,7 @@ void draw_heading(int column, TableState& sort) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float room = ImGui::GetContentRegionAvail().x;
   const float sign = 0.28F * ImGui::GetFontSize();
-  const float width = ImGui::CalcTextSize(kHeadings[column].text).x;
+  const float width = ImGui::CalcTextSize(kTable[column].heading).x;
   ImGui::PushID(column);
   if (ImGui::InvisibleButton("sort", {std::max(room, 1.0F), ImGui::GetTextLineHeight() + sign})) {
     if (sort.column != column) {
@@ -113,40 +127,32 @@ void draw_heading(int column, TableState& sort) {
     }
   }
   ImGui::PopID();
-  tip(kHeadings[column].tip);
+  tip(kTable[column].tip);
   const ImU32 colour = ImGui::GetColorU32(ImGuiCol_Text);
   const float x = column == kName ? at.x : at.x + room - width;
-  ImGui::GetWindowDrawList()->AddText({x, at.y + sign}, colour, kHeadings[column].text);
+  ImGui::GetWindowDrawList()->AddText({x, at.y + sign}, colour, kTable[column].heading);
   if (sort.column == column) draw_sort_sign(x + 0.5F * width, at.y, sort.rising, colour);
 }
 
-std::string format(const char* pattern, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 // A menu behind the right button.
-TableAction draw_menu(const ModelsView& models, std::size_t index, TableState& table) {
-  TableAction action;
-  if (!ImGui::BeginPopupContextItem()) return action;
+void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableState& table) {
+  if (!ImGui::BeginPopupContextItem()) return;
   if (ImGui::IsWindowAppearing()) {
     table.name.fill('\0');
-    models.slots[index]->name.copy(table.name.data(), table.name.size() - 1);
+    models.slots[slot]->name.copy(table.name.data(), table.name.size() - 1);
   }
   ImGui::TextUnformatted("Name, then Enter:");
   if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
-    action = {TableAction::Kind::rename, index, table.name.data()};
+    session.rename(slot, table.name.data());
     ImGui::CloseCurrentPopup();
   }
-  if (models.slots[index]->foreign && ImGui::Selectable("It is a model of this material: compare it"))
-    action = {TableAction::Kind::claim, index, {}};
-  if (ImGui::Selectable("Take it out of the comparison")) action = {TableAction::Kind::remove, index, {}};
+  if (models.slots[slot]->foreign && ImGui::Selectable("It is a model of this material: compare it"))
+    session.claim(slot);
+  if (ImGui::Selectable("Take it out of the comparison")) session.remove(slot);
   ImGui::EndPopup();
-  return action;
 }
 
-TableAction draw_name(const ModelsView& models, std::size_t index, TableState& table, const UiStyle& style) {
+void draw_name(LiveSession& session, const ModelsView& models, Slot index, TableState& table, const UiStyle& style) {
   const SlotView& slot = *models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
@@ -158,15 +164,13 @@ TableAction draw_name(const ModelsView& models, std::size_t index, TableState& t
   const std::string label = "      " + name + "###slot" + std::to_string(index);
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
-  const bool clicked = ImGui::Selectable(label.c_str(), index == models.selected, flags);
-  TableAction action = draw_menu(models, index, table);
-  if (clicked) action = {TableAction::Kind::select, index, {}};
+  if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.select(index);
+  draw_menu(session, models, index, table);
   tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
   if (index == models.selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
   draw_mark(middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
-  return action;
 }
 
 // Over the columns of the figures that are not there yet.
@@ -179,28 +183,22 @@ void draw_waiting(const SlotView& slot) {
   ImGui::PopClipRect();
 }
 
+// A column that is not shown takes no text; a number that is not there is a dash.
 void draw_figures(const ModelsView& models, std::size_t index, const UiStyle& style) {
-  const SlotView& slot = *models.slots[index];
-  const ImVec4 above = paint(kAboveJndColour);
-  const ImVec4 quiet = paint(style.colours().quiet);
-  // A column that is not shown takes no text; a number that is not there is a dash.
-  const auto cell = [](int column, bool any, const std::string& text, const ImVec4* colour = nullptr) {
-    if (ImGui::TableSetColumnIndex(column)) right_aligned(any ? text : "–", colour);
-  };
-  const double force_N = force_now_N(models, index);
-  const double error_N = error_now_N(models, index);
-  const double p99 = slot.quantile.p99();
-  const bool any = slot.errors.samples() > 0;
-  cell(kForce, !std::isnan(force_N), format("%.2f", force_N));
-  cell(kError, !std::isnan(error_N), format("%+.0f", 1e3 * error_N), &quiet);
-  cell(kP99, any, jnd_text(p99), p99 > 1.0 ? &above : nullptr);
-  cell(kWithin, any, format("%.2f", 100.0 * slot.errors.within_jnd()));
-  cell(kTime, slot.tick_ns > 0.0, grouped(static_cast<std::uint64_t>(slot.tick_ns)));
-  cell(kCentres, true, grouped(static_cast<std::uint64_t>(slot.centres)));
+  for (int column = kName + 1; column < kColumns; ++column) {
+    const Column& one = kTable[column];
+    if (!ImGui::TableSetColumnIndex(column)) continue;
+    const double value = one.value(models, index);
+    const bool above = one.value == p99_over_jnd && value > 1.0;
+    const Rgb& colour = above                      ? kAboveJndColour
+                        : one.value == error_now_N ? style.colours().quiet
+                                                   : style.colours().text;
+    right_aligned(std::isnan(value) ? "–" : one.text(value), colour);
+  }
 }
 
 float column_width(int column) {
-  return std::max(ImGui::CalcTextSize(kHeadings[column].text).x, ImGui::CalcTextSize(kHeadings[column].widest).x) +
+  return std::max(ImGui::CalcTextSize(kTable[column].heading).x, ImGui::CalcTextSize(kTable[column].widest).x) +
          2.0F * ImGui::GetStyle().CellPadding.x;
 }
 
@@ -236,7 +234,7 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
   }
   for (int drop = 1; needed > room && drop <= kColumns; ++drop) {
     const auto gone =
-        std::find_if(columns.begin(), columns.end(), [&](int column) { return kHeadings[column].dropped == drop; });
+        std::find_if(columns.begin(), columns.end(), [&](int column) { return kTable[column].dropped == drop; });
     if (gone == columns.end()) continue;
     needed -= width(*gone);
     columns.erase(gone);
@@ -244,17 +242,17 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
   return columns;
 }
 
-TableAction draw_model_table(const ModelsView& models, TableState& table, const UiStyle& style, float height) {
-  TableAction action;
+void draw_model_table(LiveSession& session, const ModelsView& models, TableState& table, const UiStyle& style,
+                      float height) {
   const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                      ImGuiTableFlags_NoSavedSettings;
   const std::vector<int> shown =
       shown_columns(ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize, column_width);
-  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return action;
+  if (!ImGui::BeginTable("models", kColumns, flags, {0.0F, height})) return;
   ImGui::TableSetupScrollFreeze(0, 1);
   for (int column = 0; column < kColumns; ++column) {
     const bool hidden = std::find(shown.begin(), shown.end(), column) == shown.end();
-    ImGui::TableSetupColumn(kHeadings[column].text, ImGuiTableColumnFlags_WidthStretch, column_width(column));
+    ImGui::TableSetupColumn(kTable[column].heading, ImGuiTableColumnFlags_WidthStretch, column_width(column));
     ImGui::TableSetColumnEnabled(column, !hidden);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
@@ -264,8 +262,7 @@ TableAction draw_model_table(const ModelsView& models, TableState& table, const 
   for (const std::size_t index : sorted_slots(models, table)) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);
-    const TableAction done = draw_name(models, index, table, style);
-    if (done.kind != TableAction::Kind::none) action = done;
+    draw_name(session, models, index, table, style);
     if (models.slots[index]->state == SlotState::ready) {
       draw_figures(models, index, style);
     } else {
@@ -273,7 +270,6 @@ TableAction draw_model_table(const ModelsView& models, TableState& table, const 
     }
   }
   ImGui::EndTable();
-  return action;
 }
 
 }  // namespace palpate

@@ -12,14 +12,10 @@
 
 namespace palpate {
 
-// What was done to a row; a right click offers to rename it, to take it out, and to compare
-// a model of something else.
-struct TableAction {
-  enum class Kind { none, select, rename, claim, remove } kind = Kind::none;
-  std::size_t slot = 0;
-  std::string name;
-};
-TableAction draw_model_table(const ModelsView& models, TableState& table, const UiStyle& style, float height);
+// A click on a row makes its model the active one; a right click offers to rename it, to
+// take it out, and to compare a model of something else.
+void draw_model_table(LiveSession& session, const ModelsView& models, TableState& table, const UiStyle& style,
+                      float height);
 // The columns of that table that `room` holds, dropped in a fixed order: the error in
 // millinewtons first, then centres, time, force, error over the JND. Name and share
 // within the JND always stay.

@@ -47,12 +47,6 @@ const std::string& shown_label(const WindowCommand& command) {
   return other ? command.label_on : command.label;
 }
 
-std::vector<HelpLine> help_lines(const std::vector<WindowCommand>& commands) {
-  std::vector<HelpLine> lines;
-  for (const WindowCommand& command : commands) lines.push_back({shown_keys(command), command.help});
-  return lines;
-}
-
 bool command_button(const WindowCommand& command) {
   const bool on = command.on && command.on();
   if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);

@@ -36,13 +36,6 @@ std::string shown_keys(const WindowCommand& command);
 // The button's text as it is now.
 const std::string& shown_label(const WindowCommand& command);
 
-// A row of the list of keys.
-struct HelpLine {
-  std::string keys;
-  std::string text;
-};
-std::vector<HelpLine> help_lines(const std::vector<WindowCommand>& commands);
-
 // Its button with its tooltip, at the cursor; whether it was pressed.
 bool command_button(const WindowCommand& command);
 

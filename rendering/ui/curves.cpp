@@ -116,14 +116,13 @@ void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, const 
 }
 
 void CurveColumns::find_highest() {
-  highest_force_N_ = highest_error_ = highest_felt_ = 0.0F;
+  highest_force_N_ = highest_felt_ = 0.0F;
   for (const CurveColumn& column : columns_) {
     // A comparison with NaN is false.
     if (column.tick.reference_N + column.jnd_N > highest_force_N_)
       highest_force_N_ = column.tick.reference_N + column.jnd_N;
     for (std::size_t i = 0; i < slots_; ++i) {
       if (column.tick.force_N[i] > highest_force_N_) highest_force_N_ = column.tick.force_N[i];
-      if (column.error_over_jnd[i] > highest_error_) highest_error_ = column.error_over_jnd[i];
       if (column.felt_over_jnd[i] > highest_felt_) highest_felt_ = column.felt_over_jnd[i];
     }
   }

@@ -51,7 +51,6 @@ class CurveColumns {
   const CurveColumn* last() const noexcept;
   // Over all columns and slots; 0 without.
   float highest_force_N() const noexcept { return highest_force_N_; }
-  float highest_error_over_jnd() const noexcept { return highest_error_; }
   float highest_felt_over_jnd() const noexcept { return highest_felt_; }
 
  private:
@@ -68,7 +67,6 @@ class CurveColumns {
   double first_ = 0.0;    // number of the first column: its border, in widths
   double taken_s_ = 0.0;  // loop time of the last tick that was taken
   float highest_force_N_ = 0.0F;
-  float highest_error_ = 0.0F;
   float highest_felt_ = 0.0F;
 };
 

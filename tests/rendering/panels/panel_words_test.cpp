@@ -1,10 +1,10 @@
 // The sentences of the panels from plain views: no session, no thread, no device.
 #include <gtest/gtest.h>
 
+#include "rendering/panels/panel_errors.h"
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/panels/panel_verdict.h"
 #include "rendering/panels/scene_overlay.h"
 
 namespace palpate {

@@ -34,16 +34,19 @@ TEST(CurveColumns, LoseNoPeakAndKeepGapsOpen) {
   curves.gather(history, jnd, 2, 100.0, 101.0, 50);
   ASSERT_GE(curves.columns().size(), 50u);
   EXPECT_FLOAT_EQ(curves.highest_force_N(), 3.0F);
-  EXPECT_FLOAT_EQ(curves.highest_error_over_jnd(), static_cast<float>(2.0 / jnd.at(1.0)));
   int ready = 0;
+  float largest_over_jnd = 0.0F;
   for (const CurveColumn& column : curves.columns()) {
     if (!column.any) continue;
+    largest_over_jnd = std::fmax(largest_over_jnd, column.error_over_jnd[0]);
+    largest_over_jnd = std::fmax(largest_over_jnd, column.error_over_jnd[1]);
     EXPECT_FLOAT_EQ(column.low_over_jnd[0], static_cast<float>(0.1 / jnd.at(1.0)));
     EXPECT_FLOAT_EQ(column.jnd_N, static_cast<float>(jnd.at(1.0)));
     if (!std::isnan(column.tick.force_N[1])) ++ready;
     EXPECT_EQ(std::isnan(column.tick.force_N[1]), std::isnan(column.error_over_jnd[1]));
   }
   EXPECT_NEAR(ready, 25, 1);
+  EXPECT_FLOAT_EQ(largest_over_jnd, static_cast<float>(2.0 / jnd.at(1.0)));
 }
 
 TEST(CurveColumns, StandOnAGridOfTheirOwnSoThatCurvesDoNotShimmer) {
