@@ -16,7 +16,6 @@
 #include "scenes/scene/scene.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
-#include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_figure.h"
 
 namespace palpate::cli {
@@ -25,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPopulationStream = 51;
-constexpr SubjectTraits kPopulation{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as the paper's
 
 void print_analysis(const StudyAnalysis& analysis) {
   std::printf("%-13s %8s %12s %22s\n", "reference [N]", "subjects", "mean JND [%]", "all answers [%], 95 %");
@@ -139,11 +137,11 @@ Status run_analyse(const StudyOptions& options) {
 }
 
 // One of the population: the JND's factor spreads as e^normal.
-SubjectTraits drawn_subject(double spread, RandomStream& random) {
-  const double factor = std::exp(spread * random.normal());
-  return {{factor * kPopulation.jnd.offset_N, factor * kPopulation.jnd.weber_fraction},
-          kPopulation.order_bias_jnd,
-          kPopulation.lapse_rate};
+SubjectTraits drawn_subject(const StudyOptions& options, RandomStream& random) {
+  SubjectTraits traits = options.traits;
+  const double factor = std::exp(options.spread * random.normal());
+  traits.jnd = {factor * traits.jnd.offset_N, factor * traits.jnd.weber_fraction};
+  return traits;
 }
 
 Status run_simulate(const StudyOptions& options) {
@@ -156,7 +154,7 @@ Status run_simulate(const StudyOptions& options) {
     for (int i = 1; i <= options.subjects; ++i) {
       if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
       RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
-      const SubjectTraits traits = drawn_subject(options.spread, random);
+      const SubjectTraits traits = drawn_subject(options, random);
       char code[16];
       std::snprintf(code, sizeof code, "S%02d", i);
       header->subject = code;
@@ -236,6 +234,18 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
   verb->add_option("--subjects", options->subjects, "How many")->check(CLI::Range(1, 99))->capture_default_str();
   add_stroke_options(verb, options);
   verb->add_option("--seed", options->seed, "Which subjects")->capture_default_str();
+  verb->add_option("--offset", options->traits.jnd.offset_N, "Their JND at no force, N")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  verb->add_option("--weber", options->traits.jnd.weber_fraction, "What it grows by with the force")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--bias", options->traits.order_bias_jnd, "What they add to the second force, multiples of the JND")
+      ->check(CLI::Range(-2.0, 2.0))
+      ->capture_default_str();
+  verb->add_option("--lapse", options->traits.lapse_rate, "Share of answers that are wrong whatever the force")
+      ->check(CLI::Range(0.0, 0.2))
+      ->capture_default_str();
   verb->add_option("--spread", options->spread, "How the subjects differ: standard deviation of ln JND")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_analysis.h"
 
 namespace palpate::cli {
@@ -18,6 +19,7 @@ struct StudyOptions {
   bool rehearsals = false;         // also answers that nobody could feel
   int subjects = 12;               // simulate
   std::uint64_t seed = 1;
+  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as the paper's
   double spread = 0.15;
   bool discriminates = false;
   std::string recording;  // to discriminate; empty: virtual

@@ -135,10 +135,11 @@ std::optional<std::size_t> hardest_piece(const Traces& traces, const JndLine& jn
   double most = -1.0;
   for (std::size_t from = 0; from + kInterval_ticks <= traces.contact.size(); from += kBetweenPieces_ticks) {
     const ErrorFigures errors = errors_from(traces, from, jnd);
-    if (errors.samples() == 0 || errors.max_error_over_jnd() <= most) continue;
+    const double all_over_jnd = static_cast<double>(errors.samples()) * errors.mean_error_over_jnd();
+    if (errors.samples() == 0 || all_over_jnd <= most) continue;
     if (!can_be_presented(traces.reference_N, from) || !can_be_presented(traces.comparison_N, from)) continue;
     hardest = from;
-    most = errors.max_error_over_jnd();
+    most = all_over_jnd;
   }
   return hardest;
 }

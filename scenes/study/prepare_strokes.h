@@ -6,7 +6,7 @@
 // per ms and passed through the same zero-phase low-pass, 21 ms of a Hann window (half
 // the amplitude at 50 Hz): the sensor's noise is no force of the block, and told apart
 // it would be at once. Taken is the piece, as long as an interval (study_presenter.h), in
-// which the two differ most in multiples of the JND: the prediction is put to a hard test.
+// which the errors over the JND sum to most: the prediction is put to a hard test.
 // Left out is what a study may not present (4 N, 100 N/s) or a small motor does not bear
 // with the pauses (2.5 N, root mean square).
 //
