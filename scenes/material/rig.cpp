@@ -12,7 +12,7 @@ constexpr double kGridRate_Hz = 20000.0;
 constexpr double kConverterSteps = 4096.0;    // 12 bits
 constexpr std::size_t kRowsPerUpdate = 4096;  // between two words on progress
 
-enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream, kJitterStream };
+enum Stream : std::uint64_t { kForceStream = 1, kAccelerationStream, kBiasStream };
 
 // Between two grid points: position by the cubic through both ends with their
 // velocities, the rest straight.
@@ -26,7 +26,6 @@ RigTruth between(const RigTruth& a, const RigTruth& b, double u) {
   truth.acceleration_m_per_s2 = straight(a.acceleration_m_per_s2, b.acceleration_m_per_s2);
   truth.force_N = straight(a.force_N, b.force_N);
   truth.surface_depth_m = straight(a.surface_depth_m, b.surface_depth_m);
-  truth.cell_force_N = straight(a.cell_force_N, b.cell_force_N);
   return truth;
 }
 
@@ -51,19 +50,6 @@ RigSettings suited(RigSettings settings, const Material& material) {
   return settings;
 }
 
-Status check_sensors(const SensorSettings& sensors) {
-  if (!std::isfinite(sensors.surface_offset_m) || !std::isfinite(sensors.force_zero_N)) {
-    return Error{"the surface offset and the force zero must be numbers"};
-  }
-  if (!(sensors.force_filter_time_s >= 0.0 && std::isfinite(sensors.force_filter_time_s))) {
-    return Error{"the force filter's time must be a number from 0 up"};
-  }
-  if (!(sensors.jitter_share >= 0.0 && sensors.jitter_share < 1.0)) {
-    return Error{"the jitter must be a share from 0 to below 1"};
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<Rig> Rig::create(const RigSettings& settings) {
@@ -78,7 +64,9 @@ Result<Rig> Rig::create(const RigSettings& settings) {
   if (rows < static_cast<double>(kRecordingMinimumRows)) {
     return Error{"seconds times rate must give at least 10 rows"};
   }
-  if (const Status status = check_sensors(settings.sensors); !status) return status.error();
+  if (!std::isfinite(settings.sensors.surface_offset_m) || !std::isfinite(settings.sensors.force_zero_N)) {
+    return Error{"the surface offset and the force zero must be numbers"};
+  }
   if (rows > kMostRows) return Error{"seconds times rate must give at most 50 million rows"};
   return Rig(settings, *material, static_cast<std::size_t>(rows));
 }
@@ -91,11 +79,7 @@ Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_
       force_noise_(settings.seed, kForceStream),
       acceleration_noise_(settings.seed, kAccelerationStream),
       bias_noise_(settings.seed, kBiasStream),
-      jitter_(settings.seed, kJitterStream),
       row_count_(row_count) {
-  if (settings_.sensors.force_filter_time_s > 0.0) {
-    filter_share_ = -std::expm1(-kRigStep_s / settings_.sensors.force_filter_time_s);
-  }
   block_->reset(hand_.position_m());
   before_ = truth_now();
   advance();
@@ -104,19 +88,13 @@ Rig::Rig(const RigSettings& settings, const Material& material, std::size_t row_
 }
 
 RigTruth Rig::truth_now() const noexcept {
-  const double force_N = block_->force_N();
-  return {hand_.position_m(),
-          hand_.velocity_m_per_s(),
-          hand_.acceleration_m_per_s2(),
-          force_N,
-          block_->surface_depth_m(),
-          filter_share_ < 1.0 ? after_.cell_force_N + filter_share_ * (force_N - after_.cell_force_N) : force_N};
+  return {hand_.position_m(), hand_.velocity_m_per_s(), hand_.acceleration_m_per_s2(), block_->force_N(),
+          block_->surface_depth_m()};
 }
 
 void Rig::advance() noexcept {
   hand_.move(kRigStep_s);
-  const double force_N = block_->step(hand_.position_m(), hand_.velocity_m_per_s(), kRigStep_s);
-  hand_.feel(force_N, kRigStep_s);
+  hand_.feel(block_->step(hand_.position_m(), hand_.velocity_m_per_s(), kRigStep_s), kRigStep_s);
   after_ = truth_now();
   ++grid_index_;
 }
@@ -134,12 +112,11 @@ bool Rig::next(RecordingRow& row, RigTruth& truth) noexcept {
   if (row_ == row_count_) return false;
   const SensorSettings& sensors = settings_.sensors;
   const double index = static_cast<double>(row_++);
-  const double when = sensors.jitter_share > 0.0 ? index + sensors.jitter_share * jitter_.uniform(0.0, 1.0) : index;
-  truth = truth_at(when * kGridRate_Hz / settings_.rate_Hz);
+  truth = truth_at(index * kGridRate_Hz / settings_.rate_Hz);
   row = {};
-  row.time_s = when / settings_.rate_Hz;
+  row.time_s = index / settings_.rate_Hz;
   row.position_m = encoded(truth.position_m + sensors.surface_offset_m, sensors.encoder_step_m);
-  row.force_N = converted(truth.cell_force_N + sensors.force_zero_N + sensors.force_noise_N * force_noise_.normal(),
+  row.force_N = converted(truth.force_N + sensors.force_zero_N + sensors.force_noise_N * force_noise_.normal(),
                           sensors.force_range_N);
   row.acceleration_m_per_s2 = converted(
       truth.acceleration_m_per_s2 + bias_m_per_s2_ + sensors.acceleration_noise_m_per_s2 * acceleration_noise_.normal(),
@@ -184,10 +161,6 @@ std::vector<std::string> describe_recording(const RigSettings& settings, const M
   if (sensors.surface_offset_m != 0.0 || sensors.force_zero_N != 0.0) {
     lines.push_back("surface recorded at " + shortest(sensors.surface_offset_m) + " m, force zero at " +
                     shortest(sensors.force_zero_N) + " N");
-  }
-  if (sensors.force_filter_time_s > 0.0 || sensors.jitter_share > 0.0) {
-    lines.push_back("force lags by " + shortest(sensors.force_filter_time_s) + " s; rows late by up to " +
-                    shortest(sensors.jitter_share) + " of their spacing");
   }
   return lines;
 }

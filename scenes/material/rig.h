@@ -39,10 +39,8 @@ struct SensorSettings {
   double acceleration_bias_m_per_s2 = 0.1;    // standard deviation
   double acceleration_bias_time_s = 20.0;     // how slowly it wanders
   // What real rigs do as well:
-  double surface_offset_m = 0.0;     // the recorded position is so much too large
-  double force_zero_N = 0.0;         // the recorded force is so much too large
-  double force_filter_time_s = 0.0;  // first-order lag before the force cell; 0: none
-  double jitter_share = 0.0;         // rows are late by up to this share of their spacing, 0 .. < 1
+  double surface_offset_m = 0.0;  // the recorded position is so much too large
+  double force_zero_N = 0.0;      // the recorded force is so much too large
 };
 
 inline constexpr double kRigStep_s = 1.0 / 20000.0;
@@ -67,7 +65,6 @@ struct RigTruth {
   double acceleration_m_per_s2 = 0.0;
   double force_N = 0.0;          // of the material, without noise; >= 0
   double surface_depth_m = 0.0;  // more than the depth when the tool has left
-  double cell_force_N = 0.0;     // force_N as the force cell gets it, after its filter
 };
 
 // Makes rows one by one, in bounded memory.
@@ -94,12 +91,11 @@ class Rig {
   Hand hand_;
   Material material_;
   std::unique_ptr<Block> block_;
-  RandomStream force_noise_, acceleration_noise_, bias_noise_, jitter_;
+  RandomStream force_noise_, acceleration_noise_, bias_noise_;
   std::size_t row_count_ = 0, row_ = 0;
   std::uint64_t grid_index_ = 0;
   RigTruth before_, after_;  // at grid_index_ and one step later
   double bias_m_per_s2_ = 0.0;
-  double filter_share_ = 1.0;  // of the change that passes the force filter in a step
 };
 
 // A whole recording as the sensors see it, without the truth. `progress` is told

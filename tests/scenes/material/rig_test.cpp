@@ -249,54 +249,12 @@ TEST(Rig, DisplacesTheSurfaceAndTheForceZero) {
   }
 }
 
-TEST(Rig, JitterMovesRowsAndTheirTimesAlike) {
-  RigSettings settings;
-  settings.seconds = 5.0;
-  settings.rate_Hz = 500.0;
-  settings.sensors.jitter_share = 0.8;
-  const RigRecording rig = record(settings).value();
-  settings.sensors.jitter_share = 0.0;
-  settings.rate_Hz = 20000.0;
-  const RigRecording fine = record(settings).value();
-  double latest_s = 0.0;
-  for (std::size_t i = 0; i < rig.truth.size(); ++i) {
-    const double time_s = rig.recording.rows[i].time_s;
-    const double late_s = time_s - static_cast<double>(i) / 500.0;
-    ASSERT_GE(late_s, -1e-12);
-    ASSERT_LE(late_s, 0.8 / 500.0 + 1e-12);
-    latest_s = std::max(latest_s, late_s);
-    const auto near = static_cast<std::size_t>(time_s * 20000.0 + 0.5);
-    // Half a step of the motion at 0.5 m/s.
-    ASSERT_NEAR(rig.truth[i].position_m, fine.truth[std::min(near, fine.truth.size() - 1)].position_m, 1.3e-5);
-  }
-  EXPECT_GT(latest_s, 0.7 / 500.0);
-}
-
-// A lag of first order is the convolution with exp(-t / T) / T: dy/dt = (F - y) / T.
-TEST(Rig, ForceFilterLagsBehindTheForce) {
-  RigSettings settings;
-  settings.seconds = 5.0;
-  settings.rate_Hz = 20000.0;
-  settings.sensors.force_filter_time_s = 0.01;
-  const RigRecording rig = record(settings).value();
-  double furthest_N = 0.0;
-  for (std::size_t i = 1; i < rig.truth.size(); ++i) {
-    const double before_N = rig.truth[i - 1].cell_force_N;
-    const double expected_N = before_N + -std::expm1(-kRigStep_s / 0.01) * (rig.truth[i].force_N - before_N);
-    ASSERT_NEAR(rig.truth[i].cell_force_N, expected_N, 1e-9);
-    furthest_N = std::max(furthest_N, std::abs(rig.truth[i].cell_force_N - rig.truth[i].force_N));
-  }
-  EXPECT_GT(furthest_N, 0.1);
-}
-
 TEST(Rig, SaysWhatIsOffInItsDescription) {
   RigSettings settings;
   settings.sensors.surface_offset_m = 3e-4;
-  settings.sensors.force_filter_time_s = 0.01;
   const std::vector<std::string> lines = describe_recording(settings, find_material("silicone").value(), 100);
-  ASSERT_EQ(lines.size(), 6u);
+  ASSERT_EQ(lines.size(), 5u);
   EXPECT_EQ(lines[4], "surface recorded at 3e-04 m, force zero at 0 N");
-  EXPECT_EQ(lines[5], "force lags by 0.01 s; rows late by up to 0 of their spacing");
 }
 
 TEST(Rig, RefusesNonsense) {
@@ -315,10 +273,6 @@ TEST(Rig, RefusesNonsense) {
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = std::nan(""); }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.sensors.surface_offset_m = std::nan(""); }),
             "the surface offset and the force zero must be numbers");
-  EXPECT_EQ(message([](RigSettings& s) { s.sensors.force_filter_time_s = -1.0; }),
-            "the force filter's time must be a number from 0 up");
-  EXPECT_EQ(message([](RigSettings& s) { s.sensors.jitter_share = 1.0; }),
-            "the jitter must be a share from 0 to below 1");
   EXPECT_EQ(message([](RigSettings& s) { s.seconds = -1.0; }), "the seconds must be a number above 0");
   EXPECT_EQ(message([](RigSettings& s) { s.seconds = std::nan(""); }), "the seconds must be a number above 0");
   EXPECT_EQ(message([](RigSettings& s) { s.seconds = 0.005; }), "seconds times rate must give at least 10 rows");
