@@ -33,7 +33,7 @@ class FrictionBlock final : public HereditaryBlock {
   static constexpr double kGripped_m = 0.004;    // d_c
   static constexpr double kWeight = 0.03;        // of the box spectrum, per unit of ln tau
 
-  FrictionBlock() : HereditaryBlock({0.05, 2.0, [](double) { return kWeight; }}) {}
+  FrictionBlock() : HereditaryBlock(0.05, 2.0, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   std::string relaxation_times_text() const override { return "continuous, 0.05 s to 2 s; dry friction"; }

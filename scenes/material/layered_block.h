@@ -31,7 +31,7 @@ class LayeredBlock final : public HereditaryBlock {
   static constexpr double kSupportTime_s = 0.3;             // tau_m
   static constexpr double kWeight = 0.06;                   // of the box spectrum, per unit of ln tau
 
-  LayeredBlock() : HereditaryBlock({0.02, 4.0, [](double) { return kWeight; }}) {}
+  LayeredBlock() : HereditaryBlock(0.02, 4.0, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kTop.force_N(depth_m); }
   double held_force_N(double depth_m) const noexcept override {

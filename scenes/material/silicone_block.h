@@ -7,7 +7,7 @@
 // a fit could find, and d^1.5 at the surface, which no polynomial is.
 // Sphere of 10 mm radius; Young's modulus 25 kPa relaxed, as the softest
 // platinum-cured silicones; the force at once is 1.6 times the relaxed one.
-// Passive: see relaxation_spectrum.h.
+// Passive: see hereditary_block.h.
 // Source: Fung (1993), Biomechanics, section 7.6.
 #pragma once
 
@@ -23,7 +23,7 @@ class SiliconeBlock final : public HereditaryBlock {
   static constexpr double kLongest_s = 30.0;    // tau2
   static constexpr double kWeight = 0.06;       // c
 
-  SiliconeBlock() : HereditaryBlock({kShortest_s, kLongest_s, [](double) { return kWeight; }}) {}
+  SiliconeBlock() : HereditaryBlock(kShortest_s, kLongest_s, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   std::string relaxation_times_text() const override { return "continuous, 0.001 s to 30 s"; }

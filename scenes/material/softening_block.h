@@ -30,7 +30,7 @@ class SofteningBlock final : public HereditaryBlock {
   static constexpr double kHealing_s = 6.0;                // tau_heal
   static constexpr double kWeight = 0.03;                  // of the box spectrum, per unit of ln tau
 
-  SofteningBlock() : HereditaryBlock({0.01, 3.0, [](double) { return kWeight; }}) {}
+  SofteningBlock() : HereditaryBlock(0.01, 3.0, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override {
     return kStiffness_N_per_m1_5 * depth_m * std::sqrt(depth_m) * (1.0 + stiffened(depth_m));

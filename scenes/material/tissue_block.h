@@ -8,7 +8,7 @@
 // and are held, quicker ones are gone within a tick and are left out.
 // Sphere of 8 mm; 25 kPa and b = 3; alpha = 0.15, of the range of liver and
 // kidney (0.1 to 0.2).
-// Passive: see relaxation_spectrum.h.
+// Passive: see hereditary_block.h.
 // Source: Kiss, Varghese & Hall (2004) (liver as a fractional solid); Nicolle,
 // Vezin & Palierne (2010) (kidney's power law); Lin et al. (2009) (contact).
 #pragma once
@@ -28,7 +28,7 @@ class TissueBlock final : public HereditaryBlock {
   static constexpr double kExponent = 0.15;         // alpha
   static constexpr double kFractionalShare = 0.45;  // p
 
-  TissueBlock() : HereditaryBlock({kShortest_s, kLongest_s, density}) {}
+  TissueBlock() : HereditaryBlock(kShortest_s, kLongest_s, density) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double held_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
