@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/draw.h"
 #include "scenes/scene/method_look.h"
 
@@ -17,7 +16,7 @@ constexpr double kMostScale_jnd = 5.0;
 }  // namespace
 
 void ReplayPlot::add(const RecordingRow& row, const TickSnapshot& snapshot) {
-  Moment moment{row.time_s, row.force_N, counts(snapshot, row.force_N), {}};
+  Moment moment{row.time_s, row.force_N, snapshot.in_contact, {}};
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const JndLine& jnd = models_[i].model->data().jnd;
     moment.over_jnd.push_back(static_cast<float>((snapshot.force_N[i] - row.force_N) / jnd.at(row.force_N)));

@@ -26,9 +26,6 @@ namespace palpate {
 
 using ModelPointer = std::shared_ptr<const ForceModel>;
 
-// Whether a row counts in every error figure: the one place that decides it.
-inline bool counts(const TickSnapshot& snapshot, double /*measured_N*/) noexcept { return snapshot.in_contact; }
-
 struct EvaluatedModel {
   ModelPointer model;
   JndLine jnd;
@@ -75,7 +72,7 @@ struct RecordingEvaluation {
   ModelErrors no_force{JndLine{}};  // of a model that always says 0 N, as recorded, at the first model's JND
   // To time models on (model_timing.h).
   SensorSpec sensor;
-  TimingSample timing;
+  std::vector<ToolSample> timing;
 };
 
 // One evaluation a model, in their order. Errors: those of the rows; interrupted.

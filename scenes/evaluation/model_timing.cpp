@@ -14,7 +14,7 @@ using Clock = std::chrono::steady_clock;
 // The means of `step(index)` over every block of indices below `count`.
 template <typename Step>
 Timing blocks_of(std::size_t count, const Step& step) {
-  const std::size_t block = std::min(count, TimingSample::kBlock);
+  const std::size_t block = std::min<std::size_t>(count, 64);
   std::vector<double> means_ns;
   for (std::size_t first = 0; first + block <= count; first += block) {
     const auto start = Clock::now();
@@ -30,22 +30,8 @@ Timing blocks_of(std::size_t count, const Step& step) {
 
 }  // namespace
 
-void TimingSample::add(const ToolSample& sample) {
-  const bool keep = (seen_ / kBlock) % stride_ == 0;
-  ++seen_;
-  if (!keep) return;
-  if (kept_.size() == kBlock * kMaximumBlocks) {
-    for (std::size_t i = 0; i < kept_.size() / 2; ++i) kept_[i] = kept_[i / kBlock * 2 * kBlock + i % kBlock];
-    kept_.resize(kept_.size() / 2);
-    stride_ *= 2;
-    // kMaximumBlocks is even, so this sample begins a run that is kept.
-  }
-  kept_.push_back(sample);
-}
-
 ModelTiming time_model(const std::shared_ptr<const ForceModel>& model, const SensorSpec& sensor,
-                       const TimingSample& sample) {
-  const std::vector<ToolSample>& samples = sample.samples();
+                       const std::vector<ToolSample>& samples) {
   if (samples.empty()) return {};
   // Once for the features, which also warms caches and the clock.
   std::vector<std::array<double, kMaxFeatures>> features;

@@ -2,11 +2,10 @@
 //
 //   tick         motion estimate, features and force of this one model: what a caller waits for
 //   evaluation   the force alone, from features that are there already
-// Thread guarantee: slow side; one thread per object.
+// Thread guarantee: slow side; one thread per call.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -26,26 +25,12 @@ struct ModelTiming {
   bool measured = false;  // false: there was nothing to evaluate
 };
 
-// Keeps runs of kBlock consecutive samples, spread evenly over a stream of any length, in
-// bounded memory: when full, it drops every other run and from then on keeps half as many.
-class TimingSample {
- public:
-  static constexpr std::size_t kBlock = 64;
-  static constexpr std::size_t kMaximumBlocks = 256;
+// So many samples in contact tell it; out of contact no model is evaluated.
+inline constexpr std::size_t kTimedSamples = 16384;
 
-  // Samples in contact, in time order: out of contact no model is evaluated.
-  void add(const ToolSample& sample);
-  const std::vector<ToolSample>& samples() const { return kept_; }
-
- private:
-  std::vector<ToolSample> kept_;
-  std::uint64_t seen_ = 0;
-  std::uint64_t stride_ = 1;  // keep one run in so many
-};
-
-// Takes `model` through all of `sample`, kBlock steps at a time; median and 99th percentile
+// Takes `model` through all of `samples`, 64 steps at a time; median and 99th percentile
 // of the blocks' means. Evaluations wait for the last one's force, as in a tick.
 ModelTiming time_model(const std::shared_ptr<const ForceModel>& model, const SensorSpec& sensor,
-                       const TimingSample& sample);
+                       const std::vector<ToolSample>& samples);
 
 }  // namespace palpate

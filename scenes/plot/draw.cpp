@@ -98,6 +98,12 @@ Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
   return run_gnuplot(folder, scripts);
 }
 
+Result<std::string> read_drawn(const std::string& folder, const std::string& file) {
+  auto text = read_whole_file(folder + "/" + file);
+  if (text && !text->empty()) return std::move(*text);
+  return Error{"gnuplot wrote no " + file + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+}
+
 Status check_plot_path(const std::string& path, bool overwrite) {
   const std::string ending = fs::path(path).extension().string();
   if (ending != ".svg" && ending != ".png") {
@@ -118,9 +124,8 @@ Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool o
   if (const Status status = draw_plots(scratch.path(), {plot}); !status) return status;
   std::vector<std::string> drawn;
   for (const std::string& path : paths) {
-    const auto text = read_whole_file(scratch.path() + "/" + plot.name + fs::path(path).extension().string());
-    if (!text || text->empty())
-      return Error{"gnuplot wrote no " + path + "; check that it is gnuplot 5.4 or newer (gnuplot-nox)"};
+    const auto text = read_drawn(scratch.path(), plot.name + fs::path(path).extension().string());
+    if (!text) return text.error();
     drawn.push_back(*text);
   }
   for (std::size_t i = 0; i < paths.size(); ++i) {

@@ -36,6 +36,9 @@ Status run_gnuplot(const std::string& folder, const std::vector<std::string>& sc
 // is missing or fails; the disk refuses.
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
 
+// What was drawn into `file` of `folder`. Errors: nothing was.
+Result<std::string> read_drawn(const std::string& folder, const std::string& file);
+
 // One plot as the files `paths` of one folder, each of which ends in .svg or .png: all of them,
 // whole, or none. Errors: another ending; one exists and `overwrite` is false; as above.
 Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool overwrite);

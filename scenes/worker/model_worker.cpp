@@ -51,16 +51,16 @@ double tick_ns(const std::shared_ptr<const FittedModel>& model) {
   const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
   SensorSpec sensor;
   sensor.has_velocity = true;
-  TimingSample sample;
+  std::vector<ToolSample> samples;
   for (int i = 0; i < 1024; ++i) {
     const double phase = 0.01 * i;
     ToolSample tool;
     tool.time_s = 1e-3 * i;
     tool.position_m = 0.5 * depth_m * (1.02 - std::cos(phase));
     tool.velocity_m_per_s = 5.0 * depth_m * std::sin(phase);
-    sample.add(tool);
+    samples.push_back(tool);
   }
-  return time_model(model, sensor, sample).tick.median_ns;
+  return time_model(model, sensor, samples).tick.median_ns;
 }
 
 }  // namespace
