@@ -14,12 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLeftOutOf = 3;             // of several recordings every third is left out
-constexpr std::size_t kSmallestRecording = 1000;  // rows; less is not divided
-constexpr double kKeptShare = 0.6;                // of a single recording
-constexpr double kPrepareSeconds = 1.0;           // about, of a recipe
-constexpr double kEvaluateSeconds = 0.1;          // a model
-constexpr double kMostNodes = 1e7;                // of a grid; a fit refuses more
+constexpr double kPrepareSeconds = 1.0;   // about, of a recipe
+constexpr double kEvaluateSeconds = 0.1;  // a model
 
 // One progress for a job of many unequal parts, in expected seconds.
 class Progress {
@@ -47,7 +43,12 @@ std::vector<SharedRecording> at_own_surfaces(std::vector<SharedRecording> traini
   for (SharedRecording& recording : training) {
     for (const RecordingSurface& at : surfaces) {
       if (at.name != recording->name) continue;
-      recording = std::make_shared<const Recording>(with_correction(*recording, {at.offset_m, at.force_zero_N}));
+      Recording moved = *recording;
+      for (RecordingRow& row : moved.rows) {
+        row.position_m -= at.offset_m;
+        row.force_N -= at.force_zero_N;
+      }
+      recording = std::make_shared<const Recording>(std::move(moved));
       break;
     }
   }
@@ -88,7 +89,7 @@ class Measurement {
         moved_(data.models.size(), ModelErrors(scene.jnd)) {}
 
   Status run() {
-    for (const Fold& fold : recordings_.folds) {
+    for (const Split& fold : recordings_.folds) {
       if (const Status status = run_fold(fold); !status) return status;
     }
     for (std::size_t i = 0; i < data_.models.size(); ++i) {
@@ -97,7 +98,7 @@ class Measurement {
     }
     data_.floor = noise_floor(tested_, scene_.jnd);
     // With k folds every training stroke was left out once already.
-    if (!recordings_.cross_validated) {
+    if (recordings_.folds.size() == 1) {
       if (const Status status = test_left_out(); !status) return status;
     }
     choose();
@@ -153,13 +154,10 @@ class Measurement {
     return fitted;
   }
 
-  Status run_fold(const Fold& fold) {
-    std::vector<SharedRecording> training;
-    for (const std::size_t index : fold.train) training.push_back(recordings_.all[index]);
-    auto prepared = prepare(training, recordings_.at_own_surface ? Surface::recorded : Surface::automatic);
+  Status run_fold(const Split& fold) {
+    const auto prepared = prepare(fold.train, Surface::automatic);
     if (!prepared) return prepared.error();
-    drop_large_grids(prepared->palpate);
-    if (data_.worth.empty()) remember(*prepared, training);
+    if (data_.worth.empty()) remember(*prepared, fold.train);
     const auto fitted = fit(*prepared, std::vector<bool>(data_.models.size(), true));
     if (!fitted) return fitted.error();
     for (std::size_t i = 1; i < fitted->size(); ++i) {
@@ -173,23 +171,10 @@ class Measurement {
         result.plan.name = (result.plan.recipe == Recipe::paper ? "2009-" : "") + std::string(method.name) + "-" +
                            std::to_string(result.size);
     }
-    for (const std::size_t index : fold.test) {
-      if (const Status status = evaluate_test(*recordings_.all[index]); !status) return status;
+    for (const SharedRecording& recording : fold.tested) {
+      if (const Status status = evaluate_test(*recording, fold.counted_from_s); !status) return status;
     }
     return {};
-  }
-
-  // Known only now: how many features a grid has.
-  void drop_large_grids(const PreparedTraining& prepared) {
-    for (std::size_t i = data_.models.size(); i-- > 0;) {
-      double nodes = 1.0;
-      for (const int size : with_grid_for(data_.models[i].plan.request, prepared).grid) nodes *= size;
-      if (nodes <= kMostNodes) continue;
-      const auto at = static_cast<std::ptrdiff_t>(i);
-      data_.models.erase(data_.models.begin() + at);
-      recorded_.erase(recorded_.begin() + at);
-      moved_.erase(moved_.begin() + at);
-    }
   }
 
   void remember(const Preparations& prepared, const std::vector<SharedRecording>& training) {
@@ -202,9 +187,10 @@ class Measurement {
     registered_ = at_own_surfaces(training, provenance.surfaces);
   }
 
-  Status evaluate_test(const Recording& recording) {
+  Status evaluate_test(const Recording& recording, double counted_from_s) {
     std::vector<EvaluatedModel> models;
     EvaluationRequest request;
+    request.counted_s.low = counted_from_s;
     for (const ModelResult& one : data_.models) {
       if (!one.model) continue;
       models.push_back({one.model, scene_.jnd});
@@ -227,7 +213,7 @@ class Measurement {
   }
 
   Status test_left_out() {
-    const LeftOut part = leave_out(registered_);
+    const Split part = leave_out(registered_);
     if (part.tested.empty()) return {};
     // Too little to learn from: nothing can be said.
     const auto prepared = prepare(part.train, Surface::recorded);
@@ -246,7 +232,7 @@ class Measurement {
     std::vector<ModelErrors> pooled(models.size(), ModelErrors(scene_.jnd));
     EvaluationRequest request;
     request.move_surface = false;
-    request.counted_s = part.counted_s;
+    request.counted_s.low = part.counted_from_s;
     for (const SharedRecording& recording : part.tested) {
       const auto result = evaluate(rows_of(*recording), models, request);
       if (!result) return result.error();
@@ -295,8 +281,9 @@ class Measurement {
       models.push_back(data_.models[i].model);
       names.push_back(data_.models[i].plan.name);
     }
-    for (const std::size_t index : recordings_.folds.back().test) {
-      WorstStretch stretch = worst_stretch(*recordings_.all[index], models, scene_.jnd);
+    const Split& last = recordings_.folds.back();
+    for (const SharedRecording& recording : last.tested) {
+      WorstStretch stretch = worst_stretch(*recording, models, scene_.jnd, last.counted_from_s);
       if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
     }
     data_.worst.models = std::move(names);
@@ -314,36 +301,14 @@ class Measurement {
 
 }  // namespace
 
-LeftOut leave_out(const std::vector<SharedRecording>& training) {
-  LeftOut part;
-  if (training.size() > 1) {
-    for (std::size_t i = 0; i < training.size(); ++i) {
-      (i % kLeftOutOf == 1 ? part.tested : part.train).push_back(training[i]);
-    }
-    part.words = std::to_string(part.tested.size()) + " of the " + std::to_string(training.size()) +
-                 " training recordings, left out of these fits";
-    return part;
-  }
-  const Recording& recording = *training.front();
-  const std::size_t rows = recording.rows.size();
-  if (rows < kSmallestRecording) return part;
-  const std::size_t cut =
-      row_in_air(recording, static_cast<std::size_t>(kKeptShare * static_cast<double>(rows)), rows / 10);
-  part.train.push_back(rows_of(recording, 0, cut, recording.name));
-  part.tested.push_back(training.front());
-  part.counted_s.low = recording.rows[cut].time_s;
-  part.words = "a block at the end of the training recording, " + std::to_string(100 - 100 * cut / rows) +
-               " % of it, left out of these fits";
-  return part;
-}
-
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control) {
   ReportData data;
   data.scene = scene.name;
   data.jnd = scene.jnd;
   data.quick = quick;
   data.virtual_recordings = recordings.virtual_recordings;
-  data.folds = recordings.cross_validated ? static_cast<int>(recordings.folds.size()) : 0;
+  data.folds = recordings.folds.size() > 1 ? static_cast<int>(recordings.folds.size()) : 0;
+  data.tested_on = recordings.folds.front().words;
   data.recordings = recordings.facts;
   for (PlannedModel& plan : make_plan(quick, scene.features.size())) {
     ModelResult result;

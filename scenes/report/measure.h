@@ -44,7 +44,8 @@ struct ReportData {
   JndLine jnd;
   bool quick = false;
   bool virtual_recordings = false;
-  int folds = 0;  // of a cross-validation; 0: test recordings
+  int folds = 0;          // of a cross-validation; 0: test recordings
+  std::string tested_on;  // in words where there are no test recordings
   std::vector<RecordingFacts> recordings;
   std::vector<double> surface_offset_m;  // of the test recordings
   NoiseFloor floor;                      // of all test recordings together
@@ -56,16 +57,6 @@ struct ReportData {
   std::optional<double> correction_strength;  // 0 to 1
   std::vector<FeatureWorth> worth;
 };
-
-// Training again, with a part left out.
-struct LeftOut {
-  std::vector<SharedRecording> train;
-  std::vector<SharedRecording> tested;
-  Interval counted_s{-1e300, 1e300};  // what came before it is replayed too, for the material remembers
-  std::string words;                  // "the last 40 % of the training recording, one block"
-};
-// Nothing to test on where nothing can be left out.
-LeftOut leave_out(const std::vector<SharedRecording>& training);
 
 // Errors: those of the recordings and the fits, with the recordings' names; interrupted.
 // The same recordings and plan give the same figures but for times. With several folds

@@ -98,37 +98,28 @@ std::vector<const ModelResult*> headline_models(const ReportData& data) {
   return rows;
 }
 
-std::string cell(const std::string& value, const std::string& small = {}) {
-  return "<td>" + value + (small.empty() ? "" : "<small>" + small + "</small>") + "</td>";
-}
-
-std::string headline_row(const ReportData& data, const ModelResult& one) {
+Table headline_table(const ReportData& data) {
   const ModelResult& chosen = data.models[data.choice.chosen];
-  const Evidence& errors = one.errors;
-  const Interval interval = errors.p99_interval();
-  const PairedDifference difference = paired_difference(errors, chosen.errors);
-  std::string row = "<tr><td class=\"text\">" + escape_html(one.plan.name) + "</td>";
-  row += one.time.measured ? cell(with_thousands(fixed(one.time.tick.median_ns, 0)),
-                                  with_thousands(fixed(one.time.evaluation.median_ns, 0)))
-                           : cell("–");
-  row += cell(errors.within_jnd >= 1.0 ? "100" : fixed(std::floor(1e4 * errors.within_jnd) / 100.0, 2),
-              std::to_string(errors.beyond_strokes) + " of " + std::to_string(errors.strokes));
-  row += cell(three_digits(errors.p99_error_over_jnd), three_digits(interval.low) + "–" + three_digits(interval.high));
-  row += cell(three_digits(errors.max_error_over_jnd));
-  const std::string sign = difference.p99 > 0.0 ? "+" : "−";
-  row += &one == &chosen     ? cell("chosen")
-         : difference.tied() ? cell("tied")
-                             : cell(sign + three_digits(std::abs(difference.p99)));
-  return row + "</tr>\n";
-}
-
-std::string headline_table(const ReportData& data) {
-  std::string html =
-      "<table class=\"headline\"><thead><tr><th class=\"text\">model</th><th>tick [ns]<small>evaluation</small></th>"
-      "<th>≤ JND [%]<small>strokes beyond</small></th><th>99 % error [JND]<small>95 % by strokes</small></th>"
-      "<th>worst [JND]</th><th>99 %: against<br>the choice</th></tr></thead><tbody>\n";
-  for (const ModelResult* one : headline_models(data)) html += headline_row(data, *one);
-  return html + "</tbody></table>\n";
+  Table table{"headline"};
+  for (const ModelResult* one : headline_models(data)) {
+    const Evidence& errors = one->errors;
+    const Interval interval = errors.p99_interval();
+    const PairedDifference difference = paired_difference(errors, chosen.errors);
+    const std::string by = (difference.p99 > 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99));
+    const auto time = [&](double time_ns) { return one->time.measured ? time_ns : kNoNumber; };
+    table.begin_row();
+    table.add({"", "model"}, one->plan.name);
+    table.add({"", "tick, evaluation [ns]", 1.0, 0, 1}, time(one->time.tick.median_ns));
+    table.add({}, time(one->time.evaluation.median_ns));
+    table.add({"", "≤ JND [%], strokes beyond", kInPercent, 2, 1}, std::floor(1e4 * errors.within_jnd) / 1e4);
+    table.add({}, std::to_string(errors.beyond_strokes) + " of " + std::to_string(errors.strokes));
+    table.add({"", "99 % error [JND], 95 % by strokes", 1.0, TableColumn::kThreeDigits, 2}, errors.p99_error_over_jnd);
+    table.add({}, interval.low);
+    table.add({}, interval.high);
+    table.add({"", "worst [JND]"}, errors.max_error_over_jnd);
+    table.add({"", "99 %: against the choice"}, one == &chosen ? "chosen" : difference.tied() ? "tied" : by);
+  }
+  return table;
 }
 
 double largest_force_N(const ReportData& data) {
@@ -146,8 +137,7 @@ std::string notes_html(const ReportData& data) {
                        ? ", where " + std::to_string(data.choice.tied.size()) +
                              " models are tied or differ by less than a hand notices: the cheapest."
                        : "."));
-  if (data.folds > 0)
-    notes.push_back("No test recording: " + std::to_string(data.folds) + "-fold cross-validation over the training.");
+  if (!data.tested_on.empty()) notes.push_back("No test recording: " + data.tested_on + ".");
   const JndLine paper;
   notes.push_back("JND: " + three_digits(1e3 * data.jnd.offset_N) + " mN + " +
                   three_digits(100.0 * data.jnd.weber_fraction) + " % of the force." +
@@ -235,7 +225,7 @@ std::string answer_html(const ReportData& data) {
   return html + next_html(data, chosen);
 }
 
-Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
+Result<std::string> make_page(const ReportData& data, const std::string& origin, const std::vector<Table>& tables,
                               const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
@@ -251,21 +241,19 @@ Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin
   for (const RecordingFacts& facts : data.recordings) {
     if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
   }
-  const std::map<std::string, std::string> values{
-      {"title", escape_html(tests)},
-      {"answer", answer_html(data)},
-      {"speed", figure(0)},
-      {"headline", headline_table(data)},
-      {"notes", notes_html(data)},
-      {"worst", figure(1)},
-      {"learnt", learnt_html(data)},
-      {"features", table("features")},
-      {"recordings", table("recordings")},
-      {"paper", figure(2)},
-      {"models", table("models")},
-      {"times", table("times")},
-      {"origin", escape_html(origin.command_line + " · " + origin.version + ", " + origin.compiler + " · " +
-                             origin.machine + " · " + three_digits(origin.seconds) + " s")}};
+  const std::map<std::string, std::string> values{{"title", escape_html(tests)},
+                                                  {"answer", answer_html(data)},
+                                                  {"speed", figure(0)},
+                                                  {"headline", table_html(headline_table(data))},
+                                                  {"notes", notes_html(data)},
+                                                  {"worst", figure(1)},
+                                                  {"learnt", learnt_html(data)},
+                                                  {"features", table("features")},
+                                                  {"recordings", table("recordings")},
+                                                  {"paper", figure(2)},
+                                                  {"models", table("models")},
+                                                  {"times", table("times")},
+                                                  {"origin", escape_html(origin)}};
   std::string page;
   std::size_t at = 0;
   for (std::size_t open; (open = text->find("{{", at)) != std::string::npos;) {

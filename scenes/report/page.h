@@ -15,21 +15,13 @@
 
 namespace palpate {
 
-struct ReportOrigin {
-  std::string command_line;
-  std::string version;
-  std::string compiler;
-  std::string machine;
-  double seconds = 0.0;  // that the report took
-};
-
 // The answer, with every number in <span data-model="..." data-figure="...">, so that
 // tests/scenes/report/check_report.py can recompute it from FORCES.csv.
 std::string answer_html(const ReportData& data);
 
-// `tables`: those of make_tables; `svgs`: by the name of the plot. Errors: the template is missing, or asks for what is
-// not there.
-Result<std::string> make_page(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
+// `origin`: what made it, in words; `tables`: those of make_tables; `svgs`: by the name of the plot. Errors: the
+// template is missing, or asks for what is not there.
+Result<std::string> make_page(const ReportData& data, const std::string& origin, const std::vector<Table>& tables,
                               const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs);
 
 }  // namespace palpate

@@ -9,8 +9,8 @@ constexpr int kMainCentres = 100;  // the paper's
 const std::vector<int> kFullCentres{10, 20, 50, 200, 500};
 const std::vector<int> kPaperCentres{10, 20, 50, 200};
 const std::vector<int> kQuickCentres{10, 30};
-// Depth and every other feature: coarser and finer than the grid that a fit takes by itself.
-const std::vector<std::pair<int, int>> kGrids{{7, 4}, {13, 6}, {19, 8}};
+// Depth and every other feature: coarser than the grid that a fit takes by itself.
+const std::vector<std::pair<int, int>> kGrids{{7, 4}, {13, 6}};
 constexpr std::size_t kMostGridFeatures = 5;  // beyond, minutes
 
 PlannedModel planned(Recipe of, const Method& method, int centres) {

@@ -11,7 +11,6 @@
 
 #include "engine/base/text.h"
 #include "engine/tick/sensor_identification.h"
-#include "models/surface/surface_estimate.h"
 #include "scenes/material/rig.h"
 
 namespace palpate {
@@ -19,8 +18,9 @@ namespace {
 
 constexpr double kTrainSeconds = 41.499;
 constexpr double kTestSeconds = 45.272;
-// A part of a recording that is cut for folds is worth testing on from here.
-constexpr std::size_t kSmallestPart = 200;
+constexpr std::size_t kLeftOutOf = 3;             // of several recordings every third is left out
+constexpr std::size_t kSmallestRecording = 1000;  // rows; less is not divided
+constexpr double kKeptShare = 0.6;                // of a single recording
 
 RecordingFacts facts_of(const Recording& recording, const std::string& role) {
   RecordingFacts facts;
@@ -42,15 +42,18 @@ RecordingFacts facts_of(const Recording& recording, const std::string& role) {
   return facts;
 }
 
-void make_folds(RecordingSet& set) {
-  const std::size_t folds = std::min(kMostFolds, set.all.size());
-  set.folds.resize(folds);
-  for (std::size_t i = 0; i < set.all.size(); ++i) {
-    for (std::size_t f = 0; f < folds; ++f) (i % folds == f ? set.folds[f].test : set.folds[f].train).push_back(i);
+// Every recording is tested once, by models of the others.
+std::vector<Split> folds_of(const std::vector<SharedRecording>& all) {
+  std::vector<Split> folds(std::min(kMostFolds, all.size()));
+  for (Split& fold : folds) fold.words = std::to_string(folds.size()) + "-fold cross-validation over the training";
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t f = 0; f < folds.size(); ++f)
+      (i % folds.size() == f ? folds[f].tested : folds[f].train).push_back(all[i]);
   }
+  return folds;
 }
 
-Status add_files(RecordingSet& set, const std::vector<std::string>& paths) {
+Status add_files(std::vector<SharedRecording>& all, const std::vector<std::string>& paths) {
   std::map<std::pair<std::string, std::uint64_t>, SharedRecording> added;
   for (const std::string& path : paths) {
     auto read = read_recording(path);
@@ -62,30 +65,18 @@ Status add_files(RecordingSet& set, const std::vector<std::string>& paths) {
                    "nothing; leave one out"};
     }
   }
-  for (const auto& [key, recording] : added) set.all.push_back(recording);
+  for (const auto& [key, recording] : added) all.push_back(recording);
   return {};
 }
 
-Status add_virtual_silicone(RecordingSet& set, const std::function<bool(double)>& progress) {
+Status add_virtual_silicone(std::vector<SharedRecording>& all) {
   RigSettings settings;
   for (const double seconds : {kTrainSeconds, kTestSeconds}) {
     settings.seconds = seconds;
-    settings.seed = set.all.size() + 1;
-    auto recording = record_sensors(settings, [&](double share) {
-      return !progress || progress(0.5 * (static_cast<double>(set.all.size()) + share));
-    });
+    settings.seed = all.size() + 1;
+    auto recording = record_sensors(settings);
     if (!recording) return recording.error();
-    set.all.push_back(std::make_shared<const Recording>(std::move(*recording)));
-  }
-  return {};
-}
-
-Status check_contact(const RecordingSet& set) {
-  for (const RecordingFacts& facts : set.facts) {
-    if (facts.role == "train" || facts.contact_samples > 0) continue;
-    return Error{facts.name +
-                 ": no sample is in contact (position_m > 0), expected a press to test on; check the "
-                 "sign and zero of position_m"};
+    all.push_back(std::make_shared<const Recording>(std::move(*recording)));
   }
   return {};
 }
@@ -189,79 +180,63 @@ Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t train
   return {};
 }
 
-Recording with_correction(const Recording& recording, const RowCorrection& correction) {
-  Recording moved = recording;
-  for (RecordingRow& row : moved.rows) {
-    row.position_m -= correction.offset_m;
-    row.force_N -= correction.force_zero_N;
+Split leave_out(const std::vector<SharedRecording>& training) {
+  Split split;
+  if (training.size() > 1) {
+    for (std::size_t i = 0; i < training.size(); ++i)
+      (i % kLeftOutOf == 1 ? split.tested : split.train).push_back(training[i]);
+    split.words = std::to_string(split.tested.size()) + " of the " + std::to_string(training.size()) +
+                  " training recordings, left out of these fits";
+    return split;
   }
-  return moved;
+  const Recording& whole = *training.front();
+  if (whole.rows.size() < kSmallestRecording) return split;
+  const auto kept =
+      whole.rows.begin() + static_cast<std::ptrdiff_t>(kKeptShare * static_cast<double>(whole.rows.size()));
+  const auto near = kept + static_cast<std::ptrdiff_t>(whole.rows.size() / 10);
+  const auto in_air = std::find_if(kept, near, [](const RecordingRow& row) { return row.position_m <= 0.0; });
+  const auto cut = in_air == near ? kept : in_air;
+  split.train.push_back(
+      std::make_shared<const Recording>(Recording{whole.name, whole.columns, {whole.rows.begin(), cut}}));
+  split.tested.push_back(training.front());
+  split.counted_from_s = cut->time_s;
+  split.words = "a block at the end of the training recording, " +
+                std::to_string(100 - 100 * split.train[0]->rows.size() / whole.rows.size()) +
+                " % of it, left out of these fits";
+  return split;
 }
 
-std::size_t row_in_air(const Recording& recording, std::size_t from, std::size_t most) {
-  const std::size_t end = std::min(recording.rows.size(), from + most);
-  for (std::size_t i = from; i < end; ++i) {
-    if (recording.rows[i].position_m <= 0.0) return i;
-  }
-  return from;
-}
-
-SharedRecording rows_of(const Recording& recording, std::size_t begin, std::size_t end, const std::string& name) {
-  const auto first = recording.rows.begin();
-  return std::make_shared<const Recording>(Recording{
-      name, recording.columns, {first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end)}});
-}
-
-Result<std::vector<SharedRecording>> cut_into_parts(const Recording& whole) {
-  const std::size_t part = whole.rows.size() / kMostFolds;
-  if (part < kSmallestPart) {
-    return Error{whole.name + ": found " + std::to_string(whole.rows.size()) +
-                 " rows and no test recording, expected "
-                 "at least " +
-                 std::to_string(kMostFolds * kSmallestPart) + " to cut into parts; give another recording with --test"};
-  }
-  std::vector<SharedRecording> parts;
-  std::size_t begin = 0;
-  for (std::size_t k = 1; k <= kMostFolds; ++k) {
-    const std::size_t end = k == kMostFolds ? whole.rows.size() : row_in_air(whole, k * part, part / 2);
-    parts.push_back(rows_of(whole, begin, end, whole.name + " part " + std::to_string(k)));
-    begin = end;
-  }
-  return parts;
-}
-
-Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test,
-                                     const std::function<bool(double share)>& progress) {
+Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test) {
   if (train.empty() && !test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
   RecordingSet set;
   set.virtual_recordings = train.empty();
-  const Status added = set.virtual_recordings ? add_virtual_silicone(set, progress) : add_files(set, train);
+  std::vector<SharedRecording> all;
+  const Status added = set.virtual_recordings ? add_virtual_silicone(all) : add_files(all, train);
   if (!added) return added.error();
   const std::size_t trained = set.virtual_recordings ? 1 : train.size();
-  if (const Status status = add_files(set, test); !status) return status.error();
-  if (const Status status = refuse_leakage(set.all, trained); !status) return status.error();
-  if (trained == set.all.size()) {
-    set.cross_validated = true;
-    if (set.all.size() == 1) {
-      const SurfaceEstimate surface = estimate_surface(*set.all.front());
-      auto parts = cut_into_parts(with_correction(*set.all.front(), {surface.offset_m, surface.force_zero_N}));
-      if (!parts) return parts.error();
-      set.all = std::move(*parts);
-      set.at_own_surface = true;
-    }
-    make_folds(set);
+  if (const Status status = add_files(all, test); !status) return status.error();
+  if (const Status status = refuse_leakage(all, trained); !status) return status.error();
+  const bool tests = trained < all.size();
+  if (tests) {
+    Split& split = set.folds.emplace_back();
+    for (std::size_t i = 0; i < all.size(); ++i) (i < trained ? split.train : split.tested).push_back(all[i]);
   } else {
-    set.folds.resize(1);
-    for (std::size_t i = 0; i < set.all.size(); ++i) {
-      (i < trained ? set.folds[0].train : set.folds[0].test).push_back(i);
-    }
+    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all)} : folds_of(all);
   }
-  for (std::size_t i = 0; i < set.all.size(); ++i) {
-    set.facts.push_back(facts_of(*set.all[i], set.cross_validated ? "both" : i < trained ? "train" : "test"));
+  if (set.folds.front().tested.empty()) {
+    return Error{all.front()->name + ": found " + std::to_string(all.front()->rows.size()) +
+                 " rows and no test recording, expected at least " + std::to_string(kSmallestRecording) +
+                 " to leave a part out; give another recording with --test"};
   }
-  if (const Status status = check_contact(set); !status) return status.error();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    set.facts.push_back(facts_of(*all[i], !tests ? "both" : i < trained ? "train" : "test"));
+    if (set.facts.back().role == "train" || set.facts.back().contact_samples > 0) continue;
+    return Error{all[i]->name +
+                 ": no sample is in contact (position_m > 0), expected a press to test on; check the "
+                 "sign and zero of position_m"};
+  }
   return set;
 }
 

@@ -20,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr double kRecordingShare = 0.02;
 constexpr double kMeasuringShare = 0.93;
 
 std::string processor() {
@@ -33,18 +32,11 @@ std::string processor() {
   return uname(&name) == 0 ? name.machine : "unknown processor";
 }
 
-ReportOrigin origin_of(const ReportRequest& request) {
-  ReportOrigin origin;
-  origin.command_line = request.command_line;
-  origin.version = request.version;
-  origin.machine = processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
 #if defined(__clang__)
-  origin.compiler = "clang " __clang_version__;
+constexpr const char* kCompiler = "clang " __clang_version__;
 #else
-  origin.compiler = "g++ " __VERSION__;
+constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
-  return origin;
-}
 
 // Without its elements.
 std::string plain_text(const std::string& html) {
@@ -59,8 +51,8 @@ std::string plain_text(const std::string& html) {
 }
 
 // All numbers. "timings" holds all that differs from run to run.
-OrderedJson report_json(const ReportData& data, const ReportOrigin& origin, const std::vector<Table>& tables,
-                        const std::vector<Figure>& figures) {
+OrderedJson report_json(const ReportData& data, const ReportRequest& request, const std::vector<Table>& tables,
+                        const std::vector<Figure>& figures, const std::string& machine, double seconds) {
   OrderedJson numbers = OrderedJson::object();
   OrderedJson times = OrderedJson::object();
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
@@ -87,12 +79,9 @@ OrderedJson report_json(const ReportData& data, const ReportOrigin& origin, cons
       {"tables", numbers},
       {"figures", list},
       {"timings",
-       {{"machine", origin.machine},
-        {"seconds", origin.seconds},
-        {"answer", plain_text(answer_html(data))},
-        {"tables", times}}},
-      {"program", {{"version", origin.version}, {"compiler", origin.compiler}}},
-      {"command_line", origin.command_line}};
+       {{"machine", machine}, {"seconds", seconds}, {"answer", plain_text(answer_html(data))}, {"tables", times}}},
+      {"program", {{"version", request.version}, {"compiler", kCompiler}}},
+      {"command_line", request.command_line}};
 }
 
 Result<std::map<std::string, std::string>> draw(const ReportFolder& folder, const std::vector<Figure>& figures) {
@@ -103,7 +92,7 @@ Result<std::map<std::string, std::string>> draw(const ReportFolder& folder, cons
   if (const Status status = draw_plots(folder.path_of("figures"), plots); !status) return status.error();
   std::map<std::string, std::string> svgs;
   for (const Plot& plot : plots) {
-    const auto svg = folder.read("figures/" + plot.name + ".svg");
+    const auto svg = read_drawn(folder.path_of("figures"), plot.name + ".svg");
     if (!svg) return svg.error();
     svgs[plot.name] = *svg;
   }
@@ -121,13 +110,10 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   auto folder = ReportFolder::create(request.out, request.force);
   if (!folder) return folder.error();
 
-  const auto recordings = load_recordings(request.train, request.test,
-                                          [&](double share) { return control.may_continue(kRecordingShare * share); });
+  const auto recordings = load_recordings(request.train, request.test);
   if (!recordings) return recordings.error();
   FitControl measuring;
-  measuring.progress = [&](double fraction) {
-    return control.may_continue(kRecordingShare + (kMeasuringShare - kRecordingShare) * fraction);
-  };
+  measuring.progress = [&](double fraction) { return control.may_continue(kMeasuringShare * fraction); };
   const auto data = measure(*recordings, *scene, request.quick, measuring);
   if (!data) return data.error();
 
@@ -143,12 +129,16 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   if (!control.may_continue(0.99)) return interrupted();
   if (!svgs) return svgs.error();
 
-  ReportOrigin origin = origin_of(request);
-  origin.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::string machine =
+      processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // Names of recordings need not be UTF-8; what cannot be said is replaced.
-  const std::string json =
-      report_json(*data, origin, tables, figures).dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  const std::string json = report_json(*data, request, tables, figures, machine, seconds)
+                               .dump(1, ' ', false, OrderedJson::error_handler_t::replace) +
+                           "\n";
   if (const Status status = folder->write("report.json", json); !status) return status.error();
+  const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
+                             " · " + three_digits(seconds) + " s";
   const auto page = make_page(*data, origin, tables, figures, *svgs);
   if (!page) return page.error();
   if (const Status status = folder->write("index.html", *page); !status) return status.error();

@@ -13,8 +13,7 @@
 namespace palpate {
 
 // Files collect in a hidden folder beside `path`; `commit` renames it. Destroyed
-// without commit, or ended by a signal that is owned (signals.h), it leaves nothing. What
-// other ends left, the next one in that place removes.
+// without commit, or ended by a signal that is owned (signals.h), it leaves nothing.
 class ReportFolder {
  public:
   // Errors: `path` exists and `overwrite` is false, or is not a folder; the folder
@@ -22,13 +21,8 @@ class ReportFolder {
   // files but no report.json): it is never removed.
   static Result<ReportFolder> create(const std::string& path, bool overwrite);
 
-  ReportFolder(ReportFolder&& other) noexcept;
-  ReportFolder& operator=(ReportFolder&&) = delete;
-  ~ReportFolder();
-
   // The whole of a file; its folder, one level deep, is made when missing.
   Status write(const std::string& name, std::string_view text) const;
-  Result<std::string> read(const std::string& name) const;
   std::string path_of(const std::string& name) const { return temporary_->path() + "/" + name; }
 
   // Under the final name now; an earlier report there is gone.
@@ -38,7 +32,6 @@ class ReportFolder {
   ReportFolder() = default;
   std::string path_;
   std::unique_ptr<ScratchFolder> temporary_;
-  int lock_ = -1;  // of the hidden folder
 };
 
 }  // namespace palpate

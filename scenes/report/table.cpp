@@ -9,6 +9,7 @@ namespace palpate {
 namespace {
 
 constexpr int kThree = TableColumn::kThreeDigits;
+constexpr const char* kNothing = "–";
 
 std::string quoted_if_needed(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -30,14 +31,18 @@ std::string shown(const TableCell& cell, const TableColumn& column) {
   if (cell.is_string()) return escape_html(cell.get<std::string>());
   if (cell.is_number_integer()) return with_thousands(cell.dump());
   const double value = cell.get<double>() * column.scale;
-  if (!std::isfinite(value)) return "–";
+  if (!std::isfinite(value)) return kNothing;
   return column.decimals == TableColumn::kThreeDigits ? three_digits(value)
                                                       : with_thousands(fixed(value, column.decimals));
 }
 
-std::string interval_html(const TableCell& low, const TableCell& high, const TableColumn& column) {
-  if (!std::isfinite(low.get<double>()) || !std::isfinite(high.get<double>())) return {};
-  return "<small>" + shown(low, column) + "–" + shown(high, column) + "</small>";
+// What is shown under the cell `first - 1`: the next one, or an interval of the next two.
+std::string under_html(const std::vector<TableCell>& row, std::size_t first, const TableColumn& column) {
+  if (column.under == 0) return {};
+  const std::string low = shown(row[first], column);
+  const std::string high = column.under == 2 ? shown(row[first + 1], column) : "";
+  if (low == kNothing || high == kNothing) return {};
+  return "<small>" + low + (high.empty() ? "" : "–" + high) + "</small>";
 }
 
 bool is_text(const Table& table, std::size_t column) {
@@ -63,15 +68,15 @@ Table models_table(const ReportData& data) {
     table.add({"model", "model"}, one.plan.name);
     table.add({"size", "size"}, one.size);
     table.add({"contact_samples", "samples"}, errors.samples);
-    table.add({"within_jnd", "≤ JND [%]", kInPercent, 2, true}, errors.within_jnd);
+    table.add({"within_jnd", "≤ JND [%]", kInPercent, 2, 2}, errors.within_jnd);
     table.add({"within_jnd_low", ""}, within.low);
     table.add({"within_jnd_high", ""}, within.high);
     table.add({"within_at_least", "at least [%]", kInPercent, 2}, errors.within_at_least());
-    table.add({"p99_error_over_jnd", "99 % error [JND]", 1.0, kThree, true}, errors.p99_error_over_jnd);
+    table.add({"p99_error_over_jnd", "99 % error [JND]", 1.0, kThree, 2}, errors.p99_error_over_jnd);
     table.add({"p99_error_over_jnd_low", ""}, p99.low);
     table.add({"p99_error_over_jnd_high", ""}, p99.high);
     table.add({"p99_at_most", ""}, errors.p99_at_most());
-    table.add({"rms_error_N", "RMS [mN]", kInMilli, kThree, true}, errors.rms_error_N);
+    table.add({"rms_error_N", "RMS [mN]", kInMilli, kThree, 2}, errors.rms_error_N);
     table.add({"rms_error_N_low", ""}, rms_N.low);
     table.add({"rms_error_N_high", ""}, rms_N.high);
     table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
@@ -84,7 +89,7 @@ Table models_table(const ReportData& data) {
     table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, any(one.moved, one.moved.rms_error_N));
     table.add({"left_out_p99_error_over_jnd", "left out: 99 % [JND]"},
               any(one.left_out, one.left_out.p99_error_over_jnd));
-    table.add({"difference_p99", "against the choice [JND]", 1.0, kThree, true}, difference.p99);
+    table.add({"difference_p99", "against the choice [JND]", 1.0, kThree, 2}, difference.p99);
     table.add({"difference_p99_low", ""}, difference.interval.low);
     table.add({"difference_p99_high", ""}, difference.interval.high);
   }
@@ -202,9 +207,7 @@ std::string table_html(const Table& table) {
       const TableColumn& column = table.columns[i];
       if (column.title.empty()) continue;
       html += is_text(table, i) ? "<td class=\"text\">" : "<td>";
-      html += shown(row[i], column);
-      if (column.has_interval) html += interval_html(row[i + 1], row[i + 2], column);
-      html += "</td>";
+      html += shown(row[i], column) + under_html(row, i + 1, column) + "</td>";
     }
     html += "</tr>\n";
   }

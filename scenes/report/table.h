@@ -24,7 +24,7 @@ struct TableColumn {
   std::string title;   // on the page, with the unit in which it is shown: "RMS [mN]"; empty: not shown
   double scale = 1.0;  // shown = stored x scale
   int decimals = kThreeDigits;
-  bool has_interval = false;  // the next two columns are its lower and upper end, shown under it
+  int under = 0;  // so many of the next columns are shown under it: one as it is, two as an interval
 
   static constexpr int kThreeDigits = -1;  // three significant digits
 };

@@ -4,14 +4,16 @@
 
 namespace palpate {
 
-WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd) {
+WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
+                           double from_s) {
   std::vector<StretchRow> rows;
   std::vector<double> squares;  // a row, of the first model
   const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-    const bool contact = counts(snapshot, row.force_N);
+    if (row.time_s < from_s) return;
+    const bool contact = snapshot.in_contact;
     const double ratio = jnd.error_over_jnd(snapshot.force_N[0], row.force_N);
     squares.push_back(contact ? ratio * ratio : 0.0);
-    rows.push_back({row.time_s, row.position_m, row.force_N, contact, {}});
+    rows.push_back({row.time_s, row.force_N, contact, {}});
     rows.back().force_N.assign(snapshot.force_N.begin(), snapshot.force_N.begin() + snapshot.model_count);
   };
   WorstStretch worst;

@@ -15,7 +15,6 @@ inline constexpr double kStretchSeconds = 5.0;
 
 struct StretchRow {
   double time_s = 0.0;
-  double position_m = 0.0;
   double measured_N = 0.0;
   bool in_contact = false;
   std::vector<double> force_N;  // of the models, in their order
@@ -30,6 +29,8 @@ struct WorstStretch {
 
 // The kStretchSeconds with the largest mean squared error/JND of the first of `models` over
 // the samples in contact; the whole of a shorter recording. Up to kMaxModels models.
-WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd);
+// What came before `from_s` is replayed, but does not count.
+WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
+                           double from_s = -1e300);
 
 }  // namespace palpate

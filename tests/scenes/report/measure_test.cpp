@@ -15,16 +15,16 @@ SharedRecording example(const std::string& name, std::size_t rows) {
 }
 
 TEST(LeaveOut, OfOneRecordingABlockAtItsEnd) {
-  const LeftOut part = leave_out({example("a", 5000)});
+  const Split part = leave_out({example("a", 5000)});
   ASSERT_EQ(part.train.size(), 1u);
   ASSERT_EQ(part.tested.size(), 1u);
   EXPECT_EQ(part.tested[0]->rows.size(), 5000u) << "what came before is replayed too";
-  EXPECT_EQ(part.counted_s.low, part.train[0]->rows.back().time_s + 1e-3);
+  EXPECT_EQ(part.counted_from_s, part.train[0]->rows.back().time_s + 1e-3);
   EXPECT_EQ(part.words.rfind("a block at the end of the training recording, ", 0), 0u);
 }
 
 TEST(LeaveOut, OfSeveralEveryThird) {
-  const LeftOut part =
+  const Split part =
       leave_out({example("a", 50), example("b", 50), example("c", 50), example("d", 50), example("e", 50)});
   EXPECT_EQ(part.train.size(), 3u);
   ASSERT_EQ(part.tested.size(), 2u);

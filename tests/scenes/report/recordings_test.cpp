@@ -28,16 +28,22 @@ class ReportRecordings : public ::testing::Test {
     return load_recordings(train, test);
   }
 
+  static std::multiset<std::string> names(const std::vector<SharedRecording>& recordings) {
+    std::multiset<std::string> names;
+    for (const SharedRecording& one : recordings) names.insert(one->name);
+    return names;
+  }
+
   test::TemporaryFolder folder_;
 };
 
 TEST_F(ReportRecordings, TrainAndTestStayApart) {
   const auto set = load({recording("a"), recording("b")}, {recording("c")});
   ASSERT_TRUE(set.ok()) << set.error().message;
-  EXPECT_FALSE(set->cross_validated);
   ASSERT_EQ(set->folds.size(), 1u);
-  EXPECT_EQ(set->folds[0].train, (std::vector<std::size_t>{0, 1}));
-  EXPECT_EQ(set->folds[0].test, (std::vector<std::size_t>{2}));
+  EXPECT_EQ(names(set->folds[0].train), (std::multiset<std::string>{"a", "b"}));
+  EXPECT_EQ(names(set->folds[0].tested), (std::multiset<std::string>{"c"}));
+  EXPECT_EQ(set->folds[0].words, "");
   EXPECT_EQ(set->facts[2].role, "test");
   EXPECT_EQ(set->facts[2].name, "c");
   EXPECT_EQ(set->facts[2].samples, 1000u);
@@ -49,32 +55,29 @@ TEST_F(ReportRecordings, WithoutATestEveryRecordingIsTestedOnceByTheOthers) {
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g"}) paths.push_back(recording(name));
   const auto set = load(paths, {});
   ASSERT_TRUE(set.ok()) << set.error().message;
-  EXPECT_TRUE(set->cross_validated);
   ASSERT_EQ(set->folds.size(), kMostFolds);
-  std::multiset<std::size_t> tested;
-  for (const Fold& fold : set->folds) {
-    EXPECT_EQ(fold.train.size() + fold.test.size(), paths.size());
-    tested.insert(fold.test.begin(), fold.test.end());
-    for (const std::size_t index : fold.test) {
-      EXPECT_EQ(std::count(fold.train.begin(), fold.train.end(), index), 0);
+  std::multiset<std::string> tested;
+  for (const Split& fold : set->folds) {
+    EXPECT_EQ(fold.words, "5-fold cross-validation over the training");
+    EXPECT_EQ(fold.train.size() + fold.tested.size(), paths.size());
+    tested.merge(names(fold.tested));
+    for (const SharedRecording& one : fold.tested) {
+      EXPECT_EQ(std::count(fold.train.begin(), fold.train.end(), one), 0);
     }
   }
-  EXPECT_EQ(tested, (std::multiset<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(tested, (std::multiset<std::string>{"a", "b", "c", "d", "e", "f", "g"}));
 }
 
-TEST_F(ReportRecordings, ASingleOneIsCutAndLosesNoRow) {
+TEST_F(ReportRecordings, OfASingleOneABlockAtItsEndIsTested) {
   const auto set = load({recording("a", 3000)}, {});
   ASSERT_TRUE(set.ok()) << set.error().message;
-  ASSERT_EQ(set->all.size(), kMostFolds);
-  std::size_t rows = 0;
-  double last_s = -1.0;
-  for (const SharedRecording& part : set->all) {
-    rows += part->rows.size();
-    EXPECT_GT(part->rows.front().time_s, last_s);
-    last_s = part->rows.back().time_s;
-  }
-  EXPECT_EQ(rows, 3000u);
-  EXPECT_EQ(set->facts[0].name, "a part 1");
+  ASSERT_EQ(set->folds.size(), 1u);
+  const Split& fold = set->folds.front();
+  ASSERT_EQ(fold.train.size(), 1u);
+  EXPECT_LT(fold.train[0]->rows.back().time_s, fold.counted_from_s);
+  EXPECT_EQ(fold.tested[0]->rows.size(), 3000u);
+  ASSERT_EQ(set->facts.size(), 1u);
+  EXPECT_EQ(set->facts[0].role, "both");
 }
 
 TEST_F(ReportRecordings, TheirOrderDoesNotMatter) {
@@ -112,8 +115,8 @@ TEST_F(ReportRecordings, SaysWhatCannotBeDone) {
   set = load({recording("short", 100)}, {});
   ASSERT_FALSE(set.ok());
   EXPECT_EQ(set.error().message,
-            "short: found 100 rows and no test recording, expected at least 1000 to cut into "
-            "parts; give another recording with --test");
+            "short: found 100 rows and no test recording, expected at least 1000 to leave a part "
+            "out; give another recording with --test");
   set = load({a}, {folder_.file("none.csv")});
   ASSERT_FALSE(set.ok());
   EXPECT_NE(set.error().message.find("none.csv"), std::string::npos);

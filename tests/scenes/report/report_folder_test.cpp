@@ -53,27 +53,6 @@ TEST(ReportFolder, ASecondSignalLeavesNothing) {
   EXPECT_TRUE(folder.entries().empty());
 }
 
-TEST(ReportFolder, RemovesWhatAKilledRunLeftAndNothingElse) {
-  const test::TemporaryFolder folder;
-  const auto alive = ReportFolder::create(folder.file("alive"), false);
-  ASSERT_TRUE(alive.ok());
-  std::filesystem::create_directory(folder.file(".palpate-report-abcdef.old"));
-  const pid_t child = fork();
-  if (child == 0) {
-    const auto report = ReportFolder::create(folder.file("report"), false);
-    if (!report.ok() || !report->write("figures/a.svg", "x").ok()) _exit(3);
-    raise(SIGKILL);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
-  EXPECT_EQ(folder.entries().size(), 3u);
-  auto report = ReportFolder::create(folder.file("report"), false);
-  ASSERT_TRUE(report.ok() && report->commit().ok());
-  EXPECT_EQ(folder.entries().size(), 3u) << "one still being filled, an earlier report, the new one";
-  EXPECT_TRUE(alive->write("report.json", "{}").ok());
-}
-
 TEST(ReportFolder, ReplacesAnEarlierReportOnlyWhenForced) {
   const test::TemporaryFolder folder;
   const std::string out = folder.file("report");

@@ -38,7 +38,7 @@ TEST(Table, HtmlShowsUnitsEscapesTextAndAlignsNumbers) {
 TEST(Table, AnIntervalStandsUnderItsFigureAndInTheFileBesideIt) {
   const Table table{"example",
                     false,
-                    {{"share", "share [%]", 100.0, 1, true}, {"share_low", "", 100.0, 1}, {"share_high", "", 100.0, 1}},
+                    {{"share", "share [%]", 100.0, 1, 2}, {"share_low", "", 100.0, 1}, {"share_high", "", 100.0, 1}},
                     {{0.5, 0.25, 0.75}}};
   EXPECT_EQ(table_csv(table), "share,share_low,share_high\n0.5,0.25,0.75\n");
   EXPECT_NE(table_html(table).find("<td>50.0<small>25.0–75.0</small></td></tr>"), std::string::npos)
