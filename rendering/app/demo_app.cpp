@@ -14,7 +14,6 @@
 #include "rendering/panels/panel_parts.h"
 #include "rendering/panels/panel_views.h"
 #include "scenes/scene/assets.h"
-#include "scenes/scene/local_time.h"
 #include "scenes/scene/user_folders.h"
 #include "scenes/worker/slot_plan.h"
 

@@ -13,7 +13,6 @@
 #include "rendering/panels/panel_parts.h"
 #include "scenes/live/live_session.h"
 #include "scenes/plot/draw.h"
-#include "scenes/scene/local_time.h"
 #include "scenes/scene/user_folders.h"
 
 namespace palpate {

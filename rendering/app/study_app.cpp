@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "scenes/scene/local_time.h"
+#include "scenes/scene/user_folders.h"
 #include "scenes/study/discrimination.h"
 #include "scenes/study/prepare_strokes.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <glm/common.hpp>
 
-#include "scenes/scene/method_look.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 namespace {

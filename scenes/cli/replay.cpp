@@ -11,7 +11,6 @@
 #include "scenes/cli/check_recordings.h"
 #include "scenes/cli/output.h"
 #include "scenes/cli/replay_files.h"
-#include "scenes/cli/replay_plot.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/evaluation/evaluate.h"
 #include "scenes/plot/draw.h"
@@ -189,27 +188,21 @@ void print_recording(const ReplayedRecording& replayed, const std::vector<Loaded
     std::printf("note: %s\n", remark.c_str());
 }
 
-// `also` sees every row as recorded.
+// `plot`: null: no figure is wanted.
 Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<LoadedModel>& models,
-                                     const Options& options, const ReplayVisitor& also) {
+                                     const Options& options, ReplayPlot* plot) {
   std::vector<EvaluatedModel> evaluated;
-  ForceModels force_models;
-  std::vector<std::string> names;
-  for (const LoadedModel& one : models) {
-    evaluated.push_back({one.model, one.model->data().jnd});
-    force_models.push_back(one.model);
-    names.push_back(one.name);
-  }
+  for (const LoadedModel& one : models) evaluated.push_back({one.model, one.model->data().jnd});
   std::optional<ForcesFile> forces;
   if (!options.out.empty()) {
-    Result<ForcesFile> file = ForcesFile::create(options.out, options.force, force_models, names);
+    Result<ForcesFile> file = ForcesFile::create(options.out, options.force, models);
     if (!file) return file.error();
     forces.emplace(std::move(*file));
   }
   EvaluationRequest request;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     if (forces) forces->add(row, snapshot, tick);
-    if (also) also(row, snapshot, tick);
+    if (plot != nullptr) plot->add(row, snapshot);
   };
   const auto evaluation = evaluate(rows_of_file(path), evaluated, request);
   if (!evaluation) return evaluation.error();
@@ -240,14 +233,8 @@ Status run(const Options& options) {
   if (const auto checked = check_before_use(options.recordings, request); !checked) return checked.error();
   std::vector<ReplayedRecording> all;
   ReplayPlot plot(*models);
-  ReplayVisitor also;
-  if (!options.plot.empty()) {
-    also = [&plot](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
-      plot.add(row, snapshot);
-    };
-  }
   for (const std::string& recording : options.recordings) {
-    auto replayed = replay_one(recording, *models, options, also);
+    auto replayed = replay_one(recording, *models, options, options.plot.empty() ? nullptr : &plot);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
   }

@@ -1,5 +1,5 @@
-// What palpate replay reads and writes: models under names that tell them apart, and FORCES.csv.
-// Thread guarantee: slow side (does I/O); one thread per object.
+// What palpate replay reads and writes: models under names that tell them apart, FORCES.csv, a figure.
+// Thread guarantee: slow side (does I/O, starts gnuplot); one thread per object.
 #pragma once
 
 #include <memory>
@@ -11,6 +11,7 @@
 #include "engine/base/result.h"
 #include "engine/tick/replay.h"
 #include "models/model/fitted_model.h"
+#include "scenes/evaluation/model_errors.h"
 
 namespace palpate::cli {
 
@@ -31,8 +32,7 @@ Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& pat
 class ForcesFile {
  public:
   // Errors: as AtomicFile::create.
-  static Result<ForcesFile> create(const std::string& path, bool overwrite, const ForceModels& models,
-                                   const std::vector<std::string>& names);
+  static Result<ForcesFile> create(const std::string& path, bool overwrite, const std::vector<LoadedModel>& models);
 
   void add(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick);
   Status commit() { return file_.commit(); }
@@ -48,7 +48,28 @@ class ForcesFile {
   std::vector<FeatureColumn> columns_;
 };
 
-// `names` with -2, -3 ... behind those that came before, so that all differ.
-std::vector<std::string> distinct_names(const std::vector<std::string>& names);
+// A replayed recording as a figure: the measured force, every model's difference from
+// it over the JND, and the error against the force.
+class ReplayPlot {
+ public:
+  explicit ReplayPlot(const std::vector<LoadedModel>& models) : models_(models) {}
+
+  // Every row in time order; keeps 8 bytes a model and 32 more.
+  void add(const RecordingRow& row, const TickSnapshot& snapshot);
+  // `errors`: of the same rows, one a model. Errors: those of draw_plot (scenes/plot/draw.h).
+  Status draw(const std::string& path, const std::string& recording, const std::vector<ErrorSummary>& errors,
+              bool overwrite) const;
+
+ private:
+  struct Moment {
+    double time_s;
+    double measured_N;
+    bool in_contact;
+    std::vector<float> over_jnd;  // a model: its difference from the measured force
+  };
+
+  const std::vector<LoadedModel>& models_;
+  std::vector<Moment> moments_;
+};
 
 }  // namespace palpate::cli

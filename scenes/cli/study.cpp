@@ -12,9 +12,9 @@
 #include "scenes/cli/progress.h"
 #include "scenes/cli/study_options.h"
 #include "scenes/cli/verbs.h"
-#include "scenes/scene/jnd_file.h"
 #include "scenes/scene/scene.h"
 #include "scenes/study/discrimination.h"
+#include "scenes/study/jnd_lines.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/study_figure.h"
 

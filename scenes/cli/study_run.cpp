@@ -9,7 +9,7 @@
 #include "devices/bridge/bridge_target.h"
 #include "engine/base/signals.h"
 #include "scenes/cli/study_options.h"
-#include "scenes/scene/local_time.h"
+#include "scenes/scene/user_folders.h"
 #include "scenes/study/live_study.h"
 
 namespace palpate::cli {

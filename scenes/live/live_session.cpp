@@ -10,7 +10,7 @@
 #include "models/model/fitted_model.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
-#include "scenes/scene/local_time.h"
+#include "scenes/scene/user_folders.h"
 #include "scenes/worker/slot_plan.h"
 
 namespace palpate {
@@ -118,7 +118,7 @@ Status LiveSession::begin(const std::vector<SlotPlan>& plans) {
   settings.jnd = scene_.jnd;
   loop_ = std::make_unique<HapticsLoop>(*device_, settings);
   recorder_ = std::make_unique<SessionRecorder>(*loop_);
-  if (std::string note = device_->note(); !note.empty()) notices_.add(std::move(note), false);
+  if (std::string note = device_->note(); !note.empty()) notices_.push_back({std::move(note), false});
   if (Status status = models_.start(plans, !request_.scene.empty()); !status) return status;
   // The material answers from the first tick on, before there is any model of it.
   if (truth_ != nullptr) publish("the start");
@@ -147,7 +147,7 @@ void LiveSession::update() {
     // It may have ended by itself.
     recording_ = 0;
     send_controls();
-    notices_.add(std::move(outcome->text), outcome->problem);
+    notices_.push_back({std::move(outcome->text), outcome->problem});
   }
 }
 
@@ -214,7 +214,7 @@ void LiveSession::save_fault_ticks() {
   const std::string path = (request_.data_folder.empty() ? "" : request_.data_folder + "/") +
                            local_time_text("fault-%Y%m%d-%H%M%S-") + std::to_string(fault_files_) + ".csv";
   const Status status = write_fault_file(path, *ticks);
-  notices_.add(status ? "the last second before the fault is in " + path : status.error().message, !status);
+  notices_.push_back({status ? "the last second before the fault is in " + path : status.error().message, !status});
 }
 
 void LiveSession::send_controls() {

@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -132,7 +133,7 @@ class LiveSession {
   RecordingStatus recording() const noexcept { return recorder_->status(); }
 
   // What happened since the last call, oldest first.
-  std::vector<Notice> read_notices() { return notices_.read(); }
+  Notices read_notices() { return std::exchange(notices_, {}); }
 
  private:
   LiveSession(const SessionRequest& request, Scene scene, std::unique_ptr<Device> device);

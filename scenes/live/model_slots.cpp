@@ -101,14 +101,15 @@ void ModelSlots::show_progress() {
 bool ModelSlots::add_file(FinishedModel& finished) {
   --outstanding_files_;
   if (finished.model == nullptr) {
-    notices_.add(finished.problem, true);
+    notices_.push_back({finished.problem, true});
     return false;
   }
   Slot& slot = add_slot(finished.plan);
   join(slots_.size() - 1, finished);
-  notices_.add("loaded " + slot.view.name + " from " + finished.plan.path +
-                   (slot.view.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
-               false);
+  notices_.push_back(
+      {"loaded " + slot.view.name + " from " + finished.plan.path +
+           (slot.view.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+       false});
   return true;
 }
 
@@ -152,7 +153,7 @@ bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
   Slot& slot = *slots_[index];
   slot.view.refitting = false;
   if (finished.model == nullptr) {
-    notices_.add(slot.view.name + ": " + finished.problem, true);
+    notices_.push_back({slot.view.name + ": " + finished.problem, true});
     if (slot.model != nullptr) return false;  // the old one stays
     slot.view.state = SlotState::failed;
     slot.view.problem = finished.problem;
@@ -216,7 +217,7 @@ void ModelSlots::remove(std::size_t index) {
   if (index >= slots_.size()) return;
   Slot& slot = *slots_[index];
   if (shown_slots().size() == (slot.takes_part() ? 1 : 0)) {
-    notices_.add("the last model stays: there must be one to press", false);
+    notices_.push_back({"the last model stays: there must be one to press", false});
     return;
   }
   slot.removed = slot.hidden = true;
@@ -252,8 +253,9 @@ double ModelSlots::trained_depth_m() const noexcept {
 
 bool ModelSlots::has_room(const std::string& what) {
   if (slots_.size() + outstanding_files_ < kMaxModels) return true;
-  notices_.add(
-      "cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; start again with fewer", true);
+  notices_.push_back(
+      {"cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; start again with fewer",
+       true});
   return false;
 }
 

@@ -5,7 +5,7 @@
 
 #include "engine/import/import_words.h"
 #include "engine/recording/recording.h"
-#include "scenes/scene/local_time.h"
+#include "scenes/scene/user_folders.h"
 
 namespace palpate {
 namespace {

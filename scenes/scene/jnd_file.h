@@ -1,51 +1,16 @@
-// The outcome of a study: a line through JNDs, and the file that a scene names in place of its own line.
-//
-// As Hoever & Harders (2009), section 4.1 and figure 3: a line is fitted to the JNDs
-// over the reference force by least squares, all points alike, and then shifted down
-// until no point lies below it. A model within that conservative line is within every
-// measured threshold.
+// The file with a study's outcome (scenes/study/jnd_lines.h), which a scene names in place of its own line.
 // JSON: "format": "palpate-jnd", "version": 1, "offset_N" (above 0, up to 100) and
-// "weber_fraction" (0 to 1) of the conservative line, which is all that a scene uses;
-// besides, for the reader: criterion, subjects, the fitted line before the shift and
-// the points with their sources. Other fields are kept out of the way: ignored.
+// "weber_fraction" (0 to 1) of the conservative line, which is all that a scene uses.
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
 
 namespace palpate {
-
-struct JndPoint {
-  double reference_N = 0.0;
-  double jnd_N = 0.0;
-  double standard_error_N = 0.0;  // 0: not known
-  std::string source;             // "study", or a publication
-};
-
-struct JndLines {
-  JndLine fitted;
-  JndLine conservative;
-};
-
-// Errors: fewer than two reference forces; JNDs that fall with the force; a
-// conservative line that is not above zero at no force. Nothing could be compared with
-// those.
-Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points);
-
-// X.-D. Pang, H. Z. Tan & N. I. Durlach (1991), "Manual discrimination of force using
-// active finger motion", Perception & Psychophysics 49(6), 531-540: the one value
-// within the range of this study, 9 % at 2.5 N, as Hoever & Harders quote it. (Their
-// abstract sums up 2.5 to 10 N as "roughly 7 %".)
-std::vector<JndPoint> pang_tan_durlach_points();
-
-// The text of the file; numbers read back as they are.
-std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& points, double criterion,
-                          const std::vector<std::string>& subjects);
 
 // Errors: not JSON, another format or version, a field missing or out of range; the
 // first one, as "path:line:column: found ..., expected ...".

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/base/whole_file.h"
+#include "models/fit/methods.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate {
@@ -65,6 +66,13 @@ Result<Scene> load_scene(const std::string& name, const std::string& in_folder) 
   const std::optional<std::string> text = read_whole_file(path);
   if (!text) return Error{"cannot read the scene " + path};
   return parse_scene(*text, path);
+}
+
+std::uint32_t method_rgb(std::string_view method) {
+  constexpr std::uint32_t kPositionColour = 0xF0E442;  // Okabe & Ito; grey is the band
+  if (method == "position") return kPositionColour;
+  const Method* row = find_method(method);
+  return row == nullptr ? kNeutralColour : row->colour;
 }
 
 }  // namespace palpate

@@ -65,4 +65,9 @@ Result<std::vector<std::string>> scene_names(const std::string& folder = {});
 // The scene of that name. Errors: unknown (lists the known ones), file broken.
 Result<Scene> load_scene(const std::string& name, const std::string& folder = {});
 
+// 0xRRGGBB of a row of models/fit/methods.h, or of "position", the slot of a live session that
+// knows the depth alone. 0 means black on white and white on black: of the methods without a
+// hue, and of what is not known.
+std::uint32_t method_rgb(std::string_view method);
+
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "scenes/scene/user_folders.h"
 
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 
 namespace palpate {
@@ -30,5 +31,14 @@ Result<std::string> folder(const char* variable, const char* below_home) {
 
 Result<std::string> config_folder() { return folder("XDG_CONFIG_HOME", ".config"); }
 Result<std::string> data_folder() { return folder("XDG_DATA_HOME", ".local/share"); }
+
+std::string local_time_text(const char* format) {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&time, &local);
+  char text[64] = {};
+  std::strftime(text, sizeof text, format, &local);
+  return text;
+}
 
 }  // namespace palpate

@@ -7,7 +7,7 @@
 // where a JND is a small part of the comparisons' range: the 320 answers of one subject do
 // not tell a miss from a lapse, and each miss that is taken for a lapse makes the function
 // steeper; all answers together tell. The means are the points of the line
-// (scenes/scene/jnd_file.h). Differences and references are those that were rendered, not those
+// (scenes/study/jnd_lines.h). Differences and references are those that were rendered, not those
 // that were planned. Training trials do not count, nor do trials whose forces did not
 // reach half of what was planned.
 // Deterministic. Thread guarantee: pure functions; slow side (seconds).
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "scenes/scene/jnd_file.h"
+#include "scenes/study/jnd_lines.h"
 #include "scenes/study/psychometrics.h"
 #include "scenes/study/study_file.h"
 

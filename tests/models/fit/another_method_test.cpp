@@ -10,7 +10,7 @@
 #include "models/model/file/model_io.h"
 #include "scenes/report/figures.h"
 #include "scenes/report/plan.h"
-#include "scenes/scene/method_look.h"
+#include "scenes/scene/scene.h"
 #include "scenes/worker/slot_plan.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
