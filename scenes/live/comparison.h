@@ -1,8 +1,5 @@
-// How well the models of a session agree with their reference: the errors, the
-// curves and the dents, from the loop's snapshots.
-//
-// One evaluation, from one kind of sample: a tick that took a sample, in contact, of
-// models and reference that are there. Curves, table, plots and saved files are made of it.
+// How well the models of a session agree with their reference: errors, curves and dents, from one kind of
+// sample: a tick that took one, in contact, of models and reference that are there.
 // Errors count only after the filters have seen one sample out of contact: filters
 // that begin in the middle of a press have not the state of its beginning.
 // Thread guarantee: one thread.
@@ -36,10 +33,9 @@ class Comparison {
   // One point a tick of the last minutes.
   const ForceHistory& history() const noexcept { return history_; }
 
-  // Device time at which a recording begins: whoever replays from there on has seen all of it.
+  // Device time at which a recording begins: who replays from there has seen all of it.
   void begins_at(double time_s) noexcept { begins_at_s_ = time_s; }
-  // A slot's model became ready.
-  void begin_slot(std::size_t slot);
+  void begin_slot(std::size_t slot);  // its model became ready
   // Every snapshot in order, with what the fault log says of it.
   void add(const LoopSnapshot& snapshot, TickTrouble trouble);
   // After them, once a frame: what the views say of the newest one.

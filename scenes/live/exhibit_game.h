@@ -9,11 +9,9 @@
 // trial, the same model twice:
 //   attract -> press -> reveal -> press ... -> score
 //
-// What a hand would notice is computed from the forces of the visitor's own strokes: the
-// difference over the JND, as its mean over 50 ms, the span of felt_error.h. It is
-// noticed when that was anywhere more than 1, so that the curve that is drawn says the
-// same. Ticks outside what the models were trained on do not count.
-// Deterministic: the same seed and the same models give the same rounds.
+// What a hand would notice is computed from the visitor's own strokes: where the difference over the JND,
+// as its mean over 50 ms (felt_error.h), was anywhere more than 1, within what the models were trained on.
+// The same seed and the same models give the same rounds.
 // Thread guarantee: one thread; `add` allocates nothing after the first minute.
 #pragma once
 
@@ -94,13 +92,11 @@ class ExhibitGame {
 
   explicit ExhibitGame(std::uint64_t seed) : random_(seed, kStream) {}
 
-  // How the rounds of a game go, from obvious to impossible: the model of depth alone,
-  // the paper's recipe, the best one (greedy, else direct, else the first), as far as
-  // they are there. Seen: each against the reference, or without one against the first
-  // model, which the picture shows beside it; felt: against the best.
+  // From obvious to impossible: the model of depth alone, the paper's recipe, the best one (greedy, else
+  // direct, else the first), as far as they are there. Seen: each against the reference, or without one
+  // against the first model; felt: against the best.
   static std::vector<ExhibitRound> rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt);
-  // False, and nothing changes: there is nothing to compare. `press_s`: of a round that
-  // is seen.
+  // False, and nothing changes: there is nothing to compare. `press_s`: of a round that is seen.
   bool begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt, double press_s = kPress_s);
   void reset();
 

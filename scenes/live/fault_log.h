@@ -1,8 +1,5 @@
-// What went wrong in the loop, in words, newest last.
-//
-// A fault that follows one of its kind within a second counts there. What is
-// part of normal running is no fault: the limiter holding back while the force
-// ramps up at the start, after a bad sample or from one model to another.
+// What went wrong in the loop, in words, newest last. A fault that follows one of its kind within a second
+// counts there. The limiter holding back while the force ramps is no fault.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -48,8 +45,7 @@ class FaultLog {
   // The share of missed deadlines over some ten seconds; older ones fade.
   double missed_of_late() const noexcept { return missed_of_late_; }
 
-  // In words, what has been an alarm since the last `acknowledge`, the device's
-  // first; `newest` has what the loop latched.
+  // What has been an alarm since the last `acknowledge`, the device's first; `newest` has what the loop latched.
   std::vector<std::string> alarms(const LoopSnapshot& newest) const;
   // The user has seen the alarms; the loop is told by LoopControls::acknowledged.
   void acknowledge() noexcept { stall_unseen_ = false; }

@@ -184,7 +184,8 @@ void LiveSession::use_line_up(const std::string& name) {
   const auto plans = plan_slots(scene_, line_up->models, false);
   if (!plans) return;
   request_.line_up = name;
-  if (models_.use_plans(*plans)) publish("other models are shown");
+  models_.use_plans(*plans);
+  publish("other models are shown");
 }
 
 void LiveSession::read_snapshots() {

@@ -1,10 +1,6 @@
-// A live session: a scene, a device, the haptics loop, and what it is made of beside
-// them: the models (ModelSlots), how they agree with a reference (Comparison), the
-// recorder and the log of faults. No window, no drawing: the window asks and shows,
-// tests run it without one.
-//
-// Thread guarantee: one thread (the window's) for everything here; it never
-// waits for the haptics thread, nor that for it.
+// A live session without a window: a scene, a device, the haptics loop, the models (ModelSlots), how they
+// agree with a reference (Comparison), the recorder and the log of faults.
+// Thread guarantee: one thread (the window's); it never waits for the haptics thread, nor that for it.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +46,7 @@ struct DeviceChoice {
   std::string problem;  // why it cannot be opened and what to do; empty: it can
 };
 
-// Those that need no more than their name. Slow side: opens and closes what is plugged in, which
-// takes a while.
+// Those that need no more than their name. Slow: opens and closes what is plugged in.
 std::vector<DeviceChoice> device_choices();
 
 class LiveSession {
@@ -66,8 +61,7 @@ class LiveSession {
   // lets the force go to zero; interrupts fits.
   ~LiveSession();
 
-  // Once a frame: takes in all ticks since the last call and what the worker has
-  // ready.
+  // Once a frame: takes in all ticks since the last call and what the worker has ready.
   void update();
 
   const Scene& scene() const noexcept { return scene_; }
@@ -84,8 +78,7 @@ class LiveSession {
   void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
   void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
   void remove(std::size_t slot);
-  // The line-up that is shown; empty: models that were asked for one by one. Ignored in
-  // a scene without a material.
+  // The line-up that is shown; empty: models that were asked for one by one.
   const std::string& line_up() const noexcept { return request_.line_up; }
   void use_line_up(const std::string& name);
 
@@ -93,8 +86,7 @@ class LiveSession {
   const Comparison& comparison() const noexcept { return comparison_; }
   bool has_reference(ReferenceKind kind) const noexcept;
   void use_reference(ReferenceKind kind);  // forgets the errors; ignored without one
-  // "true force of the virtual silicone", "as recorded in foam", ...; `brief`: what
-  // errors are off from, in few words.
+  // "true force of the virtual silicone"; `brief`: what errors are off from, in few words.
   std::string reference_words(bool brief = false) const;
   // Forgets errors so far and alarms that are over; curves stay.
   void reset_figures();
@@ -103,17 +95,15 @@ class LiveSession {
   const FaultLog& faults() const noexcept { return faults_; }
   std::vector<std::string> alarms() const { return faults_.alarms(newest_); }
 
-  // The device: `newest().device` says how it is. What to do for it to render force,
-  // empty when nothing; the tool is at its rest position.
+  // The device: `newest().device` says how it is.
   const std::string& device_name() const noexcept { return device_->name(); }
-  std::string device_words() const;
-  bool renders_force() const noexcept;  // that a person feels
-  void start_zeroing() { device_->start_zeroing(); }
+  std::string device_words() const;                   // what to do for it to render force; empty: nothing
+  bool renders_force() const noexcept;                // that a person feels
+  void start_zeroing() { device_->start_zeroing(); }  // the tool is at its rest position
   // What it can be asked for beside: null when it cannot.
   ToolInput* mouse() const noexcept { return device_->mouse(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
-  // Where the surface of the recording is for the models; moved there unless told
-  // otherwise. Errors so far are forgotten with every change.
+  // Where the surface of a recording is for the models. Errors so far are forgotten with every change.
   const ReplaySurface& surface() const noexcept { return surface_; }
   void move_surface(bool moved);
   // What must be held for the device to push; `hold` says that it is, every frame.
@@ -124,15 +114,13 @@ class LiveSession {
   const ForceScale& scale() const noexcept { return scale_; }
   void use_scale(const ForceScale& scale);
 
-  // Records every sample from now on, with the reference that is selected as
-  // its force. Errors: the file exists, cannot be written, already recording,
-  // no reference.
+  // Records every sample from now on, with the selected reference as its force; a notice says how it ended.
+  // Errors: the file exists, cannot be written, already recording, no reference.
   Status start_recording(const std::string& path);
-  // The file appears whole under its name, or not at all; a notice says so.
   void stop_recording();
   RecordingStatus recording() const noexcept { return recorder_->status(); }
 
-  // What happened since the last call, oldest first.
+  // What happened since the last call.
   Notices read_notices() { return std::exchange(notices_, {}); }
 
  private:

@@ -173,12 +173,11 @@ bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
     slot.view.name = distinct_name(name, &slot);
   }
   if (!direct_ && slot.view.method == "direct" && !slot.plan.paper) direct_ = index;
-  if (slot.hidden) return true;
-  if (first || (index == 0 && !user_chose_)) selected_ = index;
+  if (!slot.hidden && (first || (index == 0 && !user_chose_))) selected_ = index;
   return true;
 }
 
-bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
+void ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
   for (const auto& slot : slots_) {
     slot->hidden = slot->removed || slot->plan.origin != ModelOrigin::file;
   }
@@ -204,7 +203,6 @@ bool ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
   }
   if (slots_[selected_]->hidden && first) selected_ = *first;
   select_what_is_there();
-  return true;
 }
 
 // The active model must be one that takes part, as soon as there is one.

@@ -1,9 +1,7 @@
 // The models of a session and the sets of them that the haptics loop holds.
 //
-// Slots are numbered in the order in which models were asked for and keep their
-// numbers. A slot's model is fitted or read by the worker, the quickest first, and
-// joins the next set when it is ready, so that a session is alive at once.
-//
+// Slots keep the numbers in which models were asked for. A slot's model is fitted or read by the
+// worker, the quickest first, and joins the next set when it is ready, so that a session is alive at once.
 // Thread guarantee: one thread; it never waits for the worker but in the destructor.
 #pragma once
 
@@ -38,12 +36,10 @@ struct SlotView {
   SlotState state = SlotState::waiting;
   double progress = 0.0;  // of the fit, 0..1
   std::string problem;    // when failed
-  // Of another material than the one that is pressed, as far as anybody knows: there is
-  // nothing to compare it with.
-  bool foreign = false;
-  double force_N = 0.0;  // in the newest tick; 0 until ready
+  bool foreign = false;   // of another material than the one that is pressed: nothing to compare it with
+  double force_N = 0.0;   // in the newest tick; 0 until ready
   bool out_of_domain = false;
-  // Of the force, 95 % (models/model); NaN: unknown. All there is without a reference.
+  // Of the force, 95 %; NaN: unknown.
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
   double tick_ns = 0.0;    // a whole tick of this model alone, measured when it became ready
   bool refitting = false;  // with another number of centres; the old one is there until then
@@ -54,11 +50,8 @@ struct SlotView {
   ErrorFigures errors;
   ErrorQuantile quantile;                   // of the same samples
   std::uint64_t samples_out_of_domain = 0;  // left out for being outside the data of one
-  // For drawing. Depth of the dent: the tool's while it presses, behind it the
-  // surface's slow return, which follows the model's own relaxation times.
+  // For drawing (dent.h): the dent's depth, and the largest recent error that a hand feels (felt_error.h).
   double dent_m = 0.0;
-  // Colours the dent: the largest recent error over the JND that a hand feels
-  // (scenes/live/felt_error.h), fading within 0.3 s.
   double recent_peak_error_over_jnd = 0.0;
 };
 
@@ -66,8 +59,7 @@ class ModelWorker;
 struct FinishedModel;
 struct SlotPlan;
 
-// Which slots' models a set in the loop holds, so that its snapshots are read
-// rightly also after the next one was published.
+// Which slots' models a set in the loop holds: snapshots of it come after the next one was published.
 struct PublishedSet {
   std::uint32_t id = 0;
   std::vector<std::size_t> slots;
@@ -90,8 +82,7 @@ class ModelSlots {
   Status start(const std::vector<SlotPlan>& plans, bool claimed);
   // Interrupts fits; does not wait.
   void cancel() noexcept;
-  // Once a frame: what the worker has finished. Returns the slots whose models
-  // became ready; when there are any, publish a new set.
+  // Once a frame. Returns the slots whose models became ready; when there are any, publish a new set.
   std::vector<std::size_t> update();
 
   // All ready models; `reference` may be null. The newest set is this one now.
@@ -108,40 +99,35 @@ class ModelSlots {
   std::size_t size() const noexcept;
   const SlotView& view(std::size_t slot) const noexcept;
   SlotView& view(std::size_t slot) noexcept;
-  // Of a slot that is ready.
   const std::vector<FeatureSpec>& features(std::size_t slot) const noexcept;
 
   // The slot of the active model, as asked for; the force fades to it.
   std::size_t selected() const noexcept { return selected_; }
   bool select(std::size_t slot);  // false, and ignored: not ready
-  // What models are compared with where there is no truth: the first direct interpolant
-  // that is ready; of files alone, of which none is one, the first of several.
+  // What models are compared with where there is no truth: the first direct interpolant; of files alone
+  // the first of several.
   std::optional<std::size_t> reference() const noexcept;
   // Whether any is fitted here, to the material itself.
   bool fits() const noexcept;
   // It is a model of what is pressed, whatever its file says.
   void claim(std::size_t slot) noexcept { view(slot).foreign = false; }
 
-  // Shows the models of these plans and hides all others but those of files and
-  // recordings; what is not there yet is fitted. What is active stays so if it is shown,
-  // else the first is. Whether the set has changed at once.
-  bool use_plans(const std::vector<SlotPlan>& plans);
+  // Shows the models of these plans and hides all others but those of files; what is not there yet is
+  // fitted. What is active stays so if it is shown, else the first is.
+  void use_plans(const std::vector<SlotPlan>& plans);
   // Takes a model out for good.
   void remove(std::size_t slot);
   // A name that another one has gets a number.
   void rename(std::size_t slot, const std::string& name);
-  // Fits a model anew with so many centres, in the background; ignored for one that has
-  // no number of centres or comes from a file.
+  // Fits a model anew with so many centres, in the background; ignored for one that takes none.
   void refit(std::size_t slot, int centres);
   // Errors: not ready, as save_model.
   Status save(std::size_t slot, const std::string& path) const;
   // Greatest depth that all shown models were trained with, metres; infinite without any.
   double trained_depth_m() const noexcept;
 
-  // Reads a model file in the background into a new slot. Trouble becomes a
-  // notice, and no slot.
+  // Reads a model file in the background into a new slot; trouble becomes a notice.
   void load_file(const std::string& path);
-  // Whether all that was asked for is ready or has failed.
   bool all_settled() const noexcept { return outstanding_ == 0; }
 
  private:

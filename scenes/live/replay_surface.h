@@ -1,10 +1,7 @@
-// The surface of a recording that is replayed into a session: where the models
-// that are ready fit it best (models/surface/surface_search.h), found on a thread
-// of its own once the first model is ready and again when all are, and given to the
-// device.
-//
-// Thread guarantee: one thread; `update` and `move` never wait, the destructor waits
-// for a search of some tenths of a second.
+// The surface of a recording that is replayed into a session: where the models that are ready fit it best
+// (models/surface/surface_search.h), found on a thread of its own once the first model is ready and again
+// when all are, and given to the device.
+// Thread guarantee: one thread; only the destructor waits, some tenths of a second for a search.
 #pragma once
 
 #include <cstddef>

@@ -146,7 +146,7 @@ void SessionRecorder::write(const RecordedSample& sample) {
   }
   const ToolSample& tool = sample.tool;
   if (!writer_->add({*time_s, tool.position_m, force_N, tool.velocity_m_per_s, tool.acceleration_m_per_s2})) {
-    ++counts_.refused;
+    ++counts_.unusable;
   }
 }
 
@@ -158,7 +158,7 @@ Notice SessionRecorder::finish() {
   std::snprintf(length, sizeof length, " (%.1f s)", time_.last_s() - time_.gaps_s());
   return {"recorded " + std::to_string(writer_->rows()) + " rows" + length + " into " + request_.path +
               counted(dropped, "were lost, the disk was too slow") +
-              counted(counts_.unusable + counts_.refused, "that the loop could not use were left out") +
+              counted(counts_.unusable, "that the loop could not use were left out") +
               counted(counts_.without_force, "without a force were left out"),
           dropped > 0};
 }

@@ -1,13 +1,10 @@
 // Every sample of a session into a recording file, not one lost.
 //
-// The loop puts samples into a ring (engine/live/live_tick.h); a thread of the
-// recorder's own empties it every 20 ms into a RecordingWriter; from the 1000th row on
-// the file is there under its name, whole rows at every moment. Time begins at 0 and goes on where the
-// device's goes on; where a new stream begins (a recording that is replayed
-// starts over, a seek) it goes on kStreamGap_s later, by which the filters of
-// whoever reads the file have forgotten what was before, as the loop's had.
-// Samples that the loop could not use (not finite, not later) or that have no
-// force are left out.
+// The loop puts samples into a ring (engine/live/live_tick.h); a thread of the recorder's own empties it
+// every 20 ms into a RecordingWriter; from the 1000th row on the file is there under its name, whole rows
+// at every moment. Time begins at 0; where a new stream begins (a replay that starts over, a seek) it goes
+// on kStreamGap_s later, by which the filters of whoever reads the file have forgotten what was before, as
+// the loop's had. Samples that the loop could not use (not finite, not later) or without a force are left out.
 // Thread guarantee: one thread, slow side, but for the loop's own.
 #pragma once
 
@@ -78,23 +75,19 @@ class SessionRecorder {
   Status start(const RecorderRequest& request);
   std::uint32_t number() const noexcept { return number_; }
 
-  // Ends the recording with the samples that the loop has published by now.
-  // Does not wait.
+  // Ends the recording with the samples that the loop has published by now; does not wait.
   void stop();
-  // Blocks until a recording that was stopped, or gave up, is on the disk or
-  // gone.
+  // Blocks until a recording that was stopped, or gave up, is on the disk or gone.
   void wait();
 
   RecordingStatus status() const;
-  // What became of the recording, once, after it ended: by `stop`, or by itself
-  // because the disk refused.
+  // What became of the recording, once, after it ended: by `stop`, or since the disk refused.
   std::optional<Notice> read_outcome();
 
  private:
   struct Counts {
     std::uint64_t without_force = 0;
     std::uint64_t unusable = 0;
-    std::uint64_t refused = 0;
   };
   void work();
   void drain();

@@ -1,19 +1,12 @@
-// A block of virtual material with its memory, pressed along one direction: what
-// every law in this folder has in common.
-//
-// A law says what force a surface at depth s meets at the end of a short
-// sub-step, the surface having moved there evenly, and remembers where it went.
-// The rest is here. The surface never pulls: when the tool retracts faster than
-// the material follows, they separate, the force is 0 although the depth is
-// positive, and the free surface comes back by itself, so that the force on it
-// stays 0, until it meets the tool or is flat again. The memory goes on
-// meanwhile. Sub-steps are 0.1 ms or less whatever the caller's step, so that a
-// motion gives the same force at every sampling rate.
-// Every law is passive: from its untouched state on, the work that was put in is
-// never negative. Each header says why.
-// SI units; force along the outward normal, positive when it pushes the tool out.
-// Thread guarantee: one thread at a time; `step` is wait-free, allocates
-// nothing and fits the haptic tick.
+// A block of virtual material with its memory, pressed along one direction. A law says what force a surface
+// at depth s meets at the end of a short sub-step, the surface having moved there evenly, and remembers
+// where it went. The rest is here: the surface never pulls. When the tool retracts faster than the material
+// follows, they separate, and the free surface comes back by itself, without a force, until it meets the
+// tool or is flat again; the memory goes on meanwhile. Sub-steps are 0.1 ms or less whatever the caller's
+// step, so that a motion gives the same force at every sampling rate.
+// Every law is passive: from its untouched state on, the work that was put in is never negative. Each
+// header says why. Force is positive when it pushes the tool out.
+// Thread guarantee: one thread at a time; `step` is wait-free, allocates nothing and fits the haptic tick.
 #pragma once
 
 #include <cmath>
@@ -38,27 +31,23 @@ class Block {
  public:
   virtual ~Block() = default;
 
-  // Moves the tool to `position_m` (positive inside the block), where it has
-  // `velocity_m_per_s`, `dt_s` later; returns the force then, newtons, >= 0.
-  // In between position and velocity follow the cubic through both ends, in
-  // sub-steps of 0.1 ms or less (longer ones only when dt_s exceeds 0.1 s).
-  // Errors: an argument that is not finite, or dt_s <= 0, changes nothing and
-  // returns the last force.
+  // Moves the tool to `position_m`, where it has `velocity_m_per_s`, `dt_s` later; returns the force then,
+  // N, >= 0. In between position and velocity follow the cubic through both ends, in sub-steps of 0.1 ms or
+  // less (longer ones only when dt_s exceeds 0.1 s). Errors: an argument that is not finite, or dt_s <= 0,
+  // changes nothing and returns the last force.
   double step(double position_m, double velocity_m_per_s, double dt_s) noexcept;
 
   // Puts the tool at `position_m` at rest with all memory gone.
   void reset(double position_m = 0.0) noexcept;
 
   double force_N() const noexcept { return force_N_; }
-  // Indentation of the surface: the tool's depth in contact, more when the
-  // tool has left a surface that still comes back.
+  // The tool's depth in contact, more when the tool has left a surface that still comes back.
   double surface_depth_m() const noexcept { return surface_m_; }
   bool touching() const noexcept { return touching_; }
 
-  // What it holds when pressed to `depth_m` for a moment, half relaxed, newtons;
-  // rises with the depth. A hand aims by it.
+  // What it holds when pressed to `depth_m` for a moment, half relaxed; rises with the depth. A hand aims by it.
   virtual double held_force_N(double depth_m) const noexcept = 0;
-  // What it holds at `depth_m` when all has relaxed, newtons.
+  // What it holds at `depth_m` when all has relaxed.
   virtual double relaxed_force_N(double depth_m) const noexcept = 0;
   // Its true relaxation times for people, e.g. "0.17 s, 1.27 s", or "none".
   virtual std::string relaxation_times_text() const = 0;
@@ -72,8 +61,7 @@ class Block {
   double last_surface_m() const noexcept { return surface_m_; }
   double substep_s() const noexcept { return substep_s_; }
 
-  // Far below anything a sensor sees; keeps a block that rests in free air from
-  // computing with denormal numbers.
+  // Far below any sensor; keeps a block that rests in free air from computing with denormal numbers.
   static constexpr double kNoForce_N = 1e-30;
 
  private:

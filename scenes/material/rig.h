@@ -1,11 +1,7 @@
-// The virtual recording rig behind `palpate synth`: a hand presses a block of
-// virtual material, sensors write down what they see, and the truth that no
-// sensor sees is kept beside it.
-//
-// Hand and material run at 20 kHz whatever the recording's rate; sensors only
-// read them. So the same seed gives the same motion and the same true force at
-// every rate, and each sensor draws its noise, one number per row, from a
-// stream of its own.
+// The virtual recording rig behind `palpate synth`: a hand presses a block of virtual material, sensors
+// write down what they see, and the truth that no sensor sees is kept beside it. Hand and material run at
+// 20 kHz whatever the recording's rate, and each sensor draws its noise from a stream of its own: the same
+// seed gives the same motion and the same true force at every rate.
 // Sensors (per row, independent): encoder, position rounded to its step; force
 // cell, white noise, then 12-bit steps over its range; accelerometer (like the
 // paper's ADXL330: 280 ug/sqrt(Hz) over 0.5 kHz), white noise and a bias that
@@ -98,13 +94,11 @@ class Rig {
   double bias_m_per_s2_ = 0.0;
 };
 
-// A whole recording as the sensors see it, without the truth. `progress` is told
-// the share done now and then and may be empty; when it returns false the
-// recording is given up. The recording's name is "<material>_<seed>". Errors: as Rig::create; "interrupted".
+// A whole recording as the sensors see it, without the truth, named "<material>_<seed>". `progress` is told
+// the share done; when it returns false the recording is given up. Errors: as Rig::create; "interrupted".
 Result<Recording> record_sensors(const RigSettings& settings, const std::function<bool(double share)>& progress = {});
 
-// What a recording made with `settings` says about itself, line by line; the
-// same for the same settings, with no path and no date. `row_count`: its rows.
+// What a recording of `row_count` rows made with `settings` says about itself, without path and date.
 std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
                                             std::size_t row_count);
 

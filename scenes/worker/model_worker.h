@@ -1,17 +1,11 @@
-// A worker thread that makes the models of a session ready, the one that was asked for
-// first at once and the rest the quickest first: files are read, methods are fitted to the
-// recording that is the material, or to a virtual one of the scene's material, the one that
-// `palpate synth` with the same seed writes, with the code of `palpate fit`: the same bits.
-//
-// Asked for another number of centres than before (a slider), it chooses centres for the
-// largest number once; each number after that takes milliseconds (models/fit/nested_fit.h)
-// and gives the model of `palpate fit` to rounding.
-//
-// The worker runs at a lower priority than everything else in the program. A
-// fit is interrupted within some 20 ms, but for the factorisation of the direct
-// fit, which is one call into LAPACK.
-// Thread guarantee: one thread, slow side, for all functions; they never wait
-// for the worker but in the destructor.
+// A thread that makes the models of a session ready, the quickest first: files are read, methods are fitted
+// to the recording that is the material, or to what `palpate synth` writes of the scene's with the same
+// seed; the same bits as of `palpate fit`.
+// Asked for another number of centres than before (a slider), it chooses centres for the largest number
+// once; each number after that takes milliseconds (models/fit/nested_fit.h).
+// It runs at a lower priority than everything else. A fit is interrupted within some 20 ms, but for the
+// factorisation of the direct fit, which is one call into LAPACK.
+// Thread guarantee: one thread, slow side; nothing but the destructor waits for the worker.
 #pragma once
 
 #include <atomic>
@@ -57,8 +51,8 @@ class ModelWorker {
 
   // What is asked for before this is made the quickest first. Errors: no thread.
   Status start();
-  // `job_id`: comes back with the model. One that is asked for again before it was begun
-  // is made once, as asked last. Files do not wait behind fits; `at_once`: before all others.
+  // One that is asked for again before it was begun is made once, as asked last. Files do not wait behind
+  // fits; `at_once`: before all others.
   void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
   // What was finished since the last call.
   std::vector<FinishedModel> read_finished();

@@ -52,14 +52,11 @@ inline constexpr const char* kPaperMark = " '09";
 // The method's name, or "position"; nothing for a file before it is read.
 std::string plan_method(const SlotPlan& plan);
 
-// `models`: methods or model files as asked for; none: the scene's default. A method
-// that takes centres may say how many, "greedy-10", and "paper:" before it asks for the
-// paper's recipe. Files
-// are read here, so that a broken one is known before anything starts. In a scene
-// with a material a model of position alone comes behind them when asked, and always
-// the direct interpolant, the reference. Errors: neither a method nor a file, a file
-// that load_model refuses, a method in a scene without a material, more than
-// kMaxModels in all.
+// `models`: methods or model files as asked for; none: the scene's default. A method that takes centres may
+// say how many, "greedy-10", and "paper:" before it asks for the paper's recipe. Files are read here, so
+// that a broken one is known before anything starts. In a scene with a material a model of position alone
+// comes behind them when asked, and always the direct interpolant, the reference. Errors: neither a method
+// nor a file, a file that load_model refuses, a method in a scene without a material, more than kMaxModels.
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
                                          bool position_only);
 
