@@ -11,11 +11,8 @@
 
 namespace palpate::cli {
 
-// While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks the job to
-// stop instead of ending the program, so that it can tidy up; the second ends it
-// (signals.h). One at a time. Use as
-//   ProgressLine line("fitting greedy-100");
-//   control.progress = [&](double fraction) { return line.update(fraction); };
+// While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks the job to stop instead of ending the
+// program, so that it can tidy up; the second ends it (signals.h). One at a time.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string label);
@@ -23,8 +20,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine();  // clears the line
 
-  // `fraction` done, 0..1. Draws at most ten times a second. Returns false once
-  // the user interrupted: stop, leave no file, report "interrupted".
+  // `fraction` done, 0..1. Returns false once the user interrupted: stop, leave no file.
   bool update(double fraction);
 
  private:
@@ -39,8 +35,7 @@ class ProgressLine {
   bool drawn_ = false;
 };
 
-// The text of a line: "label  37 %  12 s left". `elapsed_s` ≥ 0; the remaining
-// time appears once it can be guessed (2 % and 1 s).
+// "label  37 %  12 s left"; the remaining time appears once it can be guessed (2 % and 1 s).
 std::string progress_text(const std::string& label, double fraction, double elapsed_s);
 
 }  // namespace palpate::cli

@@ -1,7 +1,8 @@
 // palpate synth: writes a recording made by the virtual rig.
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
+#include <iomanip>
+#include <iostream>
 #include <memory>
 #include <string>
 
@@ -45,9 +46,8 @@ void check_usage(const SynthOptions& options) {
 
 Status list_materials() {
   for (const Material& material : materials()) {
-    std::printf("%-9.*s %.*s (relaxation times: %s)\n", static_cast<int>(material.name.size()), material.name.data(),
-                static_cast<int>(material.summary.size()), material.summary.data(),
-                relaxation_times_text(material).c_str());
+    std::cout << std::left << std::setw(9) << material.name << " " << material.summary
+              << " (relaxation times: " << material.relaxation_times << ")\n";
   }
   return {};
 }

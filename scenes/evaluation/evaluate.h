@@ -1,10 +1,7 @@
-// Models against one recording, through the tick of the live loop: errors with positions as
-// recorded, and with the surface moved to where the models have theirs.
-//
-// Every row goes through the same tick that a device's loop runs, sixteen models at a time.
-// Every model says itself where the surface is (models/surface/surface_search.h), or some say
-// it for all; the moved figures come from the same rows, each position less the offset, and
-// their own samples in contact.
+// Models against one recording, through the tick of the live loop, sixteen at a time: errors with positions
+// as recorded, and with the surface moved to where the models have theirs. Every model says itself where the
+// surface is (models/surface/surface_search.h), or some say it for all; the moved figures come from the
+// same rows, each position less the offset, and their own samples in contact.
 // Thread guarantee: slow side; one thread per call.
 #pragma once
 

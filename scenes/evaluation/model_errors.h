@@ -5,17 +5,14 @@
 //   99 % error       the smallest error over the JND that 99 % of the samples do not exceed
 //                    (nearest rank)
 //   RMS, maximum     of |model - measured|
-// Neighbouring samples are alike, so what is resampled is whole strokes:
-//   Block bootstrap: kResamples times as many blocks as there are, drawn with
-//   replacement; a figure over each; 95 % intervals are the middle of the results.
-//   Two models over the same samples are compared draw by draw: the difference of a figure
-//   in every resampling, and its middle 95 % (paired). They are tied when that holds 0.
-//   Where no stroke goes beyond one JND a resampling can say nothing: of n strokes without
-//   any, at most 3/n do, at 95 % (the rule of three).
-// A block is a stroke, from touch to release; one that lasts longer than kLongestBlock_s is
-// cut, since after that long a material has forgotten, and one longer than a tenth of its
-// recording, since of one or two blocks a resampling says nothing. The seed is fixed, so the
-// same samples give the same intervals.
+// Neighbouring samples are alike, so whole blocks are resampled (block bootstrap): kResamples times as many
+// as there are, with replacement; 95 % intervals are the middle of the results. Two models over the same
+// samples are compared draw by draw, and tied when the middle 95 % of the differences hold 0 (paired).
+// Where no stroke goes beyond one JND a resampling can say nothing: of n strokes at most 3/n do, at 95 %
+// (the rule of three).
+// A block is a stroke, from touch to release, cut after kLongestBlock_s, when a material has forgotten, or a
+// tenth of its recording, since of one or two blocks a resampling says nothing. The seed is fixed: the same
+// samples give the same intervals.
 // Source: Efron & Tibshirani (1993), chapters 8 and 13; Kuensch (1989) for blocks;
 // Hanley & Lippman-Hand (1983) for the rule of three.
 // Thread guarantee: slow side; one thread per object.
@@ -74,8 +71,8 @@ struct Evidence : ErrorSummary {
   Interval rms_interval_N() const;
   // 95 %, one-sided.
   double p99_at_most() const;
-  // At least this share of the samples within the JND, 95 %, one-sided; where no stroke
-  // goes beyond one JND the rule of three, of strokes. 0 with three strokes and fewer.
+  // At least this share of the samples within the JND, 95 %, one-sided; where no stroke goes beyond one JND
+  // by the rule of three: 0 with three strokes and fewer.
   double within_at_least() const;
 };
 

@@ -2,10 +2,8 @@
 // that are normal with the sensor's deviation s,
 //   within the JND = mean over the samples of P(|e| <= JND(f))
 //   99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
-// s is identified from each recording itself: second differences of the force over the
-// quietest fifth of its first 30,000 rows (engine/tick/sensor_identification.h). That is
-// white noise alone; drift and hysteresis of a sensor are not in it.
-// No model can be better on these samples but by luck.
+// s is identified from each recording itself: second differences of the force over the quietest fifth of
+// its first 30,000 rows (engine/tick/sensor_identification.h): white noise, without drift and hysteresis.
 // Thread guarantee: pure function, slow side.
 #pragma once
 

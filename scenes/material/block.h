@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 
 namespace palpate {
 
@@ -49,8 +48,6 @@ class Block {
   virtual double held_force_N(double depth_m) const noexcept = 0;
   // What it holds at `depth_m` when all has relaxed.
   virtual double relaxed_force_N(double depth_m) const noexcept = 0;
-  // Its true relaxation times for people, e.g. "0.17 s, 1.27 s", or "none".
-  virtual std::string relaxation_times_text() const = 0;
 
  protected:
   Block() = default;

@@ -41,7 +41,6 @@ class ButtonBlock final : public Block {
     return rising_N(depth_m, kLeg_N_per_m + 0.5 * kLegBranch_N_per_m);
   }
   double relaxed_force_N(double depth_m) const noexcept override { return rising_N(depth_m, kLeg_N_per_m); }
-  std::string relaxation_times_text() const override { return "0.25 s; dry friction"; }
 
  private:
   struct Leg {

@@ -36,7 +36,6 @@ class FrictionBlock final : public HereditaryBlock {
   FrictionBlock() : HereditaryBlock(0.05, 2.0, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  std::string relaxation_times_text() const override { return "continuous, 0.05 s to 2 s; dry friction"; }
 
   // F_c(depth), newtons: what friction can be at most.
   static double friction_limit_N(double depth_m) noexcept { return kFriction_N * std::min(1.0, depth_m / kGripped_m); }

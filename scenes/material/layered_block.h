@@ -41,7 +41,6 @@ class LayeredBlock final : public HereditaryBlock {
   double relaxed_force_N(double depth_m) const noexcept override {
     return kTop.force_N(depth_m) + supported_N(depth_m, kSupport_N_per_m);
   }
-  std::string relaxation_times_text() const override { return "continuous, 0.02 s to 4 s; 0.3 s under the inclusion"; }
   double inclusion_depth_m() const noexcept { return inclusion_m_; }
 
  private:

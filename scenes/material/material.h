@@ -6,7 +6,6 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "devices/virtual/hand_motion.h"
@@ -17,7 +16,8 @@ namespace palpate {
 
 struct Material {
   std::string_view name;
-  std::string_view summary;  // one line for people
+  std::string_view summary;           // one line for people
+  std::string_view relaxation_times;  // the true ones, for people
   // A block that nobody has touched yet.
   std::unique_ptr<Block> (*make_block)() = nullptr;
   double recording_seconds = 41.499;  // length of a recording unless told otherwise
@@ -30,9 +30,5 @@ std::span<const Material> materials() noexcept;
 
 // The material of that name. Errors: unknown name; the message lists the known.
 Result<Material> find_material(std::string_view name);
-
-// The material's true relaxation times as text, e.g. "0.17 s, 1.27 s", or
-// "none".
-std::string relaxation_times_text(const Material& material);
 
 }  // namespace palpate

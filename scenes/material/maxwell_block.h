@@ -20,7 +20,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "engine/base/csv_scanner.h"
 #include "scenes/material/block.h"
 
 namespace palpate {
@@ -111,13 +110,6 @@ class MaxwellBlock final : public Block {
     return held_N;
   }
   double relaxed_force_N(double depth_m) const noexcept override { return material_.elastic_force_N(depth_m); }
-  std::string relaxation_times_text() const override {
-    std::string text;
-    for (std::size_t b = 0; b < material_.branch_count; ++b) {
-      text += (b == 0 ? "" : ", ") + shortest(material_.branches[b].relaxation_time_s) + " s";
-    }
-    return text.empty() ? "none" : text;
-  }
 
  private:
   // The elements with memory.

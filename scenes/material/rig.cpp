@@ -151,7 +151,7 @@ std::vector<std::string> describe_recording(const RigSettings& settings, const M
   std::vector<std::string> lines = {
       "virtual recording by palpate synth: material " + settings.material + ", seed " + std::to_string(settings.seed) +
           ", " + std::to_string(row_count) + " rows at " + shortest(settings.rate_Hz) + " Hz",
-      "true relaxation times: " + relaxation_times_text(material),
+      "true relaxation times: " + std::string(material.relaxation_times),
       "encoder step " + shortest(sensors.encoder_step_m) + " m; force noise " + shortest(sensors.force_noise_N) +
           " N, 12 bits over +-" + shortest(sensors.force_range_N) + " N",
       "accelerometer noise " + shortest(sensors.acceleration_noise_m_per_s2) + " m/s2, bias wandering by " +

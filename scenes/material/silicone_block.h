@@ -26,7 +26,6 @@ class SiliconeBlock final : public HereditaryBlock {
   SiliconeBlock() : HereditaryBlock(kShortest_s, kLongest_s, [](double) { return kWeight; }) {}
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
-  std::string relaxation_times_text() const override { return "continuous, 0.001 s to 30 s"; }
 };
 
 }  // namespace palpate

@@ -51,9 +51,6 @@ class SpongeBlock final : public Block {
     const double closed = std::min(kMostClosed, strain / kClosed_strain);
     return kArea_m2 * kSkeleton_Pa * strain / (1.0 - closed);
   }
-  std::string relaxation_times_text() const override {
-    return "a diffusion's series, 0.2 s and quicker, slower with depth";
-  }
 
  private:
   using Rings = std::array<double, kRings>;

@@ -33,7 +33,6 @@ class TissueBlock final : public HereditaryBlock {
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double held_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
   double relaxed_force_N(double depth_m) const noexcept override { return held_share_ * kContact.force_N(depth_m); }
-  std::string relaxation_times_text() const override { return "a power law of time, t^-0.15"; }
 
  private:
   // Of the power law, per unit of ln tau.

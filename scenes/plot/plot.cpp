@@ -131,15 +131,14 @@ std::string drawn_with(const Series& series) {
 }
 
 // A line across and its name: beside the panel, where no curve is, or at the upper end of one that stands.
-std::string level_text(const Level& level, int tag) {
+std::string level_text(const Level& level) {
   const std::string at = number(level.value);
-  const std::string id = std::to_string(tag);
   const std::string ends = level.vertical ? " from first " + at + ", graph 0 to first " + at + ", graph 1"
                                           : " from graph 0, first " + at + " to graph 1, first " + at;
   const std::string place = level.vertical ? " at first " + at + ", graph 1 right offset character -0.5,-0.7"
                                            : " at graph 1, first " + at + " left offset character 0.5,0";
-  return "set arrow " + id + ends + " nohead dashtype 2 linewidth 1.5 linecolor rgb muted\n" + "set label " + id + " " +
-         quoted(level.text) + place + " textcolor rgb muted\n";
+  return "set arrow" + ends + " nohead dashtype 2 linewidth 1.5 linecolor rgb muted\nset label " + quoted(level.text) +
+         place + " textcolor rgb muted\n";
 }
 
 // Room for the names of the lines across, beside the panel.
@@ -153,9 +152,8 @@ std::string panel_text(const Panel& panel, std::size_t index) {
   std::string text = "set title " + quoted(panel.title) + "\n";
   text += axis_text("x", panel.x, range_of(panel, false, panel.x)) +
           axis_text("y", panel.y, range_of(panel, true, panel.y));
-  int tag = 1;
   text += "set rmargin " + std::to_string(right_margin(panel)) + "\n";
-  for (const Level& level : panel.levels) text += level_text(level, tag++);
+  for (const Level& level : panel.levels) text += level_text(level);
   std::string curves;
   for (const bool area : {true, false}) {  // grey is behind everything, so first
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -164,15 +162,11 @@ std::string panel_text(const Panel& panel, std::size_t index) {
       curves += (curves.empty() ? "" : ", \\\n  ") + data_name(index, i) + " " + drawn_with(series);
     }
   }
-  text += "plot " + (curves.empty() ? "NaN" : curves) + "\n";
-  for (int i = 1; i < tag; ++i)
-    text += "unset arrow " + std::to_string(i) + "\nunset label " + std::to_string(i) + "\n";
-  return text;
+  return text + "plot " + (curves.empty() ? "NaN" : curves) + "\nunset arrow\nunset label\n";
 }
 
 struct Legend {
-  std::string text;  // commands that set it
-  std::string end;   // and remove it
+  std::string text;  // commands that set it, for the first panel
   int lines = 0;
 };
 
@@ -182,7 +176,6 @@ Legend legend_of(const Plot& plot) {
   std::set<std::string> seen;
   const int most = static_cast<int>(plot.width * kPageWidth / kCharacter);
   int column = 0;
-  int tag = 101;
   for (const Panel& panel : plot.panels) {
     for (const Series& series : panel.series) {
       if (series.name.empty() || !seen.insert(series.name).second) continue;
@@ -191,11 +184,10 @@ Legend legend_of(const Plot& plot) {
         ++legend.lines;
         column = 0;
       }
-      legend.text += "set label " + std::to_string(tag) + " " + quoted(style_of(series).legend + series.name) +
+      legend.text += "set label " + quoted(style_of(series).legend + series.name) +
                      " at screen 0, screen 1 left offset character " + std::to_string(column + 2) + "," +
                      number(-0.9 * legend.lines) + " textcolor rgb " +
                      (series.mark == Mark::area ? "muted" : colour_of(series.colour)) + "\n";
-      legend.end += "unset label " + std::to_string(tag++) + "\n";
       column += length;
     }
   }
@@ -229,10 +221,7 @@ Result<std::string> plot_script(const Plot& plot) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
     text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + room + "\n";
     text += legend.text;
-    for (std::size_t p = 0; p < plot.panels.size(); ++p) {
-      text += panel_text(plot.panels[p], p);
-      if (p == 0) text += legend.end;
-    }
+    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p);
     text += "unset multiplot\nunset output\n";
   }
   return text;

@@ -1,9 +1,8 @@
 // A figure as data: panels of series against two axes. Out comes one gnuplot script that
 // holds its own data and draws NAME.svg and NAME.png wherever it is run.
 //
-// All layout is gnuplot's own. Names stand in one legend above the panels, in their
-// colours, so that nothing depends on where curves end or how large forces are; tics of
-// logarithmic axes carry SI prefixes (300 mN, 2 us, 3 kN).
+// Layout is gnuplot's own. Names stand in one legend above the panels, in their colours, wherever curves end
+// and however large forces are; tics of logarithmic axes carry SI prefixes (300 mN, 2 us, 3 kN).
 // Type, tics and neutral colours: assets/figures/style.gp.
 // Thread guarantee: value types and pure functions; plot_script reads the asset.
 #pragma once

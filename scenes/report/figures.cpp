@@ -261,11 +261,8 @@ Figure paper_figure(const ReportData& data) {
   for (const RecordingFacts& facts : data.recordings) largest_N = std::max(largest_N, facts.largest_force_N);
   figure.plot.panels.push_back(jnd_panel(data, largest_N));
   figure.plot.panels.push_back(fit_time_panel(data));
-  Panel legend;
-  add_legend(legend, data);
-  legend.series.push_back({"JND", kMutedColour, Mark::dashed, {}});
-  auto& first = figure.plot.panels.front().series;
-  first.insert(first.begin(), legend.series.begin(), legend.series.end());
+  add_legend(figure.plot.panels.front(), data);
+  figure.plot.panels.front().series.push_back({"JND", kMutedColour, Mark::dashed, {}});
   figure.plot.name = "paper";
   figure.plot.columns = 2;
   figure.plot.height = 0.85;

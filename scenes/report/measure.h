@@ -1,8 +1,5 @@
-// Every measurement of the report: fits, errors, times, and the choice of a model.
-//
-// The model is chosen on training that was left out of the fits, before anything is tested:
-// of several recordings every third one, of a single one a block at its end. Of one or two
-// strokes nothing can be left out; then the test chooses, and the page says so.
+// Every measurement of the report: fits, errors, times, and the choice of a model, on training that was left
+// out of the fits (recordings.h). Where nothing can be, the test chooses, and the page says so.
 // Thread guarantee: slow side; the fits start threads themselves.
 #pragma once
 

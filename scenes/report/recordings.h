@@ -1,7 +1,5 @@
-// The recordings of a report, who is trained and tested on which, and whether what is tested on
-// was trained on: measured forces are compared bit by bit, for sensor noise makes every recording's
-// own, whatever its name, its start time or a shift of its positions.
-//
+// The recordings of a report, who is trained and tested on which, and whether what is tested on was trained
+// on: measured forces are compared bit by bit, for sensor noise makes them every recording's own.
 // Thread guarantee: slow side (does I/O, allocates).
 #pragma once
 
@@ -73,14 +71,11 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 // and rows.
 Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
-// Reads the files. Without any, the virtual silicone: seed 1 to train on, seed 2
-// to test on. Without a test recording the training recordings are divided into
-// up to kMostFolds folds, each tested by models that were fitted to the others; of a
-// single one a block at its end is left out. Recordings are ordered by name and content,
-// whatever the order in which they were given. Errors: those of the recordings; a test
-// recording without a training recording; the same file twice; the same content twice,
-// or a stretch of a training recording in a test; no contact in a test
-// recording; too short to leave a part out.
+// Reads the files; without any, the virtual silicone: seed 1 to train on, seed 2 to test on. Without a test
+// recording the others are divided into up to kMostFolds folds, each tested by models that were fitted to
+// the rest; of a single one a block at its end is left out. Recordings are ordered by name and content.
+// Errors: those of the recordings; a test without training; the same file or content twice, or a stretch of
+// a training recording in a test; no contact in a test recording; too short to leave a part out.
 inline constexpr std::size_t kMostFolds = 5;
 Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test);
 

@@ -1,9 +1,7 @@
 // Where the files under assets/ are: scenes, models, shaders, fonts.
 //
-// Looked for in this order: the folder named by the environment variable
-// PALPATE_ASSETS (nothing else is tried then), `../share/palpate` beside the
-// running executable's folder (an installed program), `../assets` (a program
-// in build/), the source tree it was built from.
+// In this order: PALPATE_ASSETS of the environment (nothing else is tried then), `../share/palpate` beside
+// the running executable's folder (an installed program), `../assets` (one in build/), the source tree.
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 

@@ -15,7 +15,6 @@ class Straight final : public HereditaryBlock {
     reset();
   }
   double elastic_force_N(double depth_m) const noexcept override { return depth_m; }
-  std::string relaxation_times_text() const override { return ""; }
 };
 
 // K(t) = c (E1(t / tau2) - E1(t / tau1)), Fung (1993).
