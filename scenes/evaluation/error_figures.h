@@ -52,7 +52,6 @@ class ErrorFigures {
   void add(const ErrorFigures& other);
 
   std::uint64_t samples() const noexcept { return samples_; }
-  std::uint64_t samples_within_jnd() const noexcept { return within_; }
   // The rest is 0 without samples.
   double within_jnd() const noexcept;  // share of the samples with an error up to one JND
   double rms_error_N() const noexcept;

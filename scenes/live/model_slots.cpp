@@ -12,9 +12,6 @@
 namespace palpate {
 namespace {
 
-// The job of a file that has no slot yet.
-constexpr std::size_t kNoSlot = static_cast<std::size_t>(-1);
-
 std::string recordings_of(const FittedModel& model) {
   std::string names;
   for (const std::string& name : model.data().provenance.recordings) names += (names.empty() ? "" : ", ") + name;
@@ -76,16 +73,14 @@ void ModelSlots::cancel() noexcept { worker_->cancel(); }
 
 std::vector<std::size_t> ModelSlots::update() {
   show_progress();
-  std::vector<std::size_t> ready;
+  std::vector<std::size_t> ready = std::exchange(loaded_, {});
   for (FinishedModel& finished : worker_->read_finished()) {
-    const bool file = finished.job_id == kNoSlot;
+    Slot& slot = *slots_[finished.job_id];
     // Asked for again while it was made: the newer one counts.
-    const bool old = !file && slots_[finished.job_id]->view.refitting &&
-                     finished.plan.centres != slots_[finished.job_id]->plan.centres;
+    const bool old = slot.view.refitting && finished.plan.centres != slot.plan.centres;
     if (!old) --outstanding_;
-    const bool joined = file ? add_file(finished) : join(finished.job_id, finished);
-    if (old) slots_[finished.job_id]->view.refitting = true;
-    if (joined) ready.push_back(file ? slots_.size() - 1 : finished.job_id);
+    if (join(finished.job_id, finished)) ready.push_back(finished.job_id);
+    if (old) slot.view.refitting = true;
   }
   return ready;
 }
@@ -96,21 +91,6 @@ void ModelSlots::show_progress() {
   SlotView& view = slots_[progress.job_id]->view;
   if (view.state == SlotState::waiting) view.state = SlotState::fitting;
   if (view.state == SlotState::fitting) view.progress = progress.share;
-}
-
-bool ModelSlots::add_file(FinishedModel& finished) {
-  --outstanding_files_;
-  if (finished.model == nullptr) {
-    notices_.push_back({finished.problem, true});
-    return false;
-  }
-  Slot& slot = add_slot(finished.plan);
-  join(slots_.size() - 1, finished);
-  notices_.push_back(
-      {"loaded " + slot.view.name + " from " + finished.plan.path +
-           (slot.view.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
-       false});
-  return true;
 }
 
 // A truth is one of a material: a model of something else is not wrong where it differs.
@@ -250,7 +230,7 @@ double ModelSlots::trained_depth_m() const noexcept {
 }
 
 bool ModelSlots::has_room(const std::string& what) {
-  if (slots_.size() + outstanding_files_ < kMaxModels) return true;
+  if (slots_.size() < kMaxModels) return true;
   notices_.push_back(
       {"cannot " + what + ": there are " + std::to_string(kMaxModels) + " models already; start again with fewer",
        true});
@@ -310,12 +290,22 @@ bool ModelSlots::select(std::size_t slot) {
 
 void ModelSlots::load_file(const std::string& path) {
   if (!has_room("load " + path)) return;
-  ++outstanding_;
-  ++outstanding_files_;
+  auto model = load_model(path);
+  if (!model) {
+    notices_.push_back({model.error().message, true});
+    return;
+  }
   SlotPlan plan;
   plan.origin = ModelOrigin::file;
   plan.path = path;
-  worker_->add_job(kNoSlot, plan);
+  const Slot& slot = add_slot(plan);
+  loaded_.push_back(slots_.size() - 1);
+  FinishedModel finished = finished_model(loaded_.back(), plan, std::move(*model));
+  join(loaded_.back(), finished);
+  notices_.push_back(
+      {"loaded " + slot.view.name + " from " + path +
+           (slot.view.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+       false});
 }
 
 std::string ModelSlots::distinct_name(const std::string& name, const Slot* but) const {

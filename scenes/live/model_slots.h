@@ -126,7 +126,7 @@ class ModelSlots {
   // Greatest depth that all shown models were trained with, metres; infinite without any.
   double trained_depth_m() const noexcept;
 
-  // Reads a model file in the background into a new slot; trouble becomes a notice.
+  // Reads a model file, some milliseconds, into a new slot; trouble becomes a notice.
   void load_file(const std::string& path);
   bool all_settled() const noexcept { return outstanding_ == 0; }
 
@@ -136,7 +136,6 @@ class ModelSlots {
   void show_progress();
   Slot& add_slot(const SlotPlan& plan);
   bool is_foreign(const Slot& slot) const;
-  bool add_file(FinishedModel& finished);
   bool join(std::size_t index, FinishedModel& finished);
   bool has_room(const std::string& what);
   void select_what_is_there();
@@ -151,8 +150,8 @@ class ModelSlots {
   std::optional<std::size_t> direct_;
   std::size_t selected_ = 0;
   bool user_chose_ = false;
-  std::size_t outstanding_ = 0;        // jobs of which nothing was heard
-  std::size_t outstanding_files_ = 0;  // of these, files without a slot
+  std::vector<std::size_t> loaded_;  // since the last update, files
+  std::size_t outstanding_ = 0;      // jobs of which nothing was heard
 };
 
 }  // namespace palpate

@@ -11,7 +11,6 @@
 
 #include "engine/recording/recording.h"
 #include "models/fit/recipe_2009.h"
-#include "models/model/file/model_io.h"
 #include "models/solve/lapack.h"
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
@@ -65,6 +64,11 @@ double tick_ns(const std::shared_ptr<const FittedModel>& model) {
 
 }  // namespace
 
+FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model) {
+  const double time_ns = tick_ns(model);
+  return {job_id, plan, std::move(model), "", time_ns};
+}
+
 // Linux counts threads one by one.
 void lower_thread_priority() noexcept { setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice); }
 
@@ -77,13 +81,11 @@ ModelWorker::~ModelWorker() {
     wake_.notify_all();
   }
   if (thread_.joinable()) thread_.join();
-  if (reader_.joinable()) reader_.join();
 }
 
 Status ModelWorker::start() {
   try {
-    thread_ = std::thread([this] { work(jobs_); });
-    reader_ = std::thread([this] { work(files_); });
+    thread_ = std::thread([this] { work(); });
   } catch (const std::system_error& error) {
     return Error{std::string("cannot start the thread that fits models: ") + error.what() + "; close other programs"};
   }
@@ -92,15 +94,10 @@ Status ModelWorker::start() {
 
 void ModelWorker::add_job(std::size_t job_id, const SlotPlan& plan, bool at_once) {
   const std::lock_guard lock(mutex_);
-  if (plan.origin == ModelOrigin::file && plan.loaded == nullptr) {
-    files_.push_back({job_id, plan, 0.0});
-  } else {
-    std::erase_if(jobs_, [&](const Job& other) { return other.job_id == job_id; });
-    const double cost_s = at_once ? -1.0 : expected_cost_s(plan);
-    const auto slower =
-        std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) { return other.cost_s > cost_s; });
-    jobs_.insert(slower, {job_id, plan, cost_s});
-  }
+  std::erase_if(jobs_, [&](const Job& other) { return other.job_id == job_id; });
+  const double cost_s = at_once ? -1.0 : expected_cost_s(plan);
+  const auto slower = std::find_if(jobs_.begin(), jobs_.end(), [&](const Job& other) { return other.cost_s > cost_s; });
+  jobs_.insert(slower, {job_id, plan, cost_s});
   wake_.notify_all();
 }
 
@@ -114,22 +111,20 @@ ModelWorker::Progress ModelWorker::progress() const {
   return {working_on_.has_value(), working_on_.value_or(0), share_.load(std::memory_order_relaxed)};
 }
 
-void ModelWorker::work(std::deque<Job>& jobs) {
+void ModelWorker::work() {
   lower_thread_priority();
   for (std::unique_lock lock(mutex_);;) {
-    if (&jobs == &jobs_) working_on_.reset();
-    wake_.wait(lock, [&] { return !jobs.empty() || cancelled_.load(std::memory_order_relaxed); });
+    working_on_.reset();
+    wake_.wait(lock, [&] { return !jobs_.empty() || cancelled_.load(std::memory_order_relaxed); });
     if (cancelled_.load(std::memory_order_relaxed)) return;
-    const Job job = std::move(jobs.front());
-    jobs.pop_front();
-    if (&jobs == &jobs_) {
-      working_on_ = job.job_id;
-      share_.store(0.0, std::memory_order_relaxed);
-    }
+    const Job job = std::move(jobs_.front());
+    jobs_.pop_front();
+    working_on_ = job.job_id;
+    share_.store(0.0, std::memory_order_relaxed);
     lock.unlock();
     const auto model = make(job.plan);
-    FinishedModel made{job.job_id, job.plan, model ? *model : nullptr, model ? "" : model.error().message};
-    if (made.model != nullptr) made.tick_ns = tick_ns(made.model);
+    FinishedModel made = model ? finished_model(job.job_id, job.plan, *model)
+                               : FinishedModel{job.job_id, job.plan, nullptr, model.error().message};
     lock.lock();
     finished_.push_back(std::move(made));
   }
@@ -137,7 +132,6 @@ void ModelWorker::work(std::deque<Job>& jobs) {
 
 Result<std::shared_ptr<const FittedModel>> ModelWorker::make(const SlotPlan& plan) {
   if (plan.loaded != nullptr) return plan.loaded;
-  if (plan.origin == ModelOrigin::file) return load_model(plan.path);
   Result<ModelData> data = fit(plan);
   if (!data) return data.error();
   return std::make_shared<const FittedModel>(std::move(*data));

@@ -1,4 +1,4 @@
-// A thread that makes the models of a session ready, the quickest first: files are read, methods are fitted
+// A thread that makes the models of a session ready, the quickest first: methods are fitted
 // to the recording that is the material, or to what `palpate synth` writes of the scene's with the same
 // seed; the same bits as of `palpate fit`.
 // Asked for another number of centres than before (a slider), it chooses centres for the largest number
@@ -37,6 +37,9 @@ struct FinishedModel {
   double tick_ns = 0.0;  // a whole tick of this model alone (scenes/evaluation/model_timing.h)
 };
 
+// A model that is there already.
+FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model);
+
 // For threads that must never hold up graphics or haptics: of this thread and those
 // that it will start.
 void lower_thread_priority() noexcept;
@@ -51,8 +54,7 @@ class ModelWorker {
 
   // What is asked for before this is made the quickest first. Errors: no thread.
   Status start();
-  // One that is asked for again before it was begun is made once, as asked last. Files do not wait behind
-  // fits; `at_once`: before all others.
+  // One that is asked for again before it was begun is made once, as asked last. `at_once`: before all others.
   void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
   // What was finished since the last call.
   std::vector<FinishedModel> read_finished();
@@ -73,8 +75,7 @@ class ModelWorker {
     SlotPlan plan;
     double cost_s = 0.0;  // expected; below 0: at once
   };
-  // Until cancelled: fits of jobs_, or, on a thread of its own, reading of files_.
-  void work(std::deque<Job>& jobs);
+  void work();  // until cancelled
   Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
   Result<ModelData> fit(const SlotPlan& plan);
   Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
@@ -94,14 +95,12 @@ class ModelWorker {
   std::map<std::pair<const Method*, bool>, std::optional<NestedFit>> nested_;
 
   std::thread thread_;
-  std::thread reader_;
   std::atomic<bool> cancelled_{false};
   std::atomic<double> share_{0.0};
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   // By mutex_.
   std::deque<Job> jobs_;
-  std::deque<Job> files_;
   std::vector<FinishedModel> finished_;
   std::optional<std::size_t> working_on_;
 };

@@ -26,7 +26,7 @@ struct SlotPlan {
   ModelOrigin origin = ModelOrigin::method;
   const Method* method = &kGreedyMethod;                // of a fit
   std::string path;                                     // of a file
-  std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file that has been read already
+  std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file, which plan_slots reads
   int centres = 0;                                      // of a method that takes them; 0: as many as it takes by itself
   bool paper = false;                                   // by the paper's own recipe: 50 mN steps, rows weighted 1/f
 

@@ -196,9 +196,8 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   session->load_file(files.folder.file("b.json"));
   session->load_file(files.folder.file("a.json"));
   session->load_file(files.folder.with_file("bad.json", "{\"format\": 3}"));
-  EXPECT_FALSE(session->models().all_settled());
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   ASSERT_EQ(session->models().size(), 3u);
+  session->update();
   EXPECT_EQ(session->models().view(2).name, "first-2") << "names are distinct";
   EXPECT_EQ(session->models().selected(), 0u);
   const std::vector<Notice> notices = session->read_notices();

@@ -9,10 +9,8 @@
 #include <chrono>
 #include <thread>
 
-#include "models/model/file/model_io.h"
 #include "tests/support/example_model.h"
 #include "tests/support/fitting.h"
-#include "tests/support/temporary_folder.h"
 
 namespace palpate {
 namespace {
@@ -76,24 +74,11 @@ TEST(ModelWorker, AnotherNumberOfCentresIsWhatPalpateFitGives) {
   }
 }
 
-TEST(ModelWorker, ReadsFilesAndSaysWhatIsWrong) {
-  const test::TemporaryFolder folder;
-  const ModelData data = test::example_model("greedy", KernelKind::cubic, test::position_features(), 1);
-  ASSERT_TRUE(save_model(folder.file("good.json"), data, false).ok());
-  const std::string bad = folder.with_file("bad.json", "{}");
+TEST(ModelWorker, SaysWhatIsWrong) {
   ModelWorker worker(test::must(load_scene("skin")), 1);
   ASSERT_TRUE(worker.start().ok());
-  worker.add_job(0, {ModelOrigin::file, &kGreedyMethod, folder.file("good.json")});
-  worker.add_job(1, {ModelOrigin::file, &kGreedyMethod, bad});
   worker.add_job(2, {ModelOrigin::method, &kGreedyMethod, ""});
-  std::vector<FinishedModel> made = wait_for(worker, 3);
-  // Files do not wait behind fits, nor fits behind files.
-  std::sort(made.begin(), made.end(), [](const auto& a, const auto& b) { return a.job_id < b.job_id; });
-  ASSERT_NE(made[0].model, nullptr) << made[0].problem;
-  EXPECT_EQ(made[0].model->name(), data.name);
-  EXPECT_EQ(made[1].model, nullptr);
-  EXPECT_NE(made[1].problem.find("bad.json"), std::string::npos) << made[1].problem;
-  EXPECT_EQ(made[2].problem, "the scene \"skin\" has no virtual material to fit a model to");
+  EXPECT_EQ(wait_for(worker, 1)[0].problem, "the scene \"skin\" has no virtual material to fit a model to");
 }
 
 TEST(ModelWorker, EndsInTheMiddleOfAFit) {
