@@ -1,8 +1,6 @@
 // The list behind `palpate fit --features LIST`:
 //   depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.05mm+0.1mm,creep:0.1+1
-// Items in any order, each but maxwell at most once:
-//   depth                always there; may be left out
-//   velocity
+// Items in any order, each but maxwell at most once; depth is always there:
 //   maxwell:T[+T...]     one feature, the sum of the branches with these times (s)
 //   stops:Rmm[+Rmm...]   the sum of stop operators with these thresholds
 //   creep:T[+T...]       the sum of bristles that creep, with these times (s) at the greatest depth

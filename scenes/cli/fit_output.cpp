@@ -17,13 +17,8 @@ constexpr double kSingular = 1e300;
 std::string relaxation_text(const std::vector<RelaxationTime>& times) {
   std::string text;
   for (const RelaxationTime& time : times) {
-    char one[64];
-    if (time.standard_error_s > 0.0) {
-      std::snprintf(one, sizeof one, "%.3g s +- %.2g", time.time_s, time.standard_error_s);
-    } else {
-      std::snprintf(one, sizeof one, "%.3g s", time.time_s);
-    }
-    text += (text.empty() ? "" : ", ") + std::string(one);
+    text += (text.empty() ? "" : ", ") + general(time.time_s, 3) + " s" +
+            (time.standard_error_s > 0.0 ? " +- " + general(time.standard_error_s, 2) : "");
   }
   return text.empty() ? "none" : text;
 }
@@ -41,10 +36,8 @@ void print_worth(const std::vector<FeatureWorth>& worth) {
 }
 
 std::string strength_text(const StrengthChoice& strength) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%.0f %% of it; RMS over the JND on strokes left out %.4f, %.4f without it",
-                100.0 * strength.strength, strength.error_over_jnd, strength.trend_error_over_jnd);
-  return text;
+  return fixed(100.0 * strength.strength, 0) + " % of it; RMS over the JND on strokes left out " +
+         fixed(strength.error_over_jnd, 4) + ", " + fixed(strength.trend_error_over_jnd, 4) + " without it";
 }
 
 void print_surfaces(const Provenance& provenance) {

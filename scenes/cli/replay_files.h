@@ -25,10 +25,8 @@ struct LoadedModel {
 Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
                                              const std::vector<std::string>& names = {});
 
-// FORCES.csv: motion, measured force, features and every model's force, one row per sample.
-// Columns: time_s, position_m, force_N, depth_m, each distinct feature of the
-// models once, then "<model name>_N" per model. Features that differ but share a
-// name get the suffix -2, -3 ... Numbers read back as the same doubles.
+// FORCES.csv, one row per sample: time_s, position_m, force_N, depth_m, each distinct feature of the models
+// once (those that share a name get the suffix -2, -3 ...), then "<model name>_N" per model.
 class ForcesFile {
  public:
   // Errors: as AtomicFile::create.

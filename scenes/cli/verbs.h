@@ -1,11 +1,6 @@
-// The verbs of the headless program: one file each. Every verb adds a
-// subcommand and hands back what to run when it was chosen.
-//
-// A failed Status ends the program with one "error: ..." block on stderr and
-// exit code 1. Wrong usage that CLI11 cannot see for itself (two options that
-// contradict each other, an unknown name) throws CLI::ValidationError, from the
-// parsing or from the run: exit code 2. To register a verb: declare it here and
-// add its line to the table in main.cpp.
+// The verbs of the headless program: one file each, which adds a subcommand and what to run when it was
+// chosen. A failed Status ends the program with one "error: ..." block on stderr and exit code 1. Wrong usage
+// that CLI11 cannot see for itself throws CLI::ValidationError, from the parsing or from the run: exit code 2.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,13 +1,11 @@
-// A model's errors so far, in memory that does not grow with time; and the one binning by
-// force that every figure and file uses.
-//
+// A model's errors so far, in memory that does not grow with time; and the one binning by force.
 //   Bins are kBinWidth_jnd just noticeable differences wide, whatever the forces are: with
 //   JND(F) = o + w F the number of JNDs between 0 and F is
 //     u(F) = integral_0^F dF / JND = log(1 + w F / o) / w,   F / o where w is 0,
 //   and bin k holds the forces with k <= u / kBinWidth_jnd < k + 1. That makes 3 bins up to
 //   0.3 N, 15 up to 6 N and 63 up to 3 kN with the paper's line.
-// Thread guarantee: value type; slow side (allocates).
-// Source: figures 4 to 7 of Hoever & Harders (2009) for errors against force.
+// Thread guarantee: value type; slow side (allocates). Source: figures 4 to 7 of Hoever & Harders (2009) for errors
+// against force.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,4 @@
 // How long a model takes, measured on samples that it meets in use.
-//
 //   tick         motion estimate, features and force of this one model: what a caller waits for
 //   evaluation   the force alone, from features that are there already
 // Thread guarantee: slow side; one thread per call.

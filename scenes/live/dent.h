@@ -1,12 +1,9 @@
-// The dent that one model's surface shows, and its colour.
-//
-// The surface follows the tool in and comes back slowly, by the model's own
-// relaxation times tau_b: a low-passed depth each,
+// The dent that one model's surface shows, and its colour. It follows the tool in and comes back slowly, by
+// the model's own relaxation times tau_b: a low-passed depth each,
 //   m_b <- d + (m_b - d) exp(-h / tau_b)      [= d - tau_b x (low-passed velocity)]
 //   dent = max(d, 0.35 mean_b m_b)
-// A model without memory has a surface without memory: dent = d. The colour is
-// the largest error of late, fading within 0.3 s. A picture, not a model: no
-// force depends on it.
+// and dent = d without any. The colour is the largest error of late, fading within 0.3 s. A picture: no force
+// depends on it.
 // Thread guarantee: one thread; allocates in the constructor only.
 #pragma once
 

@@ -1,14 +1,10 @@
-// The exhibit's game: three rounds from obvious to impossible, a visitor's answers and
-// the score. Pure logic: no session, no clock, no drawing.
-//
-// With a mouse, a finger or keys (seen) a round is a guess, then 15 s of pressing two
-// blocks with one stroke, the reference's and a model's, then a reveal:
+// The exhibit's game: three rounds from obvious to impossible, a visitor's answers and the score. Pure logic.
+// With a mouse, a finger or keys (seen) a round is a guess, then 15 s of pressing two blocks with one
+// stroke, the reference's and a model's, then a reveal:
 //   attract -> guess -> press -> reveal -> guess ... -> score
-// With a force device (felt) it is a blind comparison of two models under the keys 1 and
-// 2: press one, press the other, the same or different? One pair of the three is a catch
-// trial, the same model twice:
+// With a force device (felt) it is a blind comparison of two models under the keys 1 and 2: the same or
+// different? One pair of the three is a catch trial, the same model twice:
 //   attract -> press -> reveal -> press ... -> score
-//
 // What a hand would notice is computed from the visitor's own strokes: where the difference over the JND,
 // as its mean over 50 ms (felt_error.h), was anywhere more than 1, within what the models were trained on.
 // The same seed and the same models give the same rounds.
@@ -111,7 +107,7 @@ class ExhibitGame {
 
   // Seen: would a hand notice a difference? Then the pressing begins.
   void guess(bool noticed);
-  // Felt: key 1 or 2 chooses what is rendered; both have to be pressed once.
+  // Felt: key 1 or 2 chooses what is rendered; both have to be pressed once before an answer.
   void choose(int key) noexcept;
   int chosen() const noexcept { return chosen_; }
   bool pressed_both() const noexcept { return pressed_[0] && pressed_[1]; }

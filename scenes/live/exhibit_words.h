@@ -18,8 +18,7 @@ class ExhibitWords {
   // Errors: a line without "=", a key twice, as "path:line: ...".
   static Result<ExhibitWords> parse(std::string_view text, const std::string& path);
 
-  // The text of a key, with %1 and %2 replaced; the key itself where there is none, so
-  // that what is missing is seen.
+  // The text of a key, with %1 and %2 replaced; the key itself where there is none.
   std::string operator()(const std::string& key, const std::string& one = "", const std::string& two = "") const;
   std::vector<std::string> keys() const;
 

@@ -1,7 +1,5 @@
-// What a hand feels of a model's error: the mean of (model - reference) / JND over the
-// last 50 ms. A difference of a single millisecond moves no hand and no skin; one that
-// lasts does. Out of contact the difference is 0.
-//
+// What a hand feels of a model's error: the mean of (model - reference) / JND over the last 50 ms; 0 out of
+// contact. A difference of a single millisecond moves no hand and no skin; one that lasts does.
 // Thread guarantee: value type; constant time and memory.
 #pragma once
 

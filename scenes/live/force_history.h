@@ -1,5 +1,4 @@
 // The last minutes of forces, one point a tick, for curves.
-//
 // Thread guarantee: one thread; `append` allocates nothing.
 #pragma once
 

@@ -18,8 +18,7 @@ struct RecordingOffer {
 // Whether a file is offered as a recording: anything with an ending but a model (.json).
 bool is_offered(const std::string& path);
 
-// Errors: those of read_recording for a file with its columns, else those of
-// import_table, which list the choices; the new file cannot be written.
+// Errors: those of read_recording or import_table; the new file cannot be written.
 Result<RecordingOffer> offer_recording(const std::string& path, const std::string& folder);
 
 }  // namespace palpate

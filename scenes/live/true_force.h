@@ -1,9 +1,5 @@
-// The true force of a scene's virtual material under the same tool, computed
-// along with the models: the reference of a session without a force sensor.
-//
-// The block is driven by the tick's position and velocity estimate with the
-// real time step. Only for devices that are simulated or virtual: a recording
-// that is replayed was pressed into another block and carries its own force.
+// The true force of a scene's virtual material under the same tool: the reference of a session without a
+// force sensor. Not for a replayed recording, which was pressed into another block and carries its own.
 // Thread guarantee: as ReferenceForce; `step` is wait-free and allocates nothing.
 #pragma once
 

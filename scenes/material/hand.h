@@ -1,6 +1,5 @@
-// The simulated hand (devices/virtual/hand_motion.h) that presses a virtual material,
-// which it knows: it aims at the depth that holds a force, the branches half
-// relaxed.
+// The simulated hand (devices/virtual/hand_motion.h) that presses a virtual material, which it knows: it aims
+// at the depth that holds a force, the branches half relaxed.
 // Thread guarantee: as HandMotion.
 #pragma once
 

@@ -1,7 +1,5 @@
-// The virtual materials by name: what a block of silicone, foam or tissue answers
-// to a tool that presses into it along one direction. Each law stands in a file
-// of its own, written from its own physics and integrated in time; none shares
-// anything with the models that are fitted to it.
+// The virtual materials by name. Each law stands in a file of its own, written from its own physics and
+// integrated in time; none shares anything with the models that are fitted to it.
 #pragma once
 
 #include <memory>

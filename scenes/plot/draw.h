@@ -1,5 +1,4 @@
 // Plots drawn into files by gnuplot, a program beside this one.
-//
 // Thread guarantee: slow side; starts a process, does I/O.
 #pragma once
 

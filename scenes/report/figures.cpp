@@ -191,11 +191,9 @@ Figure worst_figure(const ReportData& data) {
   Series measured{"measured", kMeasuredColour, Mark::line, {}};
   std::vector<Series> said;
   std::vector<Series> differs;
-  for (const std::string& name : worst.models) {
-    const auto at = std::find_if(data.models.begin(), data.models.end(),
-                                 [&](const ModelResult& one) { return one.plan.name == name; });
-    const Mark mark = at->plan.recipe == Recipe::paper ? Mark::dashed : Mark::line;
-    said.push_back({name, model_colour(at->plan), mark, {}});
+  for (const std::size_t index : worst.models) {
+    const PlannedModel& plan = data.models[index].plan;
+    said.push_back({plan.name, model_colour(plan), plan.recipe == Recipe::paper ? Mark::dashed : Mark::line, {}});
     differs.push_back(said.back());
   }
   double largest = 1.2;
@@ -230,8 +228,8 @@ Figure worst_figure(const ReportData& data) {
   figure.plot.height = 0.8;
   figure.caption =
       "The worst " + three_digits(worst.rows.empty() ? 0.0 : worst.rows.back().time_s - worst.rows.front().time_s) +
-      " s of " + (worst.models.empty() ? "it" : worst.models.front()) +
-      " (largest mean squared error over the JND): RMS " + three_digits(std::sqrt(std::max(0.0, worst.score))) +
+      " s of " + data.models[data.choice.chosen].plan.name + " (largest mean squared error over the JND): RMS " +
+      three_digits(std::sqrt(std::max(0.0, worst.score))) +
       " JND. Below: model less measurement; grey is what a hand cannot notice.";
   return figure;
 }

@@ -204,7 +204,6 @@ class Measurement {
     for (std::size_t i = 0; i < models.size(); ++i) {
       recorded_[i + 1].append(result->models[i].as_recorded);
       moved_[i + 1].append(result->models[i].surface_moved);
-      data_.models[i + 1].predicted = result->models[i].predicted;
       data_.models[i + 1].time = time_model(models[i].model, result->sensor, result->timing);
     }
     data_.surface_offset_m.push_back(result->models.front().surface.at);
@@ -223,11 +222,8 @@ class Measurement {
     const auto fitted = fit(*prepared, wanted);
     if (!fitted) return fitted.error().message == interrupted().message ? Status{fitted.error()} : Status{};
     std::vector<EvaluatedModel> models;
-    std::vector<std::size_t> which;
-    for (std::size_t i = 0; i < fitted->size(); ++i) {
-      if (!(*fitted)[i].model) continue;
-      models.push_back({(*fitted)[i].model, scene_.jnd});
-      which.push_back(i);
+    for (const Fitted& one : *fitted) {
+      if (one.model) models.push_back({one.model, scene_.jnd});
     }
     std::vector<ModelErrors> pooled(models.size(), ModelErrors(scene_.jnd));
     EvaluationRequest request;
@@ -238,7 +234,9 @@ class Measurement {
       if (!result) return result.error();
       for (std::size_t k = 0; k < models.size(); ++k) pooled[k].append(result->models[k].as_recorded);
     }
-    for (std::size_t k = 0; k < models.size(); ++k) data_.models[which[k]].left_out = pooled[k].evidence();
+    for (std::size_t i = 0, k = 0; i < fitted->size(); ++i) {
+      if ((*fitted)[i].model) data_.models[i].left_out = pooled[k++].evidence();
+    }
     data_.choice.chosen_on = part.words;
     return {};
   }
@@ -276,17 +274,13 @@ class Measurement {
       if (more > 0 && std::find(shown.begin(), shown.end(), more) == shown.end()) shown.push_back(more);
     }
     std::vector<ModelPointer> models;
-    std::vector<std::string> names;
-    for (const std::size_t i : shown) {
-      models.push_back(data_.models[i].model);
-      names.push_back(data_.models[i].plan.name);
-    }
+    for (const std::size_t i : shown) models.push_back(data_.models[i].model);
     const Split& last = recordings_.folds.back();
     for (const SharedRecording& recording : last.tested) {
       WorstStretch stretch = worst_stretch(*recording, models, scene_.jnd, last.counted_from_s);
       if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
     }
-    data_.worst.models = std::move(names);
+    data_.worst.models = std::move(shown);
   }
 
   const RecordingSet& recordings_;

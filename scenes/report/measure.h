@@ -28,7 +28,7 @@ struct WorstStretch {
   std::string recording;
   double score = -1.0;  // mean squared error over the JND of the first model
   std::vector<StretchRow> rows;
-  std::vector<std::string> models;  // names
+  std::vector<std::size_t> models;  // of the report
 };
 
 // The kStretchSeconds with the largest mean squared error/JND of the first of `models` over
@@ -40,11 +40,10 @@ WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPo
 // A model over all folds; errors over the same samples as every other's.
 struct ModelResult {
   PlannedModel plan;
-  int size = 0;        // centres, or nodes of the grid
-  Evidence errors;     // positions as recorded
-  ErrorSummary moved;  // the surface of every test recording moved to the models'
-  Evidence left_out;   // on training that was left out; no samples: not fitted to the rest
-  PredictedErrors predicted;
+  int size = 0;                              // centres, or nodes of the grid
+  Evidence errors;                           // positions as recorded
+  ErrorSummary moved;                        // the surface of every test recording moved to the models'
+  Evidence left_out;                         // on training that was left out; no samples: not fitted to the rest
   double fit_seconds = 0.0;                  // mean over the folds, preparation left out
   ModelTiming time;                          // of the last fold's model
   std::shared_ptr<const FittedModel> model;  // likewise; null: no force

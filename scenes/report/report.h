@@ -1,5 +1,4 @@
 // The whole of `palpate report`: recordings in, a folder out.
-//
 // Thread guarantee: slow side (does I/O, starts gnuplot and threads).
 #pragma once
 

@@ -1,6 +1,4 @@
-// The tables of the report: one description for the CSV file, the page and
-// report.json, so that the three can never disagree.
-//
+// The tables of the report: one description for the CSV file, the page and report.json.
 // Thread guarantee: value types and pure functions.
 #pragma once
 
@@ -17,8 +15,7 @@
 
 namespace palpate {
 
-// How the page shows a column; the CSV and report.json always hold the SI value
-// in full.
+// How the page shows a column; the CSV and report.json always hold the SI value in full.
 struct TableColumn {
   std::string key;     // CSV header and JSON key, unit at its end: "rms_error_N"
   std::string title;   // on the page, with the unit in which it is shown: "RMS [mN]"; empty: not shown
@@ -51,15 +48,13 @@ struct Table {
   }
 };
 
-// Header and rows; numbers read back as the same doubles, text with a comma, a
-// quote or a line end is quoted (RFC 4180).
+// Numbers read back as the same doubles; text is quoted where needed (RFC 4180).
 std::string table_csv(const Table& table);
 
 // A list of objects, one a row.
 nlohmann::ordered_json table_json(const Table& table);
 
-// <div><table>...</table></div>, everything from outside escaped; numbers to the
-// right.
+// <div><table>...</table></div>, everything from outside escaped; numbers to the right.
 std::string table_html(const Table& table);
 
 // All numbers of a report: models, recordings, force_bins, features, times; those with times

@@ -1,6 +1,4 @@
-// A scene: a plain description of what is touched. Which features matter,
-// which virtual material stands in for the truth, what to draw. One JSON file
-// per scene under assets/scenes; its name is the file's name.
+// A scene: a plain description of what is touched, one JSON file under assets/scenes, whose name is its own.
 // Thread guarantee: values; reading them is slow side only (does I/O).
 #pragma once
 
@@ -52,11 +50,9 @@ struct Scene {
 // The features in words: "depth, velocity, relaxation 0.17 s".
 std::string describe_features(const Scene& scene);
 
-// Reads a scene from the text of its file; `path` stands in the messages and
-// gives the name. Errors: all that is wrong, one per line, each as
-// "path:line:column: found ..., expected ..." (where in the file). A "jnd_file", in
-// place of "jnd", names a JND file (scenes/scene/jnd_file.h) relative to the scene's
-// own folder; it is read too.
+// Reads a scene from the text of its file; `path` gives the name. A "jnd_file", in place of "jnd", names a JND
+// file (scenes/scene/jnd_file.h) relative to the scene's own folder; it is read too. Errors: all that is
+// wrong, one per line, each as "path:line:column: found ..., expected ...".
 Result<Scene> parse_scene(std::string_view text, const std::string& path);
 
 // The names of all scenes in `folder`, sorted; empty: the assets' own. Errors: no such folder.
@@ -65,9 +61,8 @@ Result<std::vector<std::string>> scene_names(const std::string& folder = {});
 // The scene of that name. Errors: unknown (lists the known ones), file broken.
 Result<Scene> load_scene(const std::string& name, const std::string& folder = {});
 
-// 0xRRGGBB of a row of models/fit/methods.h, or of "position", the slot of a live session that
-// knows the depth alone. 0 means black on white and white on black: of the methods without a
-// hue, and of what is not known.
+// 0xRRGGBB of a row of models/fit/methods.h, or of "position", the model that knows the depth alone. 0, black
+// on white and white on black: methods without a hue, and what is not known.
 std::uint32_t method_rgb(std::string_view method);
 
 }  // namespace palpate
