@@ -1,6 +1,9 @@
 #include "scenes/plot/inline_svg.h"
 
+#include <cctype>
+#include <cstdio>
 #include <utility>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -12,6 +15,18 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
     result.append(text, at, next - at).append(to);
   }
   return result.append(text, at, std::string::npos);
+}
+
+// The ways in which gnuplot writes "#d8d8d8".
+std::vector<std::string> spellings(std::string_view colour) {
+  const auto part = [&](std::size_t at) { return std::stoi(std::string(colour.substr(at, 2)), nullptr, 16); };
+  char wide[40];
+  char narrow[40];
+  std::snprintf(wide, sizeof wide, "rgb(%3d, %3d, %3d)", part(1), part(3), part(5));
+  std::snprintf(narrow, sizeof narrow, "rgb(%d,%d,%d)", part(1), part(3), part(5));
+  std::string upper(colour);
+  for (char& letter : upper) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return {std::string(colour), upper, wide, narrow};
 }
 
 }  // namespace
@@ -39,6 +54,15 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
   }
   body = replaced(body, "url(#", std::string("url(#").append(name).append("-"));
   body = replaced(body, "xlink:href", "href");
+  const std::pair<std::string_view, std::string_view> variables[] = {{"#222222", "var(--ink)"},
+                                                                     {"#6e6e6e", "var(--muted)"},
+                                                                     {"#d8d8d8", "var(--grid)"},
+                                                                     {"#e3e3e3", "var(--band)"},
+                                                                     {"#fefefe", "var(--paper)"}};
+  for (const auto& [colour, variable] : variables) {
+    for (const std::string& form : spellings(colour)) body = replaced(body, form, variable);
+  }
+  body = replaced(body, "\"black\"", "\"var(--ink)\"");
   return "<svg viewBox=\"" + view + "\" role=\"img\" aria-label=\"" + escape_html(title) + "\">" + body;
 }
 

@@ -110,13 +110,13 @@ TEST(DrawPlot, WritesOneFileWholeOrNothing) {
   EXPECT_FALSE(draw_plot(errors_up_to(3.0), {folder.file("a.svg")}, false).ok()) << "it exists";
 }
 
-TEST(InlineSvg, KeepsItsIdsApart) {
+TEST(InlineSvg, FollowsThePageAndKeepsItsIdsApart) {
   const std::string svg =
       "<?xml version=\"1.0\"?>\n<svg width=\"9\" viewBox=\"0 0 9 9\">\n<title>x</title><desc>y</desc>\n"
       "<path id='p' stroke='rgb( 34,  34,  34)' fill=\"#fefefe\"/><use xlink:href='#p'/></svg>";
   EXPECT_EQ(inline_svg(svg, "n", "a < b"),
             "<svg viewBox=\"0 0 9 9\" role=\"img\" aria-label=\"a &lt; b\">\n\n"
-            "<path id='n-p' stroke='rgb( 34,  34,  34)' fill=\"#fefefe\"/><use href='#n-p'/></svg>");
+            "<path id='n-p' stroke='var(--ink)' fill=\"var(--paper)\"/><use href='#n-p'/></svg>");
 }
 
 }  // namespace
