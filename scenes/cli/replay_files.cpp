@@ -30,7 +30,12 @@ std::vector<std::string> told_apart(const std::vector<std::string>& names, const
   return result;
 }
 
-// `names` with -2, -3 ... behind those that came before, so that all differ.
+constexpr std::size_t kMostMoments = 3000;
+constexpr double kLeastScale_jnd = 1.6;
+constexpr double kMostScale_jnd = 5.0;
+
+}  // namespace
+
 std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
   std::vector<std::string> distinct;
   const auto taken = [&](const std::string& name) {
@@ -43,12 +48,6 @@ std::vector<std::string> distinct_names(const std::vector<std::string>& names) {
   }
   return distinct;
 }
-
-constexpr std::size_t kMostMoments = 3000;
-constexpr double kLeastScale_jnd = 1.6;
-constexpr double kMostScale_jnd = 5.0;
-
-}  // namespace
 
 Result<ForcesFile> ForcesFile::create(const std::string& path, bool overwrite, const std::vector<LoadedModel>& models) {
   Result<AtomicFile> file = AtomicFile::create(path, overwrite);

@@ -46,6 +46,9 @@ class ForcesFile {
   std::vector<FeatureColumn> columns_;
 };
 
+// `names` with -2, -3 ... behind those that came before, so that all differ.
+std::vector<std::string> distinct_names(const std::vector<std::string>& names);
+
 // A replayed recording as a figure: the measured force, every model's difference from
 // it over the JND, and the error against the force.
 class ReplayPlot {

@@ -15,7 +15,7 @@ namespace {
 constexpr int kPageWidth = 800;  // pixels
 constexpr int kRowHeight = 230;
 constexpr int kLegendLine = 20;
-constexpr double kCharacter = 8.2;  // pixels, on average, in the legend's font
+constexpr double kCharacter = 9.8;  // pixels, in which an offset in characters counts
 
 std::string number(double value) { return std::isfinite(value) ? shortest(value) : "NaN"; }
 

@@ -71,10 +71,10 @@ TEST(Plot, TicsOfManyOrHardlyAnyDecadesAreReadable) {
   }
 }
 
-TEST(Plot, ALegendOfTwoLinesHasTwoLinesOfRoom) {
+TEST(Plot, ALegendOfSeveralLinesHasAsManyLinesOfRoom) {
   Plot plot = errors_up_to(1.0);
   for (int i = 0; i < 12; ++i) plot.panels[0].series.push_back({"a long name " + std::to_string(i), 0, Mark::line, {}});
-  EXPECT_NE(plot_script(plot)->find("title \" \\n \\n \"\n"), std::string::npos) << *plot_script(plot);
+  EXPECT_NE(plot_script(plot)->find("title \" \\n \\n \\n \"\n"), std::string::npos) << *plot_script(plot);
 }
 
 TEST(Plot, ScriptHoldsItsOwnData) {
