@@ -28,6 +28,9 @@ Status run(ReportRequest request) {
   request.version = "palpate " PALPATE_VERSION;
   const auto scene = load_scene(request.scene);
   if (!scene) return scene.error();
+  if (request.train.empty() && !request.test.empty()) {
+    return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
+  }
   std::vector<std::string> recordings = request.train;
   recordings.insert(recordings.end(), request.test.begin(), request.test.end());
   if (const auto checked = check_before_use(recordings, check_request(*scene)); !checked) return checked.error();
