@@ -27,8 +27,9 @@ class Search {
   Located run() {
     scan();
     const Place zero = place(0.0);
-    if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(),
-                                         [&](const Place& one) { return !is_certainly_worse(zero.costs, one.costs); })) {
+    if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
+          return !is_certainly_worse(zero.costs, one.costs);
+        })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
     }
     refine_valleys();
@@ -44,7 +45,8 @@ class Search {
       found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.imitated && !is_certainly_worse(zero.costs, best_.costs)) found.told = false;
+    if (found.not_zero && zero_counts && range_.imitated && !is_certainly_worse(zero.costs, best_.costs))
+      found.told = false;
     if (!found.told) found.standard_error = kUnknownError;
     if (found.told && found.not_zero) found.at = best_.at;
     return found;
