@@ -23,6 +23,10 @@ constexpr Eigen::Index kCentres = 200;
 constexpr Eigen::Index kBlockRows = 512;  // of the design at a time
 constexpr int kLowestDecade = -9;         // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
+// RMS of a trend's errors below which hardly one in ten thousand is felt: there is nothing to
+// correct then but by the sum. A trend makes no energy; of centres nobody can say so.
+constexpr double kFelt_jnd = 0.25;
+constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 
 // The left-out fits for every smoothing. Rows stand by fold.
@@ -258,7 +262,9 @@ StrengthChoice choose_strength(const StrengthInput& input) {
     const double smoothing = fits.unit() * std::pow(10.0, kHighestDecade - part);
     predictions[at] = fits.predictions(smoothing);
     for (const double factor : kRadiusFactors) {
-      of_decade[at].push_back(score(smoothing, 1.0, factor * input.least_radius, predictions[at]));
+      for (const double strength : kStrengths) {
+        of_decade[at].push_back(score(smoothing, strength, factor * input.least_radius, predictions[at]));
+      }
     }
   });
   std::vector<Variant> variants;  // from the most smoothing to the least
@@ -266,19 +272,21 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   const Variant& best = *std::min_element(variants.begin(), variants.end(),
                                           [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
   const Variant* chosen = &none;
-  if (best.total() < none.total() && is_certainly_worse(none.fold_squares, best.fold_squares)) {
+  const double counted = std::max(1.0, static_cast<double>(std::count(counts.begin(), counts.end(), char{1})));
+  const bool felt = none.total() > kFelt_jnd * kFelt_jnd * counted && best.total() < none.total();
+  if (is_worth_it(best.fold_squares, none.fold_squares) ||
+      (felt && is_certainly_worse(none.fold_squares, best.fold_squares))) {
     // The shortest reach that is as good, and there the most smoothing. (Strokes that are
     // all alike say nothing of how far the correction may reach.)
     chosen = &best;
     for (const Variant& variant : variants) {
-      if (!is_as_good(variant.fold_squares, best.fold_squares)) continue;
+      if (variant.strength != best.strength || !is_as_good(variant.fold_squares, best.fold_squares)) continue;
       if (variant.inner_radius < chosen->inner_radius ||
           (variant.inner_radius == chosen->inner_radius && variant.smoothing > chosen->smoothing)) {
         chosen = &variant;
       }
     }
   }
-  const double counted = std::max(1.0, static_cast<double>(std::count(counts.begin(), counts.end(), char{1})));
   choice.smoothing = chosen->smoothing;
   choice.strength = chosen->strength;
   choice.inner_radius = chosen->inner_radius;

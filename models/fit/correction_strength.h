@@ -5,14 +5,15 @@
 // left out in turn, of the trend too, h is fitted to the other rows by penalised least squares,
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // on a few hundred random centres, and the rows left out are predicted by
-//   f = max(0, T(x) + strength g(x) clamp(h(x), -limit, limit)),  strength 0 or 1,
-// with g the trust of the domain guard around the rows that were kept. Smoothing and the
-// radius of the guard are those of the least squared error over the JND where no correction
-// is certainly worse (acceptance.h), else the strength is 0; of those as good the shortest
-// radius and with it the most smoothing. The smoothing is the variance of the noise over that
-// of the prior and does not depend on the number of centres: one choice serves every method,
-// and with more centres each method comes closer to the smoothing spline through all the
-// sites instead of following the noise.
+//   f = max(0, T(x) + strength g(x) clamp(h(x), -limit, limit))
+// with g the trust of the domain guard around the rows that were kept. Smoothing, strength
+// (from 0, none, to 1, all) and the radius of the guard are those of the least squared error
+// over the JND; of those as good the shortest radius and with it the most smoothing. None at
+// all, unless by the sum it is worth it, or the trend's errors are felt and it is certainly
+// worse (acceptance.h). The smoothing is the variance of the noise over that of the prior and
+// does not depend on the number of centres: one choice serves every method, and with more
+// centres each method comes closer to the smoothing spline through all the sites instead of
+// following the noise.
 // Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the
 // basis); Craven & Wahba (1979); Hastie, Tibshirani & Friedman (2009), 7.10.
 // Thread guarantee: slow side, pure.
