@@ -27,7 +27,7 @@ struct Palette {
 };
 const Palette& palette(Theme theme) noexcept;
 
-// Of a fitting method (scenes/scene/method_look.h); one without a hue is black or
+// Of a fitting method (scenes/scene/scene.h); one without a hue is black or
 // white, and so is what is not known.
 Rgb method_colour(std::string_view method, Theme theme);
 // Of the `which`-th model of one method, 0 for the first: another shade of it.
