@@ -10,7 +10,7 @@
 //
 // What differs in kind, a trend and a corrected one, a place and another, differs much in
 // some blocks and little in others, and a sum with its spread then tells nothing: a
-// correction that took 98 % of the error from every fold was not accepted, because one fold
+// correction that took 89 to 99 % of the error from every fold was not accepted, because one fold
 // had most of it. There every block has one voice, its share r_k = (a_k - b_k) /
 // (a_k + b_k), and a is certainly worse where mean r > 2 s / sqrt(n).
 // Thread guarantee: pure functions.

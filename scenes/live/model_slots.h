@@ -126,7 +126,8 @@ class ModelSlots {
   // Greatest depth that all shown models were trained with, metres; infinite without any.
   double trained_depth_m() const noexcept;
 
-  // Reads a model file, some milliseconds, into a new slot; trouble becomes a notice.
+  // Reads a model file into a new slot at once, in some milliseconds, tens of them for a direct fit; trouble
+  // becomes a notice.
   void load_file(const std::string& path);
   bool all_settled() const noexcept { return outstanding_ == 0; }
 

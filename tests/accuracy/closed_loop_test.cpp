@@ -105,7 +105,7 @@ TEST(ClosedLoop, AMassThatNothingHoldsBouncesOnTheSurfaceAndNoMore) {
 // A rig that never leaves the material counts depth from a preload, here 0.9 N, and the trend
 // begins where that load would be 0 (models/training/training_extent.h). A force that stood
 // at the surface at once would buzz under a relaxed finger. Measured: 0.7 steps and 0.8 JND;
-// a mass that nothing holds goes on by 0.14 mm.
+// a mass that nothing holds goes on, by 27 steps when it is pushed firmly.
 TEST(ClosedLoop, ComesToRestInEveryHandOnAModelOfRecordingsThatBeginUnderLoad) {
   Recording recording;
   recording.name = "preloaded";
