@@ -103,7 +103,7 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   prepared.common.correction_limit_N = kCorrectionMargin * largest_N;
 }
 
-// Moves every recording to where depth counts from; returns where that is, m.
+// Moves every recording to the common surface; returns where that is, m.
 Result<double> find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
                              const FitControl& control) {
   source.correct({});
@@ -117,14 +117,8 @@ Result<double> find_surfaces(MotionSource& source, const TrainingRequest& reques
     provenance.surfaces.push_back(
         {source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N, found->lag_s});
   }
-  source.correct(corrections);
-  const auto extent = measure_extent(source, control);
-  if (!extent) return extent.error();
-  const auto beginning_m = find_beginning(source, *extent, request.jnd, control);
-  if (!beginning_m) return beginning_m.error();
-  for (RowCorrection& one : corrections) one.offset_m += *beginning_m;
-  if (*beginning_m != 0.0) source.correct(std::move(corrections));
-  return found->surface_position_m + *beginning_m;
+  source.correct(std::move(corrections));
+  return found->surface_position_m;
 }
 
 // Keeps samples to evaluate the fit with, of as many in contact as there will be.
@@ -148,10 +142,9 @@ class EvaluationSamples {
 // What all lists of features share.
 struct Given {
   MotionSource& source;
-  DecisionRows& decisions;
   const TrainingRequest& request;
   const TrainingExtent& extent;
-  const FoldDealer& dealer;  // of the source
+  const FoldDealer& dealer;
   const TrendProblem& problem;
 };
 
@@ -166,7 +159,7 @@ Result<std::vector<double>> scene_times(const Given& given, Provenance& provenan
   }
   if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
   if (request.relaxation == Relaxation::automatic) {
-    auto identified = identify_relaxation(given.decisions.rows(), given.decisions.dealer(), given.problem,
+    auto identified = identify_relaxation(given.source, given.dealer, given.problem, given.extent,
                                           has_velocity(request.features), request.relaxation_count, control, 0.1);
     if (!identified) return identified.error();
     times_s = std::move(*identified);
@@ -177,10 +170,9 @@ Result<std::vector<double>> scene_times(const Given& given, Provenance& provenan
 
 // Everything, with the law of memory that the recordings show.
 Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& given, const FitControl& control) {
-  const auto scales = measure_times(given.decisions.rows(), control, 0.1);
-  if (!scales) return scales.error();
-  return find_memory_law(given.decisions.rows(), given.decisions.dealer(),
-                         dictionary(scales->sample_s, scales->longest_recording_s, given.extent.depth_m), given.problem,
+  const TrainingExtent& extent = given.extent;
+  return find_memory_law(given.source, given.dealer,
+                         dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m), given.problem,
                          prepared.worth, control, 0.15);
 }
 
@@ -207,11 +199,10 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   const bool automatic = request.choice == FeatureChoice::automatic && !papers;
   ModelData& common = prepared.common;
   common.corrects_trend = !papers;
-  const FoldDealer& dealer = given.decisions.dealer();
   const FeatureList terms = papers ? FeatureList{} : list;
-  const auto rows = gather_rows(given.decisions.rows(), dealer, terms, given.problem, kTrendRows, 0.0, control, 0.2);
+  const auto rows = gather_rows(given.source, given.dealer, terms, given.problem, kTrendRows, 0.0, control, 0.2);
   if (!rows) return rows.error();
-  const TrendRegression regression(*rows, dealer.folds(), given.problem.weighting, request.jnd,
+  const TrendRegression regression(*rows, given.dealer.folds(), given.problem.weighting, request.jnd,
                                    given.problem.force_noise_floor_N);
   const LeftOutTrend left_out = regression.left_out(regression.all_columns());
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
@@ -225,7 +216,7 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
     common.features = with_filters(request.features, filters);
   }
   EvaluationSamples evaluation(prepared, given.extent.contact_samples);
-  TrainingSetOptions options{0.25, papers ? nullptr : &given.dealer, given.decisions.sample(), {}};
+  TrainingSetOptions options{0.25, papers ? nullptr : &given.dealer, {}};
   options.also = [&](const MotionRow& row, const FeatureVector& vector) { evaluation.add(row, vector); };
   auto set = make_training_set(given.source, common.features, request.reduction, given.problem.force_noise_floor_N,
                                control, options);
@@ -250,10 +241,20 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
 Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRequest& request,
                                           const FitControl& control) {
   PreparedTraining prepared;
-  const auto surface_m = find_surfaces(source, request, prepared.common.provenance, control);
+  auto surface_m = find_surfaces(source, request, prepared.common.provenance, control);
   if (!surface_m) return surface_m.error();
-  const auto extent = measure_extent(source, control);
+  auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
+  if (request.surface == Surface::automatic) {
+    const auto beginning_m = find_beginning(source, *extent, request.jnd, control);
+    if (!beginning_m) return beginning_m.error();
+    if (*beginning_m != 0.0) {
+      source.shift(*beginning_m);
+      *surface_m += *beginning_m;
+      extent = measure_extent(source, control);
+      if (!extent) return extent.error();
+    }
+  }
   if (!control.may_continue(0.05)) return interrupted();
   if (!(extent->depth_m > 0.0)) {
     return Error{
@@ -267,9 +268,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
                              is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
   const FoldDealer dealer = dealer_for(source, *extent);
-  auto decisions = DecisionRows::of(source, *extent, control);
-  if (!decisions) return decisions.error();
-  const Given given{source, *decisions, request, *extent, dealer, problem};
+  const Given given{source, request, *extent, dealer, problem};
   FeatureList list = request.list;
   // The paper's recipe has the scene's features, whatever the recordings would support.
   const bool everything = request.choice == FeatureChoice::automatic && !is_papers_recipe(request);

@@ -212,13 +212,15 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
   std::vector<Member> members;
   GrowingStride rows(kOnsetRows, kCoarsestOnset_s);
   std::vector<std::vector<SurfaceRow>> recordings;
+  bool beginning = true;
   const Status status = source.for_each(
       [&](const MotionRow& row) {
         if (row.first && row.recording > 0) {
           recordings.push_back(rows.rows());
           rows = GrowingStride(kOnsetRows, kCoarsestOnset_s);
         }
-        rows.add({row.sample, row.motion, row.force_N});
+        beginning = row.first || (beginning && !row.run_up);
+        if (beginning) rows.add({row.sample, row.motion, row.force_N});
         return true;
       },
       control, fraction);

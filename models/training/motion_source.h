@@ -1,15 +1,16 @@
 // The training recordings as streams of motion: every pass of a fit over its
 // data goes through here, with the estimators that replay and the live loop use.
 //
-// Each recording has its own sensor (read off its first rows) and its own filter
-// state. Recordings are read and estimated once and kept: in memory where they fit,
-// longer ones (ten hours at 1 kHz are 36 million rows) in a temporary file
-// (spilled_rows.h). Where there is no room for that they are read and estimated again
-// in every pass. The rows are the same, bit by bit.
+// Each recording has its own sensor (read off its first rows) and its own filter state.
+// Recordings are read and estimated once and kept in memory, up to kMaximumRows together. Of
+// longer ones (ten hours at 1 kHz are 36 million rows) that many are kept: the beginning, from
+// which the surface is told, stretches, evenly, and as a run-up to each of these, so that
+// filters remember what was before it, every so-many-th row.
 // Thread guarantee: slow side.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,16 +22,11 @@
 #include "engine/recording/recording.h"
 #include "engine/tick/motion_estimator.h"
 #include "engine/tick/tool_sample.h"
-#include "models/training/spilled_rows.h"
 
 namespace palpate {
 
-// Rows kept in memory, over all recordings together: 216 MB.
-inline constexpr std::size_t kMaximumKeptRows = 3000000;
-
-// What is decided from some thousand rows needs no more than these many to take them
-// from: a quarter of an hour at 1 kHz.
-inline constexpr std::size_t kMaximumSampledRows = 1000000;
+// Half an hour at 1 kHz, 144 MB: more rows tell a fit of some thousand sites nothing new.
+inline constexpr std::size_t kMaximumRows = 2000000;
 
 // Some 20 ms of reading: a long pass can be stopped at once.
 inline constexpr std::size_t kRowsPerQuestion = 65536;
@@ -42,7 +38,7 @@ struct MotionRow {
   int recording = 0;
   int stroke = 0;       // counts contacts, over all recordings
   bool first = false;   // of its recording: filters start anew
-  bool run_up = false;  // of a sample (below): filters take it, nothing else does
+  bool run_up = false;  // between the stretches of a long one: filters take it, nothing else does
 };
 
 // What is taken off the rows of one recording on their way into training; velocity and
@@ -63,57 +59,62 @@ class MotionSource {
     std::shared_ptr<const std::vector<MotionEstimate>> motion{};
   };
 
-  // `kept_rows`: how many rows may stay in memory between the passes.
-  explicit MotionSource(std::vector<Input> inputs, std::size_t kept_rows = kMaximumKeptRows)
-      : inputs_(std::move(inputs)), kept_rows_(kept_rows) {}
+  // `most_rows`: how many stay in memory, about.
+  explicit MotionSource(std::vector<Input> inputs, std::size_t most_rows = kMaximumRows)
+      : inputs_(std::move(inputs)), most_rows_(most_rows) {}
 
-  // Calls `visit` for every row in order; a visit that returns false ends the
-  // pass with "interrupted", and so does `control`, asked every kRowsPerQuestion
-  // rows with `fraction`. Errors: those of RecordingReader.
+  // Calls `visit` for every row that is kept, in order, the longest recording first; a visit that
+  // returns false ends the pass with "interrupted", and so does `control`, asked every
+  // kRowsPerQuestion rows with `fraction`. Errors: those of RecordingReader.
   Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
                   double fraction = 0.0);
-
-  // About `most` rows of it, in memory, moved as these are: stretches of every recording,
-  // evenly, and as a run-up to each, so that filters remember what was before it, every
-  // so-many-th row. After the first pass. Errors: those of `for_each`.
-  Result<MotionSource> sample(std::size_t most, const FitControl& control, double fraction);
 
   // From now on every pass sees its rows moved; one for each recording, in the
   // order of `names`. Contact and strokes follow the moved position.
   void correct(std::vector<RowCorrection> corrections) { corrections_ = std::move(corrections); }
+  // And so far further, all of them.
+  void shift(double offset_m) {
+    for (RowCorrection& one : corrections_) one.offset_m += offset_m;
+  }
 
-  const std::vector<std::string>& names() const { return names_; }  // after the first pass
-  std::size_t rows() const { return rows_; }                        // after the first pass
-  // The largest force noise among the recordings; after the first pass.
+  // After the first pass.
+  const std::vector<std::string>& names() const { return names_; }
+  // Recorded, of which no more than about `most_rows` are kept.
+  std::size_t rows() const { return rows_; }
+  // The largest force noise among the recordings, the coarsest of their encoder steps, then of
+  // their noises.
   double force_noise_N() const { return force_noise_N_; }
-  // The coarsest of the recordings' encoder steps, then of their noises; after the first pass.
   double encoder_step_m() const { return encoder_step_m_; }
   double position_noise_m() const { return position_noise_m_; }
 
  private:
-  Status arrange(const FitControl& control, double fraction);
-  Status visit_recorded(const std::function<bool(const MotionRow&)>& visit);
-  Status read_all(const std::function<bool(const MotionRow&)>& visit);
-  bool knows_all() const;
-  Status visit_loaded(const std::function<bool(const MotionRow&)>& visit) const;
-  Status read_spilled(const std::function<bool(const MotionRow&)>& visit) const;
-  void keep(const MotionRow& row);
-  void forget();
+  struct OneRecording {
+    std::string name;
+    std::size_t recorded = 0;
+    std::uint64_t hash = 0;       // of its content
+    std::vector<MotionRow> rows;  // as recorded
+  };
+  // Rows up to `beginning`, then the first `stretch` of every `sparse` times as many.
+  struct Thinning {
+    std::size_t beginning = 0;
+    std::size_t sparse = 1;
+    std::size_t stretch = 1;
+    bool is_run_up(std::size_t row) const { return row >= beginning && row % (sparse * stretch) >= stretch; }
+  };
+
+  Status load(const FitControl& control, double fraction);
+  Status read(const Input& input, const Thinning& thinning, OneRecording& one, const FitControl& control,
+              double fraction);
 
   std::vector<Input> inputs_;
-  std::size_t kept_rows_;
-  std::vector<std::string> names_;
-  std::vector<MotionRow> kept_;  // as recorded
-  std::optional<SpilledRows> spilled_;
-  std::vector<std::size_t> first_rows_;  // of the recordings
-  bool keeps_ = true;                    // what the first pass reads
+  std::size_t most_rows_;
+  std::vector<std::string> names_;  // none: not loaded yet
+  std::vector<OneRecording> recordings_;
   std::vector<RowCorrection> corrections_;
-  bool arranged_ = false;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
   double encoder_step_m_ = 0.0;
   double position_noise_m_ = 0.0;
-  bool complete_ = false;  // kept_, spilled_ or the inputs hold everything
 };
 
 }  // namespace palpate

@@ -63,11 +63,10 @@ Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, c
 }  // namespace
 
 Result<std::vector<double>> identify_relaxation(MotionSource& source, const FoldDealer& dealer,
-                                                const TrendProblem& problem, bool velocity, std::size_t count,
-                                                const FitControl& control, double fraction) {
-  const auto scales = measure_times(source, control, fraction);
-  if (!scales) return scales.error();
-  FeatureList list = dictionary(scales->sample_s, scales->longest_recording_s, problem.reference_depth_m);
+                                                const TrendProblem& problem, const TrainingExtent& extent,
+                                                bool velocity, std::size_t count, const FitControl& control,
+                                                double fraction) {
+  FeatureList list = dictionary(extent.sample_s, extent.longest_recording_s, problem.reference_depth_m);
   list.velocity = velocity;
   list.stop_thresholds_m.clear();
   list.creep_times_s.clear();
@@ -88,32 +87,6 @@ Result<std::vector<double>> identify_relaxation(MotionSource& source, const Fold
   std::vector<double> times_s;
   for (const std::size_t time : best.times) times_s.push_back(ladder_s[time]);
   return times_s;
-}
-
-Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction) {
-  double start_s = 0.0;
-  double last_s = 0.0;
-  double duration_s = 0.0;
-  std::size_t steps = 0;
-  bool run_up = false;
-  TimeScales scales;
-  const Status status = source.for_each(
-      [&](const MotionRow& row) {
-        if (row.first) {
-          start_s = row.sample.time_s;
-        } else if (!run_up && !row.run_up) {
-          duration_s += row.sample.time_s - last_s;
-          ++steps;
-        }
-        run_up = row.run_up;
-        last_s = row.sample.time_s;
-        scales.longest_recording_s = std::max(scales.longest_recording_s, last_s - start_s);
-        return true;
-      },
-      control, fraction);
-  if (!status) return status.error();
-  scales.sample_s = duration_s / static_cast<double>(std::max<std::size_t>(steps, 1));
-  return scales;
 }
 
 }  // namespace palpate

@@ -11,19 +11,14 @@
 #include <vector>
 
 #include "models/training/memory_law.h"
+#include "models/training/training_extent.h"
 
 namespace palpate {
 
 // Seconds, ascending. `count`: one to three; 0: as many as the folds reward. Errors: those of the source; interrupted.
 Result<std::vector<double>> identify_relaxation(MotionSource& source, const FoldDealer& dealer,
-                                                const TrendProblem& problem, bool velocity, std::size_t count,
-                                                const FitControl& control, double fraction);
-
-// The mean step of the recordings and the length of the longest.
-struct TimeScales {
-  double sample_s = 0.0;
-  double longest_recording_s = 0.0;
-};
-Result<TimeScales> measure_times(MotionSource& source, const FitControl& control, double fraction);
+                                                const TrendProblem& problem, const TrainingExtent& extent,
+                                                bool velocity, std::size_t count, const FitControl& control,
+                                                double fraction);
 
 }  // namespace palpate

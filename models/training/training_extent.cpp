@@ -39,6 +39,11 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   double last_m = 0.0;
   double lowest_N = 0.0;
   double pulls = 0.0;
+  double start_s = 0.0;
+  double last_s = 0.0;
+  double duration_s = 0.0;
+  double steps = 0.0;
+  bool after_run_up = false;
   const Status status = source.for_each(
       [&](const MotionRow& row) {
         if (row.sample.position_m > 0.0) {
@@ -53,6 +58,15 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
           if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
         }
         last_m = row.motion.position_m;
+        if (row.first) {
+          start_s = row.sample.time_s;
+        } else if (!after_run_up && !row.run_up) {
+          duration_s += row.sample.time_s - last_s;
+          steps += 1.0;
+        }
+        after_run_up = row.run_up;
+        last_s = row.sample.time_s;
+        extent.longest_recording_s = std::max(extent.longest_recording_s, last_s - start_s);
         return true;
       },
       control, 0.0);
@@ -60,6 +74,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   if (!status) return status.error();
   const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
   if (pulling && lowest_N < -kPullNoises * source.force_noise_N()) extent.lowest_force_N = lowest_N;
+  extent.sample_s = duration_s / std::max(1.0, steps);
   // A tool that never moved still needs a scale: 1 um/s.
   extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);
   return extent;
@@ -87,22 +102,6 @@ Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent
   const bool told = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
   const double out_m = force_N / slope;
   return told && out_m < extent.depth_m ? -out_m : 0.0;
-}
-
-Result<DecisionRows> DecisionRows::of(MotionSource& source, const TrainingExtent& extent, const FitControl& control,
-                                      std::size_t most) {
-  DecisionRows rows(source, dealer_for(source, extent));
-  if (source.rows() <= most) return rows;
-  auto sample = source.sample(most, control, 0.05);
-  if (!sample) return sample.error();
-  rows.sample_ = std::move(*sample);
-  // Folds of the same size need pieces as long as the sample's contact has them.
-  auto sampled = measure_extent(*rows.sample_, control);
-  if (!sampled) return sampled.error();
-  sampled->way_in_m = extent.way_in_m;
-  sampled->way_out_m = extent.way_out_m;
-  rows.dealer_ = dealer_for(*rows.sample_, *sampled);
-  return rows;
 }
 
 }  // namespace palpate

@@ -1,10 +1,8 @@
-// What the rows of a training source span, measured in one pass, and what decisions are
-// taken from: the source itself, or a sample of a long one.
+// What the rows of a training source span, measured in one pass.
 // Thread guarantee: slow side.
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
@@ -23,6 +21,8 @@ struct TrainingExtent {
   std::size_t strokes = 0;
   double way_in_m = 0.0;  // in contact
   double way_out_m = 0.0;
+  double sample_s = 0.0;  // the mean step
+  double longest_recording_s = 0.0;
 
   // Whether the tool comes back in contact.
   bool turns_round() const;
@@ -41,24 +41,5 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
 // Errors: those of the source; interrupted.
 Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
                               const FitControl& control);
-
-class DecisionRows {
- public:
-  // `source`, after a pass over it, must outlive this. Errors: those of the source; interrupted.
-  static Result<DecisionRows> of(MotionSource& source, const TrainingExtent& extent, const FitControl& control,
-                                 std::size_t most = kMaximumSampledRows);
-
-  MotionSource& rows() { return sample_ ? *sample_ : *whole_; }
-  // None: the source is short enough itself.
-  MotionSource* sample() { return sample_ ? &*sample_ : nullptr; }
-  const FoldDealer& dealer() const { return dealer_; }
-
- private:
-  DecisionRows(MotionSource& whole, const FoldDealer& dealer) : whole_(&whole), dealer_(dealer) {}
-
-  MotionSource* whole_;
-  std::optional<MotionSource> sample_;
-  FoldDealer dealer_;
-};
 
 }  // namespace palpate

@@ -15,46 +15,35 @@ constexpr double kGrowth = 1.25;
 
 using FeatureValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kMaxFeatures), 1>;
 
-// Bounds of every feature.
-struct FeatureBounds {
+// Bounds, running mean and spread of every feature.
+struct FeatureMoments {
+  explicit FeatureMoments(std::size_t n) : mean(FeatureValues::Zero(static_cast<Eigen::Index>(n))), squares(mean) {}
+
   void add(const FeatureValues& x) {
     if (count == 0.0) lower = upper = x;
     count += 1.0;
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
-  }
-
-  double count = 0.0;
-  FeatureValues lower;
-  FeatureValues upper;
-};
-
-// Running mean and spread as well.
-struct FeatureMoments {
-  explicit FeatureMoments(std::size_t n) : mean(FeatureValues::Zero(static_cast<Eigen::Index>(n))), squares(mean) {}
-
-  void add(const FeatureValues& x) {
-    bounds.add(x);
     const FeatureValues change = x - mean;
-    mean += change / bounds.count;
+    mean += change / count;
     squares += change.cwiseProduct(x - mean);
   }
 
   Normalisation normalisation() const {
-    Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), bounds.lower, bounds.upper};
+    Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), lower, upper};
     for (Eigen::Index i = 0; i < mean.size(); ++i) {
-      const double range = bounds.upper(i) - bounds.lower(i);
-      const double deviation = std::sqrt(squares(i) / bounds.count);
-      const double scale = std::sqrt(range * 4.0 * deviation);
+      const double scale = std::sqrt((upper(i) - lower(i)) * 4.0 * std::sqrt(squares(i) / count));
       // A spread at the level of rounding is no spread.
-      if (scale > 1e-12 * std::max(std::abs(bounds.lower(i)), std::abs(bounds.upper(i)))) result.scale(i) = scale;
+      if (scale > 1e-12 * std::max(std::abs(lower(i)), std::abs(upper(i)))) result.scale(i) = scale;
     }
     return result;
   }
 
-  FeatureBounds bounds;
+  double count = 0.0;
   FeatureValues mean;
   FeatureValues squares;
+  FeatureValues lower;
+  FeatureValues upper;
 };
 
 using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
@@ -215,9 +204,9 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   set.features = features;
   const auto n = static_cast<Eigen::Index>(features.size());
   // `handle` sees every sample in contact with its features.
-  const auto pass = [&](MotionSource& rows, const auto& handle) {
+  const auto pass = [&](const auto& handle) {
     FeatureFilter filter(features);
-    return rows.for_each(
+    return source.for_each(
         [&](const MotionRow& row) {
           if (row.first) filter.reset();
           const FeatureVector& vector = filter.update(row.sample, row.motion);
@@ -231,13 +220,12 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   };
 
   FeatureMoments moments(features.size());
-  const bool sampled = options.scales != nullptr;
-  Status status = pass(sampled ? *options.scales : source, [&](const MotionRow& row, const FeatureVector& vector) {
+  Status status = pass([&](const MotionRow& row, const FeatureVector& vector) {
     moments.add(values_of(vector));
-    if (!sampled && options.also) options.also(row, vector);
+    if (options.also) options.also(row, vector);
   });
   if (!status) return status.error();
-  set.contact_samples = static_cast<std::uint64_t>(moments.bounds.count);
+  set.contact_samples = static_cast<std::uint64_t>(moments.count);
   if (set.contact_samples == 0) {
     return Error{
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
@@ -245,16 +233,13 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   }
   set.normalisation = moments.normalisation();
 
-  FeatureBounds bounds;  // of all samples, where the scales are of some
   CoverageReduction coverage(set.normalisation);
   ForceReduction force;
   NoReduction none;
   int recording = -1;
   std::optional<FoldDealer> folds;
   if (options.dealer != nullptr) folds = *options.dealer;
-  status = pass(source, [&](const MotionRow& row, const FeatureVector& vector) {
-    if (sampled) bounds.add(values_of(vector));
-    if (sampled && options.also) options.also(row, vector);
+  status = pass([&](const MotionRow& row, const FeatureVector& vector) {
     const int fold = folds ? folds->next(row) : 0;
     const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
@@ -271,11 +256,6 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
     recording = row.recording;
   });
   if (!status) return status.error();
-  if (sampled) {
-    set.contact_samples = static_cast<std::uint64_t>(bounds.count);
-    set.normalisation.lower = bounds.lower;
-    set.normalisation.upper = bounds.upper;
-  }
   switch (reduction) {
     case Reduction::coverage:
       set.coverage_step = coverage.step();

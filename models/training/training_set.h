@@ -78,7 +78,6 @@ struct TrainingSet {
 struct TrainingSetOptions {
   double fraction = 0.0;               // of the progress
   const FoldDealer* dealer = nullptr;  // none: all sites are of fold 0
-  MotionSource* scales = nullptr;      // a sample of a long source: has offset and scale of its features
   // Called with every sample in contact and its features, once.
   std::function<void(const MotionRow&, const FeatureVector&)> also{};
 };

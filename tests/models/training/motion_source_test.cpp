@@ -54,20 +54,23 @@ TEST(MotionSource, TakesMotionThatIsKnown) {
   for (int pass = 0; pass < 2; ++pass) expect_same(rows_of(estimated_twice), rows_of(twice));
 }
 
-// Rows of a sample are rows of the source, in order, from the beginning to the end of
-// each recording, in stretches without a gap.
-TEST(MotionSource, ASampleGoesThroughEveryRecordingInStretches) {
+// Of a recording that is too long the rows are those of the source, in order, from the beginning
+// to the end, in stretches without a gap.
+TEST(MotionSource, OfLongRecordingsKeepsTheBeginningAndStretches) {
   constexpr std::size_t kMost = 8000;
-  MotionSource source({in_memory(test::example_recording(60000, 1000.0, 30e-6)),
-                       in_memory(test::example_recording(30000, 1000.0, 0.0))});
-  source.correct({{1e-3, 0.5}, {0.0, 0.0}});
-  const auto all = rows_of(source);
-  auto sample = source.sample(kMost, {}, 0.0);
-  ASSERT_TRUE(sample.ok());
-  EXPECT_EQ(sample->names(), source.names());
-  const auto rows = rows_of(*sample);
-  EXPECT_LT(rows.size(), kMost + kMost / 4);
+  const std::vector<Input> inputs{in_memory(test::example_recording(60000, 1000.0, 30e-6)),
+                                  in_memory(test::example_recording(30000, 1000.0, 0.0))};
+  MotionSource whole(inputs);
+  MotionSource thinned(inputs, kMost);
+  for (MotionSource* source : {&whole, &thinned}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
+  const auto all = rows_of(whole);
+  const auto rows = rows_of(thinned);
+  EXPECT_EQ(thinned.names(), whole.names());
+  EXPECT_EQ(thinned.rows(), 90000u);
+  EXPECT_EQ(thinned.force_noise_N(), whole.force_noise_N());
+  EXPECT_LT(rows.size(), kMost + kMost / 10);
   EXPECT_GT(rows.size(), kMost / 2);
+  constexpr std::size_t kSparse = 3 * 90000 / kMost + 1;
   std::size_t at = 0;
   std::size_t last = 0;
   std::size_t longest_gap = 0;
@@ -83,12 +86,15 @@ TEST(MotionSource, ASampleGoesThroughEveryRecordingInStretches) {
     if (!run_up && !row.run_up && !row.first) {
       EXPECT_EQ(at, last + 1);
     }
+    if (at < kMost / 8) {
+      EXPECT_FALSE(row.run_up);
+    }
     if ((run_up || row.first) && !row.run_up) ++stretches[static_cast<std::size_t>(row.recording)];
     run_up = row.run_up;
     last = at;
   }
-  EXPECT_LE(longest_gap, 2 * all.size() / kMost + 1);  // every so-many-th row in between
-  EXPECT_LE(all.size() - last, 2 * all.size() / kMost + 1);
+  EXPECT_LE(longest_gap, kSparse);  // every so-many-th row in between
+  EXPECT_LE(all.size() - last, kSparse);
   EXPECT_GE(stretches[0], 4u);
   EXPECT_GE(stretches[1], 2u);
 }
@@ -165,41 +171,12 @@ TEST(MotionSource, TheOrderOfInputsChangesNothing) {
   const Input file{folder.file("b.csv"), nullptr};
   MotionSource one({in_memory(a), file, in_memory(c)});
   MotionSource other({in_memory(c), in_memory(a), file});
-  MotionSource bounded({file, in_memory(c), in_memory(a)}, 1000);
+  MotionSource files({file, in_memory(c), in_memory(a)}, 7000);
   const auto rows = rows_of(one);
   expect_same(rows_of(other), rows);
-  expect_same(rows_of(bounded), rows);
+  expect_same(rows_of(files), rows);
   EXPECT_EQ(other.names(), one.names());
-  EXPECT_EQ(bounded.names(), one.names());
-}
-
-class LongRecording : public ::testing::Test {
- protected:
-  void TearDown() override { unsetenv("TMPDIR"); }
-
-  // More rows than may be kept in memory.
-  static void expect_the_same_rows() {
-    const Input input = in_memory(test::example_recording(40000, 1000.0, 30e-6));
-    MotionSource kept({input, input});
-    MotionSource bounded({input, input}, 50000);
-    const auto expected = rows_of(kept);
-    for (int pass = 0; pass < 3; ++pass) {
-      expect_same(rows_of(bounded), expected);
-      EXPECT_EQ(bounded.rows(), 80000u);
-      EXPECT_EQ(bounded.names().size(), 2u);
-    }
-  }
-};
-
-TEST_F(LongRecording, ComesBackFromATemporaryFile) {
-  const test::TemporaryFolder folder;
-  setenv("TMPDIR", folder.file("").c_str(), 1);
-  expect_the_same_rows();
-}
-
-TEST_F(LongRecording, IsReadAgainWhereNoFileCanBeMade) {
-  setenv("TMPDIR", "/nonexistent", 1);
-  expect_the_same_rows();
+  EXPECT_EQ(files.names(), one.names());
 }
 
 TEST(MotionSource, APassThatBrokeOffLeavesNothingBehind) {
@@ -215,15 +192,18 @@ TEST(MotionSource, APassThatBrokeOffLeavesNothingBehind) {
 
 TEST(MotionSource, AsksNowAndThenWhetherToGoOn) {
   MotionSource source({in_memory(test::example_recording(200000, 1000.0))});
-  for (int pass = 0; pass < 2; ++pass) {  // from the input, then from what was kept
-    int questions = 0;
-    const FitControl count{[&](double fraction) { return ++questions > 0 && fraction == 0.5; }};
-    ASSERT_TRUE(source.for_each([](const MotionRow&) { return true; }, count, 0.5).ok());
-    EXPECT_EQ(questions, 200000 / static_cast<int>(kRowsPerQuestion));
-  }
   const FitControl stop{[](double) { return false; }};
   std::size_t seen = 0;
-  EXPECT_FALSE(source.for_each([&](const MotionRow&) { return ++seen > 0; }, stop).ok());
+  const auto count = [&](const MotionRow&) { return ++seen > 0; };
+  EXPECT_FALSE(source.for_each(count, stop).ok());  // while it is read
+  EXPECT_EQ(seen, 0u);
+  int questions = 0;
+  const FitControl on{[&](double fraction) { return ++questions > 0 && fraction == 0.5; }};
+  ASSERT_TRUE(source.for_each(count, on, 0.5).ok());
+  EXPECT_EQ(seen, 200000u);
+  EXPECT_GE(questions, 6);
+  seen = 0;
+  EXPECT_FALSE(source.for_each(count, stop).ok());  // from what is kept
   EXPECT_EQ(seen, kRowsPerQuestion);
 }
 

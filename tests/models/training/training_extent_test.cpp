@@ -29,6 +29,8 @@ TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
   EXPECT_EQ(extent->strokes, 10u);
   EXPECT_NEAR(static_cast<double>(extent->contact_samples), 5000.0, 20.0);
   EXPECT_TRUE(extent->turns_round());
+  EXPECT_NEAR(extent->sample_s, 1e-3, 1e-9);
+  EXPECT_NEAR(extent->longest_recording_s, 9.999, 1e-9);
 }
 
 // So many newtons more than the spring gives, and every other sample more or less by the noise.
@@ -51,21 +53,6 @@ TEST(FindBeginning, IsWhereAForceThatIsFeltBeginsAndElseTheZeroOfPositions) {
   EXPECT_EQ(beginning_of(0.3, 3.0, 500.0), 0.0);   // within two standard errors of nothing
   EXPECT_EQ(beginning_of(3.0, 0.0, 500.0), 0.0);   // 6 mm farther out than the recording goes in
   EXPECT_EQ(beginning_of(-8.0, 0.0, 500.0), 0.0);  // a force zero, or a pull: not a load
-}
-
-TEST(DecisionRows, AreTheSourceWhereItIsShortAndASampleWhereItIsLong) {
-  MotionSource source({{"", std::make_shared<const Recording>(presses(40000))}});
-  const auto extent = measure_extent(source, {});
-  ASSERT_TRUE(extent.ok());
-  auto all = DecisionRows::of(source, *extent, {}, 40000);
-  ASSERT_TRUE(all.ok());
-  EXPECT_EQ(all->sample(), nullptr);
-  EXPECT_EQ(&all->rows(), &source);
-  auto some = DecisionRows::of(source, *extent, {}, 4000);
-  ASSERT_TRUE(some.ok());
-  ASSERT_NE(some->sample(), nullptr);
-  EXPECT_LT(some->rows().rows(), 6000u);
-  EXPECT_EQ(some->dealer().folds(), all->dealer().folds());
 }
 
 }  // namespace

@@ -35,33 +35,6 @@ TrainingSet set_of(const Recording& recording, const std::vector<FeatureSpec>& f
   return *set;
 }
 
-// Of a long source a sample says how features are scaled; what they span, and every
-// sample's site, is that of the whole.
-TEST(TrainingSet, TakesScalesFromASampleAndBoundsFromAll) {
-  const Recording recording = recording_of(20000, [](int i) {
-    const double position_m = 2e-3 * std::sin(0.01 * i) + (i == 17000 ? 5e-3 : 0.0);
-    return std::pair{position_m, 300.0 * position_m};
-  });
-  MotionSource source = source_of(recording);
-  const auto features = test::paper_features();
-  const auto whole = make_training_set(source, features, Reduction::none, 0.01);
-  ASSERT_TRUE(whole.ok());
-  auto sample = source.sample(4000, {}, 0.0);
-  ASSERT_TRUE(sample.ok());
-  TrainingSetOptions options;
-  options.scales = &*sample;
-  std::size_t seen = 0;
-  options.also = [&](const MotionRow&, const FeatureVector&) { ++seen; };
-  const auto scaled = make_training_set(source, features, Reduction::none, 0.01, {}, options);
-  ASSERT_TRUE(scaled.ok());
-  EXPECT_EQ(seen, whole->contact_samples);
-  EXPECT_EQ(scaled->contact_samples, whole->contact_samples);
-  EXPECT_EQ(scaled->sites.size(), whole->sites.size());
-  EXPECT_EQ(scaled->normalisation.lower, whole->normalisation.lower);
-  EXPECT_EQ(scaled->normalisation.upper, whole->normalisation.upper);
-  EXPECT_NE(scaled->normalisation.scale, whole->normalisation.scale);
-}
-
 // Noise fills the four dimensions: without a cap nearly every sample would be a
 // site of its own.
 TEST(TrainingSet, CoverageNeverLeavesMoreThanItsCap) {
