@@ -59,16 +59,10 @@ Result<Solution> solve(const Sites& sites, const DirectOptions& options, const P
                        const FitControl& control) {
   Solution solution;
   const Error failed{"the kernel matrix could not be factorised; check the recording for extreme values"};
-  const std::optional<double> given =
-      options.smoothing || options.kernel != KernelKind::cubic ? options.smoothing : sites.smoothing;
-  double smoothing = given.value_or(0.0);
-  if (!given) {
-    const Result<double> choice = choose_smoothing(sites, options.kernel);
-    if (!choice) return choice.error();
-    smoothing = *choice;
-  }
+  const Result<double> smoothing = options.smoothing ? *options.smoothing : smoothing_of(sites, options.kernel);
+  if (!smoothing) return smoothing.error();
   if (!control.may_continue(0.2)) return interrupted();
-  switch (solve_by_cholesky(kernel, std::max(smoothing, kernel.smallest_smoothing()), control, solution)) {
+  switch (solve_by_cholesky(kernel, std::max(*smoothing, kernel.smallest_smoothing()), control, solution)) {
     case Outcome::cancelled:
       return interrupted();
     case Outcome::failed:

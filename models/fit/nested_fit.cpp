@@ -7,6 +7,7 @@
 #include "models/fit/methods.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/solve/lapack.h"
+#include "models/solve/penalised_weights.h"
 
 namespace palpate {
 
@@ -25,9 +26,9 @@ Result<NestedWeights> NestedWeights::fold(const Sites& sites, KernelKind kernel,
                                           const FitControl& control) {
   if (const Status status = validate_centres(sites, sequence.pool); !status) return status.error();
   const BlasThreads one_thread(1);
-  FoldedRows folded;
-  if (!fold_rows(sites, kernel, sequence.pool, control, folded)) return interrupted();
-  return NestedWeights(kernel, std::move(sequence), std::move(folded));
+  auto folded = fold_rows(sites, kernel, sequence.pool, control);
+  if (!folded) return folded.error();
+  return NestedWeights(kernel, std::move(sequence), std::move(*folded));
 }
 
 // In the order of solve_weights: Phi of these columns, G, f.
@@ -38,7 +39,7 @@ FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) c
   const auto k = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index newest = k > 0 ? *std::max_element(columns.begin(), columns.end()) + 1 : 0;
   const Eigen::Index rows = tail + newest;
-  FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1), folded_.sites, folded_.rows, folded_.smoothing,
+  FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1), folded_.sites, folded_.smoothing,
                     folded_.strength};
   for (Eigen::Index j = 0; j < k; ++j) {
     folded.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
@@ -54,10 +55,10 @@ FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) c
   return folded;
 }
 
-Result<FittedRbf> NestedWeights::solve(Eigen::Index count) const {
+FittedRbf NestedWeights::solve(Eigen::Index count) const {
   const BlasThreads one_thread(1);
   const std::vector<Eigen::Index> columns = sequence_.columns_of(std::clamp<Eigen::Index>(count, 0, most()));
-  return solve_folded(folded_for(columns), kernel_, sequence_.pool(Eigen::all, columns));
+  return penalised_weights(folded_for(columns), kernel_, sequence_.pool(Eigen::all, columns));
 }
 
 Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const MethodRequest& request,
@@ -78,10 +79,9 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
 }
 
 Result<MethodFit> NestedFit::fit(Eigen::Index count) const {
-  auto fitted = weights_.solve(count);
-  if (!fitted) return fitted.error();
-  MethodFit fit{common_, std::move(fitted->report)};
-  fit.data.correction = std::make_shared<const RbfCorrection>(std::move(fitted->function));
+  FittedRbf fitted = weights_.solve(count);
+  MethodFit fit{common_, std::move(fitted.report)};
+  fit.data.correction = std::make_shared<const RbfCorrection>(std::move(fitted.function));
   fit.data.name = fit.data.method + "-" + std::to_string(fit.report.centres_used);
   if (const Status valid = validate_model(fit.data); !valid) return valid.error();
   return fit;

@@ -33,8 +33,7 @@ class NestedWeights {
 
   Eigen::Index most() const { return sequence_.most; }
   // solve_weights for `count` centres, clamped to 0 to most().
-  // Errors: the decomposition did not converge.
-  Result<FittedRbf> solve(Eigen::Index count) const;
+  FittedRbf solve(Eigen::Index count) const;
 
  private:
   NestedWeights(KernelKind kernel, CentreSequence sequence, FoldedRows folded);

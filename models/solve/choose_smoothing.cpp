@@ -3,15 +3,14 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/base/parallel.h"
 #include "models/solve/lapack.h"
 #include "models/solve/projected_kernel.h"
 
 namespace palpate {
 namespace {
 
-// The largest subset: its eigendecomposition takes a quarter of a second.
-constexpr Eigen::Index kSmoothingSubset = 1000;
+// The largest subset: its eigendecomposition takes some 40 ms.
+constexpr Eigen::Index kSmoothingSubset = 500;
 // Tried relative to the mean eigenvalue, in quarters of a decade.
 constexpr int kLowestQuarter = -48;
 constexpr int kHighestQuarter = 8;
@@ -27,7 +26,7 @@ Result<double> choose_smoothing(const Sites& sites, KernelKind kernel) {
   // The tail's directions get an eigenvalue above all others, to be told apart.
   Eigen::MatrixXd vectors = projected.matrix(10.0 * unit * static_cast<double>(subset.count()), 0.0);
   Eigen::VectorXd values;
-  const BlasThreads threads(thread_count());
+  const BlasThreads one_thread(1);
   if (!symmetric_eigen(vectors, values))
     return Error{"the eigendecomposition did not converge; check the recording for extreme values"};
   const Eigen::ArrayXd eigenvalues = values.head(rank).cwiseMax(0.0).array();
@@ -53,6 +52,11 @@ Result<double> choose_smoothing(const Sites& sites, KernelKind kernel) {
     if (likelihood(smoothing) <= as_good * lowest) chosen = smoothing;
   }
   return chosen;
+}
+
+Result<double> smoothing_of(const Sites& sites, KernelKind kernel) {
+  if (sites.smoothing && kernel == KernelKind::cubic) return *sites.smoothing;
+  return choose_smoothing(sites, kernel);
 }
 
 }  // namespace palpate

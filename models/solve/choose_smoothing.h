@@ -1,4 +1,4 @@
-// The smoothing of the direct fit where none was decided by strokes left out
+// The smoothing of a fit where none was decided by strokes left out
 // (models/fit/correction_strength.h), from the data alone and without refitting.
 //
 // One eigendecomposition of P K P (projected_kernel.h) for a subset of the sites, taken at
@@ -20,5 +20,7 @@ namespace palpate {
 
 // Errors: the eigendecomposition did not converge. Deterministic. Off the tick.
 Result<double> choose_smoothing(const Sites& sites, KernelKind kernel);
+// That which was decided for the sites, of the cubic kernel; otherwise the most likely.
+Result<double> smoothing_of(const Sites& sites, KernelKind kernel);
 
 }  // namespace palpate

@@ -16,13 +16,12 @@ struct FitReport {
   // the data determine.
   Eigen::Index columns = 0;
   Eigen::Index rank = 0;
-  // Condition number of the system solved: columns scaled to length 1 before
-  // truncation (least squares), or the smoothed matrix (direct).
+  // Condition number of the system solved: columns scaled to length 1, or the smoothed matrix
+  // (direct).
   double condition = 0.0;
   // sqrt(mean(row_scale^2 (f - h)^2)) over the sites.
   double residual_rms = 0.0;
-  // Direct fit: lambda. The others:
-  // the ridge over the square of the largest singular value.
+  // The factor of the penalty (penalised_weights.h).
   double smoothing = 0.0;
   // Sentences for people: what was clamped, truncated or skipped.
   std::vector<std::string> notes;

@@ -14,8 +14,6 @@ void dgemv_(const char*, const int*, const int*, const double*, const double*, c
 void dgeqrt_(const int*, const int*, const int*, double*, const int*, double*, const int*, double*, int*);
 void dgemqrt_(const char*, const char*, const int*, const int*, const int*, const int*, const double*, const int*,
               const double*, const int*, double*, const int*, double*, int*);
-void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, double*, const int*, double*,
-             const int*, double*, const int*, int*, int*);
 void dtrsm_(const char*, const char*, const char*, const char*, const int*, const int*, const double*, const double*,
             const int*, double*, const int*);
 void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*,
@@ -151,25 +149,6 @@ void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors,
   int info = 0;
   dgemqrt_("L", "T", &m, &one, &n, &block, a.data(), &lda, factors.data(), &block, c.data(), &m, work.data(), &info);
   assert(info == 0);
-}
-
-bool svd(Eigen::MatrixXd a, Svd& out) {
-  const int n = to_int(a.rows());
-  assert(a.rows() == a.cols() && n >= 1);
-  out.u.resize(n, n);
-  out.vt.resize(n, n);
-  out.s.resize(n);
-  std::vector<int> integers(static_cast<std::size_t>(8 * n));
-  double wanted = 0.0;
-  int query = -1;
-  int info = 0;
-  dgesdd_("A", &n, &n, a.data(), &n, out.s.data(), out.u.data(), &n, out.vt.data(), &n, &wanted, &query,
-          integers.data(), &info);
-  const int work_size = static_cast<int>(wanted);
-  Eigen::VectorXd work(work_size);
-  dgesdd_("A", &n, &n, a.data(), &n, out.s.data(), out.u.data(), &n, out.vt.data(), &n, work.data(), &work_size,
-          integers.data(), &info);
-  return info == 0;
 }
 
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {

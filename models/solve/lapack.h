@@ -51,15 +51,6 @@ Eigen::MatrixXd qr_in_place(MatrixRef a);
 // c = Q^T c, of `a` and `factors` as qr_in_place leaves them.
 void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c);
 
-// a = u diag(s) vt for a square matrix, singular values descending.
-struct Svd {
-  Eigen::MatrixXd u;
-  Eigen::VectorXd s;
-  Eigen::MatrixXd vt;
-};
-// False when the iteration did not converge.
-bool svd(Eigen::MatrixXd a, Svd& out);
-
 // Eigenvalues ascending in `values`, eigenvectors in the columns of `a` (only
 // the lower triangle is read). False when the iteration did not converge.
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);

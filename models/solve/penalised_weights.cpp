@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <cmath>
+#include <optional>
 
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
@@ -19,15 +20,26 @@ Eigen::MatrixXd kernel_at_centres(KernelKind kernel, const Eigen::MatrixXd& cent
   return values;
 }
 
-// Upper C with C^T C = `matrix`, which rounding may have made slightly indefinite.
-Eigen::MatrixXd square_root(Eigen::MatrixXd matrix) {
-  const double size = std::max(matrix.diagonal().cwiseAbs().maxCoeff(), 1e-300);
-  for (double lift = 1e-15; lift < 1.0; lift *= 10.0) {
-    Eigen::MatrixXd factor = matrix;
-    factor.diagonal().array() += lift * size;
-    if (cholesky_in_place(factor)) return factor.triangularView<Eigen::Lower>().toDenseMatrix().transpose();
+// Upper C with C^T C = the penalty, of the directions of Z that make a function: centres at one
+// point make none with opposite weights.
+struct Root {
+  std::optional<Eigen::MatrixXd> directions;  // orthonormal; none: all there are
+  Eigen::MatrixXd upper;
+};
+
+Root root_of(const Eigen::MatrixXd& penalty) {
+  Eigen::MatrixXd factor = penalty;
+  if (cholesky_in_place(factor)) {
+    const Eigen::VectorXd pivots = factor.diagonal().cwiseAbs2();
+    if (pivots.size() == 0 || pivots.minCoeff() > kNothing * pivots.maxCoeff()) {
+      return {std::nullopt, factor.triangularView<Eigen::Lower>().toDenseMatrix().transpose()};
+    }
   }
-  return Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
+  Eigen::MatrixXd vectors = penalty;
+  Eigen::VectorXd values;
+  if (!symmetric_eigen(vectors, values)) values.setZero();
+  const Eigen::Index count = (values.array() > kNothing * values.maxCoeff()).count();
+  return {vectors.rightCols(count), values.tail(count).cwiseSqrt().asDiagonal()};
 }
 
 // Least squares of the triangle [R z], columns scaled to length 1; directions of
@@ -111,20 +123,22 @@ void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space) {
 
 FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
   const BlasThreads one_thread(1);
-  const double smoothing = folded.smoothing.value_or(0.0);
   const Eigen::MatrixXd& triangle = folded.triangle;
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = triangle.cols() - 1 - n;
   const PenaltySpace space = n > 0 ? penalty_space(kernel, centres) : PenaltySpace{};
-  const Eigen::Index free = space.free;
+  const Root root = root_of(space.penalty);
+  const Eigen::Index free = root.upper.cols();
   const Eigen::Index columns = free + tail + 1;
   // [K Z, G, f] of the sites above, the root of the penalty below.
   Eigen::MatrixXd stack = Eigen::MatrixXd::Zero(triangle.rows() + free, columns);
   if (free > 0) {
     Eigen::MatrixXd product = triangle.leftCols(n);
     multiply_by_basis(product, space);
-    stack.topLeftCorner(triangle.rows(), free) = product.leftCols(free);
-    stack.bottomLeftCorner(free, free) = std::sqrt(smoothing) * square_root(space.penalty);
+    const auto kernels = product.leftCols(space.free);
+    stack.topLeftCorner(triangle.rows(), free) =
+        root.directions ? Eigen::MatrixXd(kernels * *root.directions) : kernels;
+    stack.bottomLeftCorner(free, free) = std::sqrt(folded.smoothing) * root.upper;
   }
   stack.block(0, free, triangle.rows(), tail + 1) = triangle.rightCols(tail + 1);
   if (stack.rows() > columns) {
@@ -132,16 +146,17 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   }
   const Eigen::MatrixXd reduced = stack.topRows(columns).triangularView<Eigen::Upper>();
   const TriangleSolution solution = solve_scaled(reduced);
+  Eigen::VectorXd unknowns = solution.unknowns.head(free);
+  if (root.directions) unknowns = *root.directions * unknowns;
   FittedRbf fitted;
-  fitted.function = {kernel, centres,
-                     free > 0 ? weights_of(solution.unknowns.head(free), space) : Eigen::VectorXd::Zero(n),
+  fitted.function = {kernel, centres, free > 0 ? weights_of(unknowns, space) : Eigen::VectorXd::Zero(n),
                      solution.unknowns.tail(tail)};
   FitReport& report = fitted.report;
   report.centres_asked = report.centres_used = n;
   report.columns = n + tail;
-  report.rank = solution.rank + (n - free);
+  report.rank = solution.rank + (n - space.free);
   report.condition = solution.condition;
-  report.smoothing = smoothing;
+  report.smoothing = folded.smoothing;
   const Eigen::VectorXd rest = triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights -
                                triangle.middleCols(n, tail) * fitted.function.tail;
   report.residual_rms = std::sqrt(rest.squaredNorm() / static_cast<double>(folded.sites));

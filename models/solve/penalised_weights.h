@@ -32,7 +32,6 @@ PenaltySpace penalty_space(KernelKind kernel, const Eigen::MatrixXd& centres);
 // Replaces the first `free` columns of `matrix`, of n columns, by those of its product with Z.
 void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space);
 
-// With the sites' own smoothing, 0 where they have none.
 FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres);
 
 }  // namespace palpate

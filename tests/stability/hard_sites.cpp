@@ -1,5 +1,6 @@
 // The site cases of hard_cases.h.
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -167,10 +168,10 @@ Long saddle_matrix(const Sites& sites, double smoothing) {
 // "saddle matrix of condition 3e+18; 2e-09 JND from long double".
 std::string compare_with_reference(const SiteCase& one, double smoothing, const Eigen::VectorXd& values) {
   const Eigen::Index n = one.sites.count();
-  Svd parts;
-  if (!svd(saddle_matrix(one.sites, 0.0).cast<double>(), parts)) return {};
+  const Eigen::BDCSVD<Eigen::MatrixXd> parts(saddle_matrix(one.sites, 0.0).cast<double>());
+  const auto& singular = parts.singularValues();
   std::string text =
-      "; saddle matrix of condition " + two_digits(parts.s[0] / std::max(parts.s[parts.s.size() - 1], 1e-300));
+      "; saddle matrix of condition " + two_digits(singular[0] / std::max(singular[singular.size() - 1], 1e-300));
   Long matrix = saddle_matrix(one.sites, smoothing);
   Long right = Long::Zero(matrix.rows(), 1);
   right.topRows(n) = one.sites.target_N.cast<long double>();

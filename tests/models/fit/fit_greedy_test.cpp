@@ -88,7 +88,7 @@ TEST(FitGreedy, KeepsChoosingWellWhenColumnsAreNearlyDependent) {
   const Sites sites = smooth_sites(1, 400, 0.0, 3);
   const auto fitted = fit_greedy(sites, {.centres = 60, .candidates = 0});
   ASSERT_TRUE(fitted.ok());
-  EXPECT_LE(fitted->report.residual_rms, 1e-5);
+  EXPECT_LE(fitted->report.residual_rms, 1e-4);  // of the JND
   EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
 }
 

@@ -42,9 +42,10 @@ double largest_difference(const RbfFunction& a, const RbfFunction& b, const Site
 }
 
 FittedRbf penalised(const Sites& sites, KernelKind kernel, const Eigen::MatrixXd& centres) {
-  FoldedRows folded;
-  EXPECT_TRUE(fold_rows(sites, kernel, centres, {}, folded));
-  return penalised_weights(folded, kernel, centres);
+  auto folded = fold_rows(sites, kernel, centres, {});
+  EXPECT_TRUE(folded.ok());
+  folded->smoothing = *sites.smoothing;
+  return penalised_weights(*folded, kernel, centres);
 }
 
 TEST(PenaltySpace, ItsColumnsAreOrthogonalToTheTailAndMultiplyInPlace) {
