@@ -16,8 +16,6 @@ Status check_count(const ForceModels& models) {
                "; replay them in several runs"};
 }
 
-constexpr double kForceNoises = 5.0;
-
 // Fewer tell no deviation.
 constexpr std::size_t kFewestAirRows = 20;
 
@@ -39,7 +37,7 @@ double air_deviation_N(const RecordingRow* rows, std::size_t count) {
 // Beyond it a measured force is contact.
 double least_contact_N(const RecordingRow* rows, std::size_t count) {
   const double noise_N = std::max(identify_force_noise_N(rows, count), air_deviation_N(rows, count));
-  return std::max(JndLine{}.at(0.0), kForceNoises * noise_N);
+  return certain_force_N(noise_N);
 }
 
 void run(HapticsTick& tick, double least_contact_N, const RecordingRow* rows, std::size_t count,

@@ -10,9 +10,11 @@
 // Thread guarantee: slow side (allocates).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "engine/recording/recording_reader.h"
+#include "engine/tick/jnd.h"
 #include "engine/tick/tool_sample.h"
 
 namespace palpate {
@@ -28,5 +30,11 @@ Result<SensorSpec> identify_sensor(RecordingReader& reader);
 double identify_force_noise_N(const RecordingRow* rows, std::size_t count);
 
 ToolSample tool_sample(const RecordingRow& row) noexcept;
+
+// At or below it a force counts as none: three deviations of the noise, at least 10 mN.
+inline constexpr double kForceFloor_N = 0.01;
+inline double no_force_N(double noise_N) noexcept { return std::max(kForceFloor_N, 3.0 * noise_N); }
+// Beyond it one is there for certain, wherever the tool is: five deviations, and felt.
+inline double certain_force_N(double noise_N) noexcept { return std::max(JndLine{}.at(0.0), 5.0 * noise_N); }
 
 }  // namespace palpate

@@ -17,7 +17,6 @@ namespace palpate {
 namespace {
 
 // A range of forces below this, or below five deviations of its noise, is no press.
-constexpr double kLeastForce_N = 0.01;
 constexpr double kLeastTravel_m = 10e-6;
 // A hand presses with some 100 N at most; stiffer than 15 kN/m is harder than any
 // haptic device renders (the stiff block of the scenes has 3 kN/m). A testing machine
@@ -84,7 +83,7 @@ class Checker {
 
 // Without force or motion there is nothing to say about the rest.
 bool Checker::check_signal() {
-  const bool force = force_range_N() > std::max(kLeastForce_N, 5.0 * noise_N_);
+  const bool force = force_range_N() > std::max(kForceFloor_N, 5.0 * noise_N_);
   const bool motion = travel_m() > kLeastTravel_m;
   if (!force) {
     add("no_force", Severity::fatal, force_range_N(),
@@ -102,7 +101,7 @@ bool Checker::check_signal() {
 void Checker::check_signs() {
   const PressDirection direction = find_press_direction(recording_.rows);
   const double change_N = direction.deep_force_N - direction.shallow_force_N;
-  if (!direction.known || std::abs(change_N) < std::max(2.0 * kLeastForce_N, 5.0 * noise_N_)) return;
+  if (!direction.known || std::abs(change_N) < std::max(2.0 * kForceFloor_N, 5.0 * noise_N_)) return;
   const bool flipped = direction.position_flipped || direction.force_flipped;
   if (flipped && !direction.certain) {
     add("signs", Severity::warning, change_N,
@@ -253,7 +252,7 @@ void Checker::check_surface() {
         "");
   }
   const double pull_N = surface_.force_zero_N - measures_.lowest_force_N;
-  if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > std::max(JndLine{}.at(0.0), 5.0 * noise_N_)) {
+  if (surface_.free_air && !(surface_.tool_mass_kg > 0.0) && pull_N > certain_force_N(noise_N_)) {
     add("adhesion", Severity::note, pull_N,
         words("the material pulls at the tool by up to %.3g N: a fit learns it, and renders it", pull_N), "");
   }

@@ -26,6 +26,8 @@ constexpr int kHighestDecade = 1;
 // RMS of a trend's errors of which one JND is four: below, one in ten thousand would be felt
 // (normal errors), and only the sum decides. A trend makes no energy; centres may (a mass thrown
 // at springs and dashpots came back with 121 % for 114, tests/accuracy/closed_loop_energy_test.cpp).
+// Without the sum recordings tie, and a gel with three given times falls from 99.9 to 99.1 %: errors
+// that are small on the whole are felt at their worst.
 constexpr double kFelt_jnd = 0.25;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};

@@ -10,7 +10,7 @@
 // (from 0, none, to 1, all) and the radius of the guard are those of the least squared error
 // over the JND; of those as good the shortest radius and with it the most smoothing. None at
 // all, unless by the sum it is worth it, or the trend's errors are felt and it is certainly
-// worse (acceptance.h). The smoothing is the variance of the noise over that of the prior and
+// worse, block by block (acceptance.h). The smoothing is the variance of the noise over that of the prior and
 // does not depend on the number of centres: one choice serves every method, and with more
 // centres each method comes closer to the smoothing spline through all the sites instead of
 // following the noise.

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/tick/sensor_identification.h"
 #include "models/training/trend_regression.h"
 
 namespace palpate {
@@ -75,7 +76,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
   const double factor = ratios[rank];
-  bound.floor_N = std::max(factor * bound.floor_N, kNoForceFloor_N);
+  bound.floor_N = std::max(factor * bound.floor_N, kForceFloor_N);
   bound.per_force *= factor;
   bound.per_distance_N = std::max(factor * bound.per_distance_N, kLeastPerDistance * largest_force_N);
   return bound;

@@ -8,14 +8,11 @@
 
 namespace palpate {
 
-// At or below it a measured force counts as none, and no bound on an error is closer: without
-// that the bound held 77 to 90 % on skin and 83 on one trial of silicone, with it 97 to 100.
-inline constexpr double kNoForceFloor_N = 0.01;
-
 // The error bound of a model (models/model/error_bound.h), from the errors that were
 // made on strokes left out.
 //
-// The three coefficients, never negative, follow the absolute errors by least
+// No bound is closer than what counts as no force (sensor_identification.h): without that it held
+// 77 to 90 % on skin and 83 on one trial of silicone, with it 97 to 100. The three coefficients, never negative, follow the absolute errors by least
 // squares, each row scaled by 1 / JND; then all of them are multiplied by the
 // quantile of error over bound at which 97.5 % of the samples left out are held: some
 // in reserve, since a new recording differs from the training more than

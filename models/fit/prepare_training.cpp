@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/tick/sensor_identification.h"
 #include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
 #include "models/surface/surface_registration.h"
@@ -13,9 +14,6 @@
 namespace palpate {
 namespace {
 
-// "No measured force" is at or below three standard deviations of the force
-// sensor's noise, and at least 10 mN.
-constexpr double kNoForceDeviations = 3.0;
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumEvaluationSamples = 100000;
 // Of the trend's regression: the noise of so many averages out.
@@ -264,7 +262,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   // Contact with a material that pulls is not one-sided: there no force is a force, too.
   const double force_noise_floor_N = extent->lowest_force_N < 0.0
                                          ? -std::numeric_limits<double>::infinity()
-                                         : std::max(kNoForceFloor_N, kNoForceDeviations * source.force_noise_N());
+                                         : no_force_N(source.force_noise_N());
   const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
                              is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
   const FoldDealer dealer = dealer_for(source, *extent);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/tick/sensor_identification.h"
 #include "models/surface/surface_numbers.h"
 #include "models/training/trend_regression.h"
 
@@ -18,8 +19,6 @@ constexpr int kFirstBranch = 2 + 2 + kElastic;  // constants, beyond both ends, 
 constexpr int kFirstViscous = kFirstBranch + kBranch * static_cast<int>(kTimes_s.size());
 constexpr int kColumns = kFirstViscous + kViscous;
 constexpr double kForceShare = 0.03;
-constexpr double kLeastForce_N = 0.01;
-constexpr double kNoises = 3.0;
 constexpr double kHuberLimit = 3.0;
 constexpr int kPasses = 3;
 constexpr double kIdleScale = 0.1;
@@ -99,14 +98,14 @@ CommonFit::Member CommonFit::member(const std::vector<SurfaceRow>& rows, double 
       }
     }
     made.force_N(i) = rows[r].force_N;
-    made.scale(i) = 1.0 / (std::max(kLeastForce_N, kNoises * noise_N_) + kForceShare * std::abs(rows[r].force_N));
+    made.scale(i) = 1.0 / (no_force_N(noise_N_) + kForceShare * std::abs(rows[r].force_N));
   }
   return made;
 }
 
 // Contact is one-sided: where nothing is measured the fit may be below.
 bool CommonFit::is_idle(double force_N, double predicted_N) const {
-  return predicted_N < 0.0 && std::abs(force_N) <= std::max(kLeastForce_N, kNoises * noise_N_);
+  return predicted_N < 0.0 && std::abs(force_N) <= no_force_N(noise_N_);
 }
 
 double CommonFit::error(const Member& member, Eigen::Index i, double predicted_N) const {

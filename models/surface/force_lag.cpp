@@ -9,12 +9,8 @@ namespace palpate {
 namespace {
 
 constexpr double kMostLag_s = 0.05;
-constexpr double kCoarse_s = 0.005;
+constexpr double kCoarse_s = 0.005;  // of lags, and between rows
 constexpr double kFine_s = 0.2e-3;
-constexpr double kWidest_s = 0.002;  // a lag that is told worse is not corrected
-constexpr std::size_t kLagRows = 4000;
-constexpr double kLagRowSpacing_s = 0.005;
-constexpr double kLongestStep_s = 0.02;  // between rows: no lag is told finer than some tenths of it
 
 // Strokes at different speeds tell a lag from memory; one press alone does not.
 constexpr int kLeastStrokes = 3;
@@ -32,8 +28,8 @@ int strokes_of(const std::vector<SurfaceRow>& rows, double middle_m) {
 std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
   std::vector<SurfaceRow> kept;
   for (const SurfaceRow& row : rows) {
-    if (kept.size() == kLagRows) break;
-    if (kept.empty() || row.sample.time_s >= kept.back().sample.time_s + kLagRowSpacing_s) kept.push_back(row);
+    if (kept.size() == kSearchRows) break;
+    if (kept.empty() || row.sample.time_s >= kept.back().sample.time_s + kCoarse_s) kept.push_back(row);
   }
   return kept;
 }
@@ -46,7 +42,7 @@ Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N
   none.standard_error = std::numeric_limits<double>::infinity();
   if (some.size() < 100) return none;
   const double step_s = (some.back().sample.time_s - some.front().sample.time_s) / static_cast<double>(some.size() - 1);
-  if (step_s > kLongestStep_s) return none;
+  if (step_s > 10.0 * kToldLag_s) return none;
   const auto [low, high] = std::minmax_element(some.begin(), some.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
     return a.motion.position_m < b.motion.position_m;
   });
@@ -54,7 +50,7 @@ Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N
   if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
   const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
   return locate([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
-                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kWidest_s, true, kWidest_s});
+                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kToldLag_s, true, kToldLag_s});
 }
 
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {

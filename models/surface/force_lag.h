@@ -13,6 +13,10 @@
 
 namespace palpate {
 
+// A lag that is told worse (two standard errors) is not corrected; lags that agree to this are
+// one. Rows ten times as far apart tell none.
+inline constexpr double kToldLag_s = 0.002;
+
 // `rows` of a recording in time order. Positive: the force is late, s. Not told where
 // rows are too rare for it, or there are fewer than three strokes.
 Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N);

@@ -20,6 +20,9 @@ inline constexpr double kLeastOffset_m = 0.02e-3;
 // soft materials, where forces begin to rise by 0.1 N/mm, it is one JND.
 inline constexpr double kWidestSurface_m = 0.5e-3;
 
+// No place is searched for more finely.
+inline constexpr double kFinest_m = 2e-6;
+
 // What an error counts: its square up to `limit`, in proportion beyond (Huber 1964).
 inline double huber(double error, double limit) {
   const double size = std::abs(error);

@@ -17,18 +17,11 @@ constexpr double kTouchOut_m = 1e-3;
 constexpr double kTouchIn_m = 2e-3;
 // The tool is going in: slower backward motion is jitter.
 constexpr double kBackward_m_per_s = 2e-3;
-constexpr std::size_t kLeastTouchRows = 4;
 // Rows of a slow touch beyond this many are thinned.
 constexpr std::size_t kMostTouchRows = 300;
 // The first guess is late where the onset is soft.
-constexpr double kScanOut_m = 1.5e-3;
 constexpr double kScanIn_m = 0.3e-3;
 constexpr double kCoarseStep_m = 0.05e-3;
-constexpr double kFineStep_m = 2e-6;
-// The curvature at the minimum is taken over this distance to either side.
-constexpr double kCurvatureStep_m = 20e-6;
-// Position and force are sampled and estimated; no onset is better than this.
-constexpr double kOnsetFloor_m = 4e-6;
 constexpr double kScale_m = 1e-3;  // x in millimetres keeps the columns alike
 // The force may bend to either side but rises up to here (in units of kScale_m).
 constexpr double kFlat = 3.0;
@@ -42,8 +35,6 @@ constexpr double kBall = 1.5;
 constexpr double kLinearDrop = 2.5;
 constexpr double kClearDrop = 6.0;
 constexpr double kFormError = 0.5;
-// Residuals of twice the noise are no noise.
-constexpr double kMisfit = 4.0;
 // Force begins with this many rows on end beyond the noise.
 constexpr std::size_t kForceRun = 3;
 
@@ -131,15 +122,15 @@ FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
       onset.at_m = at_m;
     }
   };
-  scan(first_force_m - kScanOut_m, first_force_m + kScanIn_m, kCoarseStep_m);
-  for (double step_m = kCoarseStep_m; step_m > kFineStep_m;) {
+  scan(first_force_m - kTouchOut_m, first_force_m + kScanIn_m, kCoarseStep_m);
+  for (double step_m = kCoarseStep_m; step_m > kFinest_m;) {
     const double around_m = onset.at_m;
     step_m *= 0.25;
     scan(around_m - 4.0 * step_m, around_m + 4.0 * step_m, step_m);
   }
   onset.curvature =
-      (cost.at(onset.at_m - kCurvatureStep_m) + cost.at(onset.at_m + kCurvatureStep_m) - 2.0 * onset.cost) /
-      (kCurvatureStep_m * kCurvatureStep_m);
+      (cost.at(onset.at_m - kLeastOffset_m) + cost.at(onset.at_m + kLeastOffset_m) - 2.0 * onset.cost) /
+      (kLeastOffset_m * kLeastOffset_m);
   return onset;
 }
 
@@ -168,7 +159,7 @@ std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double z
     const double first_m = rows[first].motion.position_m;
     const Touch touch{approach_begin(rows, first, first_m - kTouchOut_m),
                       approach_end(rows, first, first_m + kTouchIn_m), first_m};
-    if (in_air && touch.end >= first + kLeastTouchRows) touches.push_back(touch);
+    if (in_air && touch.end >= first + kForceRun + 1) touches.push_back(touch);
     in_air = false;
   }
   return touches;
@@ -185,11 +176,11 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
   Onset onset{chosen.at_m, kUnknownError};
   if (chosen.curvature > 0.0) {
     // J rises by noise^2 within one standard error.
-    onset.standard_error_m = std::max(kOnsetFloor_m, std::sqrt(2.0 * variance / chosen.curvature));
+    onset.standard_error_m = std::max(2.0 * kFinest_m, std::sqrt(2.0 * variance / chosen.curvature));
     const bool clear = drop > kClearDrop || drop < -kClearDrop;
     if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * (linear.at_m - ball.at_m));
     // Neither law holds: what they say between the air and the first force is a guess.
-    if (variance > kMisfit * force_noise_N * force_noise_N) {
+    if (std::sqrt(variance) > kSignificantErrors * force_noise_N) {
       onset.misfit_m = std::abs(onset.at_m - touches.front().first_force_m);
     }
   }

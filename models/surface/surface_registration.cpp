@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "engine/tick/jnd.h"
+#include "engine/tick/sensor_identification.h"
 #include "models/surface/common_fit.h"
 #include "models/surface/force_lag.h"
 #include "models/surface/free_air.h"
@@ -16,8 +16,7 @@
 namespace palpate {
 namespace {
 
-// Rows of all recordings together for the common fit, and of each for its onset.
-constexpr std::size_t kCommonRows = 4000;
+// Rows of each recording for the common fit, of which there are kSearchRows, and for its onset.
 constexpr std::size_t kLeastMemberRows = 300;
 constexpr std::size_t kOnsetRows = 400000;
 // Further apart the rows of an approach are too few to tell where force begins: of a
@@ -26,15 +25,9 @@ constexpr double kCoarsestOnset_s = 1.5e-3;
 // Two recordings must share so much of the shorter way.
 constexpr double kLeastOverlap = 0.3;
 constexpr double kCoarseSteps = 120.0;
-constexpr double kFineShift_m = 2e-6;
-// Lags that agree to this are one.
-constexpr double kSameLag_s = 3e-3;
 // Of the rows in contact, beyond which some lie outside of the surface for certain.
 constexpr double kOuterShare = 0.005;
-constexpr double kOuterNoises = 5.0;
 constexpr double kOuterRange = 0.01;  // of the largest force: sensors wander
-// A depth that lies elsewhere by less changes no force of the model.
-constexpr double kLeastSurface_m = 0.25e-3;
 
 struct Member {
   std::vector<SurfaceRow> rows;  // thinned, force zero taken off
@@ -57,7 +50,7 @@ double common_lag_s(const std::vector<std::vector<SurfaceRow>>& recordings, doub
   if (lags_s.empty() || 2 * lags_s.size() < recordings.size()) return 0.0;
   const double lag_s = median_of(lags_s);
   const bool agree =
-      std::all_of(lags_s.begin(), lags_s.end(), [&](double one_s) { return std::abs(one_s - lag_s) <= kSameLag_s; });
+      std::all_of(lags_s.begin(), lags_s.end(), [&](double one_s) { return std::abs(one_s - lag_s) <= kToldLag_s; });
   return agree ? lag_s : 0.0;
 }
 
@@ -78,7 +71,7 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
   const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
-  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFineShift_m, kWidestSurface_m, true};
+  const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
   return locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
 }
 
@@ -156,7 +149,7 @@ double common_surface_m(const std::vector<Member>& members, const std::vector<Re
   }
   if (!(weights > 0.0)) return 0.0;
   const double at_m = sum / weights;
-  return std::abs(at_m) > std::max(kLeastSurface_m, kSignificantErrors / std::sqrt(weights)) ? at_m : 0.0;
+  return std::abs(at_m) > std::max(0.5 * kWidestSurface_m, kSignificantErrors / std::sqrt(weights)) ? at_m : 0.0;
 }
 
 // The outermost position with a force for certain, of all moved by their offsets; at
@@ -167,7 +160,7 @@ double outermost_contact_m(const std::vector<Member>& members, const std::vector
   for (const Member& member : members) {
     for (const SurfaceRow& row : member.rows) largest_N = std::max(largest_N, std::abs(row.force_N));
   }
-  const double least_N = std::max({JndLine{}.at(0.0), kOuterNoises * force_noise_N, kOuterRange * largest_N});
+  const double least_N = std::max(certain_force_N(force_noise_N), kOuterRange * largest_N);
   std::vector<double> positions_m;
   for (std::size_t r = 0; r < members.size(); ++r) {
     if (members[r].own.tool_mass_kg > 0.0) return surface_m;
@@ -231,7 +224,7 @@ Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitCont
   for (auto& recording : recordings) {
     if (lag_s != 0.0) recording = without_lag(recording, lag_s);
   }
-  const std::size_t share = std::max(kLeastMemberRows, kCommonRows / recordings.size());
+  const std::size_t share = std::max(kLeastMemberRows, kSearchRows / recordings.size());
   for (const auto& recording : recordings) members.push_back(member_of(recording, source.force_noise_N(), share));
   if (!control.may_continue(fraction)) return interrupted();
   RegisteredSurfaces result = registered(std::move(members), source.force_noise_N(), control);

@@ -12,6 +12,9 @@
 
 namespace palpate {
 
+// Rows that a search works on at most; thin longer recordings to these.
+inline constexpr std::size_t kSearchRows = 4000;
+
 struct SurfaceRow {
   ToolSample sample;
   MotionEstimate motion;  // by the estimator over every row, before thinning

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kCoarseSearch_m = 0.1e-3;
 constexpr double kMostCoarseSteps = 200.0;
-constexpr double kFineSearch_m = 1e-6;
 constexpr double kSearchHuberLimit = 1.0;  // JND
 
 void add_costs(const ForceModel& model, const std::vector<SurfaceRow>& rows, const std::vector<std::size_t>& blocks,
@@ -49,7 +48,7 @@ Located locate_surface(const std::vector<SurfaceRow>& rows,
         for (const auto& model : models) add_costs(*model, rows, blocks, offset_m, jnd, costs);
         return costs;
       },
-      {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFineSearch_m,
+      {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m,
        kWidestSurface_m});
 }
 

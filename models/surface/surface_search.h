@@ -16,9 +16,6 @@
 
 namespace palpate {
 
-// Rows that a search works on at most; thin longer recordings to these.
-inline constexpr std::size_t kSearchRows = 4000;
-
 // `rows`: a whole recording in time order, thinned. `at`: to be subtracted from position_m
 // so that 0 is where the models' surface is, m. Without models, or without rows, not told.
 Located locate_surface(const std::vector<SurfaceRow>& rows,

@@ -11,7 +11,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLawRows = 4000;
 // A fifth to twenty times as long at the greatest depth as at the surface.
 constexpr std::array kSlowings{-1.5, 1.5, 3.0};
 constexpr double kSlowingStep = 0.75;  // both sides of the best of them
@@ -56,7 +55,7 @@ class LawSearch {
       FeatureList list = list_;
       list.slowing = law.slowing;
       if (law.lags) list.surface = std::move(surface);
-      const auto rows = gather_rows(source_, dealer_, list, problem_, kLawRows, kLawStep_s, control_, fraction_);
+      const auto rows = gather_rows(source_, dealer_, list, problem_, kSearchedRows, kLawStep_s, control_, fraction_);
       if (!rows) return rows.error();
       const TrendRegression regression(*rows, dealer_.folds(), problem_.weighting, problem_.jnd,
                                        problem_.force_noise_floor_N);

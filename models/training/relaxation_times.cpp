@@ -8,7 +8,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kRows = 4000;
 // Three columns of half a ladder of five decades: more differ too little to matter.
 constexpr std::size_t kMostTimes = 3;
 
@@ -70,7 +69,7 @@ Result<std::vector<double>> identify_relaxation(MotionSource& source, const Fold
   list.velocity = velocity;
   list.stop_thresholds_m.clear();
   list.creep_times_s.clear();
-  const auto rows = gather_rows(source, dealer, list, problem, kRows, 0.0, control, fraction);
+  const auto rows = gather_rows(source, dealer, list, problem, kSearchedRows, 0.0, control, fraction);
   if (!rows) return rows.error();
   const auto& ladder_s = rows->relaxation_times_s();
   if (ladder_s.empty()) {

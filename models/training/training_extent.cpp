@@ -1,6 +1,6 @@
 #include "models/training/training_extent.h"
 
-#include "engine/tick/jnd.h"
+#include "engine/tick/sensor_identification.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,11 +22,9 @@ FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent) 
 
 namespace {
 
-// Forces below the JND at rest are a pull where there are so many, down to so many
-// deviations of the noise.
+// Forces below the JND at rest are a pull where there are so many, down to a certain one.
 constexpr double kLeastPulls = 10.0;
 constexpr double kPullShare = 1e-3;
-constexpr double kPullNoises = 5.0;
 // Of the greatest depth: less than a tenth of the first piece of the trend's elastic response.
 constexpr double kShallow = 0.01;
 
@@ -73,7 +71,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   extent.contact_samples = static_cast<std::size_t>(count);
   if (!status) return status.error();
   const bool pulling = pulls >= std::max(kLeastPulls, kPullShare * count);
-  if (pulling && lowest_N < -kPullNoises * source.force_noise_N()) extent.lowest_force_N = lowest_N;
+  if (pulling && lowest_N < -certain_force_N(source.force_noise_N())) extent.lowest_force_N = lowest_N;
   extent.sample_s = duration_s / std::max(1.0, steps);
   // A tool that never moved still needs a scale: 1 um/s.
   extent.rms_velocity_m_per_s = std::max(1e-6, count > 0.0 ? std::sqrt(squares / count) : 0.0);

@@ -28,6 +28,8 @@
 namespace palpate {
 
 inline constexpr std::size_t kMaximumTrendRows = 100000;
+// Where many regressions are compared.
+inline constexpr std::size_t kSearchedRows = 4000;
 inline constexpr std::size_t kBranchTerms = 3;
 
 // The three branch features of one relaxation time whose weighted sum can be
