@@ -65,7 +65,7 @@ Status write_analysis(const StudyAnalysis& analysis, const StudyOptions& options
   if (analysis.lines.ok()) {
     std::vector<std::string> subjects;
     for (const SubjectJnd& subject : analysis.subjects) subjects.push_back(subject.subject);
-    const std::string text = jnd_file_text(*analysis.lines, analysis.points, options.intervals.criterion, subjects);
+    const std::string text = jnd_file_text(*analysis.lines, analysis.points, subjects);
     const Status jnd = write_file_atomically(options.out + "/jnd.json", text, options.force);
     if (!jnd) return jnd;
   }
@@ -78,7 +78,7 @@ Status analyse(const std::vector<StudyData>& files, const StudyOptions& options)
   Result<StudyAnalysis> analysis = Error{""};
   {
     ProgressLine line("analysing");
-    analysis = analyse_study(files, options.intervals, options.with_published,
+    analysis = analyse_study(files, options.resamples, options.with_published,
                              [&](double share) { return line.update(share); });
   }
   if (!analysis) return analysis.error();
@@ -91,14 +91,6 @@ void print_discrimination(const DiscriminationAnalysis& analysis) {
               strokes.comparison.c_str(), strokes.recording.c_str(), strokes.from_s, strokes.to_s);
   std::printf("error/JND    mean %.2f, max %.2f, as predicted (JND %.4g N + %.4g %%)\n", strokes.mean_over_jnd,
               strokes.max_over_jnd, strokes.jnd.offset_N, 100.0 * strokes.jnd.weber_fraction);
-  std::printf("%-8s %7s %9s %14s\n", "subject", "answers", "right [%]", "95 %");
-  const auto print = [](const Discrimination& one) {
-    const ShareInterval interval = wilson_interval(one.correct, one.trials);
-    std::printf("%-8s %7zu %9.1f %6.1f to %4.1f\n", one.subject.c_str(), one.trials, 100.0 * one.share(),
-                100.0 * interval.low, 100.0 * interval.high);
-  };
-  for (const Discrimination& subject : analysis.subjects) print(subject);
-  if (analysis.subjects.size() > 1) print(analysis.all);
   if (analysis.all.unusable > 0)
     std::printf("%zu trials left out, their forces were not rendered\n", analysis.all.unusable);
   std::printf("%s\n", discrimination_verdict(analysis.all, strokes).c_str());
@@ -171,12 +163,7 @@ Status run_simulate(const StudyOptions& options) {
 }
 
 void add_output_options(CLI::App* verb, StudyOptions& options) {
-  verb->add_option("--criterion", options.intervals.criterion,
-                   "The JND is half the distance between the comparisons judged larger with this probability "
-                   "and with one minus it")
-      ->check(CLI::Range(0.55, 0.99))
-      ->capture_default_str();
-  verb->add_option("--resamples", options.intervals.resamples, "Of the subjects, for the interval of all together")
+  verb->add_option("--resamples", options.resamples, "Of the subjects, for the interval of all together")
       ->check(CLI::Range(50, 100000))
       ->capture_default_str();
   verb->add_flag("--pang", options.with_published,

@@ -11,7 +11,7 @@
 namespace palpate::cli {
 
 struct StudyOptions {
-  IntervalSettings intervals;
+  int resamples = 999;  // of the subjects, for the interval of all together
   bool with_published = false;
   std::string out = ".";
   bool force = false;

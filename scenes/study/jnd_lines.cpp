@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "scenes/study/psychometrics.h"
+
 namespace palpate {
 namespace {
 
@@ -50,7 +52,7 @@ Result<JndLines> fit_jnd_lines(const std::vector<JndPoint>& points) {
 
 std::vector<JndPoint> pang_tan_durlach_points() { return {{2.5, 0.09 * 2.5, 0.0, "Pang, Tan & Durlach (1991)"}}; }
 
-std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& points, double criterion,
+std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& points,
                           const std::vector<std::string>& subjects) {
   OrderedJson list = OrderedJson::array();
   for (const JndPoint& point : points) {
@@ -64,7 +66,7 @@ std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& po
       {"version", 1},
       {"offset_N", lines.conservative.offset_N},
       {"weber_fraction", lines.conservative.weber_fraction},
-      {"criterion", criterion},
+      {"criterion", kJndCriterion},
       {"subjects", subjects},
       {"fitted", {{"offset_N", lines.fitted.offset_N}, {"weber_fraction", lines.fitted.weber_fraction}}},
       {"points", list}};

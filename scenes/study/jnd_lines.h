@@ -41,7 +41,7 @@ std::vector<JndPoint> pang_tan_durlach_points();
 // The text of the file that scenes/scene/jnd_file.h reads: the conservative line and, for the reader,
 // criterion, subjects, the fitted line before the shift and the points with their sources; numbers
 // read back as they are.
-std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& points, double criterion,
+std::string jnd_file_text(const JndLines& lines, const std::vector<JndPoint>& points,
                           const std::vector<std::string>& subjects);
 
 }  // namespace palpate

@@ -234,10 +234,9 @@ Estimate bias_corrected_interval(double value, std::vector<double> replicates) {
   return {value, low, high, true};
 }
 
-std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
-                                   const IntervalSettings& settings) {
+std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit) {
   // The JND is this many standard deviations, whatever the fit.
-  const double deviations = normal_quantile(settings.criterion);
+  const double deviations = normal_quantile(kJndCriterion);
   const double quantile = normal_quantile(0.5 * (1.0 + kIntervalLevel));
   const double least_likelihood = fit.log_likelihood - 0.5 * quantile * quantile;
   std::vector<Estimate> estimates;

@@ -13,8 +13,7 @@
 // The JND at a criterion c is half the distance between the comparisons that are
 // judged larger with probability c and 1 - c, lapses and order aside:
 //   JND = Phi^-1(c) reference / slope.
-// c = 0.75, half the interquartile distance, is the default; the paper does not
-// state its own.
+// c = 0.75, half the interquartile distance; the paper does not state its own.
 // Thread guarantee: pure functions; slow side (they allocate).
 #pragma once
 
@@ -53,8 +52,8 @@ struct PsychometricFunction {
   double lapse = 0.0;  // 0 .. 0.06
 
   double at(double difference, bool comparison_first) const noexcept;
-  // Relative to the reference.
-  double jnd(double criterion) const noexcept { return normal_quantile(criterion) / slope; }
+  // Relative to the reference, at kJndCriterion.
+  double jnd() const noexcept { return normal_quantile(kJndCriterion) / slope; }
 };
 
 struct PsychometricFit {
@@ -77,11 +76,6 @@ struct Estimate {
   bool determined = true;
 };
 
-struct IntervalSettings {
-  double criterion = kJndCriterion;
-  int resamples = 999;  // of the subjects, for the JND of all together
-};
-
 // The relative JND at each reference force with the interval of all slopes that explain
 // the answers nearly as well as the best, by the likelihood ratio (profile likelihood;
 // D. J. Venzon & S. H. Moolgavkar 1988, Applied Statistics 37(1), 87-94):
@@ -90,8 +84,7 @@ struct IntervalSettings {
 // answers do not exclude it. (The parametric bootstrap held the truth in 91 % and not
 // 95 % of the cases at 2.5 N, 600 simulated subjects: where the best slope is that end,
 // each resample has it again, and the interval is a point.)
-std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit,
-                                   const IntervalSettings& settings);
+std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit);
 
 // Bias-corrected percentiles of `replicates` (at least one, any order) around
 // `value`.

@@ -54,10 +54,9 @@ Estimate scaled(Estimate relative, double reference_N) {
   return {relative.value * reference_N, relative.low * reference_N, relative.high * reference_N, relative.determined};
 }
 
-SubjectJnd jnds_of(const std::string& subject, const SubjectAnswers& answers, const IntervalSettings& settings) {
+SubjectJnd jnds_of(const std::string& subject, const SubjectAnswers& answers) {
   SubjectJnd result{subject, answers.unusable, {}};
-  const std::vector<Estimate> relative =
-      profile_jnds(answers.cells, fit_psychometric(answers.cells, kReferences), settings);
+  const std::vector<Estimate> relative = profile_jnds(answers.cells, fit_psychometric(answers.cells, kReferences));
   for (std::size_t r = 0; r < kReferences; ++r) {
     if (answers.trials[r] == 0) continue;
     const double rendered_N = answers.rendered_N[r] / static_cast<double>(answers.trials[r]);
@@ -78,22 +77,22 @@ PsychometricFit fit_group(const Group& group) {
 }
 
 // One function for the answers of a group; the intervals by drawing its members.
-std::vector<Estimate> pooled_relative_jnds(const Group& group, const IntervalSettings& settings,
+std::vector<Estimate> pooled_relative_jnds(const Group& group, int resamples,
                                            const std::function<bool(double)>& progress) {
   const PsychometricFit fit = fit_group(group);
-  if (group.size() == 1) return profile_jnds(*group.front(), fit, settings);
+  if (group.size() == 1) return profile_jnds(*group.front(), fit);
   RandomStream random(kPooledSeed, 1);
   std::vector<std::vector<double>> replicates(kReferences);
-  for (int i = 0; i < settings.resamples; ++i) {
-    if (!progress(static_cast<double>(i) / settings.resamples)) return {};
+  for (int i = 0; i < resamples; ++i) {
+    if (!progress(static_cast<double>(i) / resamples)) return {};
     Group drawn;
     for (std::size_t k = 0; k < group.size(); ++k) drawn.push_back(group[random.index(group.size())]);
     const PsychometricFit again = fit_group(drawn);
-    for (std::size_t r = 0; r < kReferences; ++r) replicates[r].push_back(again.functions[r].jnd(settings.criterion));
+    for (std::size_t r = 0; r < kReferences; ++r) replicates[r].push_back(again.functions[r].jnd());
   }
   std::vector<Estimate> estimates;
   for (std::size_t r = 0; r < kReferences; ++r) {
-    estimates.push_back(bias_corrected_interval(fit.functions[r].jnd(settings.criterion), replicates[r]));
+    estimates.push_back(bias_corrected_interval(fit.functions[r].jnd(), replicates[r]));
     estimates.back().determined = fit.determined[r];
   }
   return estimates;
@@ -153,12 +152,8 @@ std::string row(const std::string& who, const std::string& how, double reference
 
 }  // namespace
 
-SubjectJnd analyse_subject(const StudyData& data, const IntervalSettings& settings) {
-  return jnds_of(data.header.subject, usable_answers(data), settings);
-}
-
-Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const IntervalSettings& settings,
-                                    bool with_published, const std::function<bool(double)>& progress) {
+Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, int resamples, bool with_published,
+                                    const std::function<bool(double)>& progress) {
   if (const Status checked = check_files(files); !checked) return checked.error();
   StudyAnalysis analysis;
   std::vector<SubjectAnswers> answers;
@@ -167,10 +162,10 @@ Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const I
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!progress(0.5 * static_cast<double>(i) / static_cast<double>(files.size()))) return Error{"interrupted"};
     group.push_back(&answers[i].cells);
-    analysis.subjects.push_back(jnds_of(files[i].header.subject, answers[i], settings));
+    analysis.subjects.push_back(jnds_of(files[i].header.subject, answers[i]));
   }
   const std::vector<Estimate> pooled_relative =
-      pooled_relative_jnds(group, settings, [&](double share) { return progress(0.5 + 0.5 * share); });
+      pooled_relative_jnds(group, resamples, [&](double share) { return progress(0.5 + 0.5 * share); });
   if (pooled_relative.empty()) return Error{"interrupted"};
   for (std::size_t r = 0; r < kReferences; ++r) {
     PooledJnd pooled{kReferenceForces_N[r], 0.0, 0, 0.0, 0.0, {}};

@@ -54,14 +54,11 @@ struct StudyAnalysis {
   Result<JndLines> lines = Error{"not analysed"};
 };
 
-// `criterion`: above 0.5 and below 1.
-SubjectJnd analyse_subject(const StudyData& data, const IntervalSettings& settings);
-
-// `with_published`: Pang, Tan & Durlach's point belongs to the line too. `progress`
-// gets the share done, and ends it by false ("interrupted"). Errors: no file; a
-// subject twice; a subject without answers.
-Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, const IntervalSettings& settings,
-                                    bool with_published, const std::function<bool(double)>& progress);
+// `resamples`: of the subjects, for the JND of all together. `with_published`: Pang, Tan & Durlach's point
+// belongs to the line too. `progress` gets the share done, and ends it by false ("interrupted"). Errors: no
+// file; a subject twice; a subject without answers.
+Result<StudyAnalysis> analyse_study(const std::vector<StudyData>& files, int resamples, bool with_published,
+                                    const std::function<bool(double)>& progress);
 
 // One row per subject and reference force, then pooled: CSV with a header row.
 std::string analysis_table(const StudyAnalysis& analysis);

@@ -7,16 +7,16 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <system_error>
 
+#include "engine/base/atomic_file.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
-
-bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 
 std::string checksum(const std::string& text) {
   std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
@@ -26,15 +26,7 @@ std::string checksum(const std::string& text) {
   return digits;
 }
 
-// Whether `text` is a header that was cut off while it was written: nothing was
-// answered yet. `start`: all of it but the consent and the columns.
-bool is_cut_header(std::string_view text, std::string_view start, std::string_view columns) {
-  if (text.size() <= start.size()) return begins_with(start, text);
-  if (!begins_with(text, start)) return false;
-  text.remove_prefix(start.size());
-  const std::size_t line_end = text.find('\n');
-  return line_end == std::string_view::npos || begins_with(columns, text.substr(line_end + 1));
-}
+constexpr int kAppending = O_RDWR | O_APPEND | O_CLOEXEC;
 
 // Appended and confirmed, or an errno.
 int write_durably(int descriptor, std::string_view text) {
@@ -45,15 +37,6 @@ int write_durably(int descriptor, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return fsync(descriptor) == 0 ? 0 : errno;
-}
-
-void flush_folder_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
 }
 
 }  // namespace
@@ -75,7 +58,7 @@ std::size_t remove_rehearsals(StudyData& data) {
 
 Result<std::unique_ptr<StudyFile>> StudyFile::open(const std::string& path, const StudyHeader& header) {
   std::unique_ptr<StudyFile> file(new StudyFile(path, header));
-  file->descriptor_ = ::open(path.c_str(), O_RDWR | O_APPEND | O_CLOEXEC);
+  file->descriptor_ = ::open(path.c_str(), kAppending);
   if (file->descriptor_ < 0) {
     if (errno != ENOENT) return file->failure(errno);
     return file;
@@ -92,21 +75,17 @@ Error StudyFile::failure(int error_number) const {
   return Error{"cannot write " + path_ + ": " + std::generic_category().message(error_number)};
 }
 
-Status StudyFile::lock() {
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return {};
-  if (errno != EWOULDBLOCK) return failure(errno);
-  return Error{path_ + " is in use by another session; end that one first, or take another subject code"};
-}
-
-// What an earlier session left.
+// What an earlier session left, or the consent.
 Status StudyFile::take_up() {
   struct stat status {};
   if (fstat(descriptor_, &status) != 0) return failure(errno);
   if (!S_ISREG(status.st_mode)) return Error{path_ + " is not a regular file; name one"};
-  if (const Status locked = lock(); !locked) return locked;
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK) return failure(errno);
+    return Error{path_ + " is in use by another session; end that one first, or take another subject code"};
+  }
   const std::optional<std::string> text = read_whole_file(path_);
   if (!text) return Error{"cannot read " + path_};
-  if (is_cut_header(*text, study_header_text(header_), study_columns(header_))) return {};
   const Result<StudyData> data = parse_study(*text, path_);
   if (!data) return data.error();
   const StudyHeader& found = data->header;
@@ -131,35 +110,18 @@ Status StudyFile::take_up() {
   return {};
 }
 
-// All of it, or as it was before.
-Status StudyFile::write_whole(const std::string& text) {
-  if (const int error_number = write_durably(descriptor_, text); error_number != 0) {
-    // Should this fail too, the next append or the next session cuts it off.
-    [[maybe_unused]] const int taken_back = ftruncate(descriptor_, static_cast<off_t>(size_));
-    return failure(error_number);
-  }
-  size_ += text.size();
-  return {};
-}
-
 Status StudyFile::consent(const std::string& text, const std::string& when) {
   if (consented_) return {};
-  if (descriptor_ < 0) {
-    descriptor_ = ::open(path_.c_str(), O_RDWR | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && errno == EEXIST) {
-      return Error{path_ + " was made by another session meanwhile; start again to take it up"};
-    }
-    if (descriptor_ < 0) return failure(errno);
-    if (const Status locked = lock(); !locked) return locked;
+  std::error_code missing;
+  if (std::filesystem::exists(path_, missing)) {
+    return Error{path_ + " was made by another session meanwhile; start again to take it up"};
   }
-  if (ftruncate(descriptor_, 0) != 0) return failure(errno);
   const std::string consent_line =
       "# consent accepted, text " + checksum(text) + (when.empty() ? "" : ", " + when) + "\n";
-  const Status written = write_whole(study_header_text(header_) + consent_line + study_columns(header_) + "\n");
-  if (!written) return written;
-  flush_folder_of(path_);
-  consented_ = true;
-  return {};
+  const std::string header = study_header_text(header_) + consent_line + study_columns(header_) + "\n";
+  if (const Status written = write_file_atomically(path_, header, false); !written) return written;
+  descriptor_ = ::open(path_.c_str(), kAppending);
+  return descriptor_ < 0 ? Status{failure(errno)} : take_up();
 }
 
 Status StudyFile::append(const StudyRecord& record) {
@@ -169,7 +131,13 @@ Status StudyFile::append(const StudyRecord& record) {
   on_device.rendered = header_.rendered;
   // What a refused row may have left behind.
   if (ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return failure(errno);
-  if (const Status written = write_whole(study_row(on_device, header_)); !written) return written;
+  const std::string row = study_row(on_device, header_);
+  if (const int error_number = write_durably(descriptor_, row); error_number != 0) {
+    // Should this fail too, the next append or the next session cuts it off.
+    [[maybe_unused]] const int taken_back = ftruncate(descriptor_, static_cast<off_t>(size_));
+    return failure(error_number);
+  }
+  size_ += row.size();
   records_.push_back(on_device);
   return {};
 }

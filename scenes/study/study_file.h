@@ -68,8 +68,6 @@ class StudyFile final : public StudyStore {
  private:
   StudyFile(const std::string& path, const StudyHeader& header) : path_(path), header_(header) {}
   Status take_up();
-  Status lock();
-  Status write_whole(const std::string& text);
   Error failure(int error_number) const;
 
   std::string path_;

@@ -10,7 +10,7 @@ namespace {
 TEST(JndFile, ReadsBackWhatWasWritten) {
   const JndLines lines{{0.0712345678901, 0.1234567890123}, {0.1 / 3.0, 0.1234567890123}};
   const std::string text =
-      jnd_file_text(lines, {{0.3, 0.09, 0.01, "study"}, {2.5, 0.225, 0.0, "a paper"}}, 0.75, {"S01", "S02"});
+      jnd_file_text(lines, {{0.3, 0.09, 0.01, "study"}, {2.5, 0.225, 0.0, "a paper"}}, {"S01", "S02"});
   const auto line = parse_jnd_file(text, "jnd.json");
   ASSERT_TRUE(line.ok()) << line.error().message;
   EXPECT_EQ(line->offset_N, 0.1 / 3.0);

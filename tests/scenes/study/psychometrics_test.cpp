@@ -47,16 +47,14 @@ TEST(Psychometrics, FindsTheFunctionsThatMadeTheAnswers) {
 
 TEST(Psychometrics, JndIsHalfTheDistanceBetweenTheCriterionPoints) {
   const PsychometricFunction function{5.0, 0.0, 0.0};
-  for (const double criterion : {0.75, 0.84}) {
-    EXPECT_NEAR(function.at(function.jnd(criterion), true), criterion, 1e-12);
-    EXPECT_NEAR(function.at(-function.jnd(criterion), true), 1.0 - criterion, 1e-12);
-  }
+  EXPECT_NEAR(function.at(function.jnd(), true), kJndCriterion, 1e-12);
+  EXPECT_NEAR(function.at(-function.jnd(), true), 1.0 - kJndCriterion, 1e-12);
 }
 
 TEST(Psychometrics, NoOrderBiasIsTakenForAFlatSlope) {
   const PsychometricFunction truth{5.0, 0.8, 0.0};
-  const double found = fit_psychometric(expected_answers({truth}, 5.0), 1).functions[0].jnd(kJndCriterion);
-  EXPECT_NEAR(found, truth.jnd(kJndCriterion), 1e-5);
+  const double found = fit_psychometric(expected_answers({truth}, 5.0), 1).functions[0].jnd();
+  EXPECT_NEAR(found, truth.jnd(), 1e-5);
 }
 
 TEST(Psychometrics, SaysWhichAnswersBoundNothing) {
@@ -69,7 +67,7 @@ TEST(Psychometrics, SaysWhichAnswersBoundNothing) {
   }
   const PsychometricFit fit = fit_psychometric(cells, 4);
   EXPECT_EQ(fit.determined, (std::vector<bool>{true, false, false, false}));
-  const std::vector<Estimate> estimates = profile_jnds(cells, fit, {});
+  const std::vector<Estimate> estimates = profile_jnds(cells, fit);
   ASSERT_EQ(estimates.size(), 4u);
   for (const Estimate& estimate : estimates) {
     EXPECT_TRUE(std::isfinite(estimate.low) && std::isfinite(estimate.high));
@@ -100,7 +98,7 @@ TEST(Psychometrics, IntervalNarrowsWithTheTrials) {
     std::vector<AnswerCell> cells = expected_answers({{5.0, 0.0, 0.0}}, trials);
     for (AnswerCell& cell : cells) cell.judged_larger = std::round(cell.judged_larger);
     const PsychometricFit fit = fit_psychometric(cells, 1);
-    const Estimate one = profile_jnds(cells, fit, {})[0];
+    const Estimate one = profile_jnds(cells, fit)[0];
     EXPECT_LT(one.low, one.value);
     EXPECT_GT(one.high, one.value);
     EXPECT_LT(one.high - one.low, 0.6 * width);
@@ -119,7 +117,7 @@ TEST(Psychometrics, IntervalIsThatOfTheLikelihoodRatio) {
     cells.push_back({0, 4.0, first, 1e6, 1e6});
     cells.push_back({0, -4.0, first, 0.0, 1e6});
   }
-  const Estimate jnd = profile_jnds(cells, fit_psychometric(cells, 1), {})[0];
+  const Estimate jnd = profile_jnds(cells, fit_psychometric(cells, 1))[0];
   const auto fall = [](double value) {
     const double p = normal_cdf(0.2 * normal_quantile(0.75) / value);
     return 400.0 * (0.8 * std::log(0.8 / p) + 0.2 * std::log(0.2 / (1.0 - p)));

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-const IntervalSettings kQuick{kJndCriterion, 50};
+constexpr int kQuick = 50;  // resamples
 bool may_continue(double) { return true; }
 
 // A session of a subject whose answers come out exactly as often as they should:
@@ -54,7 +54,7 @@ TEST(StudyAnalysis, ReproducesThePapersOutcome) {
   ASSERT_TRUE(analysis->lines.ok()) << analysis->lines.error().message;
   EXPECT_NEAR(analysis->lines->conservative.offset_N, 0.065, 5e-4);
   EXPECT_NEAR(analysis->lines->conservative.weber_fraction, 0.0633, 5e-4);
-  const auto line = parse_jnd_file(jnd_file_text(*analysis->lines, analysis->points, 0.75, {"S01"}), "jnd.json");
+  const auto line = parse_jnd_file(jnd_file_text(*analysis->lines, analysis->points, {"S01"}), "jnd.json");
   ASSERT_TRUE(line.ok());
   EXPECT_EQ(line->offset_N, analysis->lines->conservative.offset_N);
   // Without the published point another line comes out.
@@ -88,7 +88,9 @@ TEST(StudyAnalysis, JudgesByWhatWasRendered) {
   }
   data.records[0].second_rendered_N = 0.0;  // the device was off
   data.records[1].training = true;
-  const SubjectJnd subject = analyse_subject(data, kQuick);
+  const auto analysis = analyse_study({data}, kQuick, false, may_continue);
+  ASSERT_TRUE(analysis.ok()) << analysis.error().message;
+  const SubjectJnd& subject = analysis->subjects.front();
   EXPECT_EQ(subject.unusable, 1u);
   EXPECT_EQ(subject.references[0].trials, 1598u);
   EXPECT_NEAR(subject.references[3].rendered_N, 2.0, 1e-9);
@@ -121,7 +123,8 @@ TEST(StudyAnalysis, IntervalsHoldTheTruthOfKnownSubjects) {
                                random.uniform(-0.5, 0.5),
                                random.uniform(0.0, 0.03)};
     const StudyHeader header{"R" + std::to_string(i)};
-    const SubjectJnd found = analyse_subject({header, "", simulated_answers(header, traits, random.next()), 0}, {});
+    const StudyData data{header, "", simulated_answers(header, traits, random.next()), 0};
+    const SubjectJnd found = analyse_study({data}, kQuick, false, may_continue)->subjects.front();
     for (std::size_t r = 0; r < kReferenceForces_N.size(); ++r) {
       const double truth_N = traits.jnd.at(kReferenceForces_N[r]);
       const Estimate& jnd_N = found.references[r].jnd_N;
