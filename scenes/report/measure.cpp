@@ -61,12 +61,6 @@ struct Preparations {
   const PreparedTraining& of(Recipe recipe) const { return recipe == Recipe::paper ? paper : palpate; }
 };
 
-// The recordings may support other features than the scene has.
-MethodRequest with_grid_for(MethodRequest request, const PreparedTraining& prepared) {
-  if (!request.grid.empty()) request.grid.resize(prepared.common.features.size(), request.grid.back());
-  return request;
-}
-
 struct Fitted {
   std::shared_ptr<const FittedModel> model;
   double seconds = 0.0;
@@ -140,9 +134,11 @@ class Measurement {
       if (!wanted[i] || plan.recipe == Recipe::nothing) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
       const auto start = std::chrono::steady_clock::now();
-      const MethodRequest request = with_grid_for(plan.request, prepared.of(plan.recipe));
-      auto one = fit_method(prepared.of(plan.recipe), request,
-                            progress_.next(plan.request.method->expected_seconds(plan.request)),
+      const PreparedTraining& on = prepared.of(plan.recipe);
+      MethodRequest request = plan.request;
+      // The recordings may support other features than the scene has.
+      if (!request.grid.empty()) request.grid.resize(on.common.features.size(), request.grid.back());
+      auto one = fit_method(on, request, progress_.next(request.method->expected_seconds(request)),
                             base == bases.end() ? nullptr : &base->second.first);
       if (!one && one.error().message == interrupted().message) return one.error();
       if (!one) return Error{plan.name + ": " + one.error().message};

@@ -49,7 +49,6 @@ struct RecordingSet {
 
 // FNV-1a over positions and forces, row by row. Times and names do not count.
 std::uint64_t content_hash(const Recording& recording);
-std::string hash_text(std::uint64_t hash);
 
 // A stretch of at least this many rows with the same forces, and this many different
 // ones among them, is no chance.
@@ -62,20 +61,20 @@ struct SharedStretch {
   std::size_t rows = 0;
 };
 
-// The longest stretch of `tested` whose forces stand in `trained` as well; stretches of
-// 2 kLeakRows and more are always found. rows == 0: none.
+// The first stretch of `tested` whose forces stand in `trained` as well; one of 2 kLeakRows
+// and more is always found. rows == 0: none.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
-// `all`: the first `trained` of them to train on, the others to test on. Errors: a recording that
-// is given twice under any names, or a stretch of a tested recording that was trained on; by name
-// and rows.
+// `all`: the first `trained` of them to train on, the others to test on; without others each is tested by
+// models of the rest. Errors: a stretch of a tested recording that was trained on, or all of it, by name and
+// rows.
 Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
 // Reads the files; without any, the virtual silicone: seed 1 to train on, seed 2 to test on. Without a test
 // recording the others are divided into up to kMostFolds folds, each tested by models that were fitted to
 // the rest; of a single one a block at its end is left out. Recordings are ordered by name and content.
-// Errors: those of the recordings; a test without training; the same file or content twice, or a stretch of
-// a training recording in a test; no contact in a test recording; too short to leave a part out.
+// Errors: those of the recordings; a test without training; refuse_leakage's; no contact in a test recording;
+// too short to leave a part out.
 inline constexpr std::size_t kMostFolds = 5;
 Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test);
 
