@@ -2,13 +2,10 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "engine/base/atomic_file.h"
-#include "engine/tick/sensor_identification.h"
 #include "models/export/export_c.h"
 #include "models/model/file/model_io.h"
-#include "scenes/cli/output.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {
@@ -17,44 +14,12 @@ namespace {
 struct ExportArguments {
   std::string model;
   std::string out;
-  std::string sensor;
   double encoder_step_m = 0.0;
   bool single_precision = false;
-  bool json = false;
   bool force = false;
 };
 
-// What the file is to take the positions for.
-Result<PositionSensor> sensor_of(const ExportArguments& arguments, const ModelData& data) {
-  if (arguments.sensor.empty()) return sensor_with_step(data, arguments.encoder_step_m);
-  Result<RecordingReader> reader = RecordingReader::open(arguments.sensor);
-  if (!reader) return reader.error();
-  const Result<SensorSpec> sensor = identify_sensor(*reader);
-  if (!sensor) return sensor.error();
-  return PositionSensor{sensor->encoder_step_m, sensor->position_noise_m};
-}
-
-void print_export_json(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
-                       const ExportedC& file) {
-  const TickOperations& counted = file.operations;
-  print_json({{"file", arguments.out},
-              {"model", data.name},
-              {"precision", arguments.single_precision ? "float" : "double"},
-              {"encoder_step_m", request.sensor.encoder_step_m},
-              {"position_noise_m", request.sensor.position_noise_m},
-              {"text_bytes", file.text.size()},
-              {"table_bytes", file.table_bytes},
-              {"state_bytes", file.state_bytes},
-              {"operations",
-               {{"arithmetic", counted.arithmetic},
-                {"divisions", counted.divisions},
-                {"roots", counted.roots},
-                {"exponentials", counted.exponentials},
-                {"logarithms", counted.logarithms}}}});
-}
-
 std::string source_of_sensor(const ExportArguments& arguments, const ModelData& data) {
-  if (!arguments.sensor.empty()) return "as in " + arguments.sensor;
   if (arguments.encoder_step_m > 0.0) return "as told";
   return data.sensor ? "as in the recordings of the model"
                      : "the model does not know its recordings' step: see --encoder-step";
@@ -81,17 +46,11 @@ Status run_export(const ExportArguments& arguments) {
   const auto model = load_model(arguments.model);
   if (!model) return model.error();
   const ModelData& data = (*model)->data();
-  const Result<PositionSensor> sensor = sensor_of(arguments, data);
-  if (!sensor) return sensor.error();
-  const ExportRequest request{arguments.single_precision, *sensor};
+  const ExportRequest request{arguments.single_precision, sensor_with_step(data, arguments.encoder_step_m)};
   const Result<ExportedC> file = export_c(data, request);
   if (!file) return Error{arguments.model + ": " + file.error().message};
   if (Status status = write_file_atomically(arguments.out, file->text, arguments.force); !status) return status;
-  if (arguments.json) {
-    print_export_json(arguments, data, request, *file);
-  } else {
-    print_summary(arguments, data, request, *file);
-  }
+  print_summary(arguments, data, request, *file);
   return {};
 }
 
@@ -103,14 +62,11 @@ void add_export(CLI::App& app, Verbs& verbs) {
   command->add_option("model", arguments->model, "Model file (JSON)")->required();
   command->add_option("--c", arguments->out, "C file to write")->required();
   command->add_flag("--float", arguments->single_precision, "Single precision");
-  CLI::Option* step = command
-                          ->add_option("--encoder-step", arguments->encoder_step_m,
-                                       "Steps that positions come in, metres; 0: those of the model's recordings")
-                          ->check(CLI::Range(0.0, 0.1))
-                          ->capture_default_str();
-  command->add_option("--sensor", arguments->sensor, "Recording whose encoder step and position noise to take (CSV)")
-      ->excludes(step);
-  command->add_flag("--json", arguments->json, "Print one JSON object");
+  command
+      ->add_option("--encoder-step", arguments->encoder_step_m,
+                   "Steps that positions come in, metres; 0: those of the model's recordings")
+      ->check(CLI::Range(0.0, 0.1))
+      ->capture_default_str();
   command->add_flag("--force", arguments->force, "Write over an existing file");
   verbs.emplace_back(command, [arguments] { return run_export(*arguments); });
 }

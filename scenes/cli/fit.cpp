@@ -166,17 +166,6 @@ Status list_methods() {
   return {};
 }
 
-// A grid is asked for before anybody knows how many features the recording supports:
-// the first size is the depth's, sizes beyond the features are left out, and the last
-// one serves every feature that has none.
-void fit_grid_to(std::vector<int>& grid, std::size_t features, std::vector<std::string>& notes) {
-  if (grid.empty() || grid.size() == features) return;
-  grid.resize(features, grid.back());
-  std::string sizes;
-  for (const int size : grid) sizes += (sizes.empty() ? "" : "x") + std::to_string(size);
-  notes.push_back("the recording supports " + std::to_string(features) + " features; the grid is " + sizes);
-}
-
 // Replays the training recordings as they came, and says where that contradicts the
 // share that the fit printed for itself.
 std::string training_contradiction(const std::vector<std::string>& recordings, const ModelData& data) {
@@ -225,20 +214,18 @@ Status run_fit(const FitArguments& arguments) {
   const auto prepared = prepare_training(source, training, prepare);
   if (!prepared) return prepared.error();
   MethodRequest asked = method_request(arguments);
-  std::vector<std::string> notes;
-  if (training.choice == FeatureChoice::automatic) fit_grid_to(asked.grid, prepared->common.features.size(), notes);
+  // Asked for before anybody knows the features: the last size serves all that have none.
+  if (training.choice == FeatureChoice::automatic && !asked.grid.empty())
+    asked.grid.resize(prepared->common.features.size(), asked.grid.back());
   const auto fit = fit_method(*prepared, asked, method);
   if (!fit) return fit.error();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (const std::string contradiction = training_contradiction(arguments.recordings, fit->data);
-      !contradiction.empty()) {
-    notes.push_back(contradiction);
-  }
+  const std::string contradiction = training_contradiction(arguments.recordings, fit->data);
   if (Status status = save_model(arguments.out, fit->data, arguments.force); !status) return status;
   line.reset();  // what follows goes onto a line of its own
-  for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
+  if (!contradiction.empty()) std::cerr << "note: " << contradiction << "\n";
   if (arguments.json) {
-    print_fit_json(*fit, *prepared, arguments.kernel, arguments.weighting, seconds);
+    print_fit_json(*fit, arguments.kernel, arguments.weighting, seconds);
   } else {
     print_fit(*fit, *prepared, seconds, sensor, arguments.out);
   }

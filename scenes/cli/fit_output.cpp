@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <optional>
 #include <vector>
 
 #include "engine/base/text.h"
@@ -11,8 +10,6 @@
 
 namespace palpate::cli {
 namespace {
-
-constexpr double kSingular = 1e300;
 
 std::string relaxation_text(const std::vector<RelaxationTime>& times) {
   std::string text;
@@ -69,25 +66,6 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
   return list;
 }
 
-nlohmann::ordered_json worth_json(const std::vector<FeatureWorth>& worth) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const FeatureWorth& one : worth) {
-    list.push_back({{"name", one.name},
-                    {"taken", one.taken},
-                    {"error_over_jnd_with", one.error_with},
-                    {"error_over_jnd_without", one.error_without}});
-  }
-  return list;
-}
-
-nlohmann::ordered_json strength_json(const std::optional<StrengthChoice>& strength) {
-  if (!strength) return nullptr;
-  return {{"strength", strength->strength},
-          {"smoothing", strength->smoothing},
-          {"error_over_jnd", strength->error_over_jnd},
-          {"trend_error_over_jnd", strength->trend_error_over_jnd}};
-}
-
 }  // namespace
 
 void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
@@ -105,24 +83,14 @@ void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double se
             << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
-  // The trend alone solves for no weights; a matrix that is singular has no condition.
-  if (fit.report.columns > 0) {
-    std::cout << "rank                " << fit.report.rank << " of " << fit.report.columns << "\n";
-    if (fit.report.condition < kSingular) std::cout << "condition           " << fit.report.condition << "\n";
-  }
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";
   std::cout << "written             " << out << "\n";
 }
 
-void print_fit_json(const MethodFit& fit, const PreparedTraining& prepared, const std::string& kernel,
-                    const std::string& weighting, double seconds) {
+void print_fit_json(const MethodFit& fit, const std::string& kernel, const std::string& weighting, double seconds) {
   nlohmann::ordered_json features = nlohmann::ordered_json::array();
   for (const FeatureSpec& spec : fit.data.features) features.push_back(feature_name(spec));
   const Provenance& provenance = fit.data.provenance;
-  nlohmann::ordered_json times = nlohmann::ordered_json::array();
-  for (const RelaxationTime& time : provenance.relaxation_times) {
-    times.push_back({{"time_s", time.time_s}, {"standard_error_s", time.standard_error_s}});
-  }
   print_json({{"method", fit.data.method},
               {"centres", fit.data.correction->size()},
               {"kernel", kernel},
@@ -133,14 +101,7 @@ void print_fit_json(const MethodFit& fit, const PreparedTraining& prepared, cons
               {"training_within_jnd", provenance.training_within_jnd},
               {"name", fit.data.name},
               {"features", features},
-              {"feature_worth", worth_json(prepared.worth)},
-              {"correction", strength_json(prepared.strength)},
-              {"contact_samples", provenance.contact_samples},
-              {"relaxation_times", times},
               {"recordings", surfaces_json(provenance)},
-              {"condition", fit.report.condition},
-              {"rank", fit.report.rank},
-              {"smoothing", fit.report.smoothing},
               {"notes", fit.report.notes}});
 }
 

@@ -12,7 +12,6 @@ namespace palpate::cli {
 void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
                const std::string& out);
 // One JSON object, as the contract has it.
-void print_fit_json(const MethodFit& fit, const PreparedTraining& prepared, const std::string& kernel,
-                    const std::string& weighting, double seconds);
+void print_fit_json(const MethodFit& fit, const std::string& kernel, const std::string& weighting, double seconds);
 
 }  // namespace palpate::cli
