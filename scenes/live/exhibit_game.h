@@ -102,8 +102,6 @@ class ExhibitGame {
   const ExhibitRound& round() const noexcept { return rounds_[index_]; }  // not in attract
   std::size_t number() const noexcept { return index_ + 1; }              // of the round
   const ExhibitTrace& trace() const noexcept { return trace_; }
-  // Of a round that is seen.
-  double seconds_left() const noexcept { return press_s_ - trace_.seconds(); }
 
   // Seen: would a hand notice a difference? Then the pressing begins.
   void guess(bool noticed);

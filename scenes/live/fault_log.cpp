@@ -64,20 +64,16 @@ std::vector<std::string> FaultLog::alarms(const LoopSnapshot& newest) const {
 }
 
 void FaultLog::note(std::size_t kind, std::uint64_t count, double at_s) {
-  Last& last = last_[kind];
-  if (last.event != kMost && at_s - last.at_s <= kSameEvent_s) {
-    events_[last.event].count += count;
-    last.at_s = at_s;
+  const Fault& fault = kFaults[kind];
+  const auto same = std::find_if(events_.rbegin(), events_.rend(),
+                                 [&](const FaultEvent& event) { return event.text == fault.sentence; });
+  if (same != events_.rend() && at_s - same->last_s <= kSameEvent_s) {
+    same->count += count;
+    same->last_s = at_s;
     return;
   }
-  if (events_.size() == kMost) {
-    events_.erase(events_.begin());
-    for (Last& other : last_) {
-      if (other.event != kMost) other.event = other.event > 0 ? other.event - 1 : kMost;
-    }
-  }
-  events_.push_back({at_s, kFaults[kind].sentence, count, kFaults[kind].alarm});
-  last = {events_.size() - 1, at_s};
+  if (events_.size() == kMost) events_.erase(events_.begin());
+  events_.push_back({at_s, fault.sentence, count, fault.alarm, at_s});
 }
 
 }  // namespace palpate

@@ -3,7 +3,6 @@
 // Thread guarantee: one thread.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -18,6 +17,7 @@ struct FaultEvent {
   std::string text;          // in words
   std::uint64_t count = 1;   // of the same kind that followed within a second
   bool alarm = true;         // else: counted, but nobody needs to be told at once
+  double last_s = 0.0;       // loop time of the last
 };
 
 // What was wrong with one tick, for a mark on the curves.
@@ -54,12 +54,7 @@ class FaultLog {
   void update_device(std::uint32_t faults, double at_s);
   void note(std::size_t kind, std::uint64_t count, double at_s);
 
-  struct Last {
-    std::size_t event = kMost;  // its place in events_; kMost: gone
-    double at_s = 0.0;
-  };
   std::vector<FaultEvent> events_;
-  std::array<Last, kFaults.size()> last_{};
   std::uint32_t device_faults_ = 0;
   std::uint64_t missed_ = 0;
   double missed_of_late_ = 0.0;

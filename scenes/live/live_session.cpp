@@ -144,9 +144,7 @@ void LiveSession::update() {
   comparison_.show(newest_);
   check_faults();
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
-    // It may have ended by itself.
-    recording_ = 0;
-    send_controls();
+    send_controls();  // it may have ended by itself
     notices_.push_back({std::move(outcome->text), outcome->problem});
   }
 }
@@ -219,14 +217,9 @@ void LiveSession::save_fault_ticks() {
 }
 
 void LiveSession::send_controls() {
-  LoopControls controls;
-  controls.recording = recording_;
-  controls.acknowledged = acknowledged_;
-  controls.dead_man = dead_man_;
-  controls.held_s = held_s_;
-  controls.scale = scale_;
-  models_.write_selection(controls);
-  loop_->set_controls(controls);
+  controls_.recording = recorder_->number();
+  models_.write_selection(controls_);
+  loop_->set_controls(controls_);
 }
 
 void LiveSession::select(std::size_t slot) {
@@ -262,7 +255,7 @@ std::string LiveSession::reference_words(bool brief) const {
 void LiveSession::reset_figures() {
   comparison_.forget_errors("they were cleared");
   faults_.acknowledge();
-  ++acknowledged_;
+  ++controls_.acknowledged;
   send_controls();
 }
 
@@ -274,7 +267,7 @@ std::string LiveSession::device_words() const {
   }
   std::string words = zeroing_words(device);
   if (words.empty() && newest_.dead_man_released) {
-    words = dead_man_ == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
+    words = dead_man() == DeadMan::grip ? "no force: hold the switch on the handle" : "no force: hold G";
   }
   return words;
 }
@@ -286,17 +279,17 @@ void LiveSession::move_surface(bool moved) {
 bool LiveSession::renders_force() const noexcept { return is_felt(*device_); }
 
 void LiveSession::use_dead_man(DeadMan what) {
-  dead_man_ = what;
+  controls_.dead_man = what;
   send_controls();
 }
 
 void LiveSession::use_scale(const ForceScale& scale) {
-  scale_ = scale;
+  controls_.scale = scale;
   send_controls();
 }
 
 void LiveSession::hold() {
-  held_s_ = steady_now_s();
+  controls_.held_s = steady_now_s();
   send_controls();
 }
 
@@ -320,15 +313,13 @@ Status LiveSession::start_recording(const std::string& path) {
   request.columns = {sensor.has_velocity, sensor.has_acceleration};
   request.comments = recording_comments();
   if (Status status = recorder_->start(request); !status) return status;
-  recording_ = recorder_->number();
   send_controls();
   return {};
 }
 
 void LiveSession::stop_recording() {
-  recording_ = 0;
-  send_controls();
   recorder_->stop();
+  send_controls();
 }
 
 }  // namespace palpate

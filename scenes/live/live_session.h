@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -107,11 +106,11 @@ class LiveSession {
   const ReplaySurface& surface() const noexcept { return surface_; }
   void move_surface(bool moved);
   // What must be held for the device to push; `hold` says that it is, every frame.
-  DeadMan dead_man() const noexcept { return dead_man_; }
+  DeadMan dead_man() const noexcept { return controls_.dead_man; }
   void use_dead_man(DeadMan what);
   void hold();
   // Of the active model's force in the hand; errors stay those of the models as they are.
-  const ForceScale& scale() const noexcept { return scale_; }
+  const ForceScale& scale() const noexcept { return controls_.scale; }
   void use_scale(const ForceScale& scale);
 
   // Records every sample from now on, with the selected reference as its force; a notice says how it ended.
@@ -147,11 +146,7 @@ class LiveSession {
   ReplaySurface surface_;
   FaultLog faults_;
   std::unique_ptr<SessionRecorder> recorder_;
-  std::uint32_t recording_ = 0;  // these four as in LoopControls
-  std::uint32_t acknowledged_ = 0;
-  DeadMan dead_man_ = DeadMan::off;
-  ForceScale scale_;
-  double held_s_ = -std::numeric_limits<double>::infinity();
+  LoopControls controls_;
   int fault_files_ = 0;
   LoopSnapshot newest_;
   std::vector<LoopSnapshot> buffer_;

@@ -25,15 +25,17 @@ struct ModelSlots::Slot {
   SlotPlan plan;
   int asked_centres = 0;                     // of the plan, before it was changed by hand
   std::shared_ptr<const FittedModel> model;  // null until ready
-  bool hidden = false;
   bool removed = false;
   bool claimed = false;  // of a file: somebody said that it is of this material
 
-  bool takes_part() const { return model != nullptr && !hidden; }
-  bool is(const SlotPlan& other) const {
-    SlotPlan asked = plan;
-    asked.centres = asked_centres;
-    return !removed && asked.same_as(other);
+  bool hidden() const { return view.state == SlotState::hidden; }
+  bool takes_part() const { return model != nullptr && !hidden(); }
+  void show() {
+    view.state = model != nullptr ? SlotState::ready : view.problem.empty() ? SlotState::waiting : SlotState::failed;
+  }
+  bool is(const SlotPlan& other) const {  // which is no file
+    return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
+           asked_centres == other.centres;
   }
 };
 
@@ -53,7 +55,6 @@ Status ModelSlots::start(const std::vector<SlotPlan>& plans, bool claimed) {
     add_slot(plan).claimed = claimed;
     worker_->add_job(slots_.size() - 1, plan, slots_.size() == 1);
   }
-  outstanding_ = slots_.size();
   return worker_->start();
 }
 
@@ -78,9 +79,8 @@ std::vector<std::size_t> ModelSlots::update() {
     Slot& slot = *slots_[finished.job_id];
     // Asked for again while it was made: the newer one counts.
     const bool old = slot.view.refitting && finished.plan.centres != slot.plan.centres;
-    if (!old) --outstanding_;
     if (join(finished.job_id, finished)) ready.push_back(finished.job_id);
-    if (old) slot.view.refitting = true;
+    slot.view.refitting = old;
   }
   return ready;
 }
@@ -121,6 +121,13 @@ std::optional<std::size_t> ModelSlots::reference() const noexcept {
   return shown.size() > 1 ? std::optional<std::size_t>(shown.front()) : std::nullopt;
 }
 
+bool ModelSlots::all_settled() const noexcept {
+  return std::none_of(slots_.begin(), slots_.end(), [](const auto& slot) {
+    const SlotState state = slot->view.state;
+    return slot->view.refitting || state == SlotState::waiting || state == SlotState::fitting;
+  });
+}
+
 std::vector<std::size_t> ModelSlots::shown_slots() const {
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
@@ -131,17 +138,15 @@ std::vector<std::size_t> ModelSlots::shown_slots() const {
 
 bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
   Slot& slot = *slots_[index];
-  slot.view.refitting = false;
   if (finished.model == nullptr) {
     notices_.push_back({slot.view.name + ": " + finished.problem, true});
-    if (slot.model != nullptr) return false;  // the old one stays
-    slot.view.state = SlotState::failed;
     slot.view.problem = finished.problem;
+    if (!slot.hidden()) slot.show();  // an old one stays
     return false;
   }
   const bool first = shown_slots().empty();
   slot.model = finished.model;
-  slot.view.state = slot.hidden ? SlotState::hidden : SlotState::ready;
+  if (!slot.hidden()) slot.show();
   slot.view.progress = 1.0;
   slot.view.centres = slot.model->centre_count();
   slot.view.tick_ns = finished.tick_ns;
@@ -153,13 +158,13 @@ bool ModelSlots::join(std::size_t index, FinishedModel& finished) {
     slot.view.name = distinct_name(name, &slot);
   }
   if (!direct_ && slot.view.method == "direct" && !slot.plan.paper) direct_ = index;
-  if (!slot.hidden && (first || (index == 0 && !user_chose_))) selected_ = index;
+  if (!slot.hidden() && (first || (index == 0 && !user_chose_))) selected_ = index;
   return true;
 }
 
 void ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
   for (const auto& slot : slots_) {
-    slot->hidden = slot->removed || slot->plan.origin != ModelOrigin::file;
+    if (slot->plan.origin != ModelOrigin::file) slot->view.state = SlotState::hidden;
   }
   std::optional<std::size_t> first;
   for (const SlotPlan& plan : plans) {
@@ -169,19 +174,12 @@ void ModelSlots::use_plans(const std::vector<SlotPlan>& plans) {
       if (!has_room("show " + plan_name(plan))) continue;
       add_slot(plan);
       index = slots_.size() - 1;
-      ++outstanding_;
       worker_->add_job(index, plan, !first);
     }
-    slots_[index]->hidden = false;
+    slots_[index]->show();
     if (!first) first = index;
   }
-  for (const auto& slot : slots_) {
-    SlotState& state = slot->view.state;
-    if (!slot->hidden && state == SlotState::hidden)
-      state = slot->model != nullptr ? SlotState::ready : SlotState::waiting;
-    if (slot->hidden) state = SlotState::hidden;
-  }
-  if (slots_[selected_]->hidden && first) selected_ = *first;
+  if (slots_[selected_]->hidden() && first) selected_ = *first;
   select_what_is_there();
 }
 
@@ -198,7 +196,7 @@ void ModelSlots::remove(std::size_t index) {
     notices_.push_back({"the last model stays: there must be one to press", false});
     return;
   }
-  slot.removed = slot.hidden = true;
+  slot.removed = true;
   slot.view.state = SlotState::hidden;
   select_what_is_there();
 }
@@ -212,7 +210,6 @@ void ModelSlots::refit(std::size_t index, int centres) {
   Slot& slot = *slots_[index];
   if (slot.model == nullptr || slot.plan.centres == centres) return;
   slot.plan.centres = centres;
-  if (!slot.view.refitting) ++outstanding_;
   slot.view.refitting = true;
   worker_->add_job(index, slot.plan);
 }

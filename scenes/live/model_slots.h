@@ -129,7 +129,8 @@ class ModelSlots {
   // Reads a model file into a new slot at once, in some milliseconds, tens of them for a direct fit; trouble
   // becomes a notice.
   void load_file(const std::string& path);
-  bool all_settled() const noexcept { return outstanding_ == 0; }
+  // Whether nothing that is shown is still to come.
+  bool all_settled() const noexcept;
 
  private:
   struct Slot;
@@ -152,7 +153,6 @@ class ModelSlots {
   std::size_t selected_ = 0;
   bool user_chose_ = false;
   std::vector<std::size_t> loaded_;  // since the last update, files
-  std::size_t outstanding_ = 0;      // jobs of which nothing was heard
 };
 
 }  // namespace palpate

@@ -49,7 +49,7 @@ SessionRecorder::~SessionRecorder() {
 }
 
 Status SessionRecorder::start(const RecorderRequest& request) {
-  if (active_) return Error{"already recording into " + request_.path + "; stop that one first"};
+  if (thread_.joinable()) return Error{"already recording into " + request_.path + "; stop that one first"};
   std::error_code ignored;
   if (!request.overwrite && std::filesystem::exists(request.path, ignored))
     return Error{request.path + " exists; choose another name"};
@@ -74,14 +74,10 @@ Status SessionRecorder::start(const RecorderRequest& request) {
     writer_.reset();
     return Error{std::string("cannot start the recorder's thread: ") + error.what() + "; close other programs"};
   }
-  active_ = true;
-  stopping_ = false;
   return {};
 }
 
 void SessionRecorder::stop() {
-  if (!active_) return;
-  stopping_ = true;
   const std::lock_guard lock(mutex_);
   stop_ = true;
   wake_.notify_one();
@@ -89,8 +85,6 @@ void SessionRecorder::stop() {
 
 void SessionRecorder::wait() {
   if (thread_.joinable()) thread_.join();
-  active_ = false;
-  stopping_ = false;
 }
 
 void SessionRecorder::work() {
@@ -165,9 +159,9 @@ Notice SessionRecorder::finish() {
 
 RecordingStatus SessionRecorder::status() const {
   RecordingStatus status;
-  status.active = active_ && !stopping_;
-  status.saving = active_ && stopping_;
-  if (!active_) return status;
+  if (!thread_.joinable()) return status;
+  status.active = !stop_;
+  status.saving = stop_;
   status.path = request_.path;
   status.rows = rows_.load(std::memory_order_relaxed);
   status.seconds = seconds_.load(std::memory_order_relaxed);

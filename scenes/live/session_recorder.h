@@ -73,7 +73,8 @@ class SessionRecorder {
   // Then set LoopControls::recording to `number()`. Errors: a recording is being
   // made or saved, the file exists or cannot be created, no thread.
   Status start(const RecorderRequest& request);
-  std::uint32_t number() const noexcept { return number_; }
+  // Of the recording; 0: none is being made.
+  std::uint32_t number() const noexcept { return status().active ? number_ : 0; }
 
   // Ends the recording with the samples that the loop has published by now; does not wait.
   void stop();
@@ -108,12 +109,10 @@ class SessionRecorder {
   std::thread thread_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  bool stop_ = false;              // by mutex_
+  bool stop_ = false;              // by mutex_; only the slow side changes it
   std::optional<Notice> outcome_;  // by mutex_
   std::atomic<std::uint64_t> rows_{0};
   std::atomic<double> seconds_{0.0};
-  bool active_ = false;
-  bool stopping_ = false;
 };
 
 }  // namespace palpate

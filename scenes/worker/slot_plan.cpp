@@ -65,11 +65,6 @@ std::string plan_name(const SlotPlan& plan) {
   return plan.paper ? name + kPaperMark : name;
 }
 
-bool SlotPlan::same_as(const SlotPlan& other) const {
-  return origin == other.origin && path == other.path && centres == other.centres && paper == other.paper &&
-         (origin == ModelOrigin::file || origin == ModelOrigin::position || method == other.method);
-}
-
 const std::vector<LineUp>& line_ups() {
   static const std::vector<LineUp> all = {
       {"Ladder",

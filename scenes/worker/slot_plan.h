@@ -29,9 +29,6 @@ struct SlotPlan {
   std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file, which plan_slots reads
   int centres = 0;                                      // of a method that takes them; 0: as many as it takes by itself
   bool paper = false;                                   // by the paper's own recipe: 50 mN steps, rows weighted 1/f
-
-  // Whether both ask for the same model.
-  bool same_as(const SlotPlan& other) const;
 };
 
 // A set of models to compare, by name.

@@ -49,7 +49,7 @@ TEST(ExhibitGame, IsPlayedFromGuessToScore) {
     game.guess(true);
     EXPECT_EQ(game.state(), State::press);
     for (int i = 0; i < 5000; ++i) game.add({time_s += 1e-3, 0.0, 0.0, false, false}, kJnd);
-    EXPECT_EQ(game.seconds_left(), 2.0) << "time begins with the first contact";
+    EXPECT_EQ(game.trace().seconds(), 0.0) << "time begins with the first contact";
     press(game, time_s, 2.1, over_jnd);
     time_s += 2.1;
     ASSERT_EQ(game.state(), State::reveal);
