@@ -73,29 +73,25 @@ Status find_gnuplot() {
   return Error{"found no gnuplot in PATH, which draws the figures; install it (Debian: apt-get install gnuplot-nox)"};
 }
 
-Status run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts) {
-  // A process each, without personal settings: what one script leaves set must not colour the next.
-  for (const std::string& script : scripts) {
-    const ShellRun run = run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
-                                      " 2>&1 >/dev/null </dev/null");
-    if (run.done) continue;
-    return Error{"gnuplot could not draw " + script + ": " + first_line(run.said) +
-                 "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
-  }
-  return {};
+// Without personal settings.
+Status run_gnuplot(const std::string& folder, const std::string& script) {
+  const ShellRun run = run_in_shell("cd " + shell_quoted(folder) + " && LC_ALL=C gnuplot -d " + shell_quoted(script) +
+                                    " 2>&1 >/dev/null </dev/null");
+  if (run.done) return {};
+  return Error{"gnuplot could not draw " + script + ": " + first_line(run.said) +
+               "; check that it is gnuplot 5.4 or newer with the svg and pngcairo terminals"};
 }
 
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots) {
   if (const Status found = find_gnuplot(); !found) return found;
-  std::vector<std::string> scripts;
   for (const Plot& plot : plots) {
-    const auto script = plot_script(plot);
-    if (!script) return script.error();
-    scripts.push_back(plot.name + ".gp");
-    if (const Status status = write_file_atomically(folder + "/" + scripts.back(), *script, true); !status)
-      return status;
+    const auto text = plot_script(plot);
+    if (!text) return text.error();
+    const std::string script = plot.name + ".gp";
+    if (const Status status = write_file_atomically(folder + "/" + script, *text, true); !status) return status;
+    if (const Status status = run_gnuplot(folder, script); !status) return status;
   }
-  return run_gnuplot(folder, scripts);
+  return {};
 }
 
 Result<std::string> read_drawn(const std::string& folder, const std::string& file) {

@@ -27,9 +27,9 @@ class ScratchFolder {
 // Errors: there is no gnuplot in PATH; says what to install.
 Status find_gnuplot();
 
-// Runs `scripts` (names in `folder`) in `folder`, one after the other, and waits.
-// Errors: it cannot be started or fails; with the first line it said.
-Status run_gnuplot(const std::string& folder, const std::vector<std::string>& scripts);
+// Runs `script`, a name in `folder`, there and waits. Errors: it cannot be started or fails; with the first
+// line it said.
+Status run_gnuplot(const std::string& folder, const std::string& script);
 
 // NAME.gp, NAME.svg and NAME.png of every plot in `folder`, which is there. Errors: gnuplot
 // is missing or fails; the disk refuses.

@@ -14,6 +14,7 @@ namespace palpate {
 struct Figure {
   Plot plot;
   std::string caption;  // plain text
+  std::string svg{};    // once it is drawn
 };
 
 Figure speed_figure(const ReportData& data);

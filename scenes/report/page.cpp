@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "engine/base/whole_file.h"
 #include "scenes/evaluation/ranking.h"
@@ -171,10 +172,8 @@ std::string notes_html(const ReportData& data) {
   return html + "</ul>\n";
 }
 
-std::string figure_html(const Figure& figure, const std::map<std::string, std::string>& svgs) {
-  const auto svg = svgs.find(figure.plot.name);
-  if (svg == svgs.end()) return {};
-  return "<figure>" + inline_svg(svg->second, figure.plot.name, figure.caption) + "<figcaption>" +
+std::string figure_html(const Figure& figure) {
+  return "<figure>" + inline_svg(figure.svg, figure.plot.name, figure.caption) + "<figcaption>" +
          escape_html(figure.caption) + " <a class=\"data\" href=\"figures/" + figure.plot.name +
          ".gp\">data and script</a></figcaption></figure>\n";
 }
@@ -226,13 +225,12 @@ std::string answer_html(const ReportData& data) {
 }
 
 Result<std::string> make_page(const ReportData& data, const std::string& origin, const std::vector<Table>& tables,
-                              const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs) {
+                              const std::vector<Figure>& figures) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
   const std::string path = *assets + "/report/page.html";
   const auto text = read_whole_file(path);
   if (!text) return Error{"cannot read " + path + ", the template of the report; check the assets folder"};
-  const auto figure = [&](std::size_t index) { return figure_html(figures[index], svgs); };
   const auto table = [&](const std::string& name) {
     const auto at = std::find_if(tables.begin(), tables.end(), [&](const Table& one) { return one.name == name; });
     return at->rows.empty() ? std::string() : table_html(*at);
@@ -241,19 +239,14 @@ Result<std::string> make_page(const ReportData& data, const std::string& origin,
   for (const RecordingFacts& facts : data.recordings) {
     if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
   }
-  const std::map<std::string, std::string> values{{"title", escape_html(tests)},
-                                                  {"answer", answer_html(data)},
-                                                  {"speed", figure(0)},
-                                                  {"headline", table_html(headline_table(data))},
-                                                  {"notes", notes_html(data)},
-                                                  {"worst", figure(1)},
-                                                  {"learnt", learnt_html(data)},
-                                                  {"features", table("features")},
-                                                  {"recordings", table("recordings")},
-                                                  {"paper", figure(2)},
-                                                  {"models", table("models")},
-                                                  {"times", table("times")},
-                                                  {"origin", escape_html(origin)}};
+  const std::map<std::string, std::string> values{
+      {"title", escape_html(tests)},       {"answer", answer_html(data)},
+      {"speed", figure_html(figures[0])},  {"headline", table_html(headline_table(data))},
+      {"notes", notes_html(data)},         {"worst", figure_html(figures[1])},
+      {"learnt", learnt_html(data)},       {"features", table("features")},
+      {"recordings", table("recordings")}, {"paper", figure_html(figures[2])},
+      {"models", table("models")},         {"times", table("times")},
+      {"origin", escape_html(origin)}};
   std::string page;
   std::size_t at = 0;
   for (std::size_t open; (open = text->find("{{", at)) != std::string::npos;) {

@@ -3,7 +3,6 @@
 // Thread guarantee: pure functions; make_page reads the template in the assets.
 #pragma once
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -19,9 +18,9 @@ namespace palpate {
 // tests/scenes/report/check_report.py can recompute it from FORCES.csv.
 std::string answer_html(const ReportData& data);
 
-// `origin`: what made it, in words; `tables`: those of make_tables; `svgs`: by the name of the plot. Errors: the
-// template is missing, or asks for what is not there.
+// `origin`: what made it, in words; `tables`: those of make_tables; `figures`: drawn. Errors: the template is
+// missing, or asks for what is not there.
 Result<std::string> make_page(const ReportData& data, const std::string& origin, const std::vector<Table>& tables,
-                              const std::vector<Figure>& figures, const std::map<std::string, std::string>& svgs);
+                              const std::vector<Figure>& figures);
 
 }  // namespace palpate

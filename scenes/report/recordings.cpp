@@ -44,9 +44,9 @@ RecordingFacts facts_of(const Recording& recording, const std::string& role) {
   return facts;
 }
 
-// Every recording is tested once, by models of the others.
-std::vector<Split> folds_of(const std::vector<SharedRecording>& all) {
-  std::vector<Split> folds(std::min(kMostFolds, all.size()));
+// Every recording is tested once, by models of the others; up to `most` of them.
+std::vector<Split> folds_of(const std::vector<SharedRecording>& all, std::size_t most) {
+  std::vector<Split> folds(std::min(most, all.size()));
   for (Split& fold : folds) fold.words = std::to_string(folds.size()) + "-fold cross-validation over the training";
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t f = 0; f < folds.size(); ++f)
@@ -165,8 +165,7 @@ Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t train
 Split leave_out(const std::vector<SharedRecording>& training) {
   Split split;
   if (training.size() > 1) {
-    for (std::size_t i = 0; i < training.size(); ++i)
-      (i % kLeftOutOf == 1 ? split.tested : split.train).push_back(training[i]);
+    split = folds_of(training, kLeftOutOf)[1];
     split.words = std::to_string(split.tested.size()) + " of the " + std::to_string(training.size()) +
                   " training recordings, left out of these fits";
     return split;
@@ -205,7 +204,7 @@ Result<RecordingSet> load_recordings(const std::vector<std::string>& train, cons
     Split& split = set.folds.emplace_back();
     for (std::size_t i = 0; i < all.size(); ++i) (i < trained ? split.train : split.tested).push_back(all[i]);
   } else {
-    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all)} : folds_of(all);
+    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all)} : folds_of(all, kMostFolds);
   }
   if (set.folds.front().tested.empty()) {
     return Error{all.front()->name + ": found " + std::to_string(all.front()->rows.size()) +

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -84,19 +83,20 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
       {"command_line", request.command_line}};
 }
 
-Result<std::map<std::string, std::string>> draw(const ReportFolder& folder, const std::vector<Figure>& figures) {
+// Files in the folder, and what the page shows of them.
+Status draw(const ReportFolder& folder, std::vector<Figure>& figures) {
+  const std::string place = folder.path_of("figures");
   std::vector<Plot> plots;
   for (const Figure& figure : figures) plots.push_back(figure.plot);
   std::error_code ignored;
-  fs::create_directories(folder.path_of("figures"), ignored);
-  if (const Status status = draw_plots(folder.path_of("figures"), plots); !status) return status.error();
-  std::map<std::string, std::string> svgs;
-  for (const Plot& plot : plots) {
-    const auto svg = read_drawn(folder.path_of("figures"), plot.name + ".svg");
+  fs::create_directories(place, ignored);
+  if (const Status status = draw_plots(place, plots); !status) return status;
+  for (Figure& figure : figures) {
+    auto svg = read_drawn(place, figure.plot.name + ".svg");
     if (!svg) return svg.error();
-    svgs[plot.name] = *svg;
+    figure.svg = std::move(*svg);
   }
-  return svgs;
+  return {};
 }
 
 }  // namespace
@@ -123,11 +123,11 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
       return status.error();
     }
   }
-  const std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), paper_figure(*data)};
-  const auto svgs = draw(*folder, figures);
+  std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), paper_figure(*data)};
+  const Status drawn = draw(*folder, figures);
   // Ctrl-C at a terminal ends gnuplot as well: that is no trouble of gnuplot's.
   if (!control.may_continue(0.99)) return interrupted();
-  if (!svgs) return svgs.error();
+  if (!drawn) return drawn.error();
 
   const std::string machine =
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
@@ -139,7 +139,7 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
   if (const Status status = folder->write("report.json", json); !status) return status.error();
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
-  const auto page = make_page(*data, origin, tables, figures, *svgs);
+  const auto page = make_page(*data, origin, tables, figures);
   if (!page) return page.error();
   if (const Status status = folder->write("index.html", *page); !status) return status.error();
   if (!control.may_continue(1.0)) return interrupted();

@@ -79,15 +79,11 @@ Plot study_plot(const StudyAnalysis& analysis) {
 }
 
 Status write_study_figures(const StudyAnalysis& analysis, const std::string& folder, bool overwrite) {
-  const std::vector<std::string> figures{folder + "/figure3.svg", folder + "/figure3.png"};
-  for (const std::string& figure : figures) {
-    if (const Status status = check_plot_path(figure, overwrite); !status) return status;
-  }
   const Plot plot = study_plot(analysis);
   const auto script = plot_script(plot);
   if (!script) return script.error();
   if (const Status status = write_file_atomically(folder + "/figure3.gp", *script, overwrite); !status) return status;
-  return draw_plot(plot, figures, overwrite);
+  return draw_plot(plot, {folder + "/figure3.svg", folder + "/figure3.png"}, overwrite);
 }
 
 }  // namespace palpate
