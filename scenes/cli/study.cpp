@@ -1,21 +1,26 @@
 // palpate study: the force-discrimination study without a window. Runs it in a terminal,
 // analyses the files of real subjects, simulates subjects.
-#include <array>
-#include <cmath>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "devices/bridge/bridge_target.h"
 #include "engine/base/atomic_file.h"
+#include "engine/base/signals.h"
 #include "scenes/cli/progress.h"
-#include "scenes/cli/study_options.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
+#include "scenes/scene/user_folders.h"
 #include "scenes/study/discrimination.h"
-#include "scenes/study/jnd_lines.h"
+#include "scenes/study/live_study.h"
 #include "scenes/study/prepare_strokes.h"
+#include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_figure.h"
 
 namespace palpate::cli {
@@ -23,7 +28,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct StudyOptions {
+  int resamples = 999;  // of the subjects, for the interval of all together
+  bool with_published = false;
+  std::string out = ".";
+  bool force = false;
+  std::vector<std::string> files;  // analyse
+  bool rehearsals = false;         // also answers that nobody could feel
+  int subjects = 12;               // simulate
+  std::uint64_t seed = 1;
+  SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as the paper's
+  bool discriminates = false;
+  std::string recording;  // to discriminate; empty: virtual
+  std::string strokes_scene = "silicone_block";
+  std::vector<std::string> models;
+  std::string device = "auto";  // run
+  std::string subject;
+  bool bridge_remote = false;
+};
+
 constexpr std::uint64_t kPopulationStream = 51;
+constexpr int kPause_ms = 10;
+
+// What may be typed now, by StudyState; Enter ends a line.
+constexpr const char* kChoices[] = {" [y: I have read this and agree]",
+                                    " [Enter: go on]",
+                                    "",
+                                    " [1 or 2]",
+                                    " [r: try again]",
+                                    " [Enter: go on]",
+                                    "",
+                                    ""};
 
 void print_analysis(const StudyAnalysis& analysis) {
   std::printf("%-13s %8s %12s %22s\n", "reference [N]", "subjects", "mean JND [%]", "all answers [%], 95 %");
@@ -128,12 +163,97 @@ Status run_analyse(const StudyOptions& options) {
   return analyse_files(files, options);
 }
 
-// One of the population: the JND's factor spreads as e^normal.
-SubjectTraits drawn_subject(const StudyOptions& options, RandomStream& random) {
-  SubjectTraits traits = options.traits;
-  const double factor = std::exp(options.spread * random.normal());
-  traits.jnd = {factor * traits.jnd.offset_N, factor * traits.jnd.weber_fraction};
-  return traits;
+Result<StudyHeader> study_header(const StudyOptions& options) {
+  StudyHeader header;
+  if (!options.discriminates) return header;
+  const Result<Scene> scene = load_scene(options.strokes_scene);
+  if (!scene) return scene.error();
+  const auto strokes = prepare_strokes({*scene, options.models, options.recording});
+  if (!strokes) return strokes.error();
+  header.strokes = *strokes;
+  return header;
+}
+
+void obey(LiveStudy& study, const std::string& line) {
+  StudySession& session = study.session();
+  switch (line.empty() ? '\n' : std::tolower(static_cast<unsigned char>(line.front()))) {
+    case 'y':
+      return session.accept_consent(local_time_text("%Y-%m-%d %H:%M"));
+    case '\n':
+      return session.proceed();
+    case '1':
+    case '2':
+      return session.answer(line.front() == '2');
+    case 'r':
+      return session.retry();
+    case 'z':
+      return study.start_zeroing();
+    case 'q':
+      return session.abort();
+    default:
+      return;
+  }
+}
+
+// A line of standard input, where there is one; false: there will be none.
+bool read_line(std::string& typed, bool& whole) {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  whole = false;
+  if (poll(&input, 1, kPause_ms) <= 0) return true;
+  char letter = '\0';
+  if (::read(STDIN_FILENO, &letter, 1) != 1) return false;
+  whole = letter == '\n';
+  if (!whole && typed.size() < 80) typed += letter;
+  return true;
+}
+
+// What there is to say, each time that it changes.
+std::string words_of(LiveStudy& study) {
+  const StudyView view = study.session().view();
+  std::string words;
+  if (view.trials > 0 && view.state == StudyState::answering) {
+    words = std::string(view.training ? "training " : "") + std::to_string(view.answered + 1) + " of " +
+            std::to_string(view.trials) + ": ";
+  }
+  words += view.message + kChoices[static_cast<std::size_t>(view.state)];
+  if (const std::string device = study.device_words(); !device.empty()) words += "\n" + device;
+  if (study.newest().device.zeroing == Zeroing::needed) words += " [z: zero here]";
+  return words;
+}
+
+void converse(LiveStudy& study) {
+  std::string said, typed;
+  const auto over = [&] {
+    return study.session().state() == StudyState::done || study.session().state() == StudyState::aborted;
+  };
+  for (bool input = true; !over();) {
+    study.update();
+    if (const std::string words = words_of(study); words != said) std::printf("%s\n", (said = words).c_str());
+    std::fflush(stdout);
+    bool whole = false;
+    input = read_line(typed, whole);
+    if (whole) obey(study, typed);
+    if (whole) typed.clear();
+    if (!input || stop_requested() != 0) study.session().abort();
+  }
+  std::printf("%s\n", study.session().view().message.c_str());
+}
+
+Status run_study_session(const StudyOptions& options) {
+  const StopListener listener;
+  Result<StudyHeader> header = study_header(options);
+  if (!header) return header.error();
+  LiveStudyRequest request;
+  request.device = options.bridge_remote ? with_remote_bridge(options.device) : options.device;
+  request.header = *header;
+  request.header.subject = options.subject;
+  request.path = options.out + (options.discriminates ? "/discriminate-" : "/study-") + options.subject + ".csv";
+  const auto study = LiveStudy::open(request);
+  if (!study) return study.error();
+  if (!(*study)->device_pushes()) std::printf("%s\n", kRehearsal);
+  converse(**study);
+  std::printf("%s\n", request.path.c_str());
+  return {};
 }
 
 Status run_simulate(const StudyOptions& options) {
@@ -146,11 +266,10 @@ Status run_simulate(const StudyOptions& options) {
     for (int i = 1; i <= options.subjects; ++i) {
       if (!line.update(static_cast<double>(i - 1) / options.subjects)) return Error{"interrupted"};
       RandomStream random(options.seed, kPopulationStream + static_cast<std::uint64_t>(i));
-      const SubjectTraits traits = drawn_subject(options, random);
       char code[16];
       std::snprintf(code, sizeof code, "S%02d", i);
       header->subject = code;
-      StudyData data{*header, "simulated", simulated_answers(*header, traits, random.next()), 0};
+      StudyData data{*header, "simulated", simulated_answers(*header, options.traits, random.next()), 0};
       std::string text =
           study_header_text(data.header) + "# consent accepted, simulated\n" + study_columns(data.header) + "\n";
       for (const StudyRecord& record : data.records) text += study_row(record, data.header);
@@ -233,25 +352,11 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
   verb->add_option("--lapse", options->traits.lapse_rate, "Share of answers that are wrong whatever the force")
       ->check(CLI::Range(0.0, 0.2))
       ->capture_default_str();
-  verb->add_option("--spread", options->spread, "How the subjects differ: standard deviation of ln JND")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
   add_output_options(verb, *options);
   verbs.emplace_back(verb, [options] { return run_simulate(*options); });
 }
 
 }  // namespace
-
-Result<StudyHeader> study_header(const StudyOptions& options) {
-  StudyHeader header;
-  if (!options.discriminates) return header;
-  const Result<Scene> scene = load_scene(options.strokes_scene);
-  if (!scene) return scene.error();
-  const auto strokes = prepare_strokes({*scene, options.models, options.recording});
-  if (!strokes) return strokes.error();
-  header.strokes = *strokes;
-  return header;
-}
 
 void add_study(CLI::App& app, Verbs& verbs) {
   CLI::App* study = app.add_subcommand("study", "The force-discrimination study: run, analyse, simulate");

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "engine/base/csv_scanner.h"
@@ -29,7 +27,6 @@ constexpr std::size_t kBetweenPieces_ticks = 100;
 constexpr double kLargestStroke_N = 0.95 * kLargestStudyForce_N;
 constexpr double kFastestStroke_N_per_s = 0.9 * kFastestStudyForce_N_per_s;
 constexpr double kStrongestStroke_N = 2.5;  // root mean square; with the pauses 2 N, see assets/devices
-constexpr auto kLookAgain = std::chrono::milliseconds(5);
 constexpr std::size_t kLongestName = 200;
 constexpr double kLongestRecording_s = 3600.0;  // one value per ms of it is kept
 
@@ -169,19 +166,14 @@ std::uint32_t checksum_of(const StrokePair& strokes) {
   return hash;
 }
 
-// The models of the plans, made by the worker that makes those of the window.
+// The models of the plans, made as those of the window are.
 Result<std::vector<Model>> make_models(const Scene& scene, const std::vector<SlotPlan>& plans) {
   ModelWorker worker(scene, kTrainingSeed);
-  for (std::size_t i = 0; i < plans.size(); ++i) worker.add_job(i, plans[i]);
-  if (const Status started = worker.start(); !started) return started.error();
-  std::vector<Model> models(plans.size());
-  for (std::size_t left = plans.size(); left > 0;) {
-    std::this_thread::sleep_for(kLookAgain);
-    for (FinishedModel& made : worker.read_finished()) {
-      if (made.model == nullptr) return Error{made.problem};
-      models[made.job_id] = std::move(made.model);
-      --left;
-    }
+  std::vector<Model> models;
+  for (const SlotPlan& plan : plans) {
+    auto made = worker.make(plan);
+    if (!made) return made.error();
+    models.push_back(std::move(*made));
   }
   return models;
 }

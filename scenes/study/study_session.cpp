@@ -138,14 +138,11 @@ void StudySession::save() {
 // After an answer that is safe.
 void StudySession::continue_session() {
   if (record_.training) {
-    has_feedback_ = true;
-    was_correct_ = header_.strokes != nullptr ? record_.found_reference() : record_.found_larger();
     ++trained_;
     if (training()) return present_next();
     state_ = StudyState::ready;
     return;
   }
-  has_feedback_ = false;
   ++answered_;
   if (all_answered()) {
     state_ = StudyState::done;
@@ -173,8 +170,8 @@ StudyView StudySession::view() {
   view.training = training();
   view.answered = training() ? trained_ : answered_;
   view.trials = training() ? plan_.training.size() : plan_.trials.size();
-  view.has_feedback = has_feedback_;
-  view.was_correct = was_correct_;
+  view.has_feedback = record_.training && state_ != StudyState::unsaved;
+  view.was_correct = header_.strokes != nullptr ? record_.found_reference() : record_.found_larger();
   const PresentationState& seen = presenter_.newest();
   view.has_reminder = header_.strokes != nullptr;
   if (state_ == StudyState::presenting && seen.presentation == presentation_) {

@@ -102,8 +102,6 @@ class StudySession final : public ForceSource {
   StudyRecord record_;  // the answer at hand
   std::uint64_t presentation_ = 0;
   std::uint64_t rest_from_ = 0;
-  bool has_feedback_ = false;
-  bool was_correct_ = false;
   std::string problem_;  // why the disk refused
 };
 

@@ -52,6 +52,10 @@ class ModelWorker {
   // Interrupts what is being made and waits for the worker.
   ~ModelWorker();
 
+  // The model of one plan, now and in this thread; before `start`. Errors: those of the fit; a scene without
+  // a material to fit to.
+  Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
+
   // What is asked for before this is made the quickest first. Errors: no thread.
   Status start();
   // One that is asked for again before it was begun is made once, as asked last. `at_once`: before all others.
@@ -76,7 +80,6 @@ class ModelWorker {
     double cost_s = 0.0;  // expected; below 0: at once
   };
   void work();  // until cancelled
-  Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
   Result<ModelData> fit(const SlotPlan& plan);
   Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
                                const FitControl& control);
