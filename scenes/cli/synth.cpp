@@ -75,12 +75,6 @@ void add_synth(CLI::App& app, Verbs& verbs) {
   options->seconds =
       verb->add_option("--seconds", options->rig.seconds, "How long; the material's own length if not given");
   verb->add_option("--rate", options->rig.rate_Hz, "Rows per second, 10 to 20000")->capture_default_str();
-  verb->add_option("--surface-offset", options->rig.sensors.surface_offset_m,
-                   "Metres by which every position is recorded too large")
-      ->capture_default_str();
-  verb->add_option("--force-zero", options->rig.sensors.force_zero_N,
-                   "Newtons by which every force is recorded too large")
-      ->capture_default_str();
   verb->add_option("--out", options->out, "Recording to write (CSV)");
   verb->add_flag("--force", options->force, "Replace --out if it exists");
   verb->add_flag("--list", options->list, "Name the materials and their relaxation times");

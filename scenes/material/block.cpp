@@ -20,7 +20,6 @@ void Block::reset(double position_m) noexcept {
   velocity_m_per_s_ = 0.0;
   surface_m_ = std::max(0.0, position_m);
   force_N_ = 0.0;
-  touching_ = false;
   forget(surface_m_);
 }
 
@@ -84,7 +83,6 @@ double Block::free_surface_m(double depth_m, double depth_residual_N) const noex
 void Block::move_surface(double surface_m, bool touching) noexcept {
   settle(surface_m, touching);
   surface_m_ = surface_m > kFlat_m ? surface_m : 0.0;
-  touching_ = touching;
 }
 
 void Block::substep(double position_m, double velocity_m_per_s) noexcept {

@@ -42,7 +42,6 @@ class Block {
   double force_N() const noexcept { return force_N_; }
   // The tool's depth in contact, more when the tool has left a surface that still comes back.
   double surface_depth_m() const noexcept { return surface_m_; }
-  bool touching() const noexcept { return touching_; }
 
   // What it holds when pressed to `depth_m` for a moment, half relaxed; rises with the depth. A hand aims by it.
   virtual double held_force_N(double depth_m) const noexcept = 0;
@@ -87,7 +86,6 @@ class Block {
   double surface_m_ = 0.0;
   double force_N_ = 0.0;
   double substep_s_ = 0.0;
-  bool touching_ = false;
 };
 
 }  // namespace palpate

@@ -64,9 +64,6 @@ Result<Rig> Rig::create(const RigSettings& settings) {
   if (rows < static_cast<double>(kRecordingMinimumRows)) {
     return Error{"seconds times rate must give at least 10 rows"};
   }
-  if (!std::isfinite(settings.sensors.surface_offset_m) || !std::isfinite(settings.sensors.force_zero_N)) {
-    return Error{"the surface offset and the force zero must be numbers"};
-  }
   if (rows > kMostRows) return Error{"seconds times rate must give at most 50 million rows"};
   return Rig(settings, *material, static_cast<std::size_t>(rows));
 }
@@ -148,7 +145,7 @@ Result<Recording> record_sensors(const RigSettings& settings, const std::functio
 std::vector<std::string> describe_recording(const RigSettings& settings, const Material& material,
                                             std::size_t row_count) {
   const SensorSettings sensors = suited(settings, material).sensors;
-  std::vector<std::string> lines = {
+  return {
       "virtual recording by palpate synth: material " + settings.material + ", seed " + std::to_string(settings.seed) +
           ", " + std::to_string(row_count) + " rows at " + shortest(settings.rate_Hz) + " Hz",
       "true relaxation times: " + std::string(material.relaxation_times),
@@ -158,11 +155,6 @@ std::vector<std::string> describe_recording(const RigSettings& settings, const M
           shortest(sensors.acceleration_bias_m_per_s2) + " m/s2 within " + shortest(sensors.acceleration_bias_time_s) +
           " s, 12 bits over +-" + shortest(sensors.acceleration_range_m_per_s2) + " m/s2",
   };
-  if (sensors.surface_offset_m != 0.0 || sensors.force_zero_N != 0.0) {
-    lines.push_back("surface recorded at " + shortest(sensors.surface_offset_m) + " m, force zero at " +
-                    shortest(sensors.force_zero_N) + " N");
-  }
-  return lines;
 }
 
 }  // namespace palpate

@@ -67,8 +67,7 @@ struct RigTruth {
 class Rig {
  public:
   // Errors: unknown material (the message lists the known), seconds negative,
-  // not finite or fewer than 10 rows, rate out of range, more than kMostRows,
-  // a sensor's setting that is not a number or out of range.
+  // not finite or fewer than 10 rows, rate out of range, more than kMostRows.
   static Result<Rig> create(const RigSettings& settings);
 
   std::size_t row_count() const noexcept { return row_count_; }

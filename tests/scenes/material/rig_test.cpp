@@ -249,14 +249,6 @@ TEST(Rig, DisplacesTheSurfaceAndTheForceZero) {
   }
 }
 
-TEST(Rig, SaysWhatIsOffInItsDescription) {
-  RigSettings settings;
-  settings.sensors.surface_offset_m = 3e-4;
-  const std::vector<std::string> lines = describe_recording(settings, find_material("silicone").value(), 100);
-  ASSERT_EQ(lines.size(), 5u);
-  EXPECT_EQ(lines[4], "surface recorded at 3e-04 m, force zero at 0 N");
-}
-
 TEST(Rig, RefusesNonsense) {
   const auto message = [](auto change) {
     RigSettings settings;
@@ -271,8 +263,6 @@ TEST(Rig, RefusesNonsense) {
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 9.9; }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = 20001.0; }), "the rate must be 10 to 20000 Hz");
   EXPECT_EQ(message([](RigSettings& s) { s.rate_Hz = std::nan(""); }), "the rate must be 10 to 20000 Hz");
-  EXPECT_EQ(message([](RigSettings& s) { s.sensors.surface_offset_m = std::nan(""); }),
-            "the surface offset and the force zero must be numbers");
   EXPECT_EQ(message([](RigSettings& s) { s.seconds = -1.0; }), "the seconds must be a number above 0");
   EXPECT_EQ(message([](RigSettings& s) { s.seconds = std::nan(""); }), "the seconds must be a number above 0");
   EXPECT_EQ(message([](RigSettings& s) { s.seconds = 0.005; }), "seconds times rate must give at least 10 rows");
