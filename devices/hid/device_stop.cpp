@@ -70,7 +70,7 @@ void stop_all_devices() noexcept {
 }
 
 void stop_devices_on_signals() noexcept {
-  set_clean_up(CleanUp::stop_forces, stop_all_devices);
+  stop_forces_by(stop_all_devices);
   own_signals();
 }
 

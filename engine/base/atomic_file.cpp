@@ -11,8 +11,6 @@
 #include <cstring>
 #include <system_error>
 
-#include "engine/base/temporary_paths.h"
-
 namespace palpate {
 namespace {
 
@@ -75,6 +73,9 @@ int rename_without_replacing(const char* from, const char* to) {
   return 0;
 }
 
+// The link by which the kernel shows an open file, the only way to name one without a name.
+std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
+
 // Makes the rename itself last. Some file systems cannot flush a folder; the
 // file is whole under its name either way, so a refusal is not an error.
 void flush_folder(const std::string& folder) {
@@ -94,15 +95,12 @@ Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
   file.path_ = path;
   file.overwrite_ = overwrite;
   const std::string folder = folder_of(path);
+  file.descriptor_ = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (file.descriptor_ >= 0 && access(link_to(file.descriptor_).c_str(), F_OK) == 0) return file;
+  file.close_descriptor();
   file.temporary_path_ = temporary_name_in(folder);
-  // Registered before it exists: a signal between the two finds nothing to do.
-  file.registry_slot_ = register_temporary(file.temporary_path_);
   file.descriptor_ = open(file.temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file.descriptor_ < 0) {
-    const int error_number = errno;
-    file.discard();
-    return cannot_create(path, folder, error_number);
-  }
+  if (file.descriptor_ < 0) return cannot_create(path, folder, errno);
   return file;
 }
 
@@ -116,7 +114,6 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   buffer_ = std::move(other.buffer_);
   descriptor_ = std::exchange(other.descriptor_, -1);
   error_number_ = other.error_number_;
-  registry_slot_ = std::exchange(other.registry_slot_, -1);
   overwrite_ = other.overwrite_;
   published_ = other.published_;
   whole_bytes_ = other.whole_bytes_;
@@ -130,9 +127,8 @@ void AtomicFile::close_descriptor() noexcept {
 }
 
 void AtomicFile::discard() noexcept {
-  if (descriptor_ >= 0 && !published_) unlink(temporary_path_.c_str());
+  if (descriptor_ >= 0 && !published_ && !temporary_path_.empty()) unlink(temporary_path_.c_str());
   close_descriptor();
-  unregister_temporary(std::exchange(registry_slot_, -1));
 }
 
 void AtomicFile::flush() {
@@ -169,6 +165,12 @@ Status AtomicFile::failure(int error_number) const {
 }
 
 Status AtomicFile::take_name() {
+  if (error_number_ == 0 && temporary_path_.empty()) {
+    temporary_path_ = temporary_name_in(folder_of(path_));
+    const std::string link = link_to(descriptor_);
+    if (linkat(AT_FDCWD, link.c_str(), AT_FDCWD, temporary_path_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+      error_number_ = errno;
+  }
   if (error_number_ == 0 && !published_) {
     error_number_ = overwrite_ ? (rename(temporary_path_.c_str(), path_.c_str()) == 0 ? 0 : errno)
                                : rename_without_replacing(temporary_path_.c_str(), path_.c_str());
@@ -186,7 +188,6 @@ Status AtomicFile::publish() {
   if (const Status taken = take_name(); !taken || published_) return taken;
   published_ = true;
   whole_bytes_ = lseek(descriptor_, 0, SEEK_END);
-  unregister_temporary(std::exchange(registry_slot_, -1));
   return {};
 }
 
@@ -196,7 +197,6 @@ Status AtomicFile::commit() {
   if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
   if (const Status taken = take_name(); !taken) return taken;
   close_descriptor();
-  discard();
   flush_folder(folder_of(path_));
   return {};
 }

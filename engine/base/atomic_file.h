@@ -11,10 +11,10 @@
 
 namespace palpate {
 
-// Collects output in a temporary file beside `path`; `commit` flushes it to
-// disk and renames it. Destroyed without commit, killed or interrupted, it
-// leaves nothing under the final name; where signals are owned (signals.h), one that
-// ends the program removes the temporary file too.
+// Collects output in a file without a name; `commit` flushes it to disk and names it.
+// Destroyed without commit, killed or interrupted, it leaves nothing under the final name,
+// and nothing at all where the file system knows files without a name (O_TMPFILE): elsewhere
+// it is a hidden file beside `path`, which a program that is killed leaves behind.
 class AtomicFile {
  public:
   // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
@@ -46,7 +46,7 @@ class AtomicFile {
   AtomicFile() = default;
   void discard() noexcept;
   std::string path_;
-  std::string temporary_path_;
+  std::string temporary_path_;  // empty: the file has no name
   Status take_name();
   Status failure(int error_number) const;
   void flush();
@@ -54,7 +54,6 @@ class AtomicFile {
   std::string buffer_;
   int descriptor_ = -1;
   int error_number_ = 0;
-  int registry_slot_ = -1;
   bool overwrite_ = false;
   bool published_ = false;
   long long whole_bytes_ = 0;  // published

@@ -16,10 +16,10 @@ constexpr std::array<int, 10> kSignals = {SIGINT,  SIGTERM, SIGHUP, SIGQUIT, SIG
 constexpr std::size_t kRequests = 3;
 
 struct sigaction before[kSignals.size()];
-std::array<std::atomic<CleanUpFunction>, 2> clean_ups{};
+std::atomic<StopForces> stop_forces{nullptr};
 std::atomic<bool> listening{false};
 std::atomic<int> requested_by{0};
-static_assert(std::atomic<int>::is_always_lock_free && std::atomic<CleanUpFunction>::is_always_lock_free,
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<StopForces>::is_always_lock_free,
               "read by a signal handler");
 
 // Whether the signal is a first request that somebody listens to.
@@ -46,9 +46,7 @@ void on_signal(int number, siginfo_t* info, void* context) {
   std::size_t index = 0;
   while (index + 1 < kSignals.size() && kSignals[index] != number) ++index;
   if (!is_taken_as_request(index, number)) {
-    for (const auto& slot : clean_ups) {
-      if (const CleanUpFunction function = slot.load(); function != nullptr) function();
-    }
+    if (const StopForces function = stop_forces.load(); function != nullptr) function();
     pass_on(index, number, info, context);
   }
   errno = saved_errno;
@@ -79,9 +77,7 @@ void own_signals() noexcept {
 
 void ignore_broken_pipes() noexcept { signal(SIGPIPE, SIG_IGN); }
 
-void set_clean_up(CleanUp kind, CleanUpFunction function) noexcept {
-  clean_ups[static_cast<std::size_t>(kind)].store(function);
-}
+void stop_forces_by(StopForces function) noexcept { stop_forces.store(function); }
 
 StopListener::StopListener() noexcept {
   requested_by.store(0);

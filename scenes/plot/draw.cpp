@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
-#include "engine/base/temporary_paths.h"
 #include "engine/base/whole_file.h"
 
 namespace palpate {
@@ -55,17 +54,12 @@ std::string first_line(const std::string& text) {
 
 ScratchFolder::ScratchFolder(const std::string& parent, const std::string& name)
     : path_(parent + "/" + name + "XXXXXX") {
-  if (mkdtemp(path_.data()) == nullptr) {
-    path_.clear();
-    return;
-  }
-  slot_ = register_temporary(path_);
+  if (mkdtemp(path_.data()) == nullptr) path_.clear();
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   if (!path_.empty()) fs::remove_all(path_, ignored);
-  unregister_temporary(slot_);
 }
 
 Status find_gnuplot() {

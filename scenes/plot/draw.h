@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-// A folder of its own in `parent`, gone with this object, or with the program.
+// A folder of its own in `parent`, gone with this object.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::string& parent, const std::string& name = ".palpate-figures-");
@@ -21,7 +21,6 @@ class ScratchFolder {
 
  private:
   std::string path_;
-  int slot_ = -1;
 };
 
 // Errors: there is no gnuplot in PATH; says what to install.

@@ -13,7 +13,7 @@
 namespace palpate {
 
 // Files collect in a hidden folder beside `path`; `commit` renames it. Destroyed
-// without commit, or ended by a signal that is owned (signals.h), it leaves nothing.
+// without commit it leaves nothing.
 class ReportFolder {
  public:
   // Errors: `path` exists and `overwrite` is false, or is not a folder; the folder

@@ -17,10 +17,10 @@ void trace(char letter) { [[maybe_unused]] const auto written = write(trace_desc
 
 struct Ended {
   int signal = 0;     // that ended the child; 0: none did
-  std::string trace;  // f: forces stopped, t: temporary files removed, others: the child's own
+  std::string trace;  // f: forces stopped, others: the child's own
 };
 
-// Runs `body` in a child with both clean-ups and default handlers.
+// Runs `body` in a child with forces to stop and default handlers.
 Ended in_child(const std::function<void()>& body) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);
@@ -28,8 +28,7 @@ Ended in_child(const std::function<void()>& body) {
   if (child == 0) {
     trace_descriptor = ends[1];
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGABRT}) signal(number, SIG_DFL);
-    set_clean_up(CleanUp::remove_files, []() noexcept { trace('t'); });
-    set_clean_up(CleanUp::stop_forces, []() noexcept { trace('f'); });
+    stop_forces_by([]() noexcept { trace('f'); });
     own_signals();
     body();
     _exit(0);
@@ -44,15 +43,15 @@ Ended in_child(const std::function<void()>& body) {
   return ended;
 }
 
-TEST(Signals, CleanUpsRunForcesFirstBeforeASignalEndsTheProgram) {
+TEST(Signals, ForcesStopBeforeASignalEndsTheProgram) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGABRT}) {
     const Ended ended = in_child([=] { raise(number); });
     EXPECT_EQ(ended.signal, number);
-    EXPECT_EQ(ended.trace, "ft") << number;
+    EXPECT_EQ(ended.trace, "f") << number;
   }
 }
 
-TEST(Signals, EveryOrderOfTwoSignalsEndsWithTheCleanUps) {
+TEST(Signals, EveryOrderOfTwoSignalsStopsTheForces) {
   for (const int first : {SIGINT, SIGTERM, SIGHUP}) {
     for (const int second : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGABRT}) {
       const Ended ended = in_child([=] {
@@ -63,7 +62,7 @@ TEST(Signals, EveryOrderOfTwoSignalsEndsWithTheCleanUps) {
         trace('?');
       });
       EXPECT_EQ(ended.signal, second) << first;
-      EXPECT_EQ(ended.trace, "1ft") << first << " then " << second;
+      EXPECT_EQ(ended.trace, "1f") << first << " then " << second;
     }
   }
 }
@@ -74,7 +73,7 @@ TEST(Signals, OnlyRequestsAreAsked) {
     raise(SIGQUIT);
   });
   EXPECT_EQ(ended.signal, SIGQUIT);
-  EXPECT_EQ(ended.trace, "ft");
+  EXPECT_EQ(ended.trace, "f");
 }
 
 TEST(Signals, AnsweredByNobodyASignalEndsTheProgramAgain) {
@@ -83,7 +82,7 @@ TEST(Signals, AnsweredByNobodyASignalEndsTheProgramAgain) {
     raise(SIGTERM);
   });
   EXPECT_EQ(ended.signal, SIGTERM);
-  EXPECT_EQ(ended.trace, "ft");
+  EXPECT_EQ(ended.trace, "f");
 }
 
 TEST(Signals, ANewListenerForgetsTheRequestBefore) {
@@ -100,7 +99,7 @@ TEST(Signals, ANewListenerForgetsTheRequestBefore) {
   EXPECT_EQ(ended.trace, "12");
 }
 
-TEST(Signals, AHandlerFromBeforeIsCalledAfterTheCleanUps) {
+TEST(Signals, AHandlerFromBeforeIsCalledAfterTheForcesStop) {
   const Ended ended = in_child([] {
     signal(SIGTERM, [](int) { trace('h'); });
     own_signals();
@@ -108,7 +107,7 @@ TEST(Signals, AHandlerFromBeforeIsCalledAfterTheCleanUps) {
     raise(SIGTERM);
   });
   EXPECT_EQ(ended.signal, 0);
-  EXPECT_EQ(ended.trace, "fth");
+  EXPECT_EQ(ended.trace, "fh");
 }
 
 TEST(Signals, AnIgnoredSignalStaysIgnored) {

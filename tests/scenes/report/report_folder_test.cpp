@@ -1,13 +1,9 @@
 #include "scenes/report/report_folder.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <filesystem>
 
-#include "engine/base/signals.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -33,23 +29,6 @@ TEST(ReportFolder, LeavesNothingWithoutCommit) {
     ASSERT_TRUE(report.ok());
     ASSERT_TRUE(report->write("figures/a.svg", "x").ok());
   }
-  EXPECT_TRUE(folder.entries().empty());
-}
-
-TEST(ReportFolder, ASecondSignalLeavesNothing) {
-  const test::TemporaryFolder folder;
-  const pid_t child = fork();
-  if (child == 0) {
-    signal(SIGINT, SIG_DFL);
-    const StopListener listener;
-    const auto report = ReportFolder::create(folder.file("report"), false);
-    if (!report.ok() || !report->write("figures/a.svg", "x").ok()) _exit(3);
-    raise(SIGINT);
-    raise(SIGINT);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << status;
   EXPECT_TRUE(folder.entries().empty());
 }
 
