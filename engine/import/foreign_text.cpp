@@ -48,15 +48,6 @@ std::string decode_utf16(std::string_view bytes, bool big_endian) {
   return out;
 }
 
-// How many of the bytes at even (or odd) places are 0: text in UTF-16 without a
-// mark has nearly all of its digits' high bytes there.
-double share_of_zeros(std::string_view bytes, std::size_t first) {
-  std::size_t zeros = 0;
-  std::size_t count = 0;
-  for (std::size_t i = first; i < bytes.size(); i += 2, ++count) zeros += bytes[i] == '\0' ? 1 : 0;
-  return count == 0 ? 0.0 : static_cast<double>(zeros) / static_cast<double>(count);
-}
-
 Error wrong_kind(const std::string& label, const char* found, const char* advice) {
   return Error{label + ": found " + found + ", expected a table as text (CSV, TXT); " + advice};
 }
@@ -74,14 +65,11 @@ Result<ForeignText> decode_foreign_text(std::string bytes, const std::string& la
     return wrong_kind(label, "an Excel workbook or another archive", "save the sheet as CSV");
   }
   const std::string_view sample = std::string_view(bytes).substr(0, kEncodingSampleBytes);
-  const bool marked_big = bytes.starts_with("\xFE\xFF");
-  const bool marked = marked_big || bytes.starts_with("\xFF\xFE");
-  const bool zeros_first = share_of_zeros(sample, 0) > 0.9;
+  const bool big_endian = bytes.starts_with("\xFE\xFF");
   std::size_t bad_offset = 0;
   ForeignText foreign;
-  if (marked || zeros_first || share_of_zeros(sample, 1) > 0.9) {
-    const bool big_endian = marked ? marked_big : zeros_first;
-    foreign = {decode_utf16(std::string_view(bytes).substr(marked ? 2 : 0), big_endian), TextEncoding::utf16};
+  if (big_endian || bytes.starts_with("\xFF\xFE")) {
+    foreign = {decode_utf16(std::string_view(bytes).substr(2), big_endian), TextEncoding::utf16};
   } else if (!is_utf8(sample, bad_offset) && (sample.size() == bytes.size() || bad_offset + 4 <= sample.size())) {
     // A sequence that the end of the sample cuts would be no fault.
     foreign.encoding = TextEncoding::latin1;

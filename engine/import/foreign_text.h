@@ -1,5 +1,5 @@
 // The bytes of a file that another program wrote, as text that can be searched, from
-// UTF-8 (with or without a byte order mark), Latin-1 and UTF-16 either way round.
+// UTF-8 (with or without a byte order mark), Latin-1 and UTF-16 with one, either way round.
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 

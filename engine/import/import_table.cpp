@@ -379,7 +379,6 @@ Result<ImportedTable> Importer::run() {
                 std::to_string(kRecordingMinimumRows) + "; record for longer");
   }
   describe_time();
-  for (const std::string& advice : flip_advice(table_.recording.rows)) note(advice);
   table_.layout.names.clear();
   table_.layout.units.clear();
   table_.recording.name = std::filesystem::path(label_).stem().string();

@@ -5,7 +5,6 @@
 
 #include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
-#include "engine/recording/press_direction.h"
 
 namespace palpate {
 
@@ -71,24 +70,6 @@ std::string size_fault_words(const RecordingRow& row, const ImportedColumn& colu
          (force ? " N" : " m") + " (column " + std::to_string(column.number) + quoted_name + " in " + column.unit +
          "), expected at most " + (force ? "1000000 N" : "1 m") + "; check the unit and give it with --units " +
          (force ? "mN" : "mm") + ", or choose another column";
-}
-
-std::vector<std::string> flip_advice(const std::vector<RecordingRow>& rows) {
-  std::vector<std::string> advice;
-  const PressDirection direction = find_press_direction(rows);
-  if (!direction.known || !direction.certain) return advice;
-  const std::string forces = std::string(" (") + short_number(direction.shallow_force_N) +
-                             " N in the air or at the surface, " + short_number(direction.deep_force_N) +
-                             " N at the deepest)";
-  if (direction.position_flipped) {
-    advice.push_back("the force grows while the position falls" + forces +
-                     ": position must be positive inside the block; import again with --flip position");
-  }
-  if (direction.force_flipped) {
-    advice.push_back("the force is negative in contact" + forces +
-                     ": it must be positive when the block pushes the tool out; import again with --flip force");
-  }
-  return advice;
 }
 
 }  // namespace palpate

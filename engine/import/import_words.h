@@ -31,7 +31,5 @@ std::string time_fault_words(const std::string& quoted_name, double time_s, doub
 // A position (role 1) or a force (2) that no recording has.
 std::string size_fault_words(const RecordingRow& row, const ImportedColumn& column, std::size_t role,
                              const std::string& quoted_name);
-// Which signs are the wrong way round, as far as the rows tell.
-std::vector<std::string> flip_advice(const std::vector<RecordingRow>& rows);
 
 }  // namespace palpate

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <thread>
 #include <vector>
 
@@ -37,7 +36,6 @@ struct LoopSettings {
 struct LoopStatistics {
   std::uint64_t ticks = 0;
   std::uint64_t missed_deadlines = 0;   // skipped
-  std::uint64_t late_by_a_period = 0;   // ticks that began a period late or more, to 3 %
   std::uint64_t dropped_snapshots = 0;  // the ring was full
   TimePercentiles lateness;             // of each tick's deadline
   TimePercentiles tick;                 // duration of a tick, publishing included
@@ -88,10 +86,6 @@ class HapticsLoop {
   // Any thread, wait-free; the figures of `statistics` that cost nothing.
   std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
   double age_s() const noexcept;
-
-  // One slow-side thread, after each `newest` or so: the ticks around a fault, see
-  // FaultRecorder; write_fault_file makes a file of them.
-  std::optional<std::vector<FaultTick>> read_fault_ticks() { return live_.fault_recorder().read(); }
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;

@@ -210,27 +210,9 @@ void LiveTick::render(double commanded_N, double passive_N, double step_s, bool 
   snapshot_.rendered_N =
       limiter_.limit(passive_N, step_s, {device.sample_age_s, !device.may_push(), dead_man_released});
   snapshot_.faults |= limiter_bits(limiter_.flags());
-  snapshot_.ramping = (limiter_.flags() & force_limit::kRamping) != 0;
+  snapshot_.limiter_flags = limiter_.flags();
   snapshot_.heat_share = static_cast<float>(limiter_.heat_share());
   device_.write(snapshot_.rendered_N);
-  record_fault();
-}
-
-void LiveTick::record_fault() noexcept {
-  FaultTick tick;
-  tick.loop_time_s = now_s_;
-  tick.sample_time_s = snapshot_.tick.time_s;
-  tick.position_m = snapshot_.tick.position_m;
-  tick.velocity_m_per_s = snapshot_.tick.velocity_m_per_s;
-  tick.commanded_N = snapshot_.commanded_N;
-  tick.rendered_N = snapshot_.rendered_N;
-  tick.sample_age_s = snapshot_.device.sample_age_s;
-  tick.round_trip_s = snapshot_.device.round_trip_s;
-  tick.faults = snapshot_.faults;
-  tick.device_faults = snapshot_.device.faults;
-  tick.limiter_flags = limiter_.flags();
-  tick.samples = snapshot_.samples;
-  recorder_.add(tick, (snapshot_.faults & loop_fault::kStops) != 0);
 }
 
 const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) noexcept {

@@ -17,7 +17,6 @@
 #include <type_traits>
 
 #include "engine/live/device.h"
-#include "engine/live/fault_recorder.h"
 #include "engine/live/faults.h"
 #include "engine/live/force_limiter.h"
 #include "engine/live/force_mixer.h"
@@ -111,11 +110,11 @@ struct LoopSnapshot {
   std::uint32_t faults_latched = 0;  // of all ticks since the last were acknowledged
   DeviceHealth device;               // at this tick
   std::uint32_t device_faults_latched = 0;
-  float heat_share = 0.0F;         // of the motor's thermal budget
-  bool dead_man_released = false;  // nobody holds the dead-man switch: no force
-  bool ramping = false;            // the limiter still holds back
-  bool fading = false;             // the hand is on its way from one model to another
-  bool restarted = false;          // a new stream began in this tick
+  std::uint32_t limiter_flags = 0;  // force_limit
+  float heat_share = 0.0F;          // of the motor's thermal budget
+  bool dead_man_released = false;   // nobody holds the dead-man switch: no force
+  bool fading = false;              // the hand is on its way from one model to another
+  bool restarted = false;           // a new stream began in this tick
   float lateness_us = 0.0F;
   float tick_us = 0.0F;  // of the tick before this one
   std::array<float, kMaxModels> evaluation_ns{};
@@ -169,9 +168,6 @@ class LiveTick {
   // As `run`, towards no force; true once the device was given 0.
   bool release(double now_s) noexcept;
 
-  // Of the last second before a fault; see there for the threads.
-  FaultRecorder& fault_recorder() noexcept { return recorder_; }
-
   // The last sample's tick, for tests of live against replay.
   const HapticsTick* models() const noexcept { return models_ != nullptr ? &models_->tick : nullptr; }
 
@@ -186,7 +182,6 @@ class LiveTick {
   bool dead_man_released(const LoopControls& controls) const noexcept;
   double passive(double commanded_N, double step_s) noexcept;
   void render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept;
-  void record_fault() noexcept;
 
   Device& device_;
   ModelSlot<LiveModels>& slot_;
@@ -202,7 +197,6 @@ class LiveTick {
   LoopSnapshot snapshot_;
   RecordedRing* recorded_;
   std::uint32_t recording_ = 0;
-  FaultRecorder recorder_;
   std::uint32_t acknowledged_ = 0;
   double ns_per_cycle_;
   double now_s_ = 0.0;

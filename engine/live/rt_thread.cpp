@@ -88,13 +88,11 @@ RtCalls system_rt_calls() noexcept { return {set_fifo, lock_memory, set_timer_sl
 
 RtStatus make_this_thread_realtime(const RtRequest& request, const RtCalls& calls) {
   RtStatus status;
-  status.fine_timers = calls.set_timer_slack_1ns() == 0;
+  calls.set_timer_slack_1ns();
   const int fifo_error = calls.set_fifo(request.priority);
   status.realtime = fifo_error == 0;
-  status.priority = status.realtime ? request.priority : 0;
   status.scheduling = status.realtime ? "SCHED_FIFO " + std::to_string(request.priority) : "normal";
   const int lock_error = request.lock_memory ? calls.lock_memory() : 0;
-  status.memory_locked = request.lock_memory && lock_error == 0;
   std::string refused;
   if (fifo_error != 0) refused = std::string("real-time priority (") + std::strerror(fifo_error) + ")";
   if (lock_error != 0) {

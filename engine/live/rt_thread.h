@@ -14,12 +14,9 @@ struct RtRequest {
 };
 
 struct RtStatus {
-  bool realtime = false;       // SCHED_FIFO obtained
-  int priority = 0;            // of it
-  bool memory_locked = false;  // no page of the process is swapped out
-  bool fine_timers = false;    // timer slack 1 ns instead of 50 us
-  std::string scheduling;      // for people and --stats: "SCHED_FIFO 80", "normal"
-  std::string fix;             // what to do for more; empty when nothing was refused
+  bool realtime = false;   // SCHED_FIFO obtained
+  std::string scheduling;  // for people and --stats: "SCHED_FIFO 80", "normal"
+  std::string fix;         // what to do for more; empty when nothing was refused
 };
 
 // The system calls behind it, so that a test can refuse them. Each returns 0 or

@@ -33,12 +33,4 @@ TimePercentiles TimeHistogram::percentiles() const noexcept {
   return result;
 }
 
-std::uint64_t TimeHistogram::count_from(std::int64_t time_ns) const noexcept {
-  std::uint64_t count = 0;
-  for (std::size_t i = bin_of(static_cast<std::uint64_t>(time_ns > 0 ? time_ns : 0)); i < kBins; ++i) {
-    count += counts_[i].load(std::memory_order_relaxed);
-  }
-  return count;
-}
-
 }  // namespace palpate

@@ -32,9 +32,6 @@ class TimeHistogram {
   // the last few. O(bins).
   TimePercentiles percentiles() const noexcept;
 
-  // Any thread, wait-free. Times of at least `time_ns`, to the bin.
-  std::uint64_t count_from(std::int64_t time_ns) const noexcept;
-
  private:
   static constexpr std::size_t kShift = 5;
   static constexpr std::uint64_t kPerDoubling = 1U << kShift;

@@ -20,7 +20,6 @@ Json haptics_json(const LiveSession& session) {
   const RtStatus& granted = session.loop().scheduling();
   return {{"ticks", statistics.ticks},
           {"missed_deadlines", statistics.missed_deadlines},
-          {"late_by_a_period", statistics.late_by_a_period},
           {"lateness_us", times_json(statistics.lateness)},
           {"tick_us", times_json(statistics.tick)},
           {"scheduling", granted.scheduling},

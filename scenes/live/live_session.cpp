@@ -193,6 +193,7 @@ void LiveSession::read_snapshots() {
     for (std::size_t i = 0; i < count; ++i) {
       if (buffer_[i].samples > 0) history_.add(buffer_[i].tick, buffer_[i].restarted);
       comparison_.add(buffer_[i], faults_.update(buffer_[i]));
+      if (fault_recorder_.add(buffer_[i])) save_fault_ticks();
     }
     if (count < buffer_.size()) break;
   }
@@ -202,17 +203,15 @@ void LiveSession::check_faults() {
   const double at_s = steady_now_s();
   faults_.update_dropped(loop_->dropped_snapshots(), at_s);
   faults_.update_age(loop_->age_s(), at_s);
-  save_fault_ticks();
 }
 
 // The last second before a fault, in a file.
 void LiveSession::save_fault_ticks() {
-  const auto ticks = loop_->read_fault_ticks();
-  if (!ticks || fault_files_ == kMostFaultFiles) return;
+  if (fault_files_ == kMostFaultFiles) return;
   ++fault_files_;
   const std::string path = (request_.data_folder.empty() ? "" : request_.data_folder + "/") +
                            local_time_text("fault-%Y%m%d-%H%M%S-") + std::to_string(fault_files_) + ".csv";
-  const Status status = write_fault_file(path, *ticks);
+  const Status status = write_fault_file(path, fault_recorder_.ticks());
   notices_.push_back({status ? "the last second before the fault is in " + path : status.error().message, !status});
 }
 

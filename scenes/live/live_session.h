@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/live/fault_recorder.h"
 #include "engine/live/haptics_loop.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/motion_history.h"
@@ -145,6 +146,7 @@ class LiveSession {
   MotionHistory history_;
   ReplaySurface surface_;
   FaultLog faults_;
+  FaultRecorder fault_recorder_;
   std::unique_ptr<SessionRecorder> recorder_;
   LoopControls controls_;
   int fault_files_ = 0;

@@ -206,7 +206,6 @@ TEST(HidEndpoint, EveryFaultTakesTheForceAway) {
     EXPECT_LE(outcome.to_zero_s, 0.0205 + (stuck ? 0.5 : injection.found_after_s)) << injection.name;
     EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
     EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault, 0u);
-    EXPECT_TRUE(simulated.live.fault_recorder().read().has_value());
   }
 }
 

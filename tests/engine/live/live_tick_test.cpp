@@ -242,7 +242,7 @@ TEST(LiveTick, ABadSampleLetsGoAndRampsBack) {
   run(10);
   EXPECT_EQ(snapshot.faults, 0u);
   EXPECT_EQ(snapshot.faults_latched, loop_fault::kBadSample);
-  EXPECT_TRUE(snapshot.ramping);
+  EXPECT_NE(snapshot.limiter_flags & force_limit::kRamping, 0u);
   EXPECT_LT(snapshot.rendered_N, 0.2);
   run(200);
   EXPECT_NEAR(snapshot.rendered_N, 1.5, 1e-9);

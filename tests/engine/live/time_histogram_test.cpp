@@ -33,15 +33,12 @@ TEST(TimeHistogram, TakesEveryTimeThereIs) {
   histogram.add(-5);
   EXPECT_EQ(histogram.percentiles().count, 128u);
   EXPECT_EQ(histogram.percentiles().max_us, 1e-3 * 9223372036854775807.0);
-  EXPECT_EQ(histogram.count_from(0), 128u);
-  EXPECT_EQ(histogram.count_from(std::int64_t{1} << 40), 2u * 22u + 2u) << "2^40 .. 2^62, their predecessors, the last";
 }
 
 TEST(TimeHistogram, SmallTimesAreExact) {
   TimeHistogram histogram;
   for (int i = 0; i < 50; ++i) histogram.add(i);
   EXPECT_EQ(histogram.percentiles().p50_us, 24e-3);
-  EXPECT_EQ(histogram.count_from(40), 10u);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(FaultLog, CountsWhatFollowsWithinASecond) {
 TEST(FaultLog, TakesNormalRunningForNoFault) {
   FaultLog log;
   LoopSnapshot ramping = snapshot(1.0, loop_fault::kForceSlewed);
-  ramping.ramping = true;
+  ramping.limiter_flags = force_limit::kRamping;
   EXPECT_EQ(log.update(ramping), TickTrouble::none);
   EXPECT_EQ(log.update(snapshot(2.0, loop_fault::kForceSlewed)), TickTrouble::none);
   log.update_age(0.049, 2.0);
