@@ -167,20 +167,4 @@ void Window::show_frame() {
   clock.wait_until(next_frame_ns_);
 }
 
-bool Window::fullscreen() const noexcept { return glfwGetWindowMonitor(window_) != nullptr; }
-
-void Window::set_fullscreen(bool wanted) {
-  if (wanted == fullscreen()) return;
-  if (!wanted) {
-    glfwSetWindowMonitor(window_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], GLFW_DONT_CARE);
-    return;
-  }
-  glfwGetWindowPos(window_, &windowed_[0], &windowed_[1]);
-  glfwGetWindowSize(window_, &windowed_[2], &windowed_[3]);
-  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
-  const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
-  if (mode == nullptr) return;
-  glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
-}
-
 }  // namespace palpate

@@ -51,8 +51,6 @@ class Window {
   // Likewise, and saves it as a PNG file, whole or not at all. Errors: it exists and
   // `overwrite` is false; the disk refuses.
   Status save_frame(const std::string& path, bool overwrite);
-  void set_fullscreen(bool fullscreen);
-  bool fullscreen() const noexcept;
 
  private:
   explicit Window(GLFWwindow* window) : window_(window) {}
@@ -61,7 +59,6 @@ class Window {
   GLFWwindow* window_;
   bool paced_by_display_ = false;
   std::int64_t next_frame_ns_ = 0;
-  int windowed_[4] = {0, 0, 1280, 720};  // place and size to return to
 };
 
 }  // namespace palpate

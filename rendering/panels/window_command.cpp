@@ -31,7 +31,6 @@ std::string key_name(int key) {
   for (const auto& [known, name] : kKeyNames) {
     if (known == key) return name;
   }
-  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) return std::string("F").append(std::to_string(key - GLFW_KEY_F1 + 1));
   return {static_cast<char>(key)};  // printable keys have the number of their letter
 }
 

@@ -29,7 +29,7 @@ struct WindowCommand {
   std::string label_on{};      // then, where it is another
 };
 
-// "Space", "F11", "H": the name of a key of GLFW that stands in the table.
+// "Space", "H": the name of a key of GLFW that stands in the table.
 std::string key_name(int key);
 // How the list of keys and tooltips call it: "Ctrl+Q", "H, /".
 std::string shown_keys(const WindowCommand& command);

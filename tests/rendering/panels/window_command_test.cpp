@@ -10,7 +10,6 @@ namespace {
 TEST(WindowCommand, KeysHaveTheNamesThatAreOnThem) {
   EXPECT_EQ(key_name(GLFW_KEY_H), "H");
   EXPECT_EQ(key_name(GLFW_KEY_SLASH), "/");
-  EXPECT_EQ(key_name(GLFW_KEY_F11), "F11");
   EXPECT_EQ(key_name(GLFW_KEY_PAGE_UP), "Page Up");
 }
 
