@@ -76,15 +76,6 @@ int rename_without_replacing(const char* from, const char* to) {
 // The link by which the kernel shows an open file, the only way to name one without a name.
 std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 
-// Makes the rename itself last. Some file systems cannot flush a folder; the
-// file is whole under its name either way, so a refusal is not an error.
-void flush_folder(const std::string& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
-}
-
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path, bool overwrite) {
@@ -197,8 +188,15 @@ Status AtomicFile::commit() {
   if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
   if (const Status taken = take_name(); !taken) return taken;
   close_descriptor();
-  flush_folder(folder_of(path_));
+  flush_folder_of(path_);
   return {};
+}
+
+void flush_folder_of(const std::string& path) {
+  const int descriptor = open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
 }
 
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite) {

@@ -59,6 +59,10 @@ class AtomicFile {
   long long whole_bytes_ = 0;  // published
 };
 
+// Makes a new name in the folder of `path` last. Some file systems cannot flush a folder; the
+// file is whole under its name either way, so a refusal is not an error.
+void flush_folder_of(const std::string& path);
+
 // Writes `text` to `path` in one go; errors as AtomicFile.
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);
 
