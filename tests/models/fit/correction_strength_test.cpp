@@ -16,8 +16,9 @@ double between(test::Numbers& numbers, double low, double high) {
 
 constexpr int kFolds = 5;
 
-// `shared`: what every stroke leaves over; `own`: what each has for itself.
-LeftOutRows make_rows(double shared, double own) {
+// `shared`: what every stroke leaves over; `own`: what each has for itself; `first`: the share of
+// the rows that the first has beyond its own.
+LeftOutRows make_rows(double shared, double own, double first = 0.0) {
   test::Numbers numbers(3);
   constexpr Eigen::Index kRows = 1000;
   LeftOutRows rows;
@@ -28,7 +29,8 @@ LeftOutRows make_rows(double shared, double own) {
   rows.trend_N = Eigen::MatrixXd::Constant(kRows, kFolds, 2.0);
   rows.no_force.assign(kRows, 0);
   for (Eigen::Index i = 0; i < kRows; ++i) {
-    const int fold = static_cast<int>(i * kFolds / kRows);
+    const double along = (static_cast<double>(i) / kRows - first) / (1.0 - first);
+    const int fold = along > 0.0 ? static_cast<int>(along * kFolds) : 0;
     for (Eigen::Index k = 0; k < 2; ++k) rows.points(k, i) = between(numbers, -1.0, 1.0);
     rows.force_N(i) =
         2.0 + shared * std::sin(3.0 * rows.points(0, i)) + own * std::cos(2.0 * fold) + between(numbers, -0.005, 0.005);
@@ -49,6 +51,18 @@ TEST(CorrectionStrength, WhatEveryStrokeHasIsCorrected) {
   EXPECT_GE(choice.strength, 0.75);
   // What is left is the noise of 5 mN, of a JND of 190 mN, and the smoothing.
   EXPECT_LT(choice.error_over_jnd, 0.1 * choice.trend_error_over_jnd);
+}
+
+// By the sum the others would say nothing: the first stroke has nine tenths of the squares.
+TEST(CorrectionStrength, AStrokeWithMostOfTheErrorIsOneVoiceOfAll) {
+  EXPECT_GE(choose(make_rows(0.3, 0.0, 0.8)).strength, 0.75);
+}
+
+TEST(CorrectionStrength, WhatNobodyFeelsIsLeftToTheSum) {
+  const StrengthChoice uneven = choose(make_rows(0.05, 0.0, 0.8));
+  EXPECT_LT(uneven.trend_error_over_jnd, 0.25);
+  EXPECT_EQ(uneven.strength, 0.0);
+  EXPECT_GT(choose(make_rows(0.05, 0.0)).strength, 0.0);
 }
 
 TEST(CorrectionStrength, WhatOnlyOneStrokeHasIsNot) {
