@@ -29,12 +29,9 @@ constexpr Eigen::Index kTerms = 2;
 // How force begins: a flat or rough contact, a ball on a soft solid (Hertz, 1881).
 constexpr double kLinear = 1.0;
 constexpr double kBall = 1.5;
-// A drop of chi^2 by this much tells one from the other; below, half of what they
-// differ by is the error. On virtual materials a linear onset drops by 4 at least,
-// every other one by less than 1.
-constexpr double kLinearDrop = 2.5;
-constexpr double kClearDrop = 6.0;
-constexpr double kFormError = 0.5;
+// A drop of chi^2 by this much, two standard errors, tells one from the other; below, half of
+// what they differ by is the error.
+constexpr double kClearDrop = kSignificantErrors * kSignificantErrors;
 // Force begins with this many rows on end beyond the noise.
 constexpr std::size_t kForceRun = 3;
 
@@ -172,13 +169,13 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
   const double variance =
       std::max(std::min(linear.cost, ball.cost) / linear.degrees_of_freedom, force_noise_N * force_noise_N);
   const double drop = (ball.cost - linear.cost) / std::max(variance, 1e-18);
-  const FormOnset& chosen = drop > kLinearDrop ? linear : ball;
+  const FormOnset& chosen = drop > kClearDrop ? linear : ball;
   Onset onset{chosen.at_m, kUnknownError};
   if (chosen.curvature > 0.0) {
     // J rises by noise^2 within one standard error.
     onset.standard_error_m = std::max(2.0 * kFinest_m, std::sqrt(2.0 * variance / chosen.curvature));
     const bool clear = drop > kClearDrop || drop < -kClearDrop;
-    if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, kFormError * (linear.at_m - ball.at_m));
+    if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, 0.5 * (linear.at_m - ball.at_m));
     // Neither law holds: what they say between the air and the first force is a guess.
     if (std::sqrt(variance) > kSignificantErrors * force_noise_N) {
       onset.misfit_m = std::abs(onset.at_m - touches.front().first_force_m);
