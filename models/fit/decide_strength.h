@@ -12,14 +12,12 @@ namespace palpate {
 // made on strokes left out.
 //
 // No bound is closer than what counts as no force (sensor_identification.h): without that it held
-// 77 to 90 % on skin and 83 on one trial of silicone, with it 97 to 100. The three coefficients, never negative, follow the absolute errors by least
-// squares, each row scaled by 1 / JND; then all of them are multiplied by the
-// quantile of error over bound at which 97.5 % of the samples left out are held: some
-// in reserve, since a new recording differs from the training more than
-// its strokes among themselves. Away from the data the bound grows by at least a
-// quarter of the largest force per unit of normalised distance, whether strokes that
-// were left out had been there or not.
-// Nothing when there are fewer than 50 predictions. Pure.
+// 77 to 90 % on skin and 83 on one trial of silicone, with it 97 to 100. The three coefficients, never negative, follow
+// the absolute errors by least squares, each row scaled by 1 / JND; then all of them are multiplied by the quantile of
+// error over bound at which 97.5 % of the samples left out are held: some in reserve, since a new recording differs
+// from the training more than its strokes among themselves. Away from the data the bound grows by at least a quarter of
+// the largest force per unit of normalised distance, whether strokes that were left out had been there or not. Nothing
+// when there are fewer than 50 predictions. Pure.
 std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& predictions, double inner_radius,
                                           const JndLine& jnd, double largest_force_N);
 

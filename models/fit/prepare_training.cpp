@@ -260,9 +260,8 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
         "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
   // Contact with a material that pulls is not one-sided: there no force is a force, too.
-  const double force_noise_floor_N = extent->lowest_force_N < 0.0
-                                         ? -std::numeric_limits<double>::infinity()
-                                         : no_force_N(source.force_noise_N());
+  const double force_noise_floor_N =
+      extent->lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
   const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
                              is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
   const FoldDealer dealer = dealer_for(source, *extent);

@@ -125,9 +125,8 @@ FormOnset onset_of_form(const OnsetCost& cost, double first_force_m) {
     step_m *= 0.25;
     scan(around_m - 4.0 * step_m, around_m + 4.0 * step_m, step_m);
   }
-  onset.curvature =
-      (cost.at(onset.at_m - kLeastOffset_m) + cost.at(onset.at_m + kLeastOffset_m) - 2.0 * onset.cost) /
-      (kLeastOffset_m * kLeastOffset_m);
+  onset.curvature = (cost.at(onset.at_m - kLeastOffset_m) + cost.at(onset.at_m + kLeastOffset_m) - 2.0 * onset.cost) /
+                    (kLeastOffset_m * kLeastOffset_m);
   return onset;
 }
 

@@ -48,8 +48,7 @@ Located locate_surface(const std::vector<SurfaceRow>& rows,
         for (const auto& model : models) add_costs(*model, rows, blocks, offset_m, jnd, costs);
         return costs;
       },
-      {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m,
-       kWidestSurface_m});
+      {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m, kWidestSurface_m});
 }
 
 }  // namespace palpate
