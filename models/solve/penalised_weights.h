@@ -4,7 +4,9 @@
 // Phi and G the kernel and the tail at the centres; h is then multiplied by the
 // sites' strength. With every site a centre this
 // is the smoothing spline of fit_direct.h; with fewer it is the regression spline
-// on a subset of its basis, and comes closer to it the more there are.
+// on a subset of its basis, and comes closer to it the more there are. Unknowns that the
+// sites tell (FoldedRows::told) have neither penalty nor side condition; a ridge of 1e-6 of
+// the columns' length keeps centres at one point apart.
 // Source: Wahba (1990), sections 1.3 and 7.2.
 // Thread guarantee: slow side, pure.
 #pragma once

@@ -1,7 +1,8 @@
 // Weights and tail for given centres, by weighted least squares with a smoothing penalty
-// (penalised_weights.h), the sites' own or the most likely one (choose_smoothing.h): where
-// unknowns outnumber what the sites can tell (clusters of sites, noise), plain least squares
-// turns noise into weights without bound, and the values between the sites with them.
+// (penalised_weights.h), the sites' own or, from few sites, the most likely one
+// (choose_smoothing.h): where unknowns outnumber what the sites can tell (clusters of sites, noise),
+// plain least squares turns noise into weights without bound, and the values between the sites with
+// them. Ten sites to an unknown tell it by themselves.
 //
 // The N rows are folded into a small triangle block by block (QR), to which the penalty is
 // added: the accuracy of a QR of the whole matrix, memory O(columns^2 + block) whatever N is.
@@ -22,6 +23,7 @@ struct FoldedRows {
   // last row is 0 but for its last value. R of the QR factorisation, for one.
   Eigen::MatrixXd triangle;
   Eigen::Index sites = 0;
+  Eigen::Index told = 0;  // up to so many unknowns plain least squares
   double smoothing = 0.0;
   double strength = 1.0;
 };

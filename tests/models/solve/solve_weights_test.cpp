@@ -62,10 +62,10 @@ TEST(SolveWeights, CoincidingCentresShareTheirWeight) {
   ASSERT_TRUE(fitted.ok());
   const auto alone = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(8));
   ASSERT_TRUE(alone.ok());
-  EXPECT_EQ(fitted->report.rank, fitted->report.columns - 8);
   const auto& weights = fitted->function.weights;
   EXPECT_LT(weights.cwiseAbs().maxCoeff(), 2.0 * alone->function.weights.cwiseAbs().maxCoeff());
-  EXPECT_LT((weights.head(8) + weights.tail(8) - alone->function.weights).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT((weights.head(8) - weights.tail(8)).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((weights.head(8) + weights.tail(8) - alone->function.weights).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 // Forty places with six sites each, 1e-6 apart: 44 unknowns, of which the data
@@ -90,16 +90,17 @@ TEST(SolveWeights, TheLikelihoodKeepsNoiseOutOfUnknownsThatTheDataDoNotTell) {
   EXPECT_LT(likely->report.residual_rms, 1.1 * (matrix * plain - data).norm() / std::sqrt(240.0));
 }
 
-// Plenty of sites, hardly any noise: the smoothing costs nothing.
-TEST(SolveWeights, TheLikelihoodLeavesAGoodFitAlone) {
+// Plenty of sites tell their unknowns: least squares, without a side condition.
+TEST(SolveWeights, ManySitesAreLeftAlone) {
   const Sites sites = smooth_sites(3, 2000, 0.001, 1);
   const Eigen::MatrixXd centres = sites.points.leftCols(100);
   const auto likely = solve_weights(sites, KernelKind::cubic, centres);
   auto folded = fold_rows(sites, KernelKind::cubic, centres, {});
   ASSERT_TRUE(likely.ok() && folded.ok());
+  folded->told = 0;
   folded->smoothing = 0.0;
   const FittedRbf plain = penalised_weights(*folded, KernelKind::cubic, centres);
-  EXPECT_LT(likely->report.residual_rms, 1.01 * plain.report.residual_rms);
+  EXPECT_LT(likely->report.residual_rms, plain.report.residual_rms);
 }
 
 TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
