@@ -13,7 +13,6 @@ Result<FittedRbf> fit_centres(const Sites& sites, const MethodRequest& request, 
   auto fitted = solve_weights(sites, request.kernel, chosen->centres_of(chosen->most));
   if (!control.may_continue(1.0)) return interrupted();
   if (!fitted) return fitted;
-  fitted->report.centres_asked = request.centres;
   if (!chosen->shortage.empty()) {
     fitted->report.notes.push_back("only " + std::to_string(chosen->most) + " centres: " + chosen->shortage);
   }

@@ -19,17 +19,8 @@ namespace {
 constexpr double kFactorisingFrom = 0.25;
 constexpr double kFactorised = 0.95;
 
-struct Solution {
-  Eigen::VectorXd u;
-  double smoothing = 0.0;
-  double residual_squared = 0.0;  // of the scaled rows
-  double condition = 0.0;
-  Eigen::Index rank = 0;
-};
-
-enum class Outcome { solved, failed, cancelled };
-
-Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const FitControl& control, Solution& out) {
+Result<FittedRbf> solve(const Sites& sites, const ProjectedKernel& kernel, double smoothing,
+                        const FitControl& control) {
   bool cancelled = false;
   const auto may_continue = [&](double share) {
     cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
@@ -41,36 +32,23 @@ Outcome solve_by_cholesky(const ProjectedKernel& kernel, double smoothing, const
     const BlasThreads threads(thread_count());
     const double norm = symmetric_norm(matrix);
     const bool factorised = cholesky_in_place(matrix, may_continue);
-    if (cancelled) return Outcome::cancelled;
+    if (cancelled) return interrupted();
     if (!factorised) continue;
     Eigen::VectorXd u = kernel.data();
     cholesky_solve(matrix, u);
-    out.u = kernel.project(u);
-    out.smoothing = smoothing;
-    out.residual_squared = smoothing * smoothing * out.u.squaredNorm();
-    out.condition = cholesky_condition(matrix, norm);
-    out.rank = u.size();
-    return Outcome::solved;
+    u = kernel.project(u);
+    FittedRbf fitted;
+    fitted.function = kernel.function(u);
+    fitted.function.weights *= sites.strength;
+    fitted.function.tail *= sites.strength;
+    FitReport& report = fitted.report;
+    report.centres_used = sites.count();
+    report.condition = cholesky_condition(matrix, norm);
+    report.residual_rms = smoothing * u.norm() / std::sqrt(static_cast<double>(sites.count()));  // of the scaled rows
+    report.smoothing = smoothing;
+    return fitted;
   }
-  return Outcome::failed;
-}
-
-Result<Solution> solve(const Sites& sites, const DirectOptions& options, const ProjectedKernel& kernel,
-                       const FitControl& control) {
-  Solution solution;
-  const Error failed{"the kernel matrix could not be factorised; check the recording for extreme values"};
-  const Result<double> smoothing = options.smoothing ? *options.smoothing : smoothing_of(sites, options.kernel);
-  if (!smoothing) return smoothing.error();
-  if (!control.may_continue(0.2)) return interrupted();
-  switch (solve_by_cholesky(kernel, std::max(*smoothing, kernel.smallest_smoothing()), control, solution)) {
-    case Outcome::cancelled:
-      return interrupted();
-    case Outcome::failed:
-      return failed;
-    case Outcome::solved:
-      break;
-  }
-  return solution;
+  return Error{"the kernel matrix could not be factorised; check the recording for extreme values"};
 }
 
 }  // namespace
@@ -83,20 +61,11 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   if (!control.may_continue(0.0)) return interrupted();
   const ProjectedKernel kernel(sites, options.kernel);
   if (!control.may_continue(0.1)) return interrupted();
-  const Result<Solution> solution = solve(sites, options, kernel, control);
-  if (!solution) return solution.error();
+  const Result<double> smoothing = options.smoothing ? *options.smoothing : smoothing_of(sites, options.kernel);
+  if (!smoothing) return smoothing.error();
+  if (!control.may_continue(0.2)) return interrupted();
+  auto fitted = solve(sites, kernel, std::max(*smoothing, kernel.smallest_smoothing()), control);
   if (!control.may_continue(kFactorised)) return interrupted();
-  FittedRbf fitted;
-  fitted.function = kernel.function(solution->u);
-  fitted.function.weights *= sites.strength;
-  fitted.function.tail *= sites.strength;
-  FitReport& report = fitted.report;
-  report.centres_asked = report.centres_used = sites.count();
-  report.columns = sites.count() + fitted.function.tail.size();
-  report.rank = solution->rank;
-  report.condition = solution->condition;
-  report.residual_rms = std::sqrt(solution->residual_squared / static_cast<double>(sites.count()));
-  report.smoothing = solution->smoothing;
   return fitted;
 }
 

@@ -76,7 +76,6 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   sites.points.resize(d, n);
   sites.target_N.resize(n);
   sites.row_scale.resize(n);
-  sites.group.resize(set.sites.size());
   Eigen::VectorXd base_N(n);
   for (std::size_t i = 0; i < set.sites.size(); ++i) {
     const TrainingSite& site = set.sites[i];
@@ -90,7 +89,6 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     if (site.no_force && base_N(k) < 0.0 && prepared.common.corrects_trend) sites.target_N(k) = 0.0;
     sites.row_scale(k) =
         row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
-    sites.group[i] = prepared.strength ? site.fold : site.stroke;
   }
   prepared.common.cover = make_cover(sites.points);
   double largest_N = 0.0;
@@ -118,24 +116,6 @@ Result<double> find_surfaces(MotionSource& source, const TrainingRequest& reques
   source.correct(std::move(corrections));
   return found->surface_position_m;
 }
-
-// Keeps samples to evaluate the fit with, of as many in contact as there will be.
-class EvaluationSamples {
- public:
-  EvaluationSamples(PreparedTraining& prepared, std::size_t contact_samples)
-      : prepared_(prepared), stride_(contact_samples / kMaximumEvaluationSamples + 1) {}
-
-  void add(const MotionRow& row, const FeatureVector& vector) {
-    if (seen_++ % stride_ != 0) return;
-    prepared_.evaluation_features.push_back(vector.values);
-    prepared_.evaluation_force_N.push_back(row.force_N);
-  }
-
- private:
-  PreparedTraining& prepared_;
-  std::size_t stride_;
-  std::size_t seen_ = 0;
-};
 
 // What all lists of features share.
 struct Given {
@@ -213,9 +193,14 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
     for (const double time_s : all_times(list)) filters.push_back({FeatureKind::lowpass_velocity, time_s, {}});
     common.features = with_filters(request.features, filters);
   }
-  EvaluationSamples evaluation(prepared, given.extent.contact_samples);
+  const std::size_t stride = given.extent.contact_samples / kMaximumEvaluationSamples + 1;
+  std::size_t seen = 0;
   TrainingSetOptions options{0.25, papers ? nullptr : &given.dealer, {}};
-  options.also = [&](const MotionRow& row, const FeatureVector& vector) { evaluation.add(row, vector); };
+  options.also = [&](const MotionRow& row, const FeatureVector& vector) {
+    if (seen++ % stride != 0) return;
+    prepared.evaluation_features.push_back(vector.values);
+    prepared.evaluation_force_N.push_back(row.force_N);
+  };
   auto set = make_training_set(given.source, common.features, request.reduction, given.problem.force_noise_floor_N,
                                control, options);
   if (!set) return set.error();
@@ -228,7 +213,6 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   common.lower = prepared.set.normalisation.lower;
   common.upper = prepared.set.normalisation.upper;
   common.jnd = request.jnd;
-  if (!papers) prepared.strength.emplace();
   make_sites(prepared, request);
   if (!papers) decide_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
   return {};

@@ -20,7 +20,11 @@ namespace palpate {
 
 // Errors: the eigendecomposition did not converge. Deterministic. Off the tick.
 Result<double> choose_smoothing(const Sites& sites, KernelKind kernel);
-// That which was decided for the sites, of the cubic kernel; otherwise the most likely.
+// What was decided by leaving strokes out was so for the cubic kernel.
+inline bool is_smoothing_decided(const Sites& sites, KernelKind kernel) {
+  return sites.smoothing && kernel == KernelKind::cubic;
+}
+// That which was decided; otherwise the most likely.
 Result<double> smoothing_of(const Sites& sites, KernelKind kernel);
 
 }  // namespace palpate

@@ -10,12 +10,7 @@
 namespace palpate {
 
 struct FitReport {
-  Eigen::Index centres_asked = 0;
   Eigen::Index centres_used = 0;
-  // Unknowns of the last linear system (centres and tail) and how many of them
-  // the data determine.
-  Eigen::Index columns = 0;
-  Eigen::Index rank = 0;
   // Condition number of the system solved: columns scaled to length 1, or the smoothed matrix
   // (direct).
   double condition = 0.0;

@@ -48,7 +48,6 @@ Root root_of(const Eigen::MatrixXd& penalty) {
 // next to nothing get no share.
 struct TriangleSolution {
   Eigen::VectorXd unknowns;
-  Eigen::Index rank = 0;
   double condition = 0.0;
 };
 
@@ -62,7 +61,6 @@ TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
   TriangleSolution solution;
   if (diagonal.minCoeff() > kNothing * diagonal.maxCoeff()) {
     solution.unknowns = r.triangularView<Eigen::Upper>().solve(triangle.col(n).head(n)).cwiseQuotient(scale);
-    solution.rank = n;
     solution.condition = diagonal.maxCoeff() / diagonal.minCoeff();
     return solution;
   }
@@ -70,7 +68,6 @@ TriangleSolution solve_scaled(const Eigen::MatrixXd& triangle) {
   pivoted.setThreshold(kNothing);
   pivoted.compute(r);
   solution.unknowns = pivoted.solve(triangle.col(n).head(n)).cwiseQuotient(scale);
-  solution.rank = pivoted.rank();
   const double least = std::abs(pivoted.matrixQR()(n - 1, n - 1));
   solution.condition = least > 0.0 ? pivoted.maxPivot() / least : 1e300;
   return solution;
@@ -163,9 +160,7 @@ FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const E
   fitted.function = {kernel, centres, free > 0 ? weights_of(unknowns, space) : Eigen::VectorXd::Zero(n),
                      solution.unknowns.tail(tail)};
   FitReport& report = fitted.report;
-  report.centres_asked = report.centres_used = n;
-  report.columns = n + tail;
-  report.rank = solution.rank + (n - space.free);
+  report.centres_used = n;
   report.condition = solution.condition;
   report.smoothing = plain ? 0.0 : folded.smoothing;
   const Eigen::VectorXd rest = triangle.rightCols(1) - triangle.leftCols(n) * fitted.function.weights -

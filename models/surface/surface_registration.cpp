@@ -16,7 +16,8 @@
 namespace palpate {
 namespace {
 
-// Rows of each recording for the common fit, of which there are kSearchRows, and for its onset.
+// Rows of each recording: at least, of the kSearchRows that the common fit has of all together, and
+// at most for its onset.
 constexpr std::size_t kLeastMemberRows = 300;
 constexpr std::size_t kOnsetRows = 400000;
 // Further apart the rows of an approach are too few to tell where force begins: of a

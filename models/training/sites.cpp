@@ -24,8 +24,6 @@ Status validate_sites(const Sites& sites) {
                  std::to_string(kMaxDimension)};
   if (sites.target_N.size() != count) return wrong_size("target_N", sites.target_N.size(), count);
   if (sites.row_scale.size() != count) return wrong_size("row_scale", sites.row_scale.size(), count);
-  const auto groups = static_cast<Eigen::Index>(sites.group.size());
-  if (groups != 0 && groups != count) return wrong_size("group", groups, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const bool finite = sites.points.col(i).allFinite() && std::isfinite(sites.target_N[i]) &&
                         std::isfinite(sites.row_scale[i]) && sites.row_scale[i] >= 0.0;
@@ -49,7 +47,6 @@ Sites even_subset(const Sites& sites, Eigen::Index most) {
     subset.points.col(k) = sites.points.col(i);
     subset.target_N[k] = sites.target_N[i];
     subset.row_scale[k] = sites.row_scale[i];
-    if (!sites.group.empty()) subset.group.push_back(sites.group[static_cast<std::size_t>(i)]);
   }
   return subset;
 }

@@ -20,10 +20,7 @@ struct Sites {
   // N factors >= 0 that multiply the residual rows, e.g. 1 / JND(force). A
   // factor of 0 leaves the site out of the sum.
   Eigen::VectorXd row_scale;
-  // N stroke numbers in time order, for leave-one-stroke-out; empty means no
-  // grouping is known.
-  std::vector<int> group;
-  // What was decided about the correction by leaving groups out
+  // What was decided about the correction by leaving strokes out
   // (models/fit/correction_strength.h): the penalty on its roughness, in place of
   // what a method would choose itself, and the share of it that the model gets.
   std::optional<double> smoothing;  // of the cubic kernel; others choose their own
@@ -37,7 +34,7 @@ struct Sites {
 // expected, or the first site with a number that is not finite.
 Status validate_sites(const Sites& sites);
 
-// At most `most` of them, spread evenly over their order; groups only where there are any.
+// At most `most` of them, spread evenly over their order.
 Sites even_subset(const Sites& sites, Eigen::Index most);
 
 // Indices, ascending, of the sites left when of those at exactly the same point

@@ -67,8 +67,6 @@ class TrendRegression {
   // The weights from all rows, over all columns.
   Eigen::VectorXd solve(const ColumnList& columns) const;
   ColumnList all_columns() const;
-  // s_i as the last pass left it, 0 for a one-sided row that the trend does not reach.
-  const std::vector<double>& row_scale() const { return scale_; }
 
  private:
   struct Equations {

@@ -108,7 +108,6 @@ Sites some_sites(const Sites& all, const Wanted& wanted) {
   some.points = all.points(Eigen::all, chosen);
   some.target_N = all.target_N(chosen);
   some.row_scale = all.row_scale(chosen);
-  for (const Eigen::Index i : chosen) some.group.push_back(all.group[static_cast<std::size_t>(i)]);
   return some;
 }
 
@@ -148,16 +147,23 @@ Eigen::VectorXd output_N(const Function& function, const Eigen::MatrixXd& points
 PreparedTraining with_some_sites(const PreparedTraining& prepared, Eigen::Index count) {
   PreparedTraining some = prepared;
   const Eigen::Index all = prepared.sites.count();
-  if (count > 0 && count < all)
-    some.sites = some_sites(prepared.sites, [&](Eigen::Index i) { return (i + 1) * count / all != i * count / all; });
+  if (count <= 0 || count >= all) return some;
+  const auto wanted = [&](Eigen::Index i) { return (i + 1) * count / all != i * count / all; };
+  some.sites = some_sites(prepared.sites, wanted);
+  some.set.sites.clear();
+  for (Eigen::Index i = 0; i < all; ++i) {
+    if (wanted(i)) some.set.sites.push_back(prepared.set.sites[static_cast<std::size_t>(i)]);
+  }
   return some;
 }
 
 std::vector<bool> left_out_sites(const PreparedTraining& prepared) {
-  const std::set<int> strokes(prepared.sites.group.begin(), prepared.sites.group.end());
+  std::vector<int> stroke_of;
+  for (const TrainingSite& site : prepared.set.sites) stroke_of.push_back(prepared.strength ? site.fold : site.stroke);
+  const std::set<int> strokes(stroke_of.begin(), stroke_of.end());
   const int every = std::min(kLeaveOut, static_cast<int>(strokes.size()));
   std::vector<bool> left_out;
-  for (const int stroke : prepared.sites.group) {
+  for (const int stroke : stroke_of) {
     const auto rank = static_cast<int>(std::distance(strokes.begin(), strokes.find(stroke)));
     // The middle one of each five: of three presses not the hardest.
     left_out.push_back(rank % every == every / 2);

@@ -71,7 +71,6 @@ SiteCase make_case(const std::string& name, const std::function<void(Points&)>& 
     const double force_N = true_force_N(made.sites.points.col(i));
     made.sites.target_N[i] = force_N + kNoise_N * noise.normal();
     made.sites.row_scale[i] = 1.0 / JndLine{}.at(force_N);
-    made.sites.group.push_back(static_cast<int>(6 * i / count));
   }
   return made;
 }

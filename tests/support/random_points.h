@@ -54,7 +54,6 @@ inline Sites smooth_sites(int dimension, int count, double noise_N, std::uint64_
     const double force = 1.5 + std::exp(0.8 * x[0]) + 0.3 * std::sin(2.0 * x.sum()) + 0.2 * x.squaredNorm();
     sites.target_N[i] = force + noise_N * noise.next();
     sites.row_scale[i] = 1.0 / (0.065 + 0.0633 * std::abs(force));
-    sites.group.push_back(i / 50);
   }
   return sites;
 }

@@ -119,7 +119,6 @@ TEST(ChooseSmoothing, IsNeverFarBelowTheMostLikely) {
     for (Eigen::Index i = 0; i < 160; ++i) {
       sites.points.col(i) = base.points.col(i % 40) + 1e-5 * sites.points.col(i);
       sites.target_N[i] = base.target_N[i % 40] + 0.01 * noise(0, i);
-      sites.group[static_cast<std::size_t>(i)] = static_cast<int>(6 * i / 160);
     }
     const auto fitted = fit_direct(sites, {});
     ASSERT_TRUE(fitted.ok());

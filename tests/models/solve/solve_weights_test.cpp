@@ -50,7 +50,6 @@ TEST(SolveWeights, FollowsAsManySitesAsUnknownsToWithinTheSmoothing) {
   const Sites sites = smooth_sites(3, 40, 0.0, 2);
   const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points);
   ASSERT_TRUE(fitted.ok());
-  EXPECT_EQ(fitted->report.rank, fitted->report.columns);
   EXPECT_LE(worst_error(fitted->function, sites), 0.1);
 }
 
@@ -108,7 +107,7 @@ TEST(SolveWeights, AConstantFeatureLeavesAFiniteFit) {
   sites.points.row(1).setConstant(0.25);
   const Result<FittedRbf> fitted = solve_weights(sites, KernelKind::cubic, sites.points.leftCols(20));
   ASSERT_TRUE(fitted.ok());
-  EXPECT_EQ(fitted->report.rank, fitted->report.columns - 1);
+  EXPECT_LT(worst_error(fitted->function, sites), 1.0);  // of forces up to 5 N
   EXPECT_TRUE(validate_rbf_function(fitted->function).ok());
 }
 
