@@ -56,6 +56,11 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
       fit_correction({prepared.sites, prepared.common.features, jnd_N, request, from ? &*from : nullptr}, control);
   if (!fitted) return fitted.error();
   MethodFit fit{prepared.common, std::move(fitted->report)};
+  if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
+    fit.report.notes.push_back(
+        "at most " + std::to_string(kMaximumRows) + " of " + std::to_string(recorded) +
+        " samples were used, beginnings and stretches of the recordings; those in contact are of these");
+  }
   fit.data.method = method.name;
   fit.data.provenance.seed = request.seed;
   fit.data.correction = std::move(fitted->correction);

@@ -3,7 +3,7 @@
 //
 // Each recording has its own sensor (read off its first rows) and its own filter state.
 // Recordings are read and estimated once and kept in memory, up to kMaximumRows together. Of
-// longer ones (ten hours at 1 kHz are 36 million rows) that many are kept: the beginning, from
+// longer ones (ten hours at 1 kHz are 36 million rows) fewer than that are kept: the beginning, from
 // which the surface is told, stretches, evenly, and as a run-up to each of these, so that
 // filters remember what was before it, every so-many-th row.
 // Thread guarantee: slow side.
