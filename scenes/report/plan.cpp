@@ -19,8 +19,9 @@ PlannedModel planned(Recipe of, const Method& method, int centres) {
   model.request.method = &method;
   model.request.centres = centres;
   model.main = centres == kMainCentres;
-  model.name = (of == Recipe::paper ? "2009-" : "") + std::string(method.name);
-  if (method.can_take(kTakesCentres)) model.name += "-" + std::to_string(centres);
+  model.name = of == Recipe::paper ? "2009-" : "";
+  model.name.append(method.name);
+  if (method.can_take(kTakesCentres)) model.name.append("-").append(std::to_string(centres));
   return model;
 }
 
@@ -54,7 +55,7 @@ std::vector<PlannedModel> make_plan(bool quick, std::size_t features) {
       PlannedModel grid = planned(Recipe::palpate, *method, 0);
       grid.request.grid.assign(features, other);
       grid.request.grid[0] = depth;
-      grid.name += "-" + std::to_string(depth) + "x" + std::to_string(other);
+      grid.name.append("-").append(std::to_string(depth)).append("x").append(std::to_string(other));
       plan.push_back(std::move(grid));
     }
   }
