@@ -11,7 +11,11 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kMostValleys = 4;
+constexpr double kMostScans = 1e6;
 constexpr double kGolden = 0.6180339887498949;
+constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
+// In place of a cost that is not a number: worse than any other, and sums of it stay finite.
+constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
 
@@ -25,6 +29,8 @@ class Search {
   Search(const std::function<BlockCosts(double)>& cost, const SearchRange& range) : cost_(cost), range_(range) {}
 
   Located run() {
+    if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans))
+      return {0.0, false, kUnknownError};
     scan();
     const Place zero = place(0.0);
     if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
@@ -53,7 +59,11 @@ class Search {
   }
 
  private:
-  Place place(double at) const { return {at, cost_(at)}; }
+  Place place(double at) const {
+    Place made{at, cost_(at)};
+    for (double& cost : made.costs) cost = std::abs(cost) < kWorstCost ? cost : kWorstCost;
+    return made;
+  }
 
   void scan() {
     const auto steps = static_cast<int>((range_.high - range_.low) / range_.coarse_step) + 1;
@@ -112,7 +122,7 @@ class Search {
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
 
-  bool certainly_worse(double at) const { return is_certainly_worse(cost_(at), best_.costs); }
+  bool certainly_worse(double at) const { return is_certainly_worse(place(at).costs, best_.costs); }
 
   // Quenouille (1956), Tukey (1958): a block left out at a time.
   double jackknife_error() const {
@@ -128,7 +138,7 @@ class Search {
   Place golden(double low, double high) const {
     Place a = place(high - kGolden * (high - low));
     Place b = place(low + kGolden * (high - low));
-    while (high - low > range_.fine_step) {
+    for (int step = 0; step < kMostGoldenSteps && high - low > range_.fine_step; ++step) {
       if (sum(a.costs) < sum(b.costs)) {
         high = b.at;
         b = std::move(a);

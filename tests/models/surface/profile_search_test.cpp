@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace palpate {
 namespace {
@@ -79,6 +80,31 @@ TEST(ProfileSearch, WhatOneBlockAloneSaysIsNotTold) {
     return costs;
   };
   EXPECT_FALSE(locate(lone, kRange).told);
+}
+
+// A gap of hours used to make every cost NaN, and the search ended the program.
+TEST(ProfileSearch, EndsWhateverTheCostFunctionReturns) {
+  const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const BlockCosts& costs : {BlockCosts(10, nan), BlockCosts(10, infinity), BlockCosts(10, -infinity),
+                                  BlockCosts(10, 1e308), BlockCosts(10, 0.0), BlockCosts{}}) {
+    const Located found = locate([&](double) { return costs; }, kRange);
+    EXPECT_FALSE(found.told);
+    EXPECT_EQ(found.at, 0.0);
+  }
+}
+
+TEST(ProfileSearch, APlaceWithoutACostIsNoMinimum) {
+  const auto holes = [&](double x) { return std::abs(x) < 1.0 ? BlockCosts(10, std::nan("")) : bowl(x, 7.3, 0.01); };
+  EXPECT_NEAR(locate(holes, kRange).at, 7.3, 0.01);
+}
+
+TEST(ProfileSearch, WithoutARangeNothingIsTold) {
+  const auto any = [](double x) { return bowl(x, 1.0, 0.01); };
+  for (const SearchRange& range : {SearchRange{1.0, 1.0, 0.5, 1e-3, 1.0}, SearchRange{2.0, -2.0, 0.5, 1e-3, 1.0},
+                                   SearchRange{-1.0, 1.0, 0.0, 1e-3, 1.0}, SearchRange{std::nan(""), 1.0, 0.1, 1e-3}}) {
+    EXPECT_FALSE(locate(any, range).told);
+  }
 }
 
 }  // namespace
