@@ -1,23 +1,110 @@
-#version 330 core
-// A soft material: light from a wide lamp and from the room, a little that comes
-// through thin places, and less of it where the surface is hollow. What changes slowly
-// comes from the vertices, which are few where the processor draws.
-in vec3 room_light;
-in float lamp_light;
-in float shadowed;  // how much of the tool's shadow falls here
-in float shine;
-in vec2 fallen;     // from the middle of that shadow, in its own sizes
-in float sunk;
+// A soft material. Light goes around it and comes through where it is thin (Barre-Brisebois and
+// Bouchard 2011), its skin mirrors the room at grazing angles, a grid printed on it bends with it,
+// and what is above it keeps light away: the ball near its contact, tool and arrow as shadows.
+in vec3 material;
+in vec3 world;
+in vec3 surface_normal;
 
 uniform vec3 colour;
-uniform vec3 mark_colour; // error over the JND
-uniform float mark;       // how much of it shows, 0..1
+uniform vec3 mark_colour;   // error over the JND
+uniform float mark;         // how much of it shows, 0..1
+uniform float translucent;  // 0..1
+uniform float gloss;        // 0..1
+uniform float pores;        // 0..1
+uniform float grid;         // 0..1, how dark its lines are
+uniform vec3 half_size;     // of the block, y its whole height, metres
+uniform float tip;          // of the tool, metres below the undisturbed top
+uniform vec3 arrow;         // x, z: its foot beside the middle; y: its length; metres
 
 out vec4 pixel;
 
+const float kLineWidth = 0.0005;  // of the grid, metres
+
+// How much of a line of the grid every `step` metres covers this pixel.
+float line_of_grid(float at, float step) {
+  float pixel_m = fwidth(at);
+  float away = abs(fract(at / step + 0.5) - 0.5) * step;
+  return clamp((0.5 * kLineWidth - away) / pixel_m + 0.5, 0.0, 1.0) * min(1.0, kLineWidth / pixel_m);
+}
+
+float random(vec2 cell) { return fract(sin(dot(cell, vec2(12.9898, 78.233))) * 43758.5453); }
+
+// Small pits on all sides.
+float pits(vec3 at) {
+  vec3 side = abs(surface_normal);
+  vec2 place = (side.y > 0.5 ? at.xz : side.x > 0.5 ? at.zy : at.xy) / 0.0016;
+  vec2 cell = floor(place);
+  vec2 middle = vec2(random(cell), random(cell + 7.3)) * 0.5 + 0.25;
+  float size = 0.12 + 0.26 * random(cell + 3.1);
+  float pixel_size = fwidth(place.x) + fwidth(place.y);
+  return (1.0 - smoothstep(size - pixel_size, size + pixel_size, length(place - cell - middle))) /
+         (1.0 + 1.5 * pixel_size);
+}
+
+// Share of the lamp that something upright keeps away: `along`: how high above this point the
+// ray to the lamp passes its axis; `from`: at what distance; `width`: how thick it is there.
+float shadow_of(float along, float from, float width, float low, float high) {
+  float soft = 0.0006 + 0.16 * max(along, 0.0);
+  return (1.0 - smoothstep(-soft, soft, from - width)) * smoothstep(low - soft, low + soft, along) *
+         (1.0 - smoothstep(high - 2.0 * soft, high + 2.0 * soft, along)) * width / (width + 0.6 * soft);
+}
+
+float shadows(vec3 at) {
+  vec2 fall = -light.xz / light.y;  // metres a shadow moves for each metre of height
+  float along = dot(at.xz, fall) / dot(fall, fall);
+  float from = length(at.xz - along * fall);
+  // Ball, stem, sensor, handle, in radii of the ball.
+  float high = (along + at.y + tip) / tool_radius;
+  float ball = sqrt(max(1.0 - (high - 1.0) * (high - 1.0), 0.0));
+  float width = max(ball, high < 5.6 ? 0.30 : high < 7.0 ? 1.40 : 1.05) * tool_radius;
+  float lost = shadow_of(along, from, width, -at.y - tip, 15.0 * tool_radius - at.y - tip);
+  vec2 beside = at.xz - arrow.xz;
+  along = dot(beside, fall) / dot(fall, fall);
+  from = length(beside - along * fall);
+  return max(lost, shadow_of(along, from, 0.0016, 0.0, arrow.y));
+}
+
 void main() {
-  vec3 base = mix(colour, mark_colour, mark * smoothstep(0.16, 0.55, sunk));
-  float falling = 1.0 + 0.6 * dot(fallen, fallen);
-  float shadow = shadowed / (falling * falling);
-  pixel = vec4(base * (room_light + lamp_light * (1.0 - shadow)) + vec3(shine), 1.0);
+  float r = length(material.xz);
+  float slope;
+  float u = dent_at(r, slope);
+  vec3 at = material - vec3(0.0, u, 0.0);
+  float sunk = u / max(dent, 1e-6);
+  vec3 n = normalize(surface_normal + vec3(slope * material.x, 0.0, slope * material.z) / max(r, 1e-6));
+  vec3 to_eye = normalize(eye - world);
+  float facing = max(dot(n, to_eye), 0.0);
+
+  vec3 base = mix(colour, mark_colour, mark * smoothstep(0.16, 0.50, sunk));
+  float step = 2.0 * tool_radius;
+  float top = smoothstep(0.9, 0.999, surface_normal.y);
+  base *= 1.0 - top * grid * max(line_of_grid(material.x, step), line_of_grid(material.z, step));
+  base *= 1.0 - pores * pits(material);
+
+  // What keeps the room's light away: the ball above (its solid angle), the hollow's own walls, the table below.
+  vec3 to_ball = vec3(0.0, tool_radius - tip, 0.0) - at;
+  float ball_m = length(to_ball);
+  float ball = clamp(dot(n, to_ball) * tool_radius * tool_radius / (ball_m * ball_m * ball_m), 0.0, 1.0);
+  float up = 1.0 + material.y / half_size.y;
+  float open = (1.0 - 0.8 * ball) * (1.0 - 0.40 * sunk * min(dent / tool_radius, 1.0)) *
+               (0.55 + 0.45 * smoothstep(0.0, 0.22, up));
+
+  // How far it is to the nearest edge: of the distances to the three faces the second.
+  vec3 inside = max(vec3(half_size.x - abs(material.x), -material.y, half_size.z - abs(material.z)), 0.0);
+  float edge_m = max(min(inside.x, inside.z), min(max(inside.x, inside.z), inside.y));
+  float thin = exp(-edge_m / 0.006) + 0.7 * sunk * (1.0 - sunk);
+  vec3 back = normalize(vec3(0.45, 0.35, -0.80));  // light from behind, that comes through
+  float through = 0.30 + 0.9 * pow(max(dot(to_eye, -normalize(back + 0.4 * n)), 0.0), 2.0);
+  vec3 own = colour / max(max(colour.r, colour.g), colour.b);
+
+  float lamp = 1.0 - 0.75 * shadows(at) * top;
+  vec3 room = mix(vec3(0.30, 0.29, 0.28), vec3(0.44, 0.45, 0.46), 0.5 + 0.5 * n.y);
+  vec3 lit = base * (room * open + 0.62 * lamp * wrapped(n, mix(vec3(0.15), vec3(0.55, 0.40, 0.32), translucent)) *
+                                       mix(1.0, open, 0.4));
+  lit += own * own * colour * translucent * through * thin * mix(0.45, 1.0, open);
+
+  vec3 mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
+  float grazing = 1.0 - facing;
+  float fresnel = 0.04 + 0.96 * grazing * grazing * grazing * grazing * grazing;
+  lit += gloss * open * (0.9 * fresnel * mirrored_room(mirrored) + 0.30 * lamp * mirrored_lamp(mirrored, 28.0));
+  pixel = vec4(lit, 1.0);
 }

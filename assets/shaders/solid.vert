@@ -1,9 +1,7 @@
-#version 330 core
 // Tool and arrow: a lathe around y, stretched along it.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 
-uniform mat4 view_projection;
 uniform vec3 offset;
 uniform vec3 stretch;
 

@@ -1,4 +1,3 @@
-#version 330 core
 // The table: a pool of light that fades into the background, and under every
 // block a soft shadow, from the distance to a rounded box.
 in vec2 place;

@@ -1,7 +1,5 @@
-#version 330 core
 layout(location = 0) in vec3 position;  // a square of half side 1
 
-uniform mat4 view_projection;
 uniform float table_y;
 uniform float reach;  // metres, half the side of what is drawn
 

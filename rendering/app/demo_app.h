@@ -18,6 +18,7 @@
 #include "rendering/panels/scene_overlay.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/picture/block_view.h"
+#include "rendering/picture/resolution.h"
 #include "rendering/ui/ui_context.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
@@ -111,6 +112,7 @@ class DemoApp {
   std::string first_device_;            // as the program was asked for it
   std::optional<SessionRequest> next_;  // what to go on with after this frame
   FrameFigures frames_;
+  Resolution resolution_;
   std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
   double frame_began_s_ = 0.0;

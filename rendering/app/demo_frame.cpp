@@ -59,6 +59,10 @@ void DemoApp::draw() {
     panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
   }
   ui_->end_frame();
+  if (!blocks_->filters_edges()) return;
+  // The processor draws: this waits for what showing the frame would wait for.
+  glFinish();
+  resolution_.add(steady_now_s() - frame_began_s_);
 }
 
 void DemoApp::draw_blocks() {
@@ -68,7 +72,8 @@ void DemoApp::draw_blocks() {
   // More models become ready: more blocks.
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
   blocks_framed_ = poses.size();
-  blocks_->draw(poses, viewport, view_.theme);
+  blocks_->draw(poses, viewport, view_.theme, resolution_.scale());
+  frames_.picture_scale = resolution_.scale();
 }
 
 std::vector<BlockPose> DemoApp::block_poses() const {

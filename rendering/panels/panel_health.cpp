@@ -43,6 +43,8 @@ void draw_times(const LoopStatistics& statistics, const FrameFigures& frames) {
   row("tick", statistics.tick);
   row("frame", frames.times.percentiles());
   ImGui::EndTable();
+  if (frames.picture_scale < 1.0F)
+    ImGui::TextDisabled("3-D view at %.0f %% of its pixels a side", 100.0 * static_cast<double>(frames.picture_scale));
 }
 
 void draw_faults(const HealthView& health, const UiStyle& style) {
@@ -85,7 +87,7 @@ float health_height(const HealthView& health, const ViewState& view) {
   if (!view.details) return height;
   const float fix = health.scheduling.fix.empty() ? 0.0F : 8.0F;
   const auto faults = static_cast<float>(std::clamp<std::size_t>(health.faults.size(), 1, kFaultsShown));
-  return height + (fix + 6.0F + faults) * line;
+  return height + (fix + 7.0F + faults) * line;
 }
 
 HealthWords health_words(const HealthView& health, double recent_fps) {

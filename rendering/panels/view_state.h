@@ -111,6 +111,7 @@ struct FrameFigures {
   std::uint64_t frames = 0;
   double seconds = 0.0;
   double recent_fps = 0.0;
+  float picture_scale = 1.0F;  // of the pixels a side of the 3-D view, see Resolution
 };
 
 struct Toast {

@@ -20,6 +20,13 @@ constexpr float kLongestArrow = 0.6F;
 constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
+// Of every Finish, in its order: light comes through, the skin shines, pits, lines of a grid.
+struct Material {
+  float translucent, gloss, pores, grid;
+};
+constexpr Material kMaterials[] = {{0.75F, 0.55F, 0.0F, 0.16F}, {0.25F, 0.06F, 0.30F, 0.10F},
+                                   {1.00F, 1.00F, 0.0F, 0.12F}, {0.05F, 0.45F, 0.0F, 0.25F},
+                                   {0.90F, 0.20F, 0.0F, 0.12F}, {0.30F, 0.50F, 0.0F, 0.14F}};
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
 
 Rgb rgb(const Colour& colour) {
@@ -30,11 +37,12 @@ Rgb rgb(const Colour& colour) {
 // In units of the ball's radius, the tip at y = 0: a polished ball on a stem, a force
 // sensor's disc, and a dull handle.
 constexpr float kToolLength = 15.2F;
-std::vector<glm::vec2> ball_profile() {
+std::vector<glm::vec2> ball_profile(const Detail& detail) {
   std::vector<glm::vec2> profile;
-  constexpr int kSteps = 20;
-  for (int i = 0; i <= kSteps; ++i) {
-    const float angle = std::numbers::pi_v<float> * (static_cast<float>(i) / kSteps * 0.89F - 0.5F);
+  const int steps = 2 * detail.around / 3;
+  for (int i = 0; i <= steps; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(steps);
+    const float angle = std::numbers::pi_v<float> * (share * 0.89F - 0.5F);
     profile.emplace_back(std::max(1e-4F, std::cos(angle)), 1.0F + std::sin(angle));
   }
   for (const glm::vec2 point : {glm::vec2(0.30F, 2.02F), glm::vec2(0.30F, 5.0F), glm::vec2(0.33F, 5.2F),
@@ -64,21 +72,41 @@ std::vector<glm::vec2> tip_profile() {
 
 }  // namespace
 
-Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene) {
+BlockView::Bodies::Bodies(const BlockGeometry& block, const Detail& detail)
+    : top(block_top(glm::vec2(block.width_m, block.length_m), detail)),
+      sides(block_sides(glm::vec2(block.width_m, block.length_m), static_cast<float>(block.height_m), detail)),
+      ball(lathe_mesh(ball_profile(detail), detail.around)),
+      sensor(lathe_mesh(sensor_profile(), detail.around)),
+      handle(lathe_mesh(handle_profile(), detail.around)),
+      shaft(lathe_mesh(shaft_profile(), detail.around / 2)),
+      tip(lathe_mesh(tip_profile(), detail.around)) {}
+
+Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::optional<Smoothing> smoothing) {
   const auto assets = find_assets();
   if (!assets) return assets.error();
   const std::string folder = *assets + "/shaders";
-  auto block = Shader::load(folder, "block");
+  auto block = Shader::load(folder, "block", "block", {"common", "dent"});
   if (!block) return block.error();
-  auto solid = Shader::load(folder, "solid");
+  auto solid = Shader::load(folder, "solid", "solid");
   if (!solid) return solid.error();
-  auto table = Shader::load(folder, "table");
+  auto table = Shader::load(folder, "table", "table");
   if (!table) return table.error();
-  return std::unique_ptr<BlockView>(new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table)));
+  std::optional<EdgeFilter> edges;
+  if (!smoothing) smoothing = smoothing_for(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+  if (*smoothing == Smoothing::filter) {
+    auto find = Shader::load(folder, "whole_view", "find_edges");
+    if (!find) return find.error();
+    auto smooth = Shader::load(folder, "whole_view", "edges");
+    if (!smooth) return smooth.error();
+    edges.emplace(EdgeFilter{std::move(*find), std::move(*smooth)});
+  }
+  return std::unique_ptr<BlockView>(
+      new BlockView(scene, std::move(*block), std::move(*solid), std::move(*table), std::move(edges)));
 }
 
-BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table)
+BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table, std::optional<EdgeFilter> edges)
     : geometry_(scene.block),
+      finish_(scene.finish),
       block_colour_(rgb(scene.block_colour)),
       tool_colour_(rgb(scene.tool_colour)),
       size_m_(std::max(static_cast<float>(scene.block.width_m),
@@ -88,14 +116,10 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
       block_shader_(std::move(block)),
       solid_shader_(std::move(solid)),
       table_shader_(std::move(table)),
-      block_(block_mesh(static_cast<float>(geometry_.width_m), static_cast<float>(geometry_.length_m),
-                        static_cast<float>(geometry_.height_m))),
-      ball_(lathe_mesh(ball_profile(), 28)),
-      sensor_(lathe_mesh(sensor_profile(), 32)),
-      handle_(lathe_mesh(handle_profile(), 28)),
-      shaft_(lathe_mesh(shaft_profile(), 14)),
-      tip_(lathe_mesh(tip_profile(), 20)),
-      square_(square_mesh()) {
+      fine_(scene.block, kFine),
+      coarse_(scene.block, kCoarse),
+      square_(square_mesh()),
+      smooth_(std::move(edges)) {
   show(1, true);
 }
 
@@ -138,23 +162,61 @@ void BlockView::begin(const Shader& shader) const {
   shader.set("light", kLight);
 }
 
-void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme) {
+const BlockView::Bodies& BlockView::bodies(std::size_t count, const Viewport& viewport) const {
+  constexpr float kFineFrom_px = 420.0F;
+  const glm::vec2 size(viewport.width, viewport.height);
+  const glm::vec3 side(0.5F * static_cast<float>(geometry_.width_m), 0.0F, 0.0F);
+  const float width_px = glm::length(on_screen(0, count, side, size) - on_screen(0, count, -side, size));
+  return width_px < kFineFrom_px ? coarse_ : fine_;
+}
+
+void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, float scale) {
   if (viewport.width < 1 || viewport.height < 1) return;
   view_projection_ = camera_.view_projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height));
-  smooth_.begin(viewport);
-  const Rgb& background = palette(theme).background;
-  glClearColor(background.r, background.g, background.b, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const Bodies& shown = bodies(blocks.size(), viewport);
   glDisable(GL_BLEND);
-  draw_table(blocks, theme);
-  glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
-  for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()));
-  for (std::size_t i = 0; i < blocks.size(); ++i) draw_block(blocks[i], place(i, blocks.size()));
+  smooth_.begin(viewport, scale);
+  if (smooth_.filters() && refresh_still(blocks, shown, theme)) {
+    smooth_.use_still();
+  } else {
+    draw_all_still(blocks, shown, theme);
+  }
+  glEnable(GL_DEPTH_TEST);
+  for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()), shown, theme);
+  for (std::size_t i = 0; i < blocks.size(); ++i) draw_top(blocks[i], place(i, blocks.size()), shown);
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
   smooth_.end();
+}
+
+// Whether what stands still is kept as it is now; false: the driver refuses.
+bool BlockView::refresh_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme) {
+  Still now{view_projection_, smooth_.width(), smooth_.height(), blocks.size(), blocks.size(), Rgb(0.0F), theme};
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!blocks[i].chosen) continue;
+    now.chosen = i;
+    now.ring = blocks[i].arrow;
+  }
+  if (now == still_) return true;
+  if (!smooth_.begin_still()) return false;
+  draw_all_still(blocks, bodies, theme);
+  still_ = now;
+  return true;
+}
+
+void BlockView::draw_all_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme) const {
+  const Rgb& background = palette(theme).background;
+  glClearColor(background.r, background.g, background.b, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  draw_table(blocks, theme);
+  glEnable(GL_DEPTH_TEST);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    begin_block({}, place(i, blocks.size()));
+    bodies.sides.draw();
+  }
+  glDisable(GL_DEPTH_TEST);
 }
 
 // It lies behind and below all else: it needs no depth.
@@ -184,53 +246,72 @@ void BlockView::draw_table(const std::vector<BlockPose>& blocks, Theme theme) co
   square_.draw();
 }
 
-void BlockView::draw_block(const BlockPose& pose, const glm::vec3& at) const {
+// What a block's top and sides have in common.
+void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
+  const Material& material = kMaterials[static_cast<std::size_t>(finish_)];
   begin(block_shader_);
   block_shader_.set("offset", at);
-  block_shader_.set("dent", pose.dent_m);
+  block_shader_.set("dent", dent.depth_m);
+  block_shader_.set("contact", dent.contact_m);
+  block_shader_.set("edge", dent.edge_m);
   block_shader_.set("tool_radius", static_cast<float>(geometry_.tool_radius_m));
   block_shader_.set("rim", 0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m)));
-  block_shader_.set("height", static_cast<float>(geometry_.height_m));
+  block_shader_.set("half_size",
+                    glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
   block_shader_.set("colour", block_colour_);
+  block_shader_.set("translucent", material.translucent);
+  block_shader_.set("gloss", material.gloss);
+  block_shader_.set("pores", material.pores);
+  block_shader_.set("grid", material.grid);
+  block_shader_.set("mark", 0.0F);
+  block_shader_.set("tip", -1.0F);  // far above
+  block_shader_.set("arrow", glm::vec3(0.0F));
+}
+
+void BlockView::draw_top(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies) const {
+  begin_block(dent_under_ball(pose.dent_m, static_cast<float>(geometry_.tool_radius_m)), at);
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
   // Shallow dents have no colour yet: there is nothing to judge.
   block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
-  block_shader_.set("tool_gap", std::max(0.0F, -pose.tool_m));
-  block_.draw();
+  block_shader_.set("tip", pose.tool_m);
+  const glm::vec3 foot = arrow_foot();
+  block_shader_.set("arrow", glm::vec3(foot.x, pose.force_N < kShortestArrow_N ? 0.0F : arrow_length_m(pose), foot.z));
+  bodies.top.draw();
 }
 
-void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at) const {
+void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies, Theme theme) const {
   begin(solid_shader_);
-  const glm::vec3 tip = at - glm::vec3(0.0F, pose.tool_m, 0.0F);
-  solid_shader_.set("offset", tip);
+  solid_shader_.set("offset", at - glm::vec3(0.0F, pose.tool_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
-  solid_shader_.set("colour", tool_colour_);
-  solid_shader_.set("shininess", 1.0F);
-  ball_.draw();
-  solid_shader_.set("colour", 0.62F * tool_colour_);
-  solid_shader_.set("shininess", 0.6F);
-  sensor_.draw();
-  solid_shader_.set("colour", 0.44F * tool_colour_);
-  solid_shader_.set("shininess", 0.25F);
-  handle_.draw();
-  if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at);
+  const auto part = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
+    solid_shader_.set("colour", colour);
+    solid_shader_.set("shininess", shininess);
+    mesh.draw();
+  };
+  part(bodies.ball, tool_colour_, 1.0F);
+  part(bodies.sensor, 0.62F * tool_colour_, 0.6F);
+  part(bodies.handle, palette(theme).rubber, 0.25F);
+  if (pose.force_N >= kShortestArrow_N) draw_arrow(pose, at, bodies);
 }
 
 // Beside the tool, as seen from the eye, so that neither hides the other.
-void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at) const {
+glm::vec3 BlockView::arrow_foot() const {
   const glm::vec3 eye = camera_.eye();
   const glm::vec3 right = glm::normalize(glm::vec3(eye.z, 0.0F, -eye.x));
-  const glm::vec3 foot =
-      at + 3.2F * static_cast<float>(geometry_.tool_radius_m) * right + glm::vec3(0.0F, 0.001F, 0.0F);
+  return 3.2F * static_cast<float>(geometry_.tool_radius_m) * right;
+}
+
+void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies) const {
+  const glm::vec3 foot = at + arrow_foot() + glm::vec3(0.0F, 0.001F, 0.0F);
   const float length_m = arrow_length_m(pose);
   solid_shader_.set("colour", pose.arrow);
   solid_shader_.set("shininess", 0.0F);
   solid_shader_.set("offset", foot);
   solid_shader_.set("stretch", glm::vec3(arrow_width_, length_m, arrow_width_));
-  shaft_.draw();
+  bodies.shaft.draw();
   solid_shader_.set("offset", foot + glm::vec3(0.0F, length_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(arrow_width_));
-  tip_.draw();
+  bodies.tip.draw();
 }
 
 }  // namespace palpate

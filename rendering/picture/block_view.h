@@ -1,5 +1,4 @@
-// The picture: one to four blocks on a table, each under the same probe.
-// Draws what it is told and knows no model and no session.
+// The picture: one to four blocks on a table, each under the same probe. Knows no model and no session.
 //
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
@@ -8,10 +7,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "rendering/picture/camera.h"
+#include "rendering/picture/dent.h"
 #include "rendering/picture/mesh.h"
 #include "rendering/picture/shader.h"
 #include "rendering/picture/smooth_target.h"
@@ -36,11 +37,13 @@ inline constexpr float kDeeperDents = 2.0F;
 
 class BlockView {
  public:
-  // Errors: a shader is missing or is not taken by the driver.
-  static Result<std::unique_ptr<BlockView>> create(const Scene& scene);
+  // `smoothing`: none, as suits the renderer of the OpenGL context. Errors: a shader is missing or is not taken by
+  // the driver.
+  static Result<std::unique_ptr<BlockView>> create(const Scene& scene, std::optional<Smoothing> smoothing = {});
 
-  // `blocks`: 1 to 4. Fills the viewport.
-  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme);
+  // `blocks`: 1 to 4. Fills the viewport; `scale`: with so many of its pixels a side, see SmoothTarget.
+  void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, float scale = 1.0F);
+  bool filters_edges() const noexcept { return smooth_.filters(); }
 
   Camera& camera() noexcept { return camera_; }
   // Frames so many blocks; eases there unless `at_once`.
@@ -56,24 +59,47 @@ class BlockView {
   const BlockGeometry& geometry() const noexcept { return geometry_; }
 
  private:
+  // The bodies of one block, as fine as they are seen.
+  struct Bodies {
+    Bodies(const BlockGeometry& block, const Detail& detail);
+    GpuMesh top, sides, ball, sensor, handle, shaft, tip;
+  };
+  // What a picture of all that stands still depends on.
+  struct Still {
+    glm::mat4 view_projection{0.0F};
+    int width = 0, height = 0;
+    std::size_t blocks = 0, chosen = 0;
+    Rgb ring{0.0F};
+    Theme theme = Theme::light;
+    bool operator==(const Still&) const = default;
+  };
+
+  BlockView(const Scene& scene, Shader block, Shader solid, Shader table, std::optional<EdgeFilter> edges);
   float arrow_length_m(const BlockPose& pose) const;
-  BlockView(const Scene& scene, Shader block, Shader solid, Shader table);
+  glm::vec3 arrow_foot() const;  // beside the middle of a block
+  const Bodies& bodies(std::size_t count, const Viewport& viewport) const;
+  bool refresh_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme);
+  void draw_all_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme) const;
   void draw_table(const std::vector<BlockPose>& blocks, Theme theme) const;
-  void draw_block(const BlockPose& pose, const glm::vec3& place) const;
-  void draw_tool(const BlockPose& pose, const glm::vec3& place) const;
-  void draw_arrow(const BlockPose& pose, const glm::vec3& place) const;
+  void draw_top(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
+  void draw_tool(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, Theme theme) const;
+  void draw_arrow(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
   void begin(const Shader& shader) const;
+  void begin_block(const DentShape& dent, const glm::vec3& place) const;
 
   BlockGeometry geometry_;
+  Finish finish_;
   Rgb block_colour_;
   Rgb tool_colour_;
   float size_m_;  // of what the camera frames for one block
   float arrow_m_per_N_;
   float arrow_width_;  // times the usual
   Shader block_shader_, solid_shader_, table_shader_;
-  GpuMesh block_, ball_, sensor_, handle_, shaft_, tip_, square_;
+  Bodies fine_, coarse_;
+  GpuMesh square_;
   Camera camera_;
   SmoothTarget smooth_;
+  Still still_;
   glm::mat4 view_projection_{1.0F};
 };
 

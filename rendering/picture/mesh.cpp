@@ -12,30 +12,23 @@
 namespace palpate {
 namespace {
 
-// How finely a block is made.
-constexpr int kCornerSteps = 10;  // around each of its corners
-constexpr int kSideSteps = 6;     // points on each of its sides, between the corners
-constexpr int kRings = 24;        // on its top
-constexpr int kFilletSteps = 6;   // over its edge
 constexpr float kCorner_m = 0.012F;
 constexpr float kEdge_m = 0.004F;
-// Of the height, above the ground: block.vert gives it less light, vertex by vertex.
-constexpr float kDarkShare = 0.16F;
 
 using Outline = std::vector<Vertex>;  // position on the rim, normal outward, both at y = 0
 
 // Round corners have many points, straight sides few: as seen from the middle, from
 // the corner at +x, +z on. Points of a side lie evenly in angle.
-Outline outline(const glm::vec2& half) {
+Outline outline(const glm::vec2& half, const Detail& detail) {
   constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
   const glm::vec2 core = half - kCorner_m;
   Outline points;
   for (int corner = 0; corner < 4; ++corner) {
     const float sign_x = corner == 0 || corner == 3 ? 1.0F : -1.0F;
     const float sign_z = corner < 2 ? 1.0F : -1.0F;
-    for (int i = 0; i <= kCornerSteps; ++i) {
+    for (int i = 0; i <= detail.corner; ++i) {
       const float angle =
-          kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(kCornerSteps));
+          kQuarter * (static_cast<float>(corner) + static_cast<float>(i) / static_cast<float>(detail.corner));
       const glm::vec3 normal(std::cos(angle), 0.0F, std::sin(angle));
       points.push_back({glm::vec3(sign_x * core.x, 0.0F, sign_z * core.y) + kCorner_m * normal, normal});
     }
@@ -46,8 +39,8 @@ Outline outline(const glm::vec2& half) {
     const float turn = kQuarter * static_cast<float>(corner + 1);
     const glm::vec3 normal(std::cos(turn), 0.0F, std::sin(turn));
     const glm::vec3 onward(-std::sin(turn), 0.0F, std::cos(turn));
-    for (int i = 1; i <= kSideSteps; ++i) {
-      const float angle = reach * (2.0F * static_cast<float>(i) / static_cast<float>(kSideSteps + 1) - 1.0F);
+    for (int i = 1; i <= detail.side; ++i) {
+      const float angle = reach * (2.0F * static_cast<float>(i) / static_cast<float>(detail.side + 1) - 1.0F);
       points.push_back({away * normal + away * std::tan(angle) * onward, normal});
     }
   }
@@ -70,12 +63,12 @@ void join_rings(Mesh& mesh, std::size_t around) {
 }
 
 // Rings from the middle, circles at first, the rim's shape in the end.
-void add_top(Mesh& mesh, const Outline& rim) {
+void add_top(Mesh& mesh, const Outline& rim, int rings) {
   const glm::vec3 up(0.0F, 1.0F, 0.0F);
   float nearest = 1e9F;
   for (const Vertex& point : rim) nearest = std::min(nearest, glm::length(point.position));
-  for (int k = 0; k <= kRings; ++k) {
-    const float t = static_cast<float>(k) / static_cast<float>(kRings);
+  for (int k = 0; k <= rings; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(rings);
     const float size = 1e-4F + (1.0F - 1e-4F) * t * (0.22F + 0.78F * t * t);
     const float square = glm::smoothstep(0.4F, 1.0F, size);
     Outline ring;
@@ -101,18 +94,22 @@ void add_shifted(Mesh& mesh, const Outline& rim, float outward_m, float down_m, 
 
 }  // namespace
 
-Mesh block_mesh(float width_m, float length_m, float height_m) {
+Mesh block_top(const glm::vec2& size_m, const Detail& detail) {
   Mesh mesh;
-  const Outline rim = outline({0.5F * width_m - kEdge_m, 0.5F * length_m - kEdge_m});
-  add_top(mesh, rim);
-  for (int i = 1; i <= kFilletSteps; ++i) {
-    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(kFilletSteps);
+  add_top(mesh, outline(0.5F * size_m - kEdge_m, detail), detail.rings);
+  return mesh;
+}
+
+Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail) {
+  Mesh mesh;
+  const Outline rim = outline(0.5F * size_m - kEdge_m, detail);
+  for (const Vertex& point : rim) mesh.vertices.push_back({point.position, {0.0F, 1.0F, 0.0F}});
+  for (int i = 1; i <= detail.fillet; ++i) {
+    const float angle = 0.5F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(detail.fillet);
     add_shifted(mesh, rim, kEdge_m * std::sin(angle), kEdge_m * (1.0F - std::cos(angle)),
                 0.5F * std::numbers::pi_v<float> - angle);
   }
-  add_shifted(mesh, rim, kEdge_m, (1.0F - kDarkShare) * height_m, 0.0F);
-  add_shifted(mesh, rim, kEdge_m, height_m - 0.25F * kEdge_m, 0.0F);
-  add_shifted(mesh, rim, 0.75F * kEdge_m, height_m, -0.25F * std::numbers::pi_v<float>);
+  add_shifted(mesh, rim, kEdge_m, height_m, 0.0F);
   return mesh;
 }
 

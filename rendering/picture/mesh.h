@@ -20,9 +20,22 @@ struct Mesh {
   std::vector<std::uint32_t> triangles;  // three indices each, counter-clockwise from outside
 };
 
-// A block with rounded corners and edges, its flat top at y = 0, around the y
-// axis. The top's rings lie denser towards the middle, where it is pressed.
-Mesh block_mesh(float width_m, float length_m, float height_m);
+// How finely bodies are made: few triangles where they are small on the screen, for
+// where the processor draws, a triangle costs as much as a hundred pixels.
+struct Detail {
+  int corner;  // steps around each corner of a block
+  int side;    // points on each of its sides, between the corners
+  int rings;   // on its top
+  int fillet;  // steps over its edge
+  int around;  // sides of a body of revolution
+};
+inline constexpr Detail kFine{10, 6, 24, 6, 28};
+inline constexpr Detail kCoarse{5, 4, 14, 3, 16};
+
+// The flat top of a block with rounded corners and edges, at y = 0 around the y axis;
+// its rings lie denser towards the middle, where it is pressed. And all the rest of it.
+Mesh block_top(const glm::vec2& size_m, const Detail& detail);
+Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail);
 
 // A body of revolution around y: `profile` has (radius, y) from bottom to top.
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides);

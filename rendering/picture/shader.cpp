@@ -21,10 +21,13 @@ std::string shader_log(unsigned shader) {
   return text.c_str();
 }
 
-Id compile(const std::string& path, unsigned kind) {
+Result<std::string> read_shader(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+Id compile(const std::string& path, const std::string& text, unsigned kind) {
   const unsigned shader = glCreateShader(kind);
   const char* source = text.c_str();
   glShaderSource(shader, 1, &source, nullptr);
@@ -39,24 +42,28 @@ Id compile(const std::string& path, unsigned kind) {
 
 }  // namespace
 
-Result<Shader> Shader::load(const std::string& folder, const std::string& name) {
-  const std::string path = folder + "/" + name;
-  const Id vertex = compile(path + ".vert", GL_VERTEX_SHADER);
-  if (!vertex) return vertex.error();
-  const Id fragment = compile(path + ".frag", GL_FRAGMENT_SHADER);
-  if (!fragment) {
-    glDeleteShader(*vertex);
-    return fragment.error();
+Result<Shader> Shader::load(const std::string& folder, const std::string& vertex, const std::string& fragment,
+                            const std::vector<std::string>& parts) {
+  std::string before;
+  for (const std::string& part : parts) {
+    const auto text = read_shader(folder + "/" + part + ".glsl");
+    if (!text) return text.error();
+    before += *text;
   }
   Shader shader(glCreateProgram());
-  for (const unsigned part : {*vertex, *fragment}) {
-    glAttachShader(shader.program_, part);
-    glDeleteShader(part);  // goes with the program
+  for (const auto& [name, kind] :
+       {std::pair{vertex + ".vert", GL_VERTEX_SHADER}, std::pair{fragment + ".frag", GL_FRAGMENT_SHADER}}) {
+    const auto text = read_shader(folder + "/" + name);
+    if (!text) return text.error();
+    const Id part = compile(folder + "/" + name, before + *text, static_cast<unsigned>(kind));
+    if (!part) return part.error();
+    glAttachShader(shader.program_, *part);
+    glDeleteShader(*part);  // goes with the program
   }
   glLinkProgram(shader.program_);
   int good = 0;
   glGetProgramiv(shader.program_, GL_LINK_STATUS, &good);
-  if (good == 0) return Error{path + ": the graphics driver does not link its two shaders"};
+  if (good == 0) return Error{folder + ": the graphics driver does not link " + vertex + ".vert and " + fragment + ".frag"};
   return shader;
 }
 

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <string>
+#include <vector>
 
 #include "engine/base/result.h"
 
@@ -14,9 +15,10 @@ namespace palpate {
 
 class Shader {
  public:
-  // Reads `name`.vert and `name`.frag in `folder`. Errors: no such file; what the
-  // driver says against it.
-  static Result<Shader> load(const std::string& folder, const std::string& name);
+  // Reads `vertex`.vert and `fragment`.frag in `folder`, each behind the text of `parts`, of which the first begins every
+  // shader. Errors: no such file; what the driver says against it.
+  static Result<Shader> load(const std::string& folder, const std::string& vertex, const std::string& fragment,
+                             const std::vector<std::string>& parts = {"common"});
   Shader(Shader&& other) noexcept;
   Shader& operator=(Shader&&) = delete;
   ~Shader();

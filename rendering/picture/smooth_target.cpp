@@ -2,55 +2,89 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace palpate {
 namespace {
 
 constexpr int kSamples = 4;
+// Along an edge to either side: the flattest that is found rises by a pixel in 26.
+constexpr int kSteps = 8;
 
 }  // namespace
 
-void SmoothTarget::release() {
-  if (buffers_[0] == 0) return;
-  glDeleteFramebuffers(1, &framebuffer_);
-  glDeleteRenderbuffers(2, buffers_);
-  framebuffer_ = 0;
-}
-
-bool SmoothTarget::make() {
-  release();
-  glGenFramebuffers(1, &framebuffer_);
-  glGenRenderbuffers(2, buffers_);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  constexpr GLenum kFormats[2] = {GL_RGBA8, GL_DEPTH_COMPONENT24};
-  constexpr GLenum kPlaces[2] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
-  for (int i = 0; i < 2; ++i) {
-    glBindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, kSamples, kFormats[i], viewport_.width, viewport_.height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, kPlaces[i], GL_RENDERBUFFER, buffers_[i]);
+Smoothing smoothing_for(std::string_view renderer) noexcept {
+  // Mesa's three, and Microsoft's and Apple's.
+  for (const std::string_view program : {"llvmpipe", "softpipe", "SWR", "GDI Generic", "Software"}) {
+    if (renderer.find(program) != std::string_view::npos) return Smoothing::filter;
   }
-  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  return Smoothing::samples;
 }
 
-void SmoothTarget::begin(const Viewport& viewport) {
-  const bool same = buffers_[0] != 0 && viewport.width == viewport_.width && viewport.height == viewport_.height;
+SmoothTarget::SmoothTarget(std::optional<EdgeFilter> filter)
+    : filter_(std::move(filter)), pixels_(filter_ ? 0 : kSamples), still_(0) {
+  glGenVertexArrays(1, &no_vertices_);
+}
+
+SmoothTarget::~SmoothTarget() { glDeleteVertexArrays(1, &no_vertices_); }
+
+void SmoothTarget::begin(const Viewport& viewport, float scale) {
   viewport_ = viewport;
-  if (!same && !make()) {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glDeleteFramebuffers(1, &framebuffer_);
-    framebuffer_ = 0;
-  }
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  glViewport(framebuffer_ == 0 ? viewport.x : 0, framebuffer_ == 0 ? viewport.y : 0, viewport.width, viewport.height);
+  const float part = filters() ? scale : 1.0F;
+  const auto drawn = [part](int size) {
+    return std::max(1, static_cast<int>(std::round(part * static_cast<float>(size))));
+  };
+  refused_ = !pixels_.draw_into(drawn(viewport.width), drawn(viewport.height));
+  if (!refused_) return;
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
 }
 
-void SmoothTarget::end() const {
-  if (framebuffer_ == 0) return;
+bool SmoothTarget::begin_still() { return !refused_ && still_.draw_into(pixels_.width(), pixels_.height()); }
+
+void SmoothTarget::use_still() { still_.copy_to(pixels_); }
+
+void SmoothTarget::end() {
+  if (refused_) return;
+  if (filters()) {
+    filter_edges();
+    return;
+  }
   const Viewport& to = viewport_;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, pixels_.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, to.width, to.height, to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
                     GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+// Everything is copied and its edges found, then what has one is drawn again.
+void SmoothTarget::filter_edges() const {
+  const Viewport& to = viewport_;
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(to.x, to.y, to.width, to.height);
+  glBindTexture(GL_TEXTURE_2D, pixels_.colour());
+  glBindVertexArray(no_vertices_);
+  const auto draw = [&](const Shader& shader) {
+    shader.use();
+    shader.set("corner", glm::vec2(to.x, to.y));
+    shader.set("size", glm::vec2(to.width, to.height));
+    shader.set("steps", kSteps);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  };
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_ALWAYS);
+  draw(filter_->find);
+  // The triangle lies in the middle of the depth: before where there is none, behind the edges.
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+  draw(filter_->smooth);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_DEPTH_TEST);
+  glBindVertexArray(0);
 }
 
 }  // namespace palpate

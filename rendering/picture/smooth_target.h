@@ -1,35 +1,62 @@
-// Several samples a pixel, so that edges are smooth, for the picture alone: text and
-// curves have smooth edges of their own, and where the processor draws every sample costs.
+// The picture with smooth edges, for itself alone: text and curves have smooth edges of their own.
+// A graphics card takes several samples a pixel. Where the processor draws, each sample costs as much as a pixel: there
+// the edges of the finished picture are filtered (assets/shaders/edges.frag), which can also enlarge a picture of fewer
+// pixels, and what stands still is drawn once.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "rendering/picture/pixels.h"
+#include "rendering/picture/shader.h"
 
 namespace palpate {
 
 // In pixels of the framebuffer, from its lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Viewport&) const = default;
+};
+
+enum class Smoothing { samples, filter };
+// Of the renderer that OpenGL names: the filter where it is a program.
+Smoothing smoothing_for(std::string_view renderer) noexcept;
+
+struct EdgeFilter {
+  Shader find, smooth;  // "find_edges", "edges"
 };
 
 class SmoothTarget {
  public:
-  SmoothTarget() = default;
+  // `filter`: none for several samples a pixel.
+  explicit SmoothTarget(std::optional<EdgeFilter> filter);
   SmoothTarget(const SmoothTarget&) = delete;
   SmoothTarget& operator=(const SmoothTarget&) = delete;
-  ~SmoothTarget() { release(); }
+  ~SmoothTarget();
 
-  // What follows is drawn into samples of its own, the viewport's size; nothing is in them
-  // yet. Where the driver refuses, into the window's viewport.
-  void begin(const Viewport& viewport);
+  bool filters() const noexcept { return filter_.has_value(); }
+  // Of what is drawn into after `begin`, pixels.
+  int width() const noexcept { return pixels_.width(); }
+  int height() const noexcept { return pixels_.height(); }
+  // What follows is drawn for that part of the window, at `scale` of its pixels a side, 0..1, where edges are
+  // filtered. Where the driver refuses, straight into the window.
+  void begin(const Viewport& viewport, float scale);
+  // What follows stands still, and is kept for `use_still`. False: it is not, draw it always.
+  bool begin_still();
+  // What stood still is in the picture, colour and depth, and what follows comes on top.
+  void use_still();
   // Onto the window, which is drawn to again.
-  void end() const;
+  void end();
 
  private:
-  bool make();
-  void release();
+  void filter_edges() const;
 
+  std::optional<EdgeFilter> filter_;
   Viewport viewport_;
-  unsigned framebuffer_ = 0;      // 0: refused, or not yet made
-  unsigned buffers_[2] = {0, 0};  // colour, depth
+  Pixels pixels_, still_;
+  bool refused_ = false;
+  unsigned no_vertices_ = 0;  // three corners need no buffer
 };
 
 }  // namespace palpate

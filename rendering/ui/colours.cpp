@@ -18,9 +18,9 @@ constexpr Rgb hex(unsigned value) noexcept {
 }
 
 const Palette kLight{hex(0xF3F3F2), hex(0xE9E8E6), hex(0xFFFFFF), hex(0xE6E9ED), hex(0x16191D),
-                     hex(0x5C6670), hex(0xDDE1E5), hex(0xC9CFD6), hex(0xC4161C)};
+                     hex(0x5C6670), hex(0xDDE1E5), hex(0xC9CFD6), hex(0xC4161C), hex(0x44494F)};
 const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), hex(0xF1F3F5),
-                    hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F)};
+                    hex(0xA3ADB7), hex(0x333A41), hex(0x4A535C), hex(0xFF5A4F), hex(0x7E868E)};
 
 // Even steps of lightness (CIELAB L* 96, 87, 78, 69, 60), from nearly white to the
 // green of viridis: nothing is no shadow, and what is large is dark.

@@ -24,6 +24,7 @@ struct Palette {
   Rgb grid;
   Rgb band;   // the JND band
   Rgb fault;  // red, for nothing else
+  Rgb rubber; // the probe's handle
 };
 const Palette& palette(Theme theme) noexcept;
 

@@ -111,7 +111,9 @@ void LivePlot::draw_x_axis() const {
 }
 
 void LivePlot::line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const {
-  if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, thickness);
+  // Of a whole number of pixels ImGui makes one strip that is smooth by its texture, else three.
+  const float whole = std::max(1.0F, std::round(thickness));
+  if (points.size() > 1) list_->AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, whole);
 }
 
 void LivePlot::band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const {

@@ -28,6 +28,9 @@ struct BlockGeometry {
   double tool_radius_m = 0.0;
 };
 
+// What the block is made of to the eye.
+enum class Finish { silicone, foam, gel, rubber, skin, dome };
+
 struct Scene {
   std::string name;
   std::string title;
@@ -39,6 +42,7 @@ struct Scene {
   BlockGeometry block;
   Colour block_colour;
   Colour tool_colour;
+  Finish finish = Finish::silicone;
   std::vector<std::string> default_models;  // names of methods (models/fit/methods.h)
   // A hand that explores by itself aims at most for this force.
   double strongest_press_N = 5.0;

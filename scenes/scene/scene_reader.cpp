@@ -150,6 +150,10 @@ class SceneReader : private JsonFields {
     const JsonNode node = member(top_, "colours", "an object with block and tool");
     scene_.block_colour = colour(node, "block");
     scene_.tool_colour = colour(node, "tool");
+    const JsonNode finish = optional_member(top_, "finish");
+    if (finish.value == nullptr) return;
+    static const std::vector<std::string> kFinishes = {"silicone", "foam", "gel", "rubber", "skin", "dome"};
+    if (const auto index = choice(finish, kFinishes)) scene_.finish = static_cast<Finish>(*index);
   }
 
   void read_default_models() {

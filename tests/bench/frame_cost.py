@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""What a frame of the window costs where the processor draws: processor time of the thread
-that draws and of the graphics driver's, a frame. Unlike a frame rate it hardly depends on
-what else the machine does.
+"""What a frame of the window costs where the processor draws. Unlike a frame rate, processor time a frame hardly
+depends on what else the machine does.
 
   python3 tests/bench/frame_cost.py build/palpate-demo [OTHER_DEMO ...] [--seconds 20] [--rounds 2]
 
-What starts once (the driver compiles its shaders) is left out: two runs, one of a quarter of
-the time, and their difference. Every program draws 1280 x 720 under Xvfb with four blocks and with one, in turns; without
---models the scene fits its own models beside it, whose threads are not counted.
+What starts once (the driver compiles its shaders) is left out: two runs, one of a quarter of the time, and their
+difference. Programs draw under Xvfb in turns, so that before and after share their minutes. Columns: processor
+milliseconds a frame of the main thread, of the driver's threads, and of the whole program with its haptics loop and,
+without --models, the fits of the scene's own models.
 """
 import argparse
 import json
@@ -40,6 +40,8 @@ def run(program, blocks, seconds, options, display):
         stats = pathlib.Path(folder, "stats.json")
         environment = dict(os.environ, DISPLAY=display, XDG_CONFIG_HOME=f"{folder}/config", XDG_DATA_HOME=f"{folder}/data")
         command = [program, "--seconds", str(seconds), "--stats", str(stats)]
+        if options.size != "1280x720":
+            command += ["--fullscreen"]
         for model in options.models:
             command += ["--model", model]
         process = subprocess.Popen(command, env=environment)
@@ -47,39 +49,48 @@ def run(program, blocks, seconds, options, display):
         while process.poll() is None:
             spent.update(thread_seconds(process.pid))
             time.sleep(0.1)
-        graphics = json.loads(stats.read_text())["graphics"]
-    drawing = sum(s for (task, name), s in spent.items() if task == str(process.pid) or "llvmpipe" in name)
-    return graphics, drawing
+        figures = json.loads(stats.read_text())
+    parts = {"main": 0.0, "driver": 0.0, "whole": sum(spent.values())}
+    for (task, name), seconds_spent in spent.items():
+        if task == str(process.pid):
+            parts["main"] += seconds_spent
+        elif "llvmpipe" in name:
+            parts["driver"] += seconds_spent
+    return figures, parts
 
 
-def figures_of(program, blocks, options, display):
+def row(program, blocks, options, display):
     first, first_s = run(program, blocks, options.seconds / 4, options, display)
     both, both_s = run(program, blocks, options.seconds, options, display)
-    frames = both["frames"] - first["frames"]
-    return {"frames": frames, "fps": both["fps"], "frame_ms": both["frame_ms"]["p50"],
-            "processor_ms": 1e3 * (both_s - first_s) / max(frames, 1)}
+    graphics = both["graphics"]
+    frames = graphics["frames"] - first["graphics"]["frames"]
+    cost = [1e3 * (both_s[part] - first_s[part]) / max(frames, 1) for part in both_s]
+    return (f"{blocks},{program},{frames},{graphics['fps']:.1f},{graphics['frame_ms']['p50']:.1f},"
+            f"{graphics['frame_ms']['p99']:.1f},{graphics.get('picture_scale', 1.0):.2f},"
+            f"{','.join(f'{ms:.2f}' for ms in cost)},{both['haptics']['lateness_us']['p99_9']:.0f}")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", nargs="+")
     parser.add_argument("--models", nargs="*", default=[], help="files or methods in place of the scene's own")
+    parser.add_argument("--blocks", type=int, nargs="*", default=[4, 1])
+    parser.add_argument("--size", default="1280x720", help="of the window")
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--rounds", type=int, default=2)
     options = parser.parse_args()
     number = next(n for n in range(90, 990) if not os.path.exists(f"/tmp/.X11-unix/X{n}"))
-    server = subprocess.Popen(["Xvfb", f":{number}", "-screen", "0", "1280x720x24", "-nolisten", "tcp"],
+    server = subprocess.Popen(["Xvfb", f":{number}", "-screen", "0", f"{options.size}x24", "-nolisten", "tcp"],
                               stderr=subprocess.DEVNULL)
     while not os.path.exists(f"/tmp/.X11-unix/X{number}"):
         time.sleep(0.05)
     try:
-        print("blocks,program,frames,fps,frame_ms_p50,processor_ms_per_frame")
+        print("blocks,program,frames,fps,frame_ms_p50,frame_ms_p99,picture_scale,main_processor_ms,driver_processor_ms,"
+              "whole_processor_ms,lateness_us_p99_9")
         for _ in range(options.rounds):
-            for blocks in (4, 1):
+            for blocks in options.blocks:
                 for program in options.programs:
-                    figures = figures_of(program, blocks, options, f":{number}")
-                    print(f"{blocks},{program},{figures['frames']},{figures['fps']:.1f},{figures['frame_ms']:.1f},"
-                          f"{figures['processor_ms']:.2f}", flush=True)
+                    print(row(program, blocks, options, f":{number}"), flush=True)
     finally:
         server.terminate()
         server.wait()

@@ -23,25 +23,46 @@ void expect_consistent(const Mesh& mesh) {
 }
 
 TEST(Mesh, TheBlockHasItsSizeAndFacesOutwards) {
-  const Mesh mesh = block_mesh(0.10F, 0.08F, 0.04F);
-  expect_consistent(mesh);
-  glm::vec3 low(1.0F);
-  glm::vec3 high(-1.0F);
-  for (const Vertex& vertex : mesh.vertices) {
-    low = glm::min(low, vertex.position);
-    high = glm::max(high, vertex.position);
+  for (const Detail& detail : {kFine, kCoarse}) {
+    const Mesh top = block_top({0.10F, 0.08F}, detail);
+    const Mesh sides = block_sides({0.10F, 0.08F}, 0.04F, detail);
+    glm::vec3 low(1.0F);
+    glm::vec3 high(-1.0F);
+    for (const Mesh* mesh : {&top, &sides}) {
+      expect_consistent(*mesh);
+      for (const Vertex& vertex : mesh->vertices) {
+        low = glm::min(low, vertex.position);
+        high = glm::max(high, vertex.position);
+      }
+    }
+    EXPECT_NEAR(high.x - low.x, 0.10F, 1e-5F);
+    EXPECT_NEAR(high.z - low.z, 0.08F, 1e-5F);
+    EXPECT_NEAR(high.y, 0.0F, 1e-7F);
+    EXPECT_NEAR(low.y, -0.04F, 1e-6F);
   }
-  EXPECT_NEAR(high.x - low.x, 0.10F, 1e-5F);
-  EXPECT_NEAR(high.z - low.z, 0.08F, 1e-5F);
-  EXPECT_NEAR(high.y, 0.0F, 1e-7F);
-  EXPECT_NEAR(low.y, -0.04F, 1e-6F);
+}
+
+TEST(Mesh, TopAndSidesMeetWithoutAGap) {
+  const Mesh top = block_top({0.10F, 0.08F}, kCoarse);
+  const Mesh sides = block_sides({0.10F, 0.08F}, 0.04F, kCoarse);
+  for (std::size_t i = 0; i < 40; ++i) {
+    const glm::vec3 rim = top.vertices[top.vertices.size() - 40 + i].position;
+    EXPECT_LT(glm::distance(rim, sides.vertices[i].position), 1e-6F) << i;
+  }
+}
+
+TEST(Mesh, ACoarseBlockHasAThirdOfTheTriangles) {
+  const auto count = [](const Detail& detail) {
+    return block_top({0.1F, 0.1F}, detail).triangles.size() + block_sides({0.1F, 0.1F}, 0.04F, detail).triangles.size();
+  };
+  EXPECT_LT(3 * count(kCoarse), count(kFine) * 11 / 10);
 }
 
 TEST(Mesh, TheTopIsFineWhereItIsPressed) {
-  const Mesh mesh = block_mesh(0.10F, 0.10F, 0.04F);
+  const Mesh mesh = block_top({0.10F, 0.10F}, kFine);
   int near_the_middle = 0;
   for (const Vertex& vertex : mesh.vertices) {
-    if (vertex.position.y == 0.0F && std::hypot(vertex.position.x, vertex.position.z) < 0.005F) ++near_the_middle;
+    if (std::hypot(vertex.position.x, vertex.position.z) < 0.005F) ++near_the_middle;
   }
   EXPECT_GT(near_the_middle, 500);
 }

@@ -1,0 +1,44 @@
+#include "rendering/picture/resolution.h"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+void run(Resolution& resolution, double busy_s, int frames) {
+  for (int i = 0; i < frames; ++i) resolution.add(busy_s);
+}
+
+TEST(Resolution, IsFullWhileFramesAreInTime) {
+  Resolution resolution;
+  run(resolution, 0.012, 1000);
+  EXPECT_EQ(resolution.scale(), 1.0F);
+}
+
+TEST(Resolution, FallsWhileFramesAreLateAndNeverBelowItsLeast) {
+  Resolution resolution;
+  run(resolution, 0.020, 70);
+  EXPECT_LT(resolution.scale(), 1.0F);
+  run(resolution, 0.050, 1000);
+  EXPECT_EQ(resolution.scale(), Resolution::kLeast);
+}
+
+TEST(Resolution, OneLongFrameIsNoReason) {
+  Resolution resolution;
+  run(resolution, 0.012, 30);
+  resolution.add(3.0);
+  run(resolution, 0.012, 100);
+  EXPECT_EQ(resolution.scale(), 1.0F);
+}
+
+TEST(Resolution, RisesAgainOnlyWhereThereIsRoomForIt) {
+  Resolution resolution;
+  run(resolution, 0.050, 200);
+  run(resolution, 0.014, 3000);
+  EXPECT_EQ(resolution.scale(), Resolution::kLeast) << "with half as many pixels again it would be late";
+  run(resolution, 0.006, 3000);
+  EXPECT_EQ(resolution.scale(), 1.0F);
+}
+
+}  // namespace
+}  // namespace palpate
