@@ -256,8 +256,7 @@ void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   block_shader_.set("edge", dent.edge_m);
   block_shader_.set("tool_radius", static_cast<float>(geometry_.tool_radius_m));
   block_shader_.set("rim", 0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m)));
-  block_shader_.set("half_size",
-                    glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
+  block_shader_.set("half_size", glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
   block_shader_.set("colour", block_colour_);
   block_shader_.set("translucent", material.translucent);
   block_shader_.set("gloss", material.gloss);

@@ -5,12 +5,12 @@
 namespace palpate {
 
 // Inside the contact the surface lies on the ball, u = d - R + sqrt(R^2 - r^2); outside it has the shape beside a
-// Hertzian contact, u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)) with x = r / a (Johnson 1985, eq. 3.42a). An
-// incompressible material moves along the normal only.
+// Hertzian contact, u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)) with x = r / a (Johnson 1985, eq. 3.42a).
+// An incompressible material moves along the normal only.
 struct DentShape {
-  float depth_m = 0.0F;    // d, of the middle
-  float contact_m = 1e-6F; // a, the contact's radius
-  float edge_m = 0.0F;     // u_a, the depth there
+  float depth_m = 0.0F;     // d, of the middle
+  float contact_m = 1e-6F;  // a, the contact's radius
+  float edge_m = 0.0F;      // u_a, the depth there
 };
 
 // The contact ends where both meet with the same slope: with q = sqrt(R^2 - a^2) that is

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kScales[] = {1.0F, 0.82F, Resolution::kLeast};  // each with two thirds of the pixels before it
 constexpr double kFrame_s = 1.0 / 60.0;
-constexpr int kFrames = 60;  // that a mean is of
+constexpr int kFrames = 60;                  // that a mean is of
 constexpr double kStall_s = 2.0 * kFrame_s;  // one long frame is no reason
 constexpr double kLate = 0.97, kRoom = 0.90;
 // So long a larger picture must have fitted: it does not come and go.

@@ -63,7 +63,8 @@ Result<Shader> Shader::load(const std::string& folder, const std::string& vertex
   glLinkProgram(shader.program_);
   int good = 0;
   glGetProgramiv(shader.program_, GL_LINK_STATUS, &good);
-  if (good == 0) return Error{folder + ": the graphics driver does not link " + vertex + ".vert and " + fragment + ".frag"};
+  if (good == 0)
+    return Error{folder + ": the graphics driver does not link " + vertex + ".vert and " + fragment + ".frag"};
   return shader;
 }
 

@@ -15,8 +15,8 @@ namespace palpate {
 
 class Shader {
  public:
-  // Reads `vertex`.vert and `fragment`.frag in `folder`, each behind the text of `parts`, of which the first begins every
-  // shader. Errors: no such file; what the driver says against it.
+  // Reads `vertex`.vert and `fragment`.frag in `folder`, each behind the text of `parts`, of which the first begins
+  // every shader. Errors: no such file; what the driver says against it.
   static Result<Shader> load(const std::string& folder, const std::string& vertex, const std::string& fragment,
                              const std::vector<std::string>& parts = {"common"});
   Shader(Shader&& other) noexcept;

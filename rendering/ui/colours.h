@@ -22,9 +22,9 @@ struct Palette {
   Rgb text;
   Rgb quiet;  // second-rank text, axes
   Rgb grid;
-  Rgb band;   // the JND band
-  Rgb fault;  // red, for nothing else
-  Rgb rubber; // the probe's handle
+  Rgb band;    // the JND band
+  Rgb fault;   // red, for nothing else
+  Rgb rubber;  // the probe's handle
 };
 const Palette& palette(Theme theme) noexcept;
 
