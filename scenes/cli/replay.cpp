@@ -18,6 +18,7 @@
 namespace palpate::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
 
 struct Options {
@@ -30,9 +31,8 @@ struct Options {
   bool force = false;
 };
 
-// A change of the surface is worth a note from here.
+// A share that changes by more with the surface moved is noted.
 constexpr double kShareThatMatters = 0.005;
-constexpr double kRmsThatMatters = 0.1;
 
 struct ReplayedModel {
   ErrorSummary as_recorded;
@@ -64,13 +64,22 @@ constexpr Figure kFigures[] = {{"rms_error_N", &ErrorSummary::rms_error_N, 1e3, 
 
 // The output must not replace what is being read, --force or not.
 Status check_output(const Options& options, const std::string& option, const std::string& out) {
-  if (options.recordings.size() > 1) {
-    return Error{"found " + std::to_string(options.recordings.size()) + " recordings with " + option +
-                 ", expected one; replay them in several runs"};
-  }
   std::vector<std::string> inputs = options.models;
-  inputs.push_back(options.recordings.front());
+  inputs.insert(inputs.end(), options.recordings.begin(), options.recordings.end());
   return refuse_input_as_output(out, inputs, option);
+}
+
+// `path` for one recording; for several NAME_RECORDING.csv, one each. Empty where none is wanted.
+std::vector<std::string> outputs(const std::string& path, const std::vector<std::string>& recordings) {
+  if (path.empty() || recordings.size() == 1) return std::vector<std::string>(recordings.size(), path);
+  std::vector<std::string> names;
+  for (const std::string& recording : recordings) names.push_back(fs::path(recording).stem().string());
+  const fs::path given(path);
+  std::vector<std::string> paths;
+  for (const std::string& name : distinct_names(names)) {
+    paths.push_back((given.parent_path() / (given.stem().string() + "_" + name + given.extension().string())).string());
+  }
+  return paths;
 }
 
 OrderedJson number_or_null(bool known, double value) { return known ? OrderedJson(value) : OrderedJson(nullptr); }
@@ -141,7 +150,7 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
   row.push_back(std::to_string(model.as_recorded.out_of_domain_samples));
   row.push_back(model.surface.told
                     ? fixed(1e3 * model.surface.at, 3) + " +- " + fixed(1e3 * model.surface.standard_error, 3)
-                    : "not told");
+                    : "not identified");
   add(model.surface_moved);
   for (const double time_ns : {model.time.tick.median_ns, model.time.tick.p99_ns}) {
     row.push_back(model.time.measured ? fixed(time_ns, 0) : "-");
@@ -149,17 +158,14 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
   return row;
 }
 
-// What moving the surface changed, in words; empty where it changes nothing that matters.
+// What moving the surface changes of the share within the JND, in words; empty where that is little.
 std::string surface_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   std::size_t most = models.size();
-  double largest = 0.0;
+  double largest = kShareThatMatters;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const ErrorSummary& plain = replayed.models[i].as_recorded;
-    const ErrorSummary& moved = replayed.models[i].surface_moved;
-    const double share = std::abs(moved.within_jnd - plain.within_jnd);
-    const bool matters = share > kShareThatMatters ||
-                         std::abs(moved.rms_error_N - plain.rms_error_N) > kRmsThatMatters * plain.rms_error_N;
-    if (!matters || (most < models.size() && share <= largest)) continue;
+    const double share =
+        std::abs(replayed.models[i].surface_moved.within_jnd - replayed.models[i].as_recorded.within_jnd);
+    if (share <= largest) continue;
     most = i;
     largest = share;
   }
@@ -168,8 +174,9 @@ std::string surface_remark(const ReplayedRecording& replayed, const std::vector<
   const ErrorSummary& moved = replayed.models[most].surface_moved;
   char text[320];
   std::snprintf(text, sizeof text,
-                "the surface of this recording lies at %+.3f mm for %s, and that decides the figures: "
-                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved",
+                "the surface of this recording is at %+.3f mm for %s, which changes the figures: "
+                "%.2f %% within the JND and %.1f mN RMS as recorded, %.2f %% and %.1f mN with the surface moved, which "
+                "uses these forces",
                 1e3 * replayed.models[most].surface.at, models[most].name.substr(0, 64).c_str(), 1e2 * plain.within_jnd,
                 1e3 * plain.rms_error_N, 1e2 * moved.within_jnd, 1e3 * moved.rms_error_N);
   return text;
@@ -188,21 +195,27 @@ void print_recording(const ReplayedRecording& replayed, const std::vector<Loaded
     std::printf("note: %s\n", remark.c_str());
 }
 
-// `plot`: null: no figure is wanted.
+// Where features and forces, and a figure, of one recording go; empty: not wanted.
+struct Outputs {
+  std::string forces;
+  std::string plot;
+};
+
 Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<LoadedModel>& models,
-                                     const Options& options, ReplayPlot* plot) {
+                                     const Outputs& outputs, bool overwrite) {
   std::vector<EvaluatedModel> evaluated;
   for (const LoadedModel& one : models) evaluated.push_back({one.model, one.model->data().jnd});
   std::optional<ForcesFile> forces;
-  if (!options.out.empty()) {
-    Result<ForcesFile> file = ForcesFile::create(options.out, options.force, models);
+  ReplayPlot plot(models);
+  if (!outputs.forces.empty()) {
+    Result<ForcesFile> file = ForcesFile::create(outputs.forces, overwrite, models);
     if (!file) return file.error();
     forces.emplace(std::move(*file));
   }
   EvaluationRequest request;
   request.also = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     if (forces) forces->add(row, snapshot, tick);
-    if (plot != nullptr) plot->add(row, snapshot);
+    if (!outputs.plot.empty()) plot.add(row, snapshot);
   };
   const auto evaluation = evaluate(rows_of_file(path), evaluated, request);
   if (!evaluation) return evaluation.error();
@@ -210,21 +223,30 @@ Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<
     if (const Status status = forces->commit(); !status) return status.error();
   }
   ReplayedRecording replayed{path, evaluation->samples, evaluation->contact_samples, {}};
+  std::vector<ModelPointer> pointers;
+  for (const LoadedModel& one : models) pointers.push_back(one.model);
+  const std::vector<ModelTiming> times = time_models(pointers, {evaluation->timing});
+  std::vector<ErrorSummary> errors;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const ModelEvaluation& one = evaluation->models[i];
-    replayed.models.push_back({one.as_recorded.summary(), one.surface_moved.summary(), one.predicted, one.surface,
-                               time_model(models[i].model, evaluation->sensor, evaluation->timing)});
+    errors.push_back(one.as_recorded.summary());
+    replayed.models.push_back({errors.back(), one.surface_moved.summary(), one.predicted, one.surface, times[i]});
   }
-  return replayed;
+  if (outputs.plot.empty()) return replayed;
+  const Status drawn = plot.draw(outputs.plot, fs::path(path).filename().string(), errors, overwrite);
+  return drawn ? Result<ReplayedRecording>(std::move(replayed)) : drawn.error();
 }
 
 Status run(const Options& options) {
-  if (!options.out.empty()) {
-    if (const Status status = check_output(options, "--out", options.out); !status) return status;
-  }
-  if (!options.plot.empty()) {
-    if (const Status status = check_output(options, "--plot", options.plot); !status) return status;
-    if (const Status status = check_plot_path(options.plot, options.force); !status) return status;
+  const std::vector<std::string> forces = outputs(options.out, options.recordings);
+  const std::vector<std::string> plots = outputs(options.plot, options.recordings);
+  for (std::size_t i = 0; i < options.recordings.size(); ++i) {
+    for (const auto& [option, path] : {std::pair{"--out", forces[i]}, {"--plot", plots[i]}}) {
+      if (path.empty()) continue;
+      if (const Status status = check_output(options, option, path); !status) return status;
+    }
+    if (plots[i].empty()) continue;
+    if (const Status status = check_plot_path(plots[i], options.force); !status) return status;
   }
   const auto models = load_models(options.models, options.names);
   if (!models) return models.error();
@@ -232,17 +254,10 @@ Status run(const Options& options) {
   request.jnd = models->front().model->data().jnd;
   if (const auto checked = check_before_use(options.recordings, request); !checked) return checked.error();
   std::vector<ReplayedRecording> all;
-  ReplayPlot plot(*models);
-  for (const std::string& recording : options.recordings) {
-    auto replayed = replay_one(recording, *models, options, options.plot.empty() ? nullptr : &plot);
+  for (std::size_t i = 0; i < options.recordings.size(); ++i) {
+    auto replayed = replay_one(options.recordings[i], *models, {forces[i], plots[i]}, options.force);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
-  }
-  if (!options.plot.empty()) {
-    const std::string name = std::filesystem::path(options.recordings.front()).filename().string();
-    std::vector<ErrorSummary> errors;
-    for (const ReplayedModel& one : all.front().models) errors.push_back(one.as_recorded);
-    if (const Status status = plot.draw(options.plot, name, errors, options.force); !status) return status;
   }
   if (options.json) {
     print_all_json(all, *models);
@@ -263,8 +278,8 @@ void add_replay(CLI::App& app, Verbs& verbs) {
   command->add_option("--model", options->models, "Model file (JSON); up to 16, repeat the option or list them")
       ->required();
   command->add_option("--name", options->names, "What to call the models, one for each, in their order");
-  command->add_option("--plot", options->plot, "Draw force, differences in the JND band and errors (.svg or .png)");
-  command->add_option("--out", options->out, "Write features and forces, row by row, to this file (CSV)");
+  command->add_option("--plot", options->plot, "Draw force, differences in the JND band and errors (.svg or .png); of several recordings PLOT_NAME, one each");
+  command->add_option("--out", options->out, "Write features and forces, row by row, to this file (CSV); of several recordings OUT_NAME, one each");
   command->add_flag("--json", options->json, "Print one JSON object instead of a table");
   command->add_flag("--force", options->force, "Write over an existing file");
   verbs.emplace_back(command, [options] { return run(*options); });

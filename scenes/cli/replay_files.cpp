@@ -30,6 +30,12 @@ std::vector<std::string> told_apart(const std::vector<std::string>& names, const
   return result;
 }
 
+bool same_rows(const Series& one, const Series& other) {
+  return std::equal(one.rows.begin(), one.rows.end(), other.rows.begin(), [](const PlotRow& a, const PlotRow& b) {
+    return a.y == b.y || (std::isnan(a.y) && std::isnan(b.y));
+  });
+}
+
 constexpr std::size_t kMostMoments = 3000;
 constexpr double kLeastScale_jnd = 1.6;
 constexpr double kMostScale_jnd = 5.0;
@@ -128,6 +134,7 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
   Panel difference;
   difference.y.title = "Difference [JND]";
   difference.series = {{"within 1 JND", kMutedColour, Mark::area, {}}};
+  force.names_at_ends = difference.names_at_ends = true;
   for (const LoadedModel& one : models_) {
     difference.series.push_back({one.name, method_rgb(one.model->method()), Mark::line, {}});
   }
@@ -152,12 +159,22 @@ Status ReplayPlot::draw(const std::string& path, const std::string& recording, c
       difference.series[i + 1].rows.push_back({shown.time_s, shown.in_contact ? over : kNoValue});
     }
   }
+  // Of models that give the same forces only the first could be seen.
+  for (std::size_t i = difference.series.size(); i-- > 2;) {
+    for (std::size_t k = 1; k < i; ++k) {
+      if (!same_rows(difference.series[i], difference.series[k])) continue;
+      difference.series[k].name += ", " + difference.series[i].name;
+      difference.series.erase(difference.series.begin() + static_cast<std::ptrdiff_t>(i));
+      break;
+    }
+  }
   difference.y.high = std::min(largest, kMostScale_jnd);
   difference.y.low = -difference.y.high;
   difference.x.title = "Time [s]";
   Panel against;
   against.x.title = "Measured force [N]";
   against.y = {"Mean error + deviation", "N", true};
+  against.names_at_ends = true;
   Series jnd{"JND", kMutedColour, Mark::dashed, {}};
   for (std::size_t i = 0; i < models_.size(); ++i) {
     Series series{"", method_rgb(models_[i].model->method()), Mark::curve, {}};

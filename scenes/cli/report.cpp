@@ -1,13 +1,11 @@
 // palpate report: every method on the user's recordings, as a page.
 #include "scenes/report/report.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "engine/base/whole_file.h"
 #include "scenes/cli/check_recordings.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
@@ -15,25 +13,46 @@
 namespace palpate::cli {
 namespace {
 
-// As it was given, word by word; empty where the system does not say.
-std::string command_line() {
-  std::string text = read_whole_file("/proc/self/cmdline").value_or("");
-  std::replace(text.begin(), text.end(), '\0', ' ');
-  while (!text.empty() && text.back() == ' ') text.pop_back();
+struct Arguments {
+  std::vector<std::string> train;
+  std::vector<std::string> test;
+  std::string scene = "silicone_block";
+  std::string out;
+  bool quick = false;
+  bool force = false;
+};
+
+// With which the same report is made again.
+std::string command_line(const Arguments& arguments) {
+  std::string text = "palpate report";
+  const auto add = [&](const char* option, const std::vector<std::string>& values) {
+    if (!values.empty()) text += std::string(" ") + option;
+    for (const std::string& value : values) text += " " + value;
+  };
+  add("--train", arguments.train);
+  add("--test", arguments.test);
+  add("--scene", {arguments.scene});
+  if (arguments.quick) text += " --quick";
+  add("--out", {arguments.out});
   return text;
 }
 
-Status run(ReportRequest request) {
-  request.command_line = command_line();
-  request.version = "palpate " PALPATE_VERSION;
-  const auto scene = load_scene(request.scene);
-  if (!scene) return scene.error();
-  if (request.train.empty() && !request.test.empty()) {
+Status run(const Arguments& arguments) {
+  if (arguments.train.empty() && !arguments.test.empty()) {
     return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
   }
-  std::vector<std::string> recordings = request.train;
-  recordings.insert(recordings.end(), request.test.begin(), request.test.end());
-  if (const auto checked = check_before_use(recordings, check_request(*scene)); !checked) return checked.error();
+  const auto scene = load_scene(arguments.scene);
+  if (!scene) return scene.error();
+  std::vector<std::string> paths = arguments.train;
+  paths.insert(paths.end(), arguments.test.begin(), arguments.test.end());
+  auto checked = check_before_use(paths, check_request(*scene));
+  if (!checked) return checked.error();
+  ReportRequest request{*scene, {}, {}, arguments.quick, arguments.out, arguments.force, command_line(arguments),
+                        "palpate " PALPATE_VERSION};
+  for (std::size_t i = 0; i < checked->size(); ++i) {
+    (i < arguments.train.size() ? request.train : request.test)
+        .push_back(std::make_shared<const Recording>(std::move((*checked)[i].recording)));
+  }
   const Result<std::string> answer = [&] {
     ProgressLine line("reporting");
     FitControl control;
@@ -50,15 +69,15 @@ Status run(ReportRequest request) {
 
 void add_report(CLI::App& app, Verbs& verbs) {
   CLI::App* verb = app.add_subcommand("report", "Fit every method, measure speed and error, write a page");
-  const auto request = std::make_shared<ReportRequest>();
-  verb->add_option("--train", request->train, "Recordings to train on; none: the virtual silicone")->type_name("CSV");
-  verb->add_option("--test", request->test, "Recordings to test on; none: k-fold over the training recordings")
+  const auto arguments = std::make_shared<Arguments>();
+  verb->add_option("--train", arguments->train, "Recordings to train on; none: the virtual silicone")->type_name("CSV");
+  verb->add_option("--test", arguments->test, "Recordings to test on; none: k-fold over the training recordings")
       ->type_name("CSV");
-  verb->add_option("--scene", request->scene, "Scene whose features and JND line count")->capture_default_str();
-  verb->add_option("--out", request->out, "Folder to make")->required()->type_name("DIR");
-  verb->add_flag("--quick", request->quick, "Fewer models: some 10 seconds instead of a minute");
-  verb->add_flag("--force", request->force, "Replace an earlier report");
-  verbs.emplace_back(verb, [request] { return run(*request); });
+  verb->add_option("--scene", arguments->scene, "Scene whose features and JND line count")->capture_default_str();
+  verb->add_option("--out", arguments->out, "Folder to make")->required()->type_name("DIR");
+  verb->add_flag("--quick", arguments->quick, "Fewer models: some 10 seconds instead of a minute");
+  verb->add_flag("--force", arguments->force, "Replace an earlier report");
+  verbs.emplace_back(verb, [arguments] { return run(*arguments); });
 }
 
 }  // namespace palpate::cli

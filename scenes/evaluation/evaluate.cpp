@@ -45,13 +45,13 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
     const std::size_t end = std::min(first + kMaxModels, models.size());
     ForceModels batch;
     for (std::size_t i = first; i < end; ++i) batch.push_back(models[i].model);
-    StrokeCounter strokes(rows.seconds);
+    StrokeCounter strokes;
     const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
       if (first == 0 && also) also(row, snapshot, tick);
-      const bool begins = strokes.begins_block(row.time_s, snapshot.in_contact);
+      const bool begins = strokes.begins_stroke(row.time_s, snapshot.in_contact);
       if (!snapshot.in_contact || row.time_s < request.counted_s.low || row.time_s >= request.counted_s.high) return;
       const auto add = [&](ModelErrors& errors, double model_N, bool out_of_domain) {
-        if (begins) errors.begin_block(strokes.begins_stroke());
+        if (begins) errors.begin_stroke();
         errors.add(model_N, row.force_N, out_of_domain);
       };
       if (first == 0) add(passed.no_force, 0.0, false);
@@ -74,11 +74,9 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
 }  // namespace
 
 RowSource rows_of(const Recording& recording) {
-  const double seconds = recording.rows.empty() ? 0.0 : recording.rows.back().time_s - recording.rows.front().time_s;
   return {[&recording](const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m) {
             return replay(recording, models, visitor, surface_offset_m);
-          },
-          seconds};
+          }};
 }
 
 RowSource rows_of_file(const std::string& path) {
@@ -96,14 +94,15 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
   const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     const ToolSample sample = tool_sample(row);
     surface_rows.add({sample, tick.motion(), row.force_N});
-    if (snapshot.in_contact && result.timing.size() < kTimedSamples) result.timing.push_back(sample);
+    if (snapshot.in_contact && result.timing.samples.size() < kTimedSamples)
+      result.timing.samples.push_back(sample);
     if (request.also) request.also(row, snapshot, tick);
   };
   const auto recorded = pass_over(rows, models, 0.0, request, 0.0, visitor);
   if (!recorded) return recorded.error();
   result.samples = recorded->summary.samples;
   result.contact_samples = recorded->no_force.summary().samples;
-  result.sensor = recorded->summary.sensor;
+  result.timing.sensor = recorded->summary.sensor;
   result.no_force = recorded->no_force;
   for (std::size_t i = 0; i < models.size(); ++i) {
     result.models.push_back({recorded->errors[i], recorded->errors[i], recorded->bounds[i].predicted(), {}});

@@ -33,7 +33,6 @@ struct EvaluatedModel {
 struct RowSource {
   std::function<Result<ReplaySummary>(const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m)>
       replay;
-  double seconds = std::numeric_limits<double>::infinity();  // its length, where that is known
 };
 RowSource rows_of(const Recording& recording);    // which outlives it
 RowSource rows_of_file(const std::string& path);  // in bounded memory
@@ -59,17 +58,15 @@ struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
   PredictedErrors predicted;  // with the surface moved
-  Located surface;            // told or not
+  Located surface;            // identified or not
 };
 
 struct RecordingEvaluation {
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
   std::vector<ModelEvaluation> models;
-  ModelErrors no_force{JndLine{}};  // of a model that always says 0 N, as recorded, at the first model's JND
-  // To time models on (model_timing.h).
-  SensorSpec sensor;
-  std::vector<ToolSample> timing;
+  ModelErrors no_force{JndLine{}};      // of a model that always says 0 N, as recorded, at the first model's JND
+  TimedSamples timing;                  // to time models on
 };
 
 // One evaluation a model, in their order. Errors: those of the rows; interrupted.

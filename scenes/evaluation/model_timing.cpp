@@ -10,50 +10,88 @@ namespace palpate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using ModelPointer = std::shared_ptr<const ForceModel>;
+constexpr std::size_t kBlock = 64;
 
-// The means of `step(index)` over every block of indices below `count`.
+// Appends the mean time of `step(index)` over every block of indices below `count`.
 template <typename Step>
-Timing blocks_of(std::size_t count, const Step& step) {
-  const std::size_t block = std::min<std::size_t>(count, 64);
-  std::vector<double> means_ns;
+void add_blocks(std::size_t count, std::vector<double>& means_ns, const Step& step) {
+  const std::size_t block = std::min(count, kBlock);
   for (std::size_t first = 0; first + block <= count; first += block) {
     const auto start = Clock::now();
     for (std::size_t i = first; i < first + block; ++i) step(i);
     const std::chrono::duration<double, std::nano> elapsed = Clock::now() - start;
     means_ns.push_back(elapsed.count() / static_cast<double>(block));
   }
-  std::sort(means_ns.begin(), means_ns.end());
-  // Nearest rank.
-  const auto percentile = [&](std::size_t percent) { return means_ns[(means_ns.size() * percent + 99) / 100 - 1]; };
-  return {percentile(50), percentile(99)};
+}
+
+// Nearest rank, of values in ascending order.
+double percentile(const std::vector<double>& sorted, std::size_t percent) {
+  return sorted[(sorted.size() * percent + 99) / 100 - 1];
+}
+
+// A round of one model.
+struct Round {
+  std::vector<double> tick_ns;
+  std::vector<double> evaluation_ns;
+};
+
+Round time_round(const ModelPointer& model, const std::vector<TimedSamples>& stretches) {
+  Round round;
+  double force_N = 0.0;
+  for (const TimedSamples& stretch : stretches) {
+    if (stretch.samples.empty()) continue;
+    // Once for the features, which also warms caches and the clock.
+    std::vector<std::array<double, kMaxFeatures>> features;
+    HapticsTick first(stretch.sensor, {model});
+    for (const ToolSample& one : stretch.samples) {
+      first.step(one);
+      features.push_back(first.features_of(0).values);
+    }
+    HapticsTick tick(stretch.sensor, {model});
+    add_blocks(features.size(), round.tick_ns,
+               [&](std::size_t i) { force_N = tick.step(stretch.samples[i]).force_N[0]; });
+    add_blocks(features.size(), round.evaluation_ns, [&](std::size_t i) {
+      std::array<double, kMaxFeatures> x = features[i];
+      x[0] += 0.0 * force_N;  // nothing changes but the order of things
+      force_N = model->evaluate(x.data()).force_N;
+    });
+  }
+  // The forces are used, or the calls might be left out.
+  volatile double wanted = force_N;
+  static_cast<void>(wanted);
+  std::sort(round.tick_ns.begin(), round.tick_ns.end());
+  std::sort(round.evaluation_ns.begin(), round.evaluation_ns.end());
+  return round;
+}
+
+Timing timing_of(const std::vector<Round>& rounds, std::vector<double> Round::*times) {
+  std::vector<double> medians;
+  std::vector<double> p99s;
+  for (const Round& round : rounds) {
+    medians.push_back(percentile(round.*times, 50));
+    p99s.push_back(percentile(round.*times, 99));
+  }
+  std::sort(medians.begin(), medians.end());
+  std::sort(p99s.begin(), p99s.end());
+  return {percentile(medians, 50), medians.front(), medians.back(), percentile(p99s, 50)};
 }
 
 }  // namespace
 
-ModelTiming time_model(const std::shared_ptr<const ForceModel>& model, const SensorSpec& sensor,
-                       const std::vector<ToolSample>& samples) {
-  if (samples.empty()) return {};
-  // Once for the features, which also warms caches and the clock.
-  std::vector<std::array<double, kMaxFeatures>> features;
-  HapticsTick first(sensor, {model});
-  for (const ToolSample& one : samples) {
-    first.step(one);
-    features.push_back(first.features_of(0).values);
+std::vector<ModelTiming> time_models(const std::vector<ModelPointer>& models,
+                                     const std::vector<TimedSamples>& stretches) {
+  std::vector<ModelTiming> timings(models.size());
+  const bool anything =
+      std::any_of(stretches.begin(), stretches.end(), [](const TimedSamples& one) { return !one.samples.empty(); });
+  if (!anything) return timings;
+  std::vector<std::vector<Round>> rounds(models.size());
+  for (int round = 0; round < kTimingRounds; ++round) {
+    for (std::size_t i = 0; i < models.size(); ++i) rounds[i].push_back(time_round(models[i], stretches));
   }
-  ModelTiming timing;
-  double force_N = 0.0;
-  HapticsTick tick(sensor, {model});
-  timing.tick = blocks_of(samples.size(), [&](std::size_t i) { force_N = tick.step(samples[i]).force_N[0]; });
-  timing.evaluation = blocks_of(features.size(), [&](std::size_t i) {
-    std::array<double, kMaxFeatures> x = features[i];
-    x[0] += 0.0 * force_N;  // nothing changes but the order of things
-    force_N = model->evaluate(x.data()).force_N;
-  });
-  // Somebody has to want the forces, or the calls might be left out.
-  volatile double wanted = force_N;
-  static_cast<void>(wanted);
-  timing.measured = true;
-  return timing;
+  for (std::size_t i = 0; i < models.size(); ++i)
+    timings[i] = {timing_of(rounds[i], &Round::tick_ns), timing_of(rounds[i], &Round::evaluation_ns), true};
+  return timings;
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include "engine/base/csv_scanner.h"
 #include "engine/base/text.h"
 #include "engine/base/whole_file.h"
+#include "scenes/plot/layout.h"
 #include "scenes/scene/assets.h"
 
 namespace palpate {
@@ -16,6 +17,11 @@ constexpr int kPageWidth = 800;  // pixels
 constexpr int kRowHeight = 230;
 constexpr int kLegendLine = 20;
 constexpr double kCharacter = 9.8;  // pixels, in which an offset in characters counts
+// Room for a label of a tic and for a name, pixels; of the height of a row the panel itself has about this share.
+constexpr double kTicWidth = 90.0;
+constexpr double kTicHeight = 28.0;
+constexpr double kTagHeight = 17.0;
+constexpr double kPanelShare = 0.65;
 
 std::string number(double value) { return std::isfinite(value) ? shortest(value) : "NaN"; }
 
@@ -37,81 +43,35 @@ std::string data_name(std::size_t panel, std::size_t series) {
 }
 
 std::string data_block(const Series& series, const std::string& name) {
+  const bool bars = series.mark == Mark::bars || series.mark == Mark::hollow_bars;
+  const auto or_else = [](double value, double other) { return number(std::isfinite(value) ? value : other); };
   std::string text = name + " << END\n";
   for (const PlotRow& row : series.rows) {
     // A row without a y breaks the line.
     const bool gap = !std::isfinite(row.y) && !std::isfinite(row.low);
-    text += gap ? "\n" : number(row.x) + " " + number(row.y) + " " + number(row.low) + " " + number(row.high) + "\n";
+    if (gap) {
+      text += "\n";
+    } else if (bars) {
+      text += number(row.x) + " " + number(row.y) + " " + or_else(row.left, row.x) + " " + or_else(row.right, row.x) +
+              " " + or_else(row.low, row.y) + " " + or_else(row.high, row.y) + "\n";
+    } else {
+      text += number(row.x) + " " + number(row.y) + " " + number(row.low) + " " + number(row.high) + "\n";
+    }
   }
   return text + "END\n";
 }
 
-// Of a logarithmic axis: every decade is labelled; where there are few, 2 and 5 as well, and where there is
-// hardly one, what lies between.
-std::string log_tics(const char* axis, double low, double high) {
-  const bool few = high / low < 50.0;
-  const bool hardly = high / low < 5.0;
-  const bool many = high / low > 1e7;
-  std::string tics;
-  for (int decade = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, decade) <= high; ++decade) {
-    for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
-      const double at = step * std::pow(10.0, decade);
-      const bool wanted = step == 1.0 ? !many || decade % 2 == 0 : step == 2.0 || step == 5.0 ? few : hardly;
-      if (at < low * 0.999 || at > high * 1.001 || !wanted) continue;
-      tics += (tics.empty() ? "" : ", ") + number(at);
-    }
-  }
-  return std::string("set ") + axis + "tics (" + tics + ")\n";
-}
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-};
-
-// Of an axis: what is asked for, and else what the data and the named lines have.
-Range range_of(const Panel& panel, bool vertical, const Axis& axis) {
-  Range range;
-  const auto include = [&](double value) {
-    if (!std::isfinite(value) || (axis.logarithmic && value <= 0.0)) return;
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  };
-  for (const Series& series : panel.series) {
-    for (const PlotRow& row : series.rows) {
-      include(vertical ? row.y : row.x);
-      if (!vertical) continue;
-      include(row.low);
-      include(row.high);
-    }
-  }
-  for (const Level& level : panel.levels) {
-    if (level.vertical != vertical) include(level.value);
-  }
-  if (!(range.low <= range.high)) range = axis.logarithmic ? Range{0.1, 10.0} : Range{0.0, 1.0};
-  if (axis.logarithmic) {
-    range.low /= 1.25;
-    range.high *= 1.25;
-  } else {
-    const double room = 0.04 * (range.high - range.low) + (range.high == range.low ? 0.5 : 0.0);
-    range.low = range.low >= 0.0 && range.low < 0.3 * range.high ? 0.0 : range.low - room;
-    range.high += room;
-  }
-  if (std::isfinite(axis.low)) range.low = axis.low;
-  if (std::isfinite(axis.high)) range.high = axis.high;
-  return range;
-}
-
-std::string axis_text(const char* name, const Axis& axis, const Range& range) {
+std::string axis_text(const char* name, const Axis& axis, const AxisRange& range, std::size_t most_tics) {
   const std::string letter(name);
   std::string text = (axis.logarithmic ? "set logscale " : "unset logscale ") + letter + "\n";
   text += "set " + letter + "range [" + number(range.low) + ":" + number(range.high) + "]\n";
   text += "set " + letter + "label " + quoted(axis.title) + "\n";
-  if (!axis.logarithmic) return text + "set " + letter + "tics autofreq\nset format " + letter + " \"%g\"\n";
   // Counts of thousands and more would run into each other.
   const std::string plain = range.high < 1e4 ? "%g" : "%.0s%c";
-  text += "set format " + letter + " \"" + (axis.unit.empty() ? plain : "%.0s %c" + axis.unit) + "\"\n";
-  return text + log_tics(name, range.low, range.high);
+  const std::string format = axis.logarithmic && !axis.unit.empty() ? "%.0s %c" + axis.unit : plain;
+  std::string tics;
+  for (const double at : tics_of(axis, range, most_tics)) tics += (tics.empty() ? "" : ", ") + number(at);
+  return text + "set format " + letter + " \"" + format + "\"\nset " + letter + "tics (" + tics + ")\n";
 }
 
 // How a mark is drawn, a variable of style.gp, and what stands for it in the legend.
@@ -121,7 +81,8 @@ struct MarkStyle {
 };
 constexpr MarkStyle kMarks[] = {{"line", "— "},   {"dashed", "– – "}, {"points", "● "},
                                 {"hollow", "○ "}, {"curve", "● "},    {"hollow_curve", "○ "},
-                                {"bars", "● "},   {"plus", "● "},     {"area", "■ "}};
+                                {"bars", "● "},   {"hollow_bars", "○ "}, {"up", "▲ "},
+                                {"down", "▼ "},   {"area", "■ "}};
 
 const MarkStyle& style_of(const Series& series) { return kMarks[static_cast<std::size_t>(series.mark)]; }
 
@@ -130,30 +91,44 @@ std::string drawn_with(const Series& series) {
   return std::string(1, '@').append(style_of(series).style) + hue;
 }
 
-// A line across and its name: beside the panel, where no curve is, or at the upper end of one that stands.
+// A line across, and the name of one that stands, at its upper end.
 std::string level_text(const Level& level) {
   const std::string at = number(level.value);
   const std::string ends = level.vertical ? " from first " + at + ", graph 0 to first " + at + ", graph 1"
                                           : " from graph 0, first " + at + " to graph 1, first " + at;
-  const std::string place = level.vertical ? " at first " + at + ", graph 1 right offset character -0.5,-0.7"
-                                           : " at graph 1, first " + at + " left offset character 0.5,0";
-  return "set arrow" + ends + " nohead dashtype 2 linewidth 1.5 linecolor rgb muted\nset label " + quoted(level.text) +
-         place + " textcolor rgb muted\n";
+  const std::string line = "set arrow" + ends + " nohead dashtype 2 linewidth 1.5 linecolor rgb muted\n";
+  if (!level.vertical) return line;
+  return line + "set label " + quoted(level.text) + " at first " + at +
+         ", graph 1 right offset character -0.5,-0.7 textcolor rgb muted\n";
 }
 
-// Room for the names of the lines across, beside the panel.
-int right_margin(const Panel& panel) {
-  std::size_t longest = 0;
-  for (const Level& level : panel.levels) longest = std::max(longest, level.vertical ? 0 : level.text.size());
-  return static_cast<int>(std::max<std::size_t>(3, longest + 1));
+std::string tag_text(const NameTag& tag) {
+  const bool left = tag.beside_panel || tag.x < 0.7;
+  return "set label " + quoted(tag.text) + " at graph " + number(tag.x) + ", graph " + number(tag.y) +
+         (left ? " left offset character 0.7,0" : " right offset character -0.7,0") + " textcolor rgb " +
+         colour_of(tag.colour) + "\n";
 }
 
-std::string panel_text(const Panel& panel, std::size_t index) {
+// Room for the names beside the panel.
+int right_margin(const std::vector<NameTag>& tags) {
+  std::size_t longest = 2;
+  for (const NameTag& tag : tags) longest = std::max(longest, tag.beside_panel ? tag.text.size() : 0);
+  return static_cast<int>(longest + 1);
+}
+
+struct PanelSize {
+  double width = 0.0;  // pixels
+  double height = 0.0;
+};
+
+std::string panel_text(const Panel& panel, std::size_t index, const PanelSize& size) {
   std::string text = "set title " + quoted(panel.title) + "\n";
-  text += axis_text("x", panel.x, range_of(panel, false, panel.x)) +
-          axis_text("y", panel.y, range_of(panel, true, panel.y));
-  text += "set rmargin " + std::to_string(right_margin(panel)) + "\n";
+  text += axis_text("x", panel.x, range_of(panel, false), static_cast<std::size_t>(size.width / kTicWidth)) +
+          axis_text("y", panel.y, range_of(panel, true), static_cast<std::size_t>(size.height / kTicHeight));
+  const std::vector<NameTag> tags = name_tags(panel, kTagHeight / size.height, kCharacter / size.width);
+  text += "set rmargin " + std::to_string(right_margin(tags)) + "\n";
   for (const Level& level : panel.levels) text += level_text(level);
+  for (const NameTag& tag : tags) text += tag_text(tag);
   std::string curves;
   for (const bool area : {true, false}) {  // grey is behind everything, so first
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
@@ -178,7 +153,8 @@ Legend legend_of(const Plot& plot) {
   int column = 0;
   for (const Panel& panel : plot.panels) {
     for (const Series& series : panel.series) {
-      if (series.name.empty() || !seen.insert(series.name).second) continue;
+      const bool at_end = panel.names_at_ends && series.mark != Mark::area;
+      if (series.name.empty() || at_end || !seen.insert(series.name).second) continue;
       const int length = static_cast<int>(series.name.size()) + 4;
       if (legend.lines == 0 || column + length > most) {
         ++legend.lines;
@@ -196,7 +172,12 @@ Legend legend_of(const Plot& plot) {
 
 }  // namespace
 
-Result<std::string> plot_script(const Plot& plot) {
+Result<std::string> plot_script(const Plot& asked) {
+  Plot plot = asked;
+  for (Panel& panel : plot.panels) {
+    std::vector<Series> marks = cut_marks(panel);
+    panel.series.insert(panel.series.end(), marks.begin(), marks.end());
+  }
   const auto assets = find_assets();
   if (!assets) return assets.error();
   const std::string path = *assets + "/figures/style.gp";
@@ -206,6 +187,7 @@ Result<std::string> plot_script(const Plot& plot) {
   const int rows = (static_cast<int>(plot.panels.size()) + plot.columns - 1) / plot.columns;
   const int height = static_cast<int>(rows * kRowHeight * plot.height) + kLegendLine * legend.lines;
   std::string text = "# gnuplot " + plot.name + ".gp draws " + plot.name + ".svg and " + plot.name + ".png here.\n";
+  const PanelSize size{plot.width * kPageWidth / plot.columns - 100.0, kPanelShare * kRowHeight * plot.height};
   text += "width = " + std::to_string(static_cast<int>(plot.width * kPageWidth)) +
           "\nheight = " + std::to_string(height) + "\n" + *style;
   for (std::size_t p = 0; p < plot.panels.size(); ++p) {
@@ -221,7 +203,7 @@ Result<std::string> plot_script(const Plot& plot) {
     text += "eval " + std::string(medium) + "\nset output '" + plot.name + "." + medium + "'\n";
     text += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(plot.columns) + room + "\n";
     text += legend.text;
-    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p);
+    for (std::size_t p = 0; p < plot.panels.size(); ++p) text += panel_text(plot.panels[p], p, size);
     text += "unset multiplot\nunset output\n";
   }
   return text;

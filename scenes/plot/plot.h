@@ -1,8 +1,9 @@
 // A figure as data: panels of series against two axes. Out comes one gnuplot script that
 // holds its own data and draws NAME.svg and NAME.png wherever it is run.
 //
-// Layout is gnuplot's own. Names stand in one legend above the panels, in their colours, wherever curves end
-// and however large forces are; tics of logarithmic axes carry SI prefixes (300 mN, 2 us, 3 kN).
+// Names stand at the ends of curves where a panel asks for it, else in one legend above the panels, in their
+// colours; tics of logarithmic axes carry SI prefixes (300 mN, 2 us, 3 kN). What leaves an axis whose range was
+// given is marked at the edge (layout.h).
 // Type, tics and neutral colours: assets/figures/style.gp.
 // Thread guarantee: value types and pure functions; plot_script reads the asset.
 #pragma once
@@ -32,17 +33,21 @@ enum class Mark {
   hollow,        // points with the paper inside
   curve,         // a line through points
   hollow_curve,  // likewise
-  bars,          // points with a vertical bar from `low` to `high`
-  plus,          // small and thin, beside what counts
+  bars,          // points with bars from `low` to `high` and from `left` to `right`
+  hollow_bars,   // likewise
+  up,            // small triangles at the edge
+  down,
   area,          // grey, from `low` to `high` at each x
 };
 
-// x and y; what bars and area go from and to. NaN: a gap.
+// x and y; what bars and area go from and to. NaN: a gap; of bars: none.
 struct PlotRow {
   double x = 0.0;
   double y = 0.0;
   double low = kNoValue;
   double high = kNoValue;
+  double left = kNoValue;
+  double right = kNoValue;
 };
 
 struct Series {
@@ -73,6 +78,7 @@ struct Panel {
   Axis y;
   std::vector<Series> series;
   std::vector<Level> levels;
+  bool names_at_ends = false;
 };
 
 struct Plot {

@@ -1,10 +1,11 @@
 #include "scenes/report/figures.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
+#include <cmath>
+#include <utility>
 
 #include "engine/base/text.h"
+#include "scenes/plot/layout.h"
 
 namespace palpate {
 namespace {
@@ -35,94 +36,36 @@ std::vector<Kind> kinds_of(const ReportData& data) {
   return kinds;
 }
 
-// Every method by its name and colour, once; hollow stands for the recipe of 2009.
-void add_legend(Panel& panel, const ReportData& data) {
-  for (const Kind& kind : kinds_of(data)) {
-    if (kind.first == Recipe::paper) continue;
-    PlannedModel plan;
-    plan.request.method = kind.second;
-    panel.series.push_back({kind.second->label, model_colour(plan), Mark::points, {}});
-  }
-  panel.series.push_back({"hollow: recipe of 2009", kInkColour, Mark::hollow, {}});
-}
+using BinFigure = double (*)(const ForceBin&);
 
-using BinFigure = std::function<double(const ForceBin&)>;
-
-Panel force_panel(const ReportData& data, const std::string& title, Recipe recipe, bool over_jnd,
-                  const BinFigure& figure) {
+// Error against force of one recipe's methods, with the trend beside this program's.
+Panel force_panel(const ReportData& data, const std::string& title, Recipe recipe, BinFigure figure) {
   Panel panel;
-  panel.title = title;
+  panel.title = title + (recipe == Recipe::paper ? ", recipe of 2009" : ", Palpate");
   panel.x.title = "Measured force [N]";
-  panel.y.logarithmic = true;
-  panel.y.title = over_jnd ? "Error [JND]" : "Error";
-  panel.y.unit = over_jnd ? "" : "N";
-  double largest_N = 0.0;
-  for (const ModelResult& one : data.models) {
+  panel.y = {"Error [JND]", "", true};
+  panel.names_at_ends = true;
+  panel.levels.push_back({1.0, "1 JND"});
+  for (const std::size_t i : data.choice.candidates) {
+    const ModelResult& one = data.models[i];
     const bool trend = one.plan.recipe == Recipe::trend && recipe == Recipe::palpate;
-    if (!one.model || !one.plan.main || (one.plan.recipe != recipe && !trend)) continue;
-    Series series{"", model_colour(one.plan), recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve, {}};
+    if (one.plan.recipe != recipe && !trend) continue;
+    Series series{one.plan.request.method->label, model_colour(one.plan),
+                  recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve, {}};
     for (const ForceBin& bin : one.errors.bins) {
-      if (bin.count < kFewSamples) continue;
-      series.rows.push_back({bin.mean_force_N, figure(bin)});
-      largest_N = std::max(largest_N, bin.mean_force_N);
+      if (bin.count >= kFewSamples) series.rows.push_back({bin.mean_force_N, figure(bin)});
     }
     panel.series.push_back(std::move(series));
-  }
-  if (over_jnd) {
-    panel.levels.push_back({1.0, "1 JND"});
-  } else {
-    panel.series.push_back(
-        {"", kMutedColour, Mark::dashed, {{0.0, data.jnd.at(0.0)}, {largest_N, data.jnd.at(largest_N)}}});
   }
   return panel;
 }
 
 // The same scale for both recipes, side by side.
 void share_scale(Panel& one, Panel& other) {
-  double low = 1e300;
-  double high = 0.0;
-  const auto include = [&](double value) {
-    if (value > 0.0) low = std::min(low, value);
-    high = std::max(high, value);
-  };
-  for (const Panel* panel : {&one, &other}) {
-    for (const Series& series : panel->series) {
-      for (const PlotRow& row : series.rows) include(row.y);
-    }
-    for (const Level& level : panel->levels) include(level.value);
-  }
-  if (!(low < high)) return;
-  one.y.low = other.y.low = low / 1.3;
-  one.y.high = other.y.high = high * 1.3;
-}
-
-Panel jnd_panel(const ReportData& data, double largest_N) {
-  Panel panel;
-  panel.title = "3  the JND that errors are judged by";
-  panel.x.title = "Force [N]";
-  panel.y = {"JND", "N", true};
-  Series line{"", kInkColour, Mark::line, {}};
-  for (int i = 0; i <= 50; ++i) line.rows.push_back({largest_N * i / 50.0, data.jnd.at(largest_N * i / 50.0)});
-  panel.series.push_back(std::move(line));
-  return panel;
-}
-
-Panel fit_time_panel(const ReportData& data) {
-  Panel panel;
-  panel.title = "8  time of a fit";
-  panel.x = {"Centres, or nodes of the grid", "", true};
-  panel.y = {"Time", "s", true};
-  for (const Kind& kind : kinds_of(data)) {
-    if (kind.first == Recipe::trend) continue;
-    Series series;
-    for (const ModelResult* one : of_kind(data, kind)) {
-      series.colour = model_colour(one->plan);
-      series.rows.push_back({static_cast<double>(one->size), one->fit_seconds});
-    }
-    series.mark = kind.first == Recipe::paper ? Mark::hollow_curve : Mark::curve;
-    panel.series.push_back(std::move(series));
-  }
-  return panel;
+  const AxisRange first = range_of(one, true);
+  const AxisRange second = range_of(other, true);
+  one.y.low = other.y.low = std::min(first.low, second.low);
+  one.y.high = other.y.high = std::max(first.high, second.high);
 }
 
 }  // namespace
@@ -136,27 +79,30 @@ Figure speed_figure(const ReportData& data) {
   Panel panel;
   panel.x = {"Time of a whole tick, log", "s", true};
   panel.y = {"99 % of the errors are below [JND], log", "", true};
-  add_legend(panel, data);
+  panel.names_at_ends = true;
   double slowest_s = 0.0;
   double least = 1e300;
   for (const Kind& kind : kinds_of(data)) {
-    const bool hollow = kind.first == Recipe::paper;
-    Series curve{"", kInkColour, hollow ? Mark::hollow_curve : Mark::curve, {}};
+    Series curve{"", kInkColour, Mark::line, {}};
     for (const ModelResult* one : of_kind(data, kind)) {
       if (!one->time.measured) continue;
-      const double tick_s = 1e-9 * one->time.tick.median_ns;
-      const double error = one->errors.p99_error_over_jnd;
-      slowest_s = std::max(slowest_s, tick_s);
-      least = error > 0.0 ? std::min(least, error) : least;
+      slowest_s = std::max(slowest_s, 1e-9 * one->time.tick.high_ns);
+      least = std::min(least, std::max(one->errors.p99_error_over_jnd, 1e-6));
       curve.colour = model_colour(one->plan);
-      curve.rows.push_back({tick_s, error});
-      if (!one->plan.main) continue;
-      const Interval interval = one->errors.p99_interval();
-      panel.series.push_back({"", curve.colour, Mark::plus, {{1e-9 * one->time.evaluation.median_ns, error}}});
-      panel.series.push_back(
-          {"", curve.colour, hollow ? Mark::hollow : Mark::bars, {{tick_s, error, interval.low, interval.high}}});
+      curve.rows.push_back({1e-9 * one->time.tick.median_ns, one->errors.p99_error_over_jnd});
     }
     panel.series.push_back(std::move(curve));
+  }
+  for (const std::size_t i : headline_models(data)) {
+    const ModelResult& one = data.models[i];
+    if (!one.time.measured) continue;
+    const Interval interval = one.errors.p99_interval();
+    const Timing& tick = one.time.tick;
+    panel.series.push_back({one.plan.name,
+                            model_colour(one.plan),
+                            one.plan.recipe == Recipe::paper ? Mark::hollow_bars : Mark::bars,
+                            {{1e-9 * tick.median_ns, one.errors.p99_error_over_jnd, interval.low, interval.high,
+                              1e-9 * tick.low_ns, 1e-9 * tick.high_ns}}});
   }
   panel.levels.push_back({1.0, "1 JND"});
   if (data.floor.p99_error_over_jnd > 0.3 * least) panel.levels.push_back({data.floor.p99_error_over_jnd, "noise"});
@@ -170,11 +116,9 @@ Figure speed_figure(const ReportData& data) {
   figure.plot.height = 1.9;
   figure.plot.panels = {std::move(panel)};
   figure.caption =
-      "Down is better, left is faster; below 1 JND a hand notices nothing; noise: of the force sensor. A curve: one "
-      "method "
-      "with more and more centres. Bars: 95 % by strokes, of 100 "
-      "centres; models that are tied are told by their paired difference in the table, not by bars. +: the "
-      "bare evaluation, without motion estimate and features.";
+      "Down is better, left is faster; below 1 JND a hand notices nothing; noise: of the force sensor. Dots: the table; "
+      "hollow: the recipe of 2009. Bars: six rounds of timing, and 95 % of the error where there are units enough; "
+      "models are compared by their paired difference, not by bars. Lines: one method with more and more centres.";
   return figure;
 }
 
@@ -182,9 +126,10 @@ Figure worst_figure(const ReportData& data) {
   Figure figure;
   const WorstStretch& worst = data.worst;
   Panel force;
-  force.title = worst.recording;
-  force.y.title = "Force [N]";
   Panel difference;
+  force.title = worst.recording;
+  force.names_at_ends = difference.names_at_ends = true;
+  force.y.title = "Force [N]";
   difference.x.title = "Time [s]";
   difference.y.title = "Difference [JND]";
   Series band{"within 1 JND", kMutedColour, Mark::area, {}};
@@ -207,12 +152,12 @@ Figure worst_figure(const ReportData& data) {
       if (i == 0 && row.in_contact) largest = std::max(largest, std::abs(over));
     }
   }
-  // The chosen model decides the scale; what another does beyond it is cut.
+  // The recommended model decides the scale; what another does beyond it is cut, and marked.
   difference.y.low = -1.5 * largest;
   difference.y.high = 1.5 * largest;
   force.series = {std::move(measured)};
   difference.series = {std::move(band)};
-  // The chosen one on top.
+  // The recommended one on top.
   for (std::size_t i = said.size(); i-- > 0;) {
     force.series.push_back(std::move(said[i]));
     difference.series.push_back(std::move(differs[i]));
@@ -228,49 +173,29 @@ Figure worst_figure(const ReportData& data) {
   figure.plot.height = 0.8;
   figure.caption =
       "The worst " + three_digits(worst.rows.empty() ? 0.0 : worst.rows.back().time_s - worst.rows.front().time_s) +
-      " s of " + data.models[data.choice.chosen].plan.name + " (largest mean squared error over the JND): RMS " +
+      " s of " + data.models[data.choice.recommended].plan.name + " (largest mean squared error over the JND): RMS " +
       three_digits(std::sqrt(std::max(0.0, worst.score))) +
       " JND. Below: model less measurement; grey is what a hand cannot notice.";
   return figure;
 }
 
-Figure paper_figure(const ReportData& data) {
-  struct Row {
-    const char* title;
-    bool over_jnd;
-    BinFigure figure;
-  };
-  const std::vector<Row> rows{
-      {"4  mean + deviation", false, [](const ForceBin& bin) { return bin.mean_abs_error_N + bin.std_abs_error_N; }},
-      {"5  the same over the JND", true,
-       [](const ForceBin& bin) { return bin.mean_error_over_jnd + bin.std_error_over_jnd; }},
-      {"6  maximum", false, [](const ForceBin& bin) { return bin.max_abs_error_N; }},
-      {"7  the same over the JND", true, [](const ForceBin& bin) { return bin.max_error_over_jnd; }}};
+Figure force_figure(const ReportData& data) {
+  const std::pair<const char*, BinFigure> rows[] = {
+      {"Mean + deviation", [](const ForceBin& bin) { return bin.mean_error_over_jnd + bin.std_error_over_jnd; }},
+      {"Maximum", [](const ForceBin& bin) { return bin.max_error_over_jnd; }}};
   Figure figure;
-  for (const Row& row : rows) {
-    Panel paper =
-        force_panel(data, std::string(row.title) + ", recipe of 2009", Recipe::paper, row.over_jnd, row.figure);
-    Panel palpate = force_panel(data, std::string(row.title) + ", Palpate", Recipe::palpate, row.over_jnd, row.figure);
+  for (const auto& [title, value] : rows) {
+    Panel paper = force_panel(data, title, Recipe::paper, value);
+    Panel palpate = force_panel(data, title, Recipe::palpate, value);
     share_scale(paper, palpate);
     figure.plot.panels.push_back(std::move(paper));
     figure.plot.panels.push_back(std::move(palpate));
   }
-  double largest_N = 1.0;
-  for (const RecordingFacts& facts : data.recordings) largest_N = std::max(largest_N, facts.largest_force_N);
-  figure.plot.panels.push_back(jnd_panel(data, largest_N));
-  figure.plot.panels.push_back(fit_time_panel(data));
-  add_legend(figure.plot.panels.front(), data);
-  figure.plot.panels.front().series.push_back({"JND", kMutedColour, Mark::dashed, {}});
-  figure.plot.name = "paper";
+  figure.plot.name = "error_by_force";
   figure.plot.columns = 2;
-  figure.plot.height = 0.85;
   figure.caption =
-      "Figures 3 to 8 of Hoever & Harders (2009) on these recordings, 100 centres. Where they depart from the paper's "
-      "own: "
-      "5 and 7 are over the JND here and over the force there; 4 to 7 are against force in bins two JND wide, without "
-      "bins of "
-      "fewer than 20 samples; 8 is over the number of centres here and over that of samples there. Figure 2 (cost over "
-      "the dimension) and figure 8 as it was are in build/palpate-bench.";
+      "Error over the JND against force, in bins two JND wide without those of fewer than 20 samples, 100 centres; "
+      "figures 5 and 7 of Hoever & Harders (2009) have it over the force (palpate paper draws those).";
   return figure;
 }
 

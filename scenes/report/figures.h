@@ -19,8 +19,7 @@ struct Figure {
 
 Figure speed_figure(const ReportData& data);
 Figure worst_figure(const ReportData& data);
-// Figures 3 to 8 of Hoever & Harders (2009), as small multiples.
-Figure paper_figure(const ReportData& data);
+Figure force_figure(const ReportData& data);
 
 // Its method's, in the window as well.
 Hue model_colour(const PlannedModel& plan);

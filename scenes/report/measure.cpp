@@ -8,7 +8,6 @@
 
 #include "models/fit/recipe_2009.h"
 #include "scenes/evaluation/evaluate.h"
-#include "scenes/evaluation/ranking.h"
 #include "scenes/scene/training.h"
 
 namespace palpate {
@@ -37,24 +36,6 @@ class Progress {
   double part_ = 0.0;
 };
 
-// The same recordings with surface and force zero where a fit to all of the training found them.
-std::vector<SharedRecording> at_own_surfaces(std::vector<SharedRecording> training,
-                                             const std::vector<RecordingSurface>& surfaces) {
-  for (SharedRecording& recording : training) {
-    for (const RecordingSurface& at : surfaces) {
-      if (at.name != recording->name) continue;
-      Recording moved = *recording;
-      for (RecordingRow& row : moved.rows) {
-        row.position_m -= at.offset_m;
-        row.force_N -= at.force_zero_N;
-      }
-      recording = std::make_shared<const Recording>(std::move(moved));
-      break;
-    }
-  }
-  return training;
-}
-
 struct Preparations {
   PreparedTraining paper;
   PreparedTraining palpate;
@@ -65,12 +46,6 @@ struct Fitted {
   std::shared_ptr<const FittedModel> model;
   double seconds = 0.0;
 };
-
-int evaluation_cost(const ModelResult& result) {
-  if (!result.model) return 0;
-  const bool grid = result.plan.request.method->can_take(kTakesGrid);
-  return grid ? 1 << std::min<std::size_t>(result.model->features().size(), 16) : result.size;
-}
 
 class Measurement {
  public:
@@ -91,11 +66,9 @@ class Measurement {
       data_.models[i].moved = moved_[i].summary();
     }
     data_.floor = noise_floor(tested_, scene_.jnd);
-    // With k folds every training stroke was left out once already.
-    if (recordings_.folds.size() == 1) {
-      if (const Status status = test_left_out(); !status) return status;
-    }
-    choose();
+    time_all();
+    merge_equal();
+    data_.choice = choose(data_.models);
     find_worst();
     return progress_.next(0.0).may_continue(1.0) ? Status{} : Status{interrupted()};
   }
@@ -106,15 +79,14 @@ class Measurement {
     for (const ModelResult& one : data_.models) {
       if (one.plan.recipe != Recipe::nothing) total += one.plan.request.method->expected_seconds(one.plan.request);
     }
-    return static_cast<double>(recordings_.folds.size() + 1) *
+    return static_cast<double>(recordings_.folds.size()) *
            (total + kEvaluateSeconds * static_cast<double>(data_.models.size()));
   }
 
-  Result<Preparations> prepare(const std::vector<SharedRecording>& training, Surface surface) {
+  Result<Preparations> prepare(const std::vector<SharedRecording>& training) {
     std::vector<MotionSource::Input> inputs;
     for (const SharedRecording& recording : training) inputs.push_back({"", recording});
-    TrainingRequest request = training_request(scene_);
-    request.surface = surface;
+    const TrainingRequest request = training_request(scene_);
     std::vector<PreparedTraining> made;
     for (const TrainingRequest& one : {recipe_2009_request(request), request}) {
       MotionSource source(inputs);
@@ -125,13 +97,13 @@ class Measurement {
     return Preparations{std::move(made[0]), std::move(made[1])};
   }
 
-  // Those of the planned models that are wanted; null where one is not, and for no force.
-  Result<std::vector<Fitted>> fit(const Preparations& prepared, const std::vector<bool>& wanted) {
+  // All planned models; null for no force.
+  Result<std::vector<Fitted>> fit(const Preparations& prepared) {
     std::vector<Fitted> fitted(data_.models.size());
     std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const PlannedModel& plan = data_.models[i].plan;
-      if (!wanted[i] || plan.recipe == Recipe::nothing) continue;
+      if (plan.recipe == Recipe::nothing) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
       const auto start = std::chrono::steady_clock::now();
       const PreparedTraining& on = prepared.of(plan.recipe);
@@ -140,7 +112,7 @@ class Measurement {
       if (!request.grid.empty()) request.grid.resize(on.common.features.size(), request.grid.back());
       auto one = fit_method(on, request, progress_.next(request.method->expected_seconds(request)),
                             base == bases.end() ? nullptr : &base->second.first);
-      if (!one && one.error().message == interrupted().message) return one.error();
+      if (!one && !progress_.next(0.0).may_continue(0.0)) return interrupted();
       if (!one) return Error{plan.name + ": " + one.error().message};
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       const double seconds = elapsed.count() + (base == bases.end() ? 0.0 : base->second.second);
@@ -151,12 +123,14 @@ class Measurement {
   }
 
   Status run_fold(const Split& fold) {
-    const auto prepared = prepare(fold.train, Surface::automatic);
+    const auto prepared = prepare(fold.train);
     if (!prepared) return prepared.error();
-    if (data_.worth.empty()) remember(*prepared, fold.train);
-    const auto fitted = fit(*prepared, std::vector<bool>(data_.models.size(), true));
+    if (data_.worth.empty()) remember(*prepared);
+    const auto fitted = fit(*prepared);
     if (!fitted) return fitted.error();
+    std::vector<ModelPointer>& of_fold = fitted_.emplace_back();
     for (std::size_t i = 1; i < fitted->size(); ++i) {
+      of_fold.push_back((*fitted)[i].model);
       ModelResult& result = data_.models[i];
       result.fit_seconds += (*fitted)[i].seconds / static_cast<double>(recordings_.folds.size());
       result.model = (*fitted)[i].model;
@@ -173,14 +147,13 @@ class Measurement {
     return {};
   }
 
-  void remember(const Preparations& prepared, const std::vector<SharedRecording>& training) {
+  void remember(const Preparations& prepared) {
     const Provenance& provenance = prepared.palpate.common.provenance;
     data_.surfaces = provenance.surfaces;
     data_.worth = prepared.palpate.worth;
     if (prepared.palpate.strength) data_.correction_strength = prepared.palpate.strength->strength;
     for (const RelaxationTime& one : prepared.paper.common.provenance.relaxation_times)
       data_.times_2009_s.push_back(one.time_s);
-    registered_ = at_own_surfaces(training, provenance.surfaces);
   }
 
   Status evaluate_test(const Recording& recording, double counted_from_s) {
@@ -200,81 +173,56 @@ class Measurement {
     for (std::size_t i = 0; i < models.size(); ++i) {
       recorded_[i + 1].append(result->models[i].as_recorded);
       moved_[i + 1].append(result->models[i].surface_moved);
-      data_.models[i + 1].time = time_model(models[i].model, result->sensor, result->timing);
     }
-    data_.surface_offset_m.push_back(result->models.front().surface.at);
+    timing_.push_back(result->timing);
+    data_.tested.push_back({recording.name, result->models.front().surface.at});
     tested_.push_back(&recording);
     return {};
   }
 
-  Status test_left_out() {
-    const Split part = leave_out(registered_);
-    if (part.tested.empty()) return {};
-    // Too little to learn from: nothing can be said.
-    const auto prepared = prepare(part.train, Surface::recorded);
-    if (!prepared) return {};
-    std::vector<bool> wanted;
-    for (const ModelResult& one : data_.models) wanted.push_back(one.plan.main);
-    const auto fitted = fit(*prepared, wanted);
-    if (!fitted) return fitted.error().message == interrupted().message ? Status{fitted.error()} : Status{};
-    std::vector<EvaluatedModel> models;
-    for (const Fitted& one : *fitted) {
-      if (one.model) models.push_back({one.model, scene_.jnd});
-    }
-    std::vector<ModelErrors> pooled(models.size(), ModelErrors(scene_.jnd));
-    EvaluationRequest request;
-    request.move_surface = false;
-    request.counted_s.low = part.counted_from_s;
-    for (const SharedRecording& recording : part.tested) {
-      const auto result = evaluate(rows_of(*recording), models, request);
-      if (!result) return result.error();
-      for (std::size_t k = 0; k < models.size(); ++k) pooled[k].append(result->models[k].as_recorded);
-    }
-    for (std::size_t i = 0, k = 0; i < fitted->size(); ++i) {
-      if ((*fitted)[i].model) data_.models[i].left_out = pooled[k++].evidence();
-    }
-    data_.choice.chosen_on = part.words;
-    return {};
+  void time_all() {
+    const std::vector<ModelTiming> times = time_models(fitted_.back(), timing_);
+    for (std::size_t i = 0; i < times.size(); ++i) data_.models[i + 1].time = times[i];
   }
 
-  // Among the main models, on what was left out; on the test where nothing could be.
-  void choose() {
-    std::vector<Candidate> candidates;
-    std::vector<std::size_t> which;
-    const bool left_out = std::any_of(data_.models.begin(), data_.models.end(),
-                                      [](const ModelResult& one) { return one.left_out.samples > 0; });
-    for (std::size_t i = 1; i < data_.models.size(); ++i) {
-      const ModelResult& one = data_.models[i];
-      const Evidence& evidence = left_out ? one.left_out : one.errors;
-      if (!one.plan.main || evidence.samples == 0) continue;
-      candidates.push_back({&evidence, evaluation_cost(one)});
-      which.push_back(i);
+  // Of models that give the same forces the first stays: without a correction every method is the trend, and
+  // with fewer sites than centres two sizes are one.
+  void merge_equal() {
+    for (std::size_t i = 0; i < data_.models.size(); ++i) {
+      kept_.push_back(i);
+      for (std::size_t k = 0; k + 1 < kept_.size() && data_.models[i].model; ++k) {
+        ModelResult& first = data_.models[kept_[k]];
+        if (!first.model || !recorded_[kept_[k]].equals(recorded_[i])) continue;
+        if (first.plan.name != data_.models[i].plan.name) first.same.push_back(data_.models[i].plan.name);
+        kept_.pop_back();
+        break;
+      }
     }
-    if (!left_out) data_.choice.chosen_on = "the test itself, since nothing could be left out of the training";
-    const Ranking ranking = rank(candidates);
-    data_.choice.chosen = which[ranking.chosen];
-    for (const std::size_t tied : ranking.tied) data_.choice.tied.push_back(which[tied]);
+    std::vector<ModelResult> models;
+    for (const std::size_t i : kept_) models.push_back(std::move(data_.models[i]));
+    data_.models = std::move(models);
   }
 
-  // Of the chosen model, beside the best others: the one of 2009 and the one with the smallest error.
+  // Of the recommended model, beside the 2009 recipe's and the one with the smallest error.
   void find_worst() {
-    std::vector<std::size_t> shown{data_.choice.chosen};
-    std::size_t best = data_.choice.chosen;
-    std::size_t paper = 0;
-    for (std::size_t i = 1; i < data_.models.size(); ++i) {
-      if (!data_.models[i].plan.main) continue;
-      if (data_.models[i].plan.recipe == Recipe::paper) paper = i;
+    const Choice& choice = data_.choice;
+    std::vector<std::size_t> shown{choice.recommended};
+    const auto add = [&](std::size_t i) {
+      if (std::find(shown.begin(), shown.end(), i) == shown.end()) shown.push_back(i);
+    };
+    std::size_t best = choice.recommended;
+    for (const std::size_t i : choice.candidates) {
+      if (data_.models[i].plan.recipe == Recipe::paper && data_.models[i].plan.request.method == &kGreedyMethod) add(i);
       if (data_.models[i].errors.p99_error_over_jnd < data_.models[best].errors.p99_error_over_jnd) best = i;
     }
-    for (const std::size_t more : {paper, best}) {
-      if (more > 0 && std::find(shown.begin(), shown.end(), more) == shown.end()) shown.push_back(more);
-    }
-    std::vector<ModelPointer> models;
-    for (const std::size_t i : shown) models.push_back(data_.models[i].model);
-    const Split& last = recordings_.folds.back();
-    for (const SharedRecording& recording : last.tested) {
-      WorstStretch stretch = worst_stretch(*recording, models, scene_.jnd, last.counted_from_s);
-      if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
+    add(best);
+    for (std::size_t fold = 0; fold < recordings_.folds.size(); ++fold) {
+      std::vector<ModelPointer> models;
+      for (const std::size_t i : shown) models.push_back(fitted_[fold][kept_[i] - 1]);
+      for (const SharedRecording& recording : recordings_.folds[fold].tested) {
+        WorstStretch stretch = worst_stretch(*recording, models, scene_.jnd, recordings_.folds[fold].counted_from_s);
+        if (stretch.score > data_.worst.score) data_.worst = std::move(stretch);
+      }
     }
     data_.worst.models = std::move(shown);
   }
@@ -286,7 +234,9 @@ class Measurement {
   std::vector<ModelErrors> recorded_;
   std::vector<ModelErrors> moved_;
   std::vector<const Recording*> tested_;
-  std::vector<SharedRecording> registered_;  // the training, every surface at 0
+  std::vector<std::vector<ModelPointer>> fitted_;  // a fold: of every planned model but the first
+  std::vector<TimedSamples> timing_;               // a test recording
+  std::vector<std::size_t> kept_;                  // of the plan, by index in data_.models
 };
 
 }  // namespace

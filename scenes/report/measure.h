@@ -1,5 +1,4 @@
-// Every measurement of the report: fits, errors, times, and the choice of a model, on training that was left
-// out of the fits (recordings.h). Where nothing can be, the test chooses, and the page says so.
+// Every measurement of the report: fits, errors and times. What follows from them is choice.h's.
 // Thread guarantee: slow side; the fits start threads themselves.
 #pragma once
 
@@ -43,17 +42,25 @@ struct ModelResult {
   int size = 0;                              // centres, or nodes of the grid
   Evidence errors;                           // positions as recorded
   ErrorSummary moved;                        // the surface of every test recording moved to the models'
-  Evidence left_out;                         // on training that was left out; no samples: not fitted to the rest
   double fit_seconds = 0.0;                  // mean over the folds, preparation left out
-  ModelTiming time;                          // of the last fold's model
+  ModelTiming time;                          // of the last fold's model, on all test recordings
   std::shared_ptr<const FittedModel> model;  // likewise; null: no force
+  std::vector<std::string> same;             // further models of the plan that give the same forces
 };
 
-// Which model to use, chosen before the test had a say.
+// A test recording whose surface the models find elsewhere.
+struct MovedSurface {
+  std::string name;
+  double offset_m = 0.0;
+};
+
+// Which model to use (choose.cpp).
 struct Choice {
-  std::size_t chosen = 0;         // index of a model
-  std::vector<std::size_t> tied;  // on what it was chosen on, the chosen one among them
-  std::string chosen_on;          // in words
+  std::vector<std::size_t> candidates;  // one a method and recipe, indices of models
+  std::vector<std::size_t> qualified;   // of the candidates
+  std::size_t best = 0;                 // the smallest 99 % error of the candidates
+  std::size_t recommended = 0;
+  bool correction_off = false;  // all of this program's methods give the forces of the trend
 };
 
 struct ReportData {
@@ -64,11 +71,11 @@ struct ReportData {
   int folds = 0;          // of a cross-validation; 0: test recordings
   std::string tested_on;  // in words where there are no test recordings
   std::vector<RecordingFacts> recordings;
-  std::vector<double> surface_offset_m;  // of the test recordings
-  NoiseFloor floor;                      // of all test recordings together
-  std::vector<ModelResult> models;       // the first always says 0 N
+  std::vector<MovedSurface> tested;  // every test recording
+  NoiseFloor floor;                  // of all test recordings together
+  std::vector<ModelResult> models;   // the first always says 0 N; no two give the same forces
   Choice choice;
-  WorstStretch worst;                         // of the chosen model
+  WorstStretch worst;                         // of the recommended model
   std::vector<RecordingSurface> surfaces;     // of the training recordings
   std::vector<double> times_2009_s;           // relaxation times fitted for the 2009 recipe
   std::optional<double> correction_strength;  // 0 to 1
@@ -79,5 +86,12 @@ struct ReportData {
 // The same recordings and plan give the same figures but for times. With several folds
 // every model is fitted once a fold and its errors are taken together.
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control);
+
+// One size of every method and recipe, by the cross-validated error of the training, and of these the
+// one that rank() takes on the test.
+Choice choose(const std::vector<ModelResult>& models);
+// What the first screen shows: no force and the candidates, of the recipe of 2009 only the method that the paper
+// recommends.
+std::vector<std::size_t> headline_models(const ReportData& data);
 
 }  // namespace palpate

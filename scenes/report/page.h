@@ -8,19 +8,16 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "scenes/report/answer.h"
 #include "scenes/report/figures.h"
 #include "scenes/report/measure.h"
 #include "scenes/report/table.h"
 
 namespace palpate {
 
-// The answer, with every number in <span data-model="..." data-figure="...">, so that
-// tests/scenes/report/check_report.py can recompute it from FORCES.csv.
-std::string answer_html(const ReportData& data);
-
 // `origin`: what made it, in words; `tables`: those of make_tables; `figures`: drawn. Errors: the template is
 // missing, or asks for what is not there.
-Result<std::string> make_page(const ReportData& data, const std::string& origin, const std::vector<Table>& tables,
-                              const std::vector<Figure>& figures);
+Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
+                              const std::vector<Table>& tables, const std::vector<Figure>& figures);
 
 }  // namespace palpate

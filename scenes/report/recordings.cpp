@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdio>
-#include <map>
 #include <set>
 #include <string_view>
 #include <unordered_map>
@@ -18,7 +17,6 @@ namespace {
 
 constexpr double kTrainSeconds = 41.499;
 constexpr double kTestSeconds = 45.272;
-constexpr std::size_t kLeftOutOf = 3;             // of several recordings every third is left out
 constexpr std::size_t kSmallestRecording = 1000;  // rows; less is not divided
 constexpr double kKeptShare = 0.6;                // of a single recording
 
@@ -55,16 +53,12 @@ std::vector<Split> folds_of(const std::vector<SharedRecording>& all, std::size_t
   return folds;
 }
 
-Status add_files(std::vector<SharedRecording>& all, const std::vector<std::string>& paths) {
-  std::multimap<std::pair<std::string, std::uint64_t>, SharedRecording> added;
-  for (const std::string& path : paths) {
-    auto read = read_recording(path);
-    if (!read) return read.error();
-    const auto recording = std::make_shared<const Recording>(std::move(*read));
-    added.emplace(std::pair(recording->name, content_hash(*recording)), recording);
-  }
-  for (const auto& [key, recording] : added) all.push_back(recording);
-  return {};
+// By name and content, whatever the order they are given in.
+void sort_recordings(std::vector<SharedRecording>& recordings) {
+  std::vector<std::pair<std::pair<std::string, std::uint64_t>, SharedRecording>> keyed;
+  for (SharedRecording& one : recordings) keyed.emplace_back(std::pair(one->name, content_hash(*one)), one);
+  std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < keyed.size(); ++i) recordings[i] = keyed[i].second;
 }
 
 Status add_virtual_silicone(std::vector<SharedRecording>& all) {
@@ -162,15 +156,9 @@ Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t train
   return {};
 }
 
-Split leave_out(const std::vector<SharedRecording>& training) {
+Split leave_out(const SharedRecording& training) {
   Split split;
-  if (training.size() > 1) {
-    split = folds_of(training, kLeftOutOf)[1];
-    split.words = std::to_string(split.tested.size()) + " of the " + std::to_string(training.size()) +
-                  " training recordings, left out of these fits";
-    return split;
-  }
-  const Recording& whole = *training.front();
+  const Recording& whole = *training;
   if (whole.rows.size() < kSmallestRecording) return split;
   const auto kept =
       whole.rows.begin() + static_cast<std::ptrdiff_t>(kKeptShare * static_cast<double>(whole.rows.size()));
@@ -179,7 +167,7 @@ Split leave_out(const std::vector<SharedRecording>& training) {
   const auto cut = in_air == near ? kept : in_air;
   split.train.push_back(
       std::make_shared<const Recording>(Recording{whole.name, whole.columns, {whole.rows.begin(), cut}}));
-  split.tested.push_back(training.front());
+  split.tested.push_back(training);
   split.counted_from_s = cut->time_s;
   split.words = "a block at the end of the training recording, " +
                 std::to_string(100 - 100 * split.train[0]->rows.size() / whole.rows.size()) +
@@ -187,24 +175,24 @@ Split leave_out(const std::vector<SharedRecording>& training) {
   return split;
 }
 
-Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test) {
-  if (train.empty() && !test.empty()) {
-    return Error{"found --test without --train, expected recordings to train on as well; give them with --train"};
-  }
+Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test) {
   RecordingSet set;
   set.virtual_recordings = train.empty();
-  std::vector<SharedRecording> all;
-  const Status added = set.virtual_recordings ? add_virtual_silicone(all) : add_files(all, train);
-  if (!added) return added.error();
-  const std::size_t trained = set.virtual_recordings ? 1 : train.size();
-  if (const Status status = add_files(all, test); !status) return status.error();
+  sort_recordings(train);
+  sort_recordings(test);
+  std::vector<SharedRecording> all = std::move(train);
+  if (set.virtual_recordings) {
+    if (const Status added = add_virtual_silicone(all); !added) return added.error();
+  }
+  const std::size_t trained = set.virtual_recordings ? 1 : all.size();
+  all.insert(all.end(), test.begin(), test.end());
   if (const Status status = refuse_leakage(all, trained); !status) return status.error();
   const bool tests = trained < all.size();
   if (tests) {
     Split& split = set.folds.emplace_back();
     for (std::size_t i = 0; i < all.size(); ++i) (i < trained ? split.train : split.tested).push_back(all[i]);
   } else {
-    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all)} : folds_of(all, kMostFolds);
+    set.folds = all.size() == 1 ? std::vector<Split>{leave_out(all.front())} : folds_of(all, kMostFolds);
   }
   if (set.folds.front().tested.empty()) {
     return Error{all.front()->name + ": found " + std::to_string(all.front()->rows.size()) +

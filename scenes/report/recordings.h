@@ -37,9 +37,9 @@ struct Split {
   std::string words;               // what is tested on, where that was left out of the training
 };
 
-// Of several recordings every third is tested; of a single one a block at its end, from a place where the
-// tool is in the air if it ever is near. Nothing is tested where there is too little.
-Split leave_out(const std::vector<SharedRecording>& training);
+// Tests a block at the end of a recording, which begins in the air where the tool is there near. Nothing is
+// tested where there is too little.
+Split leave_out(const SharedRecording& training);
 
 struct RecordingSet {
   std::vector<Split> folds;  // one, or k when there is no test recording
@@ -70,12 +70,11 @@ SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 // rows.
 Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
-// Reads the files; without any, the virtual silicone: seed 1 to train on, seed 2 to test on. Without a test
+// Without any, the virtual silicone: seed 1 to train on, seed 2 to test on. Without a test
 // recording the others are divided into up to kMostFolds folds, each tested by models that were fitted to
 // the rest; of a single one a block at its end is left out. Recordings are ordered by name and content.
-// Errors: those of the recordings; a test without training; refuse_leakage's; no contact in a test recording;
-// too short to leave a part out.
+// Errors: refuse_leakage's; no contact in a test recording; too short to leave a part out.
 inline constexpr std::size_t kMostFolds = 5;
-Result<RecordingSet> load_recordings(const std::vector<std::string>& train, const std::vector<std::string>& test);
+Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test);
 
 }  // namespace palpate

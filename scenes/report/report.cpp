@@ -37,28 +37,22 @@ constexpr const char* kCompiler = "clang " __clang_version__;
 constexpr const char* kCompiler = "g++ " __VERSION__;
 #endif
 
-// Without its elements.
-std::string plain_text(const std::string& html) {
-  std::string text;
-  bool inside = false;
-  for (const char letter : html) {
-    if (letter == '<') inside = true;
-    if (!inside) text += letter;
-    if (letter == '>') inside = false;
-  }
-  return text;
-}
-
 // All numbers. "timings" holds all that differs from run to run.
-OrderedJson report_json(const ReportData& data, const ReportRequest& request, const std::vector<Table>& tables,
-                        const std::vector<Figure>& figures, const std::string& machine, double seconds) {
+OrderedJson report_json(const ReportData& data, const ReportRequest& request, const Sentence& answer,
+                        const std::vector<Table>& tables, const std::vector<Figure>& figures, const std::string& machine,
+                        double seconds) {
   OrderedJson numbers = OrderedJson::object();
   OrderedJson times = OrderedJson::object();
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
   OrderedJson list = OrderedJson::array();
   for (const Figure& figure : figures) list.push_back(figure.plot.name);
-  OrderedJson tied = OrderedJson::array();
-  for (const std::size_t index : data.choice.tied) tied.push_back(data.models[index].plan.name);
+  const auto named = [&](const std::vector<std::size_t>& models) {
+    OrderedJson names = OrderedJson::array();
+    for (const std::size_t index : models) names.push_back(data.models[index].plan.name);
+    return names;
+  };
+  OrderedJson offsets = OrderedJson::array();
+  for (const MovedSurface& one : data.tested) offsets.push_back(one.offset_m);
   return {
       {"format", "palpate-report"},
       {"version", 1},
@@ -67,18 +61,23 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
       {"quick", data.quick},
       {"virtual_recordings", data.virtual_recordings},
       {"folds", data.folds},
-      {"choice",
-       {{"model", data.models[data.choice.chosen].plan.name}, {"chosen_on", data.choice.chosen_on}, {"tied", tied}}},
       {"noise_floor",
        {{"force_noise_N", data.floor.force_noise_N},
         {"within_jnd", data.floor.within_jnd},
         {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
-      {"surface_offset_m", data.surface_offset_m},
+      {"surface_offset_m", offsets},
+      {"correction_off", data.choice.correction_off},
       {"relaxation_times_2009_s", data.times_2009_s},
       {"tables", numbers},
       {"figures", list},
       {"timings",
-       {{"machine", machine}, {"seconds", seconds}, {"answer", plain_text(answer_html(data))}, {"tables", times}}},
+       {{"machine", machine},
+        {"seconds", seconds},
+        {"answer", plain_text_of(answer)},
+        {"recommended", data.models[data.choice.recommended].plan.name},
+        {"candidates", named(data.choice.candidates)},
+        {"qualified", named(data.choice.qualified)},
+        {"tables", times}}},
       {"program", {{"version", request.version}, {"compiler", kCompiler}}},
       {"command_line", request.command_line}};
 }
@@ -104,18 +103,16 @@ Status draw(const ReportFolder& folder, std::vector<Figure>& figures) {
 Result<std::string> make_report(const ReportRequest& request, const FitControl& control) {
   const auto start = std::chrono::steady_clock::now();
   if (const Status gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
-  const auto scene = load_scene(request.scene);
-  if (!scene) return scene.error();
-  // A folder that cannot be written is told now and not after the fits.
+  // A folder that cannot be written is an error now and not after the fits.
   auto folder = ReportFolder::create(request.out, request.force);
   if (!folder) return folder.error();
-
-  const auto recordings = load_recordings(request.train, request.test);
+  const auto recordings = split_recordings(request.train, request.test);
   if (!recordings) return recordings.error();
   FitControl measuring;
   measuring.progress = [&](double fraction) { return control.may_continue(kMeasuringShare * fraction); };
-  const auto data = measure(*recordings, *scene, request.quick, measuring);
+  const auto data = measure(*recordings, request.scene, request.quick, measuring);
   if (!data) return data.error();
+  const Sentence words = answer(*data);
 
   const std::vector<Table> tables = make_tables(*data);
   for (const Table& table : tables) {
@@ -123,7 +120,7 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
       return status.error();
     }
   }
-  std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), paper_figure(*data)};
+  std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
   const Status drawn = draw(*folder, figures);
   // Ctrl-C at a terminal ends gnuplot as well: that is no trouble of gnuplot's.
   if (!control.may_continue(0.99)) return interrupted();
@@ -133,18 +130,18 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
       processor() + ", " + std::to_string(std::max(1U, std::thread::hardware_concurrency())) + " cores";
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // Names of recordings need not be UTF-8; what cannot be said is replaced.
-  const std::string json = report_json(*data, request, tables, figures, machine, seconds)
+  const std::string json = report_json(*data, request, words, tables, figures, machine, seconds)
                                .dump(1, ' ', false, OrderedJson::error_handler_t::replace) +
                            "\n";
   if (const Status status = folder->write("report.json", json); !status) return status.error();
   const std::string origin = request.command_line + " · " + request.version + ", " + kCompiler + " · " + machine +
                              " · " + three_digits(seconds) + " s";
-  const auto page = make_page(*data, origin, tables, figures);
+  const auto page = make_page(*data, words, origin, tables, figures);
   if (!page) return page.error();
   if (const Status status = folder->write("index.html", *page); !status) return status.error();
   if (!control.may_continue(1.0)) return interrupted();
   if (const Status status = folder->commit(); !status) return status.error();
-  return plain_text(answer_html(*data));
+  return plain_text_of(words);
 }
 
 }  // namespace palpate

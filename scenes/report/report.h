@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "engine/base/fit_control.h"
+#include "scenes/report/recordings.h"
+#include "scenes/scene/scene.h"
 
 namespace palpate {
 
 struct ReportRequest {
-  std::vector<std::string> train;  // files; none: the virtual silicone
-  std::vector<std::string> test;   // none: k-fold over `train`
-  std::string scene = "silicone_block";
+  Scene scene;
+  std::vector<SharedRecording> train;  // none: the virtual silicone
+  std::vector<SharedRecording> test;   // none: k-fold over `train`
   bool quick = false;
   std::string out;
   bool force = false;
@@ -22,7 +24,7 @@ struct ReportRequest {
 
 // Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into
 // `request.out`, which appears only when all is there. Errors: gnuplot is missing; the
-// folder exists without `force`; those of the recordings and fits; interrupted. Returns the
+// folder exists without `force`; those of split_recordings and the fits; interrupted. Returns the
 // sentence of the page, plain.
 Result<std::string> make_report(const ReportRequest& request, const FitControl& control = {});
 

@@ -60,36 +60,28 @@ Table models_table(const ReportData& data) {
   Table table{"models"};
   for (const ModelResult& one : data.models) {
     const Evidence& errors = one.errors;
-    const Interval within = errors.within_interval();
     const Interval p99 = errors.p99_interval();
-    const Interval rms_N = errors.rms_interval_N();
-    const PairedDifference difference = paired_difference(errors, data.models[data.choice.chosen].errors);
+    const PairedDifference difference = paired_difference(errors, data.models[data.choice.best].errors);
     table.begin_row();
     table.add({"model", "model"}, one.plan.name);
     table.add({"size", "size"}, one.size);
     table.add({"contact_samples", "samples"}, errors.samples);
-    table.add({"within_jnd", "≤ JND [%]", kInPercent, 2, 2}, errors.within_jnd);
-    table.add({"within_jnd_low", ""}, within.low);
-    table.add({"within_jnd_high", ""}, within.high);
+    table.add({"within_jnd", "≤ JND [%]", kInPercent, 2}, errors.within_jnd);
     table.add({"within_at_least", "at least [%]", kInPercent, 2}, errors.within_at_least());
     table.add({"p99_error_over_jnd", "99 % error [JND]", 1.0, kThree, 2}, errors.p99_error_over_jnd);
     table.add({"p99_error_over_jnd_low", ""}, p99.low);
     table.add({"p99_error_over_jnd_high", ""}, p99.high);
     table.add({"p99_at_most", ""}, errors.p99_at_most());
-    table.add({"rms_error_N", "RMS [mN]", kInMilli, kThree, 2}, errors.rms_error_N);
-    table.add({"rms_error_N_low", ""}, rms_N.low);
-    table.add({"rms_error_N_high", ""}, rms_N.high);
+    table.add({"rms_error_N", "RMS [mN]", kInMilli}, errors.rms_error_N);
     table.add({"max_error_N", "worst [mN]", kInMilli}, errors.max_error_N);
     table.add({"max_error_over_jnd", "worst [JND]"}, errors.max_error_over_jnd);
-    table.add({"strokes", "strokes"}, errors.strokes);
-    table.add({"beyond_strokes", "beyond"}, errors.beyond_strokes);
+    table.add({"units", std::string(unit_name(errors)) + "s"}, errors.units());
+    table.add({"beyond_units", "beyond"}, errors.beyond_units);
     table.add({"out_of_domain_samples", ""}, errors.out_of_domain_samples);
     table.add({"moved_within_jnd", "moved: ≤ JND [%]", kInPercent, 2}, any(one.moved, one.moved.within_jnd));
     table.add({"moved_p99_error_over_jnd", "99 % [JND]"}, any(one.moved, one.moved.p99_error_over_jnd));
     table.add({"moved_rms_error_N", "RMS [mN]", kInMilli}, any(one.moved, one.moved.rms_error_N));
-    table.add({"left_out_p99_error_over_jnd", "left out: 99 % [JND]"},
-              any(one.left_out, one.left_out.p99_error_over_jnd));
-    table.add({"difference_p99", "against the choice [JND]", 1.0, kThree, 2}, difference.p99);
+    table.add({"difference_p99", "less the smallest [JND]", 1.0, kThree, 2}, difference.p99);
     table.add({"difference_p99_low", ""}, difference.interval.low);
     table.add({"difference_p99_high", ""}, difference.interval.high);
   }
@@ -102,7 +94,9 @@ Table times_table(const ReportData& data) {
     if (!one.time.measured) continue;
     table.begin_row();
     table.add({"model", "model"}, one.plan.name);
-    table.add({"tick_ns", "tick [ns]", 1.0, 0}, one.time.tick.median_ns);
+    table.add({"tick_ns", "tick [ns]", 1.0, 0, 2}, one.time.tick.median_ns);
+    table.add({"tick_low_ns", "", 1.0, 0}, one.time.tick.low_ns);
+    table.add({"tick_high_ns", "", 1.0, 0}, one.time.tick.high_ns);
     table.add({"tick_p99_ns", "p99 [ns]", 1.0, 0}, one.time.tick.p99_ns);
     table.add({"evaluation_ns", "evaluation [ns]", 1.0, 0}, one.time.evaluation.median_ns);
     table.add({"evaluation_p99_ns", "p99 [ns]", 1.0, 0}, one.time.evaluation.p99_ns);
@@ -165,6 +159,8 @@ Table worth_table(const ReportData& data) {
 }
 
 }  // namespace
+
+const char* unit_name(const Evidence& errors) { return errors.units_are_recordings ? "recording" : "stroke"; }
 
 std::string table_csv(const Table& table) {
   std::string text;

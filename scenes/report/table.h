@@ -57,6 +57,9 @@ nlohmann::ordered_json table_json(const Table& table);
 // <div><table>...</table></div>, everything from outside escaped; numbers to the right.
 std::string table_html(const Table& table);
 
+// What its intervals resample: "recording" or "stroke".
+const char* unit_name(const Evidence& errors);
+
 // All numbers of a report: models, recordings, force_bins, features, times; those with times
 // differ from run to run.
 std::vector<Table> make_tables(const ReportData& data);

@@ -59,7 +59,7 @@ double tick_ns(const std::shared_ptr<const FittedModel>& model) {
     tool.velocity_m_per_s = 5.0 * depth_m * std::sin(phase);
     samples.push_back(tool);
   }
-  return time_model(model, sensor, samples).tick.median_ns;
+  return time_models({model}, {{sensor, std::move(samples)}}).front().tick.median_ns;
 }
 
 }  // namespace

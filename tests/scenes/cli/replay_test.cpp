@@ -188,10 +188,14 @@ TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   EXPECT_NEAR(std::stod(said[1]), 0.3, 0.02);
 }
 
-TEST_F(ReplayVerb, SeveralRecordingsHaveNoOneForcesFile) {
-  const auto ran = run({models_[0]}, {"--recording", recording_, "--out", folder_.file("forces.csv")});
-  EXPECT_EQ(ran.exit_code, 1);
-  EXPECT_EQ(ran.err, "error: found 2 recordings with --out, expected one; replay them in several runs\n");
+TEST_F(ReplayVerb, SeveralRecordingsHaveAForcesFileEach) {
+  const std::string other = folder_.with_file("other.csv", test::read_text(recording_));
+  const auto ran = run({models_[0]}, {"--recording", other, "--out", folder_.file("forces.csv")});
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("forces.csv")));
+  const std::string first = "forces_" + std::filesystem::path(recording_).filename().string();
+  EXPECT_EQ(test::read_text(folder_.file(first)), test::read_text(folder_.file("forces_other.csv")));
+  std::filesystem::remove(other);
 }
 
 TEST_F(ReplayVerb, ModelsOfOneNameAreToldApart) {

@@ -9,87 +9,57 @@
 namespace palpate {
 namespace {
 
-TEST(StrokeCounter, AStrokeGoesFromTouchToReleaseAndLongOnesAreCut) {
-  StrokeCounter counter(100.0);
+TEST(StrokeCounter, AStrokeGoesFromTouchToRelease) {
+  StrokeCounter counter;
   int strokes = 0;
-  int blocks = 0;
   for (int i = 0; i < 1000; ++i) {  // 10 Hz: the step is longer than the pause that noise may make
-    const double time_s = 0.1 * i;
-    const bool in_contact = i % 100 >= 10;  // 9 s at a time
-    blocks += counter.begins_block(time_s, in_contact) ? 1 : 0;
-    strokes += in_contact && counter.begins_stroke() ? 1 : 0;
+    strokes += counter.begins_stroke(0.1 * i, i % 100 >= 10) ? 1 : 0;
   }
   EXPECT_EQ(strokes, 10);
-  EXPECT_EQ(blocks, 50) << "9 s are five pieces of at most 2 s";
 }
 
-TEST(StrokeCounter, AShortRecordingHasTenBlocksAtLeast) {
-  StrokeCounter counter(5.0);
-  int blocks = 0;
-  for (int i = 0; i < 5000; ++i) blocks += counter.begins_block(1e-3 * i, true) ? 1 : 0;
-  EXPECT_EQ(blocks, 10) << "half a second each";
-}
-
-TEST(ModelErrors, NeighbouringSamplesThatAreAlikeTellLess) {
-  // Twenty strokes of 500 samples, all of a stroke with the same error: as if twenty samples.
-  const JndLine jnd;
-  ModelErrors errors(jnd);
-  RandomStream random(1, 0);
-  double squares = 0.0;
-  for (int stroke = 0; stroke < 20; ++stroke) {
-    const double error_N = 0.02 * random.normal();
-    squares += error_N * error_N;
-    errors.begin_block(true);
-    for (int i = 0; i < 500; ++i) errors.add(1.0 + error_N, 1.0, false);
-  }
-  const Evidence evidence = errors.evidence();
-  const double rms_N = std::sqrt(squares / 20.0);
-  EXPECT_NEAR(evidence.rms_error_N, rms_N, 1e-12);
-  EXPECT_EQ(evidence.strokes, 20u);
-  // The standard error of an RMS of 20 normal values is rms / sqrt(40); 95 % are 1.96
-  // times that to either side. A factor of 1.6 either way allows for the one draw here.
-  const double width_N = evidence.rms_interval_N().high - evidence.rms_interval_N().low;
-  const double expected_N = 2.0 * 1.96 * rms_N / std::sqrt(40.0);
-  EXPECT_GT(width_N, expected_N / 1.6);
-  EXPECT_LT(width_N, expected_N * 1.6);
-  EXPECT_LE(evidence.rms_interval_N().low, rms_N);
-  EXPECT_GE(evidence.rms_interval_N().high, rms_N);
-}
-
-TEST(ModelErrors, CountsWhatDecides) {
+// Strokes of 100 samples, of which so many go beyond the JND.
+ModelErrors strokes_with(const std::vector<int>& beyond) {
   ModelErrors errors(JndLine{});
-  for (int stroke = 0; stroke < 10; ++stroke) {
-    errors.begin_block(true);
-    for (int i = 0; i < 100; ++i) errors.add(stroke == 3 && i < 7 ? 1.5 : 1.0, 1.0, false);
+  for (const int count : beyond) {
+    errors.begin_stroke();
+    for (int i = 0; i < 100; ++i) errors.add(i < count ? 1.5 : 1.0, 1.0, false);
   }
-  const Evidence evidence = errors.evidence();
-  EXPECT_EQ(evidence.beyond_samples, 7u);
-  EXPECT_EQ(evidence.beyond_strokes, 1u);
-  EXPECT_EQ(evidence.within_interval().high, 1.0) << "a resampling without that stroke is likely";
-  EXPECT_LT(evidence.within_interval().low, 0.993);
-  EXPECT_EQ(evidence.p99_interval().low, 0.0);
+  return errors;
 }
 
-TEST(ModelErrors, TheSameSamplesGiveTheSameIntervals) {
-  const auto run = [] {
-    ModelErrors errors(JndLine{});
-    RandomStream random(2, 0);
-    for (int stroke = 0; stroke < 12; ++stroke) {
-      errors.begin_block(true);
-      for (int i = 0; i < 50; ++i) errors.add(1.0 + 0.1 * random.normal(), 1.0, false);
-    }
-    return errors.evidence();
-  };
-  EXPECT_EQ(run().p99_interval().low, run().p99_interval().low);
-  EXPECT_EQ(run().p99_interval().high, run().p99_interval().high);
+TEST(ModelErrors, StrokesAreTheUnitsOfOneRecordingAndRecordingsOfSeveral) {
+  ModelErrors several = strokes_with({0, 0, 0, 7});
+  EXPECT_EQ(several.evidence().units(), 4u);
+  EXPECT_FALSE(several.evidence().units_are_recordings);
+  EXPECT_EQ(several.evidence().beyond_units, 1u);
+  several.append(strokes_with({1, 0}));
+  several.append(strokes_with({0}));
+  EXPECT_TRUE(several.evidence().units_are_recordings);
+  EXPECT_EQ(several.evidence().unit_within, (std::vector<double>{393.0, 199.0, 100.0}));
+}
+
+TEST(ModelErrors, ThreeSpotsThatDifferBoundTheShareAsStudentsTHasIt) {
+  ModelErrors errors = strokes_with({21});
+  errors.append(strokes_with({51}));
+  errors.append(strokes_with({15}));
+  EXPECT_NEAR(errors.evidence().within_at_least(), 0.384, 1e-3);
+}
+
+TEST(ModelErrors, TooFewUnitsHaveNoIntervalAnywhere) {
+  const Evidence evidence = strokes_with({3, 5}).evidence();
+  EXPECT_FALSE(evidence.has_intervals());
+  EXPECT_FALSE(evidence.p99_interval().known());
+  EXPECT_TRUE(std::isnan(evidence.p99_at_most()));
+  EXPECT_TRUE(std::isnan(evidence.within_at_least()));
+  EXPECT_FALSE(paired_difference(evidence, evidence).interval.known());
 }
 
 TEST(ModelErrors, WithoutSamplesThereIsNothing) {
   const Evidence evidence = ModelErrors(JndLine{}).evidence();
   EXPECT_EQ(evidence.samples, 0u);
-  EXPECT_EQ(evidence.blocks, 0u);
+  EXPECT_EQ(evidence.units(), 0u);
   EXPECT_EQ(evidence.p99_error_over_jnd, 0.0);
-  EXPECT_EQ(evidence.within_at_least(), 0.0);
   EXPECT_TRUE(evidence.bins.empty());
 }
 
@@ -124,59 +94,37 @@ TEST(ModelErrors, PercentileIsTheNearestRank) {
   }
 }
 
-TEST(ModelErrors, OfTwoRecordingsAreThoseOfBoth) {
-  const JndLine jnd;
-  ModelErrors both(jnd), first(jnd), second(jnd);
-  RandomStream random(3, 0);
-  for (int stroke = 0; stroke < 10; ++stroke) {
-    ModelErrors& half = stroke < 4 ? first : second;
-    half.begin_block(true);
-    both.begin_block(true);
-    for (int i = 0; i < 30; ++i) {
-      const double model_N = 1.0 + 0.2 * random.normal();
-      half.add(model_N, 1.0, false);
-      both.add(model_N, 1.0, false);
-    }
-  }
-  first.append(second);
-  EXPECT_EQ(first.evidence().strokes, 10u);
-  EXPECT_EQ(first.evidence().beyond_strokes, both.evidence().beyond_strokes);
-  EXPECT_EQ(first.evidence().p99_draws, both.evidence().p99_draws);
-}
-
-// Twelve strokes that are all within one JND: of such strokes up to a quarter may be beyond.
-TEST(ModelErrors, WhereNothingGoesBeyondTheRuleOfThreeBoundsIt) {
-  ModelErrors errors(JndLine{});
-  for (int stroke = 0; stroke < 12; ++stroke) {
-    errors.begin_block(true);
-    for (int i = 0; i < 50; ++i) errors.add(1.0, 1.0, false);
-  }
-  EXPECT_NEAR(errors.evidence().within_at_least(), 0.75, 1e-12);
+// Twelve strokes all within the JND: at 95 % up to 1 - 0.05^(1/12) of strokes may be beyond.
+TEST(ModelErrors, WhereNothingGoesBeyondTheBoundIsExact) {
+  EXPECT_NEAR(strokes_with(std::vector<int>(12, 0)).evidence().within_at_least(), 0.7791, 1e-4);
 }
 
 // One model is worse than another by 0.03 JND in every stroke, and strokes differ by
-// thirty times that: their intervals overlap, and the paired difference tells them apart.
-TEST(PairedDifference, TellsApartWhatOverlaps) {
+// thirty times that: their intervals overlap, and the paired difference separates them.
+TEST(PairedDifference, SeparatesWhatOverlaps) {
   const JndLine jnd{0.1, 0.0};
-  ModelErrors good(jnd), bad(jnd), same(jnd);
+  ModelErrors good(jnd), bad(jnd);
   RandomStream random(4, 0);
   for (int stroke = 0; stroke < 20; ++stroke) {
     const double error_N = 0.1 * (0.5 + random.uniform(0.0, 1.0));
-    for (ModelErrors* one : {&good, &bad, &same}) one->begin_block(true);
+    for (ModelErrors* one : {&good, &bad}) one->begin_stroke();
     for (int i = 0; i < 50; ++i) {
       good.add(1.0 + error_N, 1.0, false);
       bad.add(1.0 + error_N + 0.003, 1.0, false);
-      same.add(1.0 - error_N, 1.0, false);
     }
   }
   const Evidence one = good.evidence();
   const Evidence other = bad.evidence();
   EXPECT_LT(other.p99_interval().low, one.p99_interval().high) << "they overlap";
   const PairedDifference difference = paired_difference(other, one);
-  EXPECT_FALSE(difference.tied());
   EXPECT_NEAR(difference.p99, 0.03, 1e-6);
   EXPECT_NEAR(difference.interval.low, 0.03, 1e-6);
-  EXPECT_TRUE(paired_difference(one, same.evidence()).tied());
+  EXPECT_NEAR(difference.at_most, 0.03, 1e-6);
+}
+
+TEST(ModelErrors, EqualErrorsAreOneModel) {
+  EXPECT_TRUE(strokes_with({1, 2}).equals(strokes_with({1, 2})));
+  EXPECT_FALSE(strokes_with({1, 2}).equals(strokes_with({2, 1})));
 }
 
 }  // namespace

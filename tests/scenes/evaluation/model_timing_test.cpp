@@ -15,12 +15,14 @@ TEST(ModelTiming, MeasuresTheTickAndTheEvaluationInIt) {
     if (row.position_m > 0.0) samples.push_back(tool_sample(row));
   }
   const auto model = std::make_shared<const FittedModel>(test::example_models().front());
-  const ModelTiming timing = time_model(model, {}, samples);
+  const ModelTiming timing = time_models({model}, {{{}, samples}}).front();
   EXPECT_TRUE(timing.measured);
   EXPECT_GT(timing.evaluation.median_ns, 0.0);
   EXPECT_GT(timing.tick.median_ns, 0.0);
   EXPECT_GE(timing.tick.p99_ns, timing.tick.median_ns);
-  EXPECT_FALSE(time_model(model, {}, {}).measured) << "nothing in contact";
+  EXPECT_LE(timing.tick.low_ns, timing.tick.median_ns);
+  EXPECT_GE(timing.tick.high_ns, timing.tick.median_ns);
+  EXPECT_FALSE(time_models({model}, {{}}).front().measured) << "nothing in contact";
 }
 
 }  // namespace

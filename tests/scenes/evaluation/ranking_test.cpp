@@ -7,42 +7,59 @@
 namespace palpate {
 namespace {
 
-// Twenty strokes; a model's error is `scale` times what they have in common.
-Evidence evidence(double scale, double more_N) {
-  ModelErrors errors(JndLine{0.1, 0.0});
-  RandomStream random(5, 0);
-  for (int stroke = 0; stroke < 20; ++stroke) {
-    errors.begin_block(true);
-    const double common_N = 0.1 * random.uniform(0.0, 1.0);
-    for (int i = 0; i < 20; ++i) errors.add(1.0 + scale * common_N + more_N, 1.0, false);
+Timing around(double median_ns) { return {median_ns, 0.98 * median_ns, 1.02 * median_ns, 1.5 * median_ns}; }
+
+// Errors of ten units: `error` and a scatter that the units of all candidates share, and `own` of its own.
+Candidate model(double error, double tick_ns, double own = 0.0, std::uint64_t seed = 1) {
+  Candidate one{error, {}, around(tick_ns)};
+  RandomStream shared(7, 0);
+  RandomStream random(seed, 1);
+  for (int i = 0; i < 10; ++i) one.unit_errors_over_jnd.push_back(error + 0.3 * shared.normal() + own * random.normal());
+  return one;
+}
+
+TEST(Rank, TakesTheFastestOfTheQualified) {
+  const Ranking ranking = rank({model(3.0, 100.0), model(0.5, 1000.0), model(0.6, 200.0)});
+  EXPECT_EQ(ranking.best, 1u);
+  EXPECT_EQ(ranking.recommended, 2u) << "0.1 JND more is within the margin";
+  EXPECT_EQ(ranking.qualified, (std::vector<std::size_t>{1, 2}));
+}
+
+TEST(Rank, SpeedDoesNotOutweighAnErrorBeyondTheMargin) {
+  const Ranking ranking = rank({model(0.9, 100.0), model(0.5, 1000.0)});
+  EXPECT_EQ(ranking.recommended, 1u);
+  EXPECT_EQ(ranking.qualified, (std::vector<std::size_t>{1}));
+}
+
+TEST(Rank, AnUncertainDifferenceDoesNotQualify) {
+  // 0.1 JND more on the whole, and units that differ by 0.5: the bound is beyond the margin.
+  EXPECT_EQ(rank({model(0.6, 100.0, 0.5, 2), model(0.5, 1000.0, 0.5, 3)}).recommended, 1u);
+}
+
+TEST(Rank, WithTooFewUnitsTheDifferenceItselfCounts) {
+  Candidate one = model(0.6, 100.0);
+  Candidate other = model(0.5, 1000.0);
+  one.unit_errors_over_jnd.resize(2);
+  other.unit_errors_over_jnd.resize(2);
+  EXPECT_EQ(rank({one, other}).recommended, 0u);
+}
+
+TEST(Rank, TimesThatOverlapAreEqual) {
+  EXPECT_EQ(rank({model(0.6, 100.0), model(0.5, 101.0)}).recommended, 1u) << "then the smaller error counts";
+}
+
+// Whatever the candidates are: no other one is faster and has a smaller error.
+TEST(Rank, NeverRecommendsADominatedModel) {
+  RandomStream random(11, 0);
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<Candidate> candidates;
+    for (int i = 0; i < 8; ++i) {
+      candidates.push_back(model(random.uniform(0.1, 1.5), random.uniform(100.0, 600.0), random.uniform(0.0, 0.6),
+                                 static_cast<std::uint64_t>(8 * round + i + 1)));
+    }
+    const std::size_t taken = rank(candidates).recommended;
+    for (const Candidate& other : candidates) EXPECT_FALSE(dominates(other, candidates[taken])) << round;
   }
-  return errors.evidence();
-}
-
-TEST(Rank, TakesTheCheapestOfTheTied) {
-  const Evidence dear = evidence(1.0, 0.0);
-  const Evidence cheap = evidence(-1.0, 1e-9);  // as large, and rounded up
-  const Evidence bad = evidence(3.0, 0.0);
-  const Ranking ranking = rank({{&bad, 0}, {&dear, 100}, {&cheap, 20}});
-  EXPECT_EQ(ranking.chosen, 2u);
-  EXPECT_EQ(ranking.tied, (std::vector<std::size_t>{1, 2}));
-}
-
-TEST(Rank, CheapnessDoesNotOutweighAnErrorThatCanBeTold) {
-  const Evidence good = evidence(1.0, 0.0);
-  const Evidence bad = evidence(1.0, 0.005);
-  const Ranking ranking = rank({{&bad, 0}, {&good, 1000}});
-  EXPECT_EQ(ranking.chosen, 1u);
-  EXPECT_EQ(ranking.best, 1u);
-  EXPECT_EQ(ranking.tied, (std::vector<std::size_t>{1}));
-}
-
-TEST(Rank, WhatNoHandNoticesIsTied) {
-  const Evidence good = evidence(0.1, 0.0);
-  const Evidence unnoticed = evidence(0.1, 0.005);  // told from the good one, and far within the JND
-  const Ranking ranking = rank({{&unnoticed, 0}, {&good, 1000}});
-  EXPECT_EQ(ranking.best, 1u);
-  EXPECT_EQ(ranking.chosen, 0u);
 }
 
 }  // namespace

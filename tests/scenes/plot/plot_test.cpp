@@ -5,6 +5,7 @@
 #include "engine/base/whole_file.h"
 #include "scenes/plot/draw.h"
 #include "scenes/plot/inline_svg.h"
+#include "scenes/plot/layout.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate {
@@ -69,6 +70,45 @@ TEST(Plot, TicsOfManyOrHardlyAnyDecadesAreReadable) {
   for (const char* tic : {">100<", ">10k<", ">1M<", ">0.8<", ">1.5<"}) {
     EXPECT_NE(svg.find(tic), std::string::npos) << tic;
   }
+}
+
+TEST(Layout, EveryAxisHasTwoLabelsAtLeastAndNotTooMany) {
+  for (const bool logarithmic : {true, false}) {
+    for (double low = 1e-3; low < 1e4; low *= 3.7) {
+      for (double ratio = 1.05; ratio < 1e9; ratio *= 1.9) {
+        const std::vector<double> tics = tics_of({"", "", logarithmic}, {low, low * ratio}, 5);
+        EXPECT_GE(tics.size(), 2u) << low << " to " << low * ratio;
+        EXPECT_LE(tics.size(), 6u) << low << " to " << low * ratio;
+        for (const double at : tics) EXPECT_TRUE(at > 0.998 * low && at < 1.002 * low * ratio);
+      }
+    }
+  }
+}
+
+TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
+  Panel panel;
+  panel.names_at_ends = true;
+  panel.levels = {{0.5, "1 JND"}};
+  for (int i = 0; i < 6; ++i)
+    panel.series.push_back({"model", 0, Mark::line, {{0.0, 0.0}, {1.0, i < 4 ? 0.5 : 1.0}}});
+  const std::vector<NameTag> tags = name_tags(panel, 0.1, 0.01);
+  ASSERT_EQ(tags.size(), 7u);
+  for (std::size_t i = 1; i < tags.size(); ++i) EXPECT_GE(tags[i].y - tags[i - 1].y, 0.1 - 1e-9);
+  EXPECT_LE(tags.back().y, 1.0);
+}
+
+TEST(Layout, WhatLeavesTheAxisIsMarkedAtItsEdgeOnceAPeak) {
+  Panel panel;
+  panel.y = {"", "", false, -1.0, 1.0};
+  panel.series = {{"model", 0xD55E00, Mark::line, {{0.0, 0.0}, {1.0, 3.0}, {2.0, 5.0}, {3.0, 0.0}, {4.0, -2.0}}}};
+  const std::vector<Series> marks = cut_marks(panel);
+  ASSERT_EQ(marks.size(), 2u);
+  ASSERT_EQ(marks[0].rows.size(), 1u);
+  EXPECT_EQ(marks[0].rows[0].x, 2.0);
+  EXPECT_EQ(marks[0].rows[0].y, 1.0);
+  EXPECT_EQ(marks[1].rows[0].y, -1.0);
+  panel.y = {};
+  EXPECT_TRUE(cut_marks(panel).empty());
 }
 
 TEST(Plot, ALegendOfSeveralLinesHasAsManyLinesOfRoom) {

@@ -25,7 +25,10 @@ class ReportRecordings : public ::testing::Test {
     return path;
   }
   static Result<RecordingSet> load(const std::vector<std::string>& train, const std::vector<std::string>& test) {
-    return load_recordings(train, test);
+    std::vector<SharedRecording> read[2];
+    for (const std::string& path : train) read[0].push_back(std::make_shared<const Recording>(*read_recording(path)));
+    for (const std::string& path : test) read[1].push_back(std::make_shared<const Recording>(*read_recording(path)));
+    return split_recordings(read[0], read[1]);
   }
 
   static std::multiset<std::string> names(const std::vector<SharedRecording>& recordings) {

@@ -1,0 +1,159 @@
+#include "scenes/plot/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+bool is_line(Mark mark) { return mark == Mark::line || mark == Mark::dashed; }
+
+// Steps of a decade, coarse to fine.
+const std::vector<std::vector<double>> kLogSteps{
+    {1.0}, {1.0, 3.0}, {1.0, 2.0, 5.0}, {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}};
+
+std::vector<double> decade_tics(const AxisRange& range, const std::vector<double>& steps, int every) {
+  std::vector<double> tics;
+  for (int decade = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10.0, decade) <= range.high; ++decade) {
+    if (decade % every != 0) continue;
+    for (const double step : steps) {
+      const double at = step * std::pow(10.0, decade);
+      if (at >= range.low * 0.999 && at <= range.high * 1.001) tics.push_back(at);
+    }
+  }
+  return tics;
+}
+
+std::vector<double> even_tics(const AxisRange& range, std::size_t most) {
+  const double width = range.high - range.low;
+  const double least = width / static_cast<double>(most);
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10.0 * decade;
+  for (const double factor : {5.0, 2.0, 1.0}) step = factor * decade >= least ? factor * decade : step;
+  std::vector<double> tics;
+  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * width; ++k)
+    tics.push_back(std::abs(k) < 0.5 ? 0.0 : k * step);
+  return tics;
+}
+
+const PlotRow* last_point(const Series& series) {
+  for (auto row = series.rows.rbegin(); row != series.rows.rend(); ++row) {
+    if (std::isfinite(row->y)) return &*row;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+AxisRange range_of(const Panel& panel, bool vertical) {
+  const Axis& axis = vertical ? panel.y : panel.x;
+  AxisRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const auto include = [&](double value) {
+    if (!std::isfinite(value) || (axis.logarithmic && value <= 0.0)) return;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  };
+  for (const Series& series : panel.series) {
+    for (const PlotRow& row : series.rows) {
+      include(vertical ? row.y : row.x);
+      include(vertical ? row.low : row.left);
+      include(vertical ? row.high : row.right);
+    }
+  }
+  for (const Level& level : panel.levels) {
+    if (level.vertical != vertical) include(level.value);
+  }
+  if (!(range.low <= range.high)) range = axis.logarithmic ? AxisRange{0.1, 10.0} : AxisRange{0.0, 1.0};
+  if (axis.logarithmic) {
+    range.low /= 1.25;
+    range.high *= 1.25;
+  } else {
+    const double room = 0.04 * (range.high - range.low) + (range.high == range.low ? 0.5 : 0.0);
+    range.low = range.low >= 0.0 && range.low < 0.3 * range.high ? 0.0 : range.low - room;
+    range.high += room;
+  }
+  if (std::isfinite(axis.low)) range.low = axis.low;
+  if (std::isfinite(axis.high)) range.high = axis.high;
+  return range;
+}
+
+std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_t most) {
+  if (!axis.logarithmic) return even_tics(range, most);
+  std::vector<double> decades = decade_tics(range, kLogSteps.front(), 1);
+  for (int every = 2; decades.size() > most; ++every) decades = decade_tics(range, kLogSteps.front(), every);
+  if (decades.size() >= 3) return decades;
+  std::vector<double> two = decades.size() == 2 ? decades : even_tics(range, most);
+  for (const std::vector<double>& steps : kLogSteps) {
+    std::vector<double> tics = decade_tics(range, steps, 1);
+    if (tics.size() >= 3 && tics.size() <= std::max<std::size_t>(most, 5)) return tics;
+    if (tics.size() == 2) two = std::move(tics);
+  }
+  return two;
+}
+
+double fraction_of(const Axis& axis, const AxisRange& range, double value) {
+  if (!axis.logarithmic) return (value - range.low) / (range.high - range.low);
+  return std::log(value / range.low) / std::log(range.high / range.low);
+}
+
+std::vector<NameTag> name_tags(const Panel& panel, double line, double character) {
+  const AxisRange x = range_of(panel, false);
+  const AxisRange y = range_of(panel, true);
+  std::vector<NameTag> tags;
+  for (const Level& level : panel.levels) {
+    if (!level.vertical) tags.push_back({level.text, kMutedColour, 1.0, fraction_of(panel.y, y, level.value), true});
+  }
+  for (const Series& series : panel.series) {
+    const PlotRow* last = last_point(series);
+    if (!panel.names_at_ends || series.name.empty() || series.mark == Mark::area || last == nullptr) continue;
+    const bool ends = series.rows.size() > 1;
+    tags.push_back({series.name, series.colour, ends ? 1.0 : fraction_of(panel.x, x, last->x),
+                    std::clamp(fraction_of(panel.y, y, last->y), 0.0, 1.0), ends});
+  }
+  std::stable_sort(tags.begin(), tags.end(), [](const NameTag& a, const NameTag& b) { return a.y < b.y; });
+  const auto meets = [&](const NameTag& a, const NameTag& b) {
+    if (a.beside_panel != b.beside_panel) return false;
+    const double width = character * static_cast<double>(std::max(a.text.size(), b.text.size()));
+    return a.y - b.y < line && (a.beside_panel || std::abs(a.x - b.x) < width);
+  };
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (meets(tags[i], tags[k])) tags[i].y = std::max(tags[i].y, tags[k].y + line);
+    }
+  }
+  // What was pushed out at the top goes down again, those below it first.
+  for (std::size_t i = tags.size(); i-- > 0;) {
+    tags[i].y = std::min(tags[i].y, 1.0);
+    for (std::size_t k = i + 1; k < tags.size(); ++k) {
+      if (meets(tags[k], tags[i])) tags[i].y = std::min(tags[i].y, tags[k].y - line);
+    }
+  }
+  return tags;
+}
+
+std::vector<Series> cut_marks(const Panel& panel) {
+  std::vector<Series> marks;
+  for (const Series& series : panel.series) {
+    if (!is_line(series.mark)) continue;
+    Series up{"", series.colour, Mark::up, {}};
+    Series down{"", series.colour, Mark::down, {}};
+    const PlotRow* highest = nullptr;  // of the stretch beyond the edge
+    const auto close = [&] {
+      if (highest == nullptr) return;
+      const bool above = highest->y > panel.y.high;
+      (above ? up : down).rows.push_back({highest->x, above ? panel.y.high : panel.y.low});
+      highest = nullptr;
+    };
+    for (const PlotRow& row : series.rows) {
+      const bool beyond = row.y > panel.y.high || row.y < panel.y.low;  // never where no limit was asked for
+      if (!beyond) close();
+      if (beyond && (highest == nullptr || std::abs(row.y) > std::abs(highest->y))) highest = &row;
+    }
+    close();
+    if (!up.rows.empty()) marks.push_back(std::move(up));
+    if (!down.rows.empty()) marks.push_back(std::move(down));
+  }
+  return marks;
+}
+
+}  // namespace palpate
