@@ -3,19 +3,10 @@
 // Thread guarantee: pure functions.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "scenes/plot/plot.h"
 #include "scenes/report/measure.h"
+#include "scenes/report/publish.h"
 
 namespace palpate {
-
-struct Figure {
-  Plot plot;
-  std::string caption;  // plain text
-  std::string svg{};    // once it is drawn
-};
 
 Figure speed_figure(const ReportData& data);
 Figure worst_figure(const ReportData& data);

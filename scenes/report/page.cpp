@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
-#include "engine/base/whole_file.h"
 #include "scenes/evaluation/ranking.h"
 #include "scenes/plot/inline_svg.h"
-#include "scenes/scene/assets.h"
 
 namespace palpate {
 namespace {
@@ -87,12 +86,6 @@ std::string notes_html(const ReportData& data) {
   return html + "</ul>\n";
 }
 
-std::string figure_html(const Figure& figure) {
-  return "<figure>" + inline_svg(figure.svg, figure.plot.name, figure.caption) + "<figcaption>" +
-         escape_html(figure.caption) + " <a class=\"data\" href=\"figures/" + figure.plot.name +
-         ".gp\">data and script</a></figcaption></figure>\n";
-}
-
 std::string learnt_html(const ReportData& data) {
   const ModelResult& chosen = data.models[data.choice.recommended];
   std::string features;
@@ -123,11 +116,6 @@ std::string learnt_html(const ReportData& data) {
 
 Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
                               const std::vector<Table>& tables, const std::vector<Figure>& figures) {
-  const auto assets = find_assets();
-  if (!assets) return assets.error();
-  const std::string path = *assets + "/report/page.html";
-  const auto text = read_whole_file(path);
-  if (!text) return Error{"cannot read " + path + ", the template of the report; check the assets folder"};
   std::string tests;
   for (const RecordingFacts& facts : data.recordings) {
     if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
@@ -140,17 +128,7 @@ Result<std::string> make_page(const ReportData& data, const Sentence& answer, co
                                             {"origin", escape_html(origin)}};
   for (const Table& one : tables) values[one.name] = one.rows.empty() ? "" : table_html(one);
   for (const Figure& one : figures) values[one.plot.name] = figure_html(one);
-  std::string page;
-  std::size_t at = 0;
-  for (std::size_t open; (open = text->find("{{", at)) != std::string::npos;) {
-    const std::size_t close = text->find("}}", open);
-    const auto value =
-        close == std::string::npos ? values.end() : values.find(text->substr(open + 2, close - open - 2));
-    if (value == values.end()) return Error{path + ": found {{ without the name of a part of the report behind it"};
-    page.append(*text, at, open - at).append(value->second);
-    at = close + 2;
-  }
-  return page.append(*text, at);
+  return fill_page("page.html", std::move(values));
 }
 
 }  // namespace palpate

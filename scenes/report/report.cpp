@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -16,7 +15,6 @@
 namespace palpate {
 namespace {
 
-namespace fs = std::filesystem;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kMeasuringShare = 0.93;
@@ -82,22 +80,6 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
       {"command_line", request.command_line}};
 }
 
-// Files in the folder, and what the page shows of them.
-Status draw(const ReportFolder& folder, std::vector<Figure>& figures) {
-  const std::string place = folder.path_of("figures");
-  std::vector<Plot> plots;
-  for (const Figure& figure : figures) plots.push_back(figure.plot);
-  std::error_code ignored;
-  fs::create_directories(place, ignored);
-  if (const Status status = draw_plots(place, plots); !status) return status;
-  for (Figure& figure : figures) {
-    auto svg = read_drawn(place, figure.plot.name + ".svg");
-    if (!svg) return svg.error();
-    figure.svg = std::move(*svg);
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<std::string> make_report(const ReportRequest& request, const FitControl& control) {
@@ -121,7 +103,7 @@ Result<std::string> make_report(const ReportRequest& request, const FitControl& 
     }
   }
   std::vector<Figure> figures{speed_figure(*data), worst_figure(*data), force_figure(*data)};
-  const Status drawn = draw(*folder, figures);
+  const Status drawn = draw_figures(*folder, figures);
   // Ctrl-C at a terminal ends gnuplot as well: that is no trouble of gnuplot's.
   if (!control.may_continue(0.99)) return interrupted();
   if (!drawn) return drawn.error();

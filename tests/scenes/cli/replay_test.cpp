@@ -183,7 +183,7 @@ TEST_F(ReplayVerb, GivesEveryErrorAsRecordedAndWithTheSurfaceMoved) {
   recording_ = shifted;
   const auto table = run({model});
   std::smatch said;
-  const std::regex note("note: the surface of this recording lies at (\\+0\\.[0-9]+) mm");
+  const std::regex note("note: the surface of this recording is at (\\+0\\.[0-9]+) mm");
   ASSERT_TRUE(std::regex_search(table.out, said, note)) << table.out;
   EXPECT_NEAR(std::stod(said[1]), 0.3, 0.02);
 }
