@@ -278,8 +278,12 @@ void add_replay(CLI::App& app, Verbs& verbs) {
   command->add_option("--model", options->models, "Model file (JSON); up to 16, repeat the option or list them")
       ->required();
   command->add_option("--name", options->names, "What to call the models, one for each, in their order");
-  command->add_option("--plot", options->plot, "Draw force, differences in the JND band and errors (.svg or .png); of several recordings PLOT_NAME, one each");
-  command->add_option("--out", options->out, "Write features and forces, row by row, to this file (CSV); of several recordings OUT_NAME, one each");
+  command->add_option(
+      "--plot", options->plot,
+      "Draw force, differences in the JND band and errors (.svg or .png); of several recordings PLOT_NAME, one each");
+  command->add_option(
+      "--out", options->out,
+      "Write features and forces, row by row, to this file (CSV); of several recordings OUT_NAME, one each");
   command->add_flag("--json", options->json, "Print one JSON object instead of a table");
   command->add_flag("--force", options->force, "Write over an existing file");
   verbs.emplace_back(command, [options] { return run(*options); });

@@ -47,7 +47,13 @@ Status run(const Arguments& arguments) {
   paths.insert(paths.end(), arguments.test.begin(), arguments.test.end());
   auto checked = check_before_use(paths, check_request(*scene));
   if (!checked) return checked.error();
-  ReportRequest request{*scene, {}, {}, arguments.quick, arguments.out, arguments.force, command_line(arguments),
+  ReportRequest request{*scene,
+                        {},
+                        {},
+                        arguments.quick,
+                        arguments.out,
+                        arguments.force,
+                        command_line(arguments),
                         "palpate " PALPATE_VERSION};
   for (std::size_t i = 0; i < checked->size(); ++i) {
     (i < arguments.train.size() ? request.train : request.test)

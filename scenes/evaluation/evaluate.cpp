@@ -75,8 +75,8 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
 
 RowSource rows_of(const Recording& recording) {
   return {[&recording](const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m) {
-            return replay(recording, models, visitor, surface_offset_m);
-          }};
+    return replay(recording, models, visitor, surface_offset_m);
+  }};
 }
 
 RowSource rows_of_file(const std::string& path) {
@@ -94,8 +94,7 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
   const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
     const ToolSample sample = tool_sample(row);
     surface_rows.add({sample, tick.motion(), row.force_N});
-    if (snapshot.in_contact && result.timing.samples.size() < kTimedSamples)
-      result.timing.samples.push_back(sample);
+    if (snapshot.in_contact && result.timing.samples.size() < kTimedSamples) result.timing.samples.push_back(sample);
     if (request.also) request.also(row, snapshot, tick);
   };
   const auto recorded = pass_over(rows, models, 0.0, request, 0.0, visitor);

@@ -65,8 +65,8 @@ struct RecordingEvaluation {
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
   std::vector<ModelEvaluation> models;
-  ModelErrors no_force{JndLine{}};      // of a model that always says 0 N, as recorded, at the first model's JND
-  TimedSamples timing;                  // to time models on
+  ModelErrors no_force{JndLine{}};  // of a model that always says 0 N, as recorded, at the first model's JND
+  TimedSamples timing;              // to time models on
 };
 
 // One evaluation a model, in their order. Errors: those of the rows; interrupted.

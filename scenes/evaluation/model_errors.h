@@ -43,7 +43,7 @@ struct ErrorSummary {
 // Figures of merit, and those of every unit.
 struct Evidence : ErrorSummary {
   bool units_are_recordings = false;
-  std::uint64_t beyond_units = 0;     // with a sample beyond one JND
+  std::uint64_t beyond_units = 0;  // with a sample beyond one JND
   std::vector<double> unit_samples;
   std::vector<double> unit_within;  // samples within the JND
   std::vector<double> unit_p99;     // 99 % error over the JND
@@ -59,7 +59,7 @@ struct Evidence : ErrorSummary {
 // The 99 % error of one model less that of another, in JND, over the same samples.
 struct PairedDifference {
   double p99 = 0.0;
-  Interval interval;           // 95 %; not known with too few units
+  Interval interval;          // 95 %; not known with too few units
   double at_most = kUnknown;  // 95 %, one-sided
 };
 PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,

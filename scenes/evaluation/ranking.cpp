@@ -8,8 +8,8 @@ namespace {
 bool faster(const Timing& one, const Timing& other) { return one.high_ns < other.low_ns; }
 
 bool is_non_inferior(const Candidate& one, const Candidate& best) {
-  const PairedDifference difference = paired_difference(one.error_over_jnd, one.unit_errors_over_jnd,
-                                                        best.error_over_jnd, best.unit_errors_over_jnd);
+  const PairedDifference difference =
+      paired_difference(one.error_over_jnd, one.unit_errors_over_jnd, best.error_over_jnd, best.unit_errors_over_jnd);
   return (std::isfinite(difference.at_most) ? difference.at_most : difference.p99) <= kMargin_jnd;
 }
 
@@ -34,10 +34,9 @@ Ranking rank(const std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i == ranking.best || is_non_inferior(candidates[i], candidates[ranking.best])) ranking.qualified.push_back(i);
   }
-  const std::size_t fastest =
-      *std::min_element(ranking.qualified.begin(), ranking.qualified.end(), [&](std::size_t a, std::size_t b) {
-        return candidates[a].tick.median_ns < candidates[b].tick.median_ns;
-      });
+  const std::size_t fastest = *std::min_element(
+      ranking.qualified.begin(), ranking.qualified.end(),
+      [&](std::size_t a, std::size_t b) { return candidates[a].tick.median_ns < candidates[b].tick.median_ns; });
   ranking.recommended = fastest;
   for (const std::size_t i : ranking.qualified) {
     const bool equal = !faster(candidates[fastest].tick, candidates[i].tick);

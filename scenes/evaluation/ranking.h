@@ -24,7 +24,7 @@ namespace palpate {
 inline constexpr double kMargin_jnd = 0.25;
 
 struct Candidate {
-  double error_over_jnd = 0.0;                // 99 % error, over all samples
+  double error_over_jnd = 0.0;               // 99 % error, over all samples
   std::vector<double> unit_errors_over_jnd;  // of each unit, the same units for every candidate
   Timing tick;
 };

@@ -14,7 +14,8 @@ const std::vector<std::vector<double>> kLogSteps{
 
 std::vector<double> decade_tics(const AxisRange& range, const std::vector<double>& steps, int every) {
   std::vector<double> tics;
-  for (int decade = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10.0, decade) <= range.high; ++decade) {
+  for (int decade = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10.0, decade) <= range.high;
+       ++decade) {
     if (decade % every != 0) continue;
     for (const double step : steps) {
       const double at = step * std::pow(10.0, decade);

@@ -37,7 +37,7 @@ enum class Mark {
   hollow_bars,   // likewise
   up,            // small triangles at the edge
   down,
-  area,          // grey, from `low` to `high` at each x
+  area,  // grey, from `low` to `high` at each x
 };
 
 // x and y; what bars and area go from and to. NaN: a gap; of bars: none.

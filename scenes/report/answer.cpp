@@ -42,8 +42,10 @@ Sentence errors_of(const ModelResult& model) {
   if (!errors.has_intervals()) {
     append(sentence, {beyond, {", too few for an interval"}});
   } else if (errors.beyond_units == 0) {
-    append(sentence,
-           {beyond, {"; 95 %: at most "}, number(model, "units_at_most", percent(1.0 - errors.within_at_least())), {" are"}});
+    append(sentence, {beyond,
+                      {"; 95 %: at most "},
+                      number(model, "units_at_most", percent(1.0 - errors.within_at_least())),
+                      {" are"}});
   } else {
     append(sentence,
            {{"95 %: at least "}, number(model, "within_at_least", percent(errors.within_at_least())), {"; "}, beyond});
@@ -60,14 +62,15 @@ Sentence errors_of(const ModelResult& model) {
 // Time and error of `other` against the recommended model.
 Sentence compared(const ModelResult& other, const ModelResult& recommended) {
   const PairedDifference difference = paired_difference(other.errors, recommended.errors);
-  Sentence sentence{name(other),
-                    {" takes "},
-                    number(other, "time_ratio", three_digits(other.time.tick.median_ns / recommended.time.tick.median_ns)),
-                    {" times the time ("},
-                    tick(other),
-                    {"), and its 99 % error is "},
-                    number(other, "difference", three_digits(std::abs(difference.p99))),
-                    {difference.p99 < 0.0 ? " JND smaller" : " JND larger"}};
+  Sentence sentence{
+      name(other),
+      {" takes "},
+      number(other, "time_ratio", three_digits(other.time.tick.median_ns / recommended.time.tick.median_ns)),
+      {" times the time ("},
+      tick(other),
+      {"), and its 99 % error is "},
+      number(other, "difference", three_digits(std::abs(difference.p99))),
+      {difference.p99 < 0.0 ? " JND smaller" : " JND larger"}};
   if (difference.interval.known()) {
     const double ends[] = {difference.interval.low, difference.interval.high};
     append(sentence, {{" (95 %: " + three_digits(ends[0]) + " to " + three_digits(ends[1]) + ")"}});
@@ -88,8 +91,8 @@ Sentence moved(const ReportData& data, const ModelResult& model) {
   const MovedSurface* surface = farthest(data);
   if (surface == nullptr || model.moved.within_jnd - model.errors.within_jnd < kShareThatMatters) return {};
   return {{"The surface of " + surface->name + " is at " + three_digits(1e3 * surface->offset_m) +
-           " mm for these models; with it moved, which uses the forces of the test, " + percent(model.moved.within_jnd) +
-           " is within the JND. "}};
+           " mm for these models; with it moved, which uses the forces of the test, " +
+           percent(model.moved.within_jnd) + " is within the JND. "}};
 }
 
 }  // namespace
@@ -99,7 +102,10 @@ std::string percent(double share) { return share >= 1.0 ? "100 %" : fixed(std::f
 Sentence answer(const ReportData& data) {
   const ModelResult& use = data.models[data.choice.recommended];
   const bool good = use.errors.within_jnd >= kGoodShare;
-  Sentence sentence{{good ? "Use " : "No model is good enough as recorded. The best choice is "}, name(use), {": a whole tick takes "}, tick(use)};
+  Sentence sentence{{good ? "Use " : "No model is good enough as recorded. The best choice is "},
+                    name(use),
+                    {": a whole tick takes "},
+                    tick(use)};
   append(sentence, {{", "},
                     number(use, "tick_share", three_digits(100.0 * use.time.tick.median_ns / kBudget_ns)),
                     {" % of its budget; "}});

@@ -50,8 +50,10 @@ Panel force_panel(const ReportData& data, const std::string& title, Recipe recip
     const ModelResult& one = data.models[i];
     const bool trend = one.plan.recipe == Recipe::trend && recipe == Recipe::palpate;
     if (one.plan.recipe != recipe && !trend) continue;
-    Series series{one.plan.request.method->label, model_colour(one.plan),
-                  recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve, {}};
+    Series series{one.plan.request.method->label,
+                  model_colour(one.plan),
+                  recipe == Recipe::paper ? Mark::hollow_curve : Mark::curve,
+                  {}};
     for (const ForceBin& bin : one.errors.bins) {
       if (bin.count >= kFewSamples) series.rows.push_back({bin.mean_force_N, figure(bin)});
     }
@@ -116,7 +118,8 @@ Figure speed_figure(const ReportData& data) {
   figure.plot.height = 1.9;
   figure.plot.panels = {std::move(panel)};
   figure.caption =
-      "Down is better, left is faster; below 1 JND a hand notices nothing; noise: of the force sensor. Dots: the table; "
+      "Down is better, left is faster; below 1 JND a hand notices nothing; noise: of the force sensor. Dots: the "
+      "table; "
       "hollow: the recipe of 2009. Bars: six rounds of timing, and 95 % of the error where there are units enough; "
       "models are compared by their paired difference, not by bars. Lines: one method with more and more centres.";
   return figure;

@@ -16,7 +16,8 @@ constexpr double kStudiedUpTo_N = 2.5;  // Hoever & Harders (2009), section 4.1
 std::string verdict(const Choice& choice, std::size_t model, const PairedDifference& difference) {
   if (model == choice.recommended) return "recommended";
   const bool qualified = std::find(choice.qualified.begin(), choice.qualified.end(), model) != choice.qualified.end();
-  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) + (qualified ? ", qualified" : "");
+  return (difference.p99 >= 0.0 ? "+" : "−") + three_digits(std::abs(difference.p99)) +
+         (qualified ? ", qualified" : "");
 }
 
 Table headline_table(const ReportData& data) {
@@ -53,11 +54,11 @@ double largest_force_N(const ReportData& data) {
 // What a reader must know to believe the first screen.
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
-  notes.push_back("Recommended: the fastest of the models whose 99 % error is at most " + three_digits(kMargin_jnd) +
-                  " JND above the smallest, at 95 % and one-sided (qualified: " +
-                  std::to_string(data.choice.qualified.size()) + " of " + std::to_string(data.choice.candidates.size()) +
-                  "). Two forces " + three_digits(kMargin_jnd) +
-                  " JND apart are told apart in 57 % of choices, where guessing has 50.");
+  notes.push_back(
+      "Recommended: the fastest of the models whose 99 % error is at most " + three_digits(kMargin_jnd) +
+      " JND above the smallest, at 95 % and one-sided (qualified: " + std::to_string(data.choice.qualified.size()) +
+      " of " + std::to_string(data.choice.candidates.size()) + "). Two forces " + three_digits(kMargin_jnd) +
+      " JND apart are told apart in 57 % of choices, where guessing has 50.");
   for (const ModelResult& one : data.models) {
     if (one.same.empty()) continue;
     std::string names;
@@ -120,12 +121,9 @@ Result<std::string> make_page(const ReportData& data, const Sentence& answer, co
   for (const RecordingFacts& facts : data.recordings) {
     if (facts.role != "train") tests += (tests.empty() ? "" : ", ") + facts.name;
   }
-  std::map<std::string, std::string> values{{"title", escape_html(tests)},
-                                            {"answer", html_of(answer)},
-                                            {"headline", table_html(headline_table(data))},
-                                            {"notes", notes_html(data)},
-                                            {"learnt", learnt_html(data)},
-                                            {"origin", escape_html(origin)}};
+  std::map<std::string, std::string> values{
+      {"title", escape_html(tests)}, {"answer", html_of(answer)},   {"headline", table_html(headline_table(data))},
+      {"notes", notes_html(data)},   {"learnt", learnt_html(data)}, {"origin", escape_html(origin)}};
   for (const Table& one : tables) values[one.name] = one.rows.empty() ? "" : table_html(one);
   for (const Figure& one : figures) values[one.plot.name] = figure_html(one);
   return fill_page("page.html", std::move(values));

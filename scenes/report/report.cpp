@@ -37,8 +37,8 @@ constexpr const char* kCompiler = "g++ " __VERSION__;
 
 // All numbers. "timings" holds all that differs from run to run.
 OrderedJson report_json(const ReportData& data, const ReportRequest& request, const Sentence& answer,
-                        const std::vector<Table>& tables, const std::vector<Figure>& figures, const std::string& machine,
-                        double seconds) {
+                        const std::vector<Table>& tables, const std::vector<Figure>& figures,
+                        const std::string& machine, double seconds) {
   OrderedJson numbers = OrderedJson::object();
   OrderedJson times = OrderedJson::object();
   for (const Table& table : tables) (table.has_times ? times : numbers)[table.name] = table_json(table);
@@ -51,33 +51,32 @@ OrderedJson report_json(const ReportData& data, const ReportRequest& request, co
   };
   OrderedJson offsets = OrderedJson::array();
   for (const MovedSurface& one : data.tested) offsets.push_back(one.offset_m);
-  return {
-      {"format", "palpate-report"},
-      {"version", 1},
-      {"scene", data.scene},
-      {"jnd", {{"offset_N", data.jnd.offset_N}, {"weber_fraction", data.jnd.weber_fraction}}},
-      {"quick", data.quick},
-      {"virtual_recordings", data.virtual_recordings},
-      {"folds", data.folds},
-      {"noise_floor",
-       {{"force_noise_N", data.floor.force_noise_N},
-        {"within_jnd", data.floor.within_jnd},
-        {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
-      {"surface_offset_m", offsets},
-      {"correction_off", data.choice.correction_off},
-      {"relaxation_times_2009_s", data.times_2009_s},
-      {"tables", numbers},
-      {"figures", list},
-      {"timings",
-       {{"machine", machine},
-        {"seconds", seconds},
-        {"answer", plain_text_of(answer)},
-        {"recommended", data.models[data.choice.recommended].plan.name},
-        {"candidates", named(data.choice.candidates)},
-        {"qualified", named(data.choice.qualified)},
-        {"tables", times}}},
-      {"program", {{"version", request.version}, {"compiler", kCompiler}}},
-      {"command_line", request.command_line}};
+  return {{"format", "palpate-report"},
+          {"version", 1},
+          {"scene", data.scene},
+          {"jnd", {{"offset_N", data.jnd.offset_N}, {"weber_fraction", data.jnd.weber_fraction}}},
+          {"quick", data.quick},
+          {"virtual_recordings", data.virtual_recordings},
+          {"folds", data.folds},
+          {"noise_floor",
+           {{"force_noise_N", data.floor.force_noise_N},
+            {"within_jnd", data.floor.within_jnd},
+            {"p99_error_over_jnd", data.floor.p99_error_over_jnd}}},
+          {"surface_offset_m", offsets},
+          {"correction_off", data.choice.correction_off},
+          {"relaxation_times_2009_s", data.times_2009_s},
+          {"tables", numbers},
+          {"figures", list},
+          {"timings",
+           {{"machine", machine},
+            {"seconds", seconds},
+            {"answer", plain_text_of(answer)},
+            {"recommended", data.models[data.choice.recommended].plan.name},
+            {"candidates", named(data.choice.candidates)},
+            {"qualified", named(data.choice.qualified)},
+            {"tables", times}}},
+          {"program", {{"version", request.version}, {"compiler", kCompiler}}},
+          {"command_line", request.command_line}};
 }
 
 }  // namespace

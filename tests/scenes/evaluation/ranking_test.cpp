@@ -14,7 +14,8 @@ Candidate model(double error, double tick_ns, double own = 0.0, std::uint64_t se
   Candidate one{error, {}, around(tick_ns)};
   RandomStream shared(7, 0);
   RandomStream random(seed, 1);
-  for (int i = 0; i < 10; ++i) one.unit_errors_over_jnd.push_back(error + 0.3 * shared.normal() + own * random.normal());
+  for (int i = 0; i < 10; ++i)
+    one.unit_errors_over_jnd.push_back(error + 0.3 * shared.normal() + own * random.normal());
   return one;
 }
 

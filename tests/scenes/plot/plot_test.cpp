@@ -89,8 +89,7 @@ TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
   Panel panel;
   panel.names_at_ends = true;
   panel.levels = {{0.5, "1 JND"}};
-  for (int i = 0; i < 6; ++i)
-    panel.series.push_back({"model", 0, Mark::line, {{0.0, 0.0}, {1.0, i < 4 ? 0.5 : 1.0}}});
+  for (int i = 0; i < 6; ++i) panel.series.push_back({"model", 0, Mark::line, {{0.0, 0.0}, {1.0, i < 4 ? 0.5 : 1.0}}});
   const std::vector<NameTag> tags = name_tags(panel, 0.1, 0.01);
   ASSERT_EQ(tags.size(), 7u);
   for (std::size_t i = 1; i < tags.size(); ++i) EXPECT_GE(tags[i].y - tags[i - 1].y, 0.1 - 1e-9);

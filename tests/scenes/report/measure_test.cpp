@@ -58,10 +58,9 @@ ModelResult result(const char* name, Recipe recipe, double p99, double tick_ns, 
 }
 
 TEST(Choose, TakesOneSizeOfEachMethodAndTheFastestThatQualifies) {
-  const Choice choice = choose({ModelResult{}, result("trend", Recipe::trend, 2.0, 100.0),
-                                result("greedy-100", Recipe::palpate, 0.5, 300.0),
-                                result("greedy-200", Recipe::palpate, 0.1, 310.0, false),
-                                result("voxel", Recipe::palpate, 0.6, 200.0)});
+  const Choice choice = choose(
+      {ModelResult{}, result("trend", Recipe::trend, 2.0, 100.0), result("greedy-100", Recipe::palpate, 0.5, 300.0),
+       result("greedy-200", Recipe::palpate, 0.1, 310.0, false), result("voxel", Recipe::palpate, 0.6, 200.0)});
   EXPECT_EQ(choice.candidates, (std::vector<std::size_t>{1, 2, 4}));
   EXPECT_EQ(choice.recommended, 4u);
   EXPECT_EQ(choice.best, 2u);
