@@ -27,6 +27,13 @@ float line_of_grid(float at, float step) {
   return clamp((0.5 * kLineWidth - away) / pixel_m + 0.5, 0.0, 1.0) * min(1.0, kLineWidth / pixel_m);
 }
 
+// Every second line is stronger.
+float lines(vec2 at) {
+  float all = max(line_of_grid(at.x, tool_radius), line_of_grid(at.y, tool_radius));
+  float strong = max(line_of_grid(at.x, 2.0 * tool_radius), line_of_grid(at.y, 2.0 * tool_radius));
+  return max(strong, 0.5 * all);
+}
+
 float random(vec2 cell) { return fract(sin(dot(cell, vec2(12.9898, 78.233))) * 43758.5453); }
 
 // Small pits on all sides.
@@ -66,18 +73,18 @@ float shadows(vec3 at) {
 
 void main() {
   float r = length(material.xz);
-  float slope;
-  float u = dent_at(r, slope);
-  vec3 at = material - vec3(0.0, u, 0.0);
-  float sunk = u / max(dent, 1e-6);
-  vec3 n = normalize(surface_normal + vec3(slope * material.x, 0.0, slope * material.z) / max(r, 1e-6));
+  float top = smoothstep(0.99, 0.999, surface_normal.y);
+  Surface surface = surface_at(r);
+  vec3 at = material - vec3(0.0, top * surface.depth, 0.0);
+  float sunk = clamp(surface.given / max(dent, 1e-6), 0.0, 1.0) * top;
+  vec3 n = normalize(surface_normal + top * surface.slope * vec3(material.x, 0.0, material.z) / max(r, 1e-6));
   vec3 to_eye = normalize(eye - world);
   float facing = max(dot(n, to_eye), 0.0);
 
-  vec3 base = mix(colour, mark_colour, mark * smoothstep(0.16, 0.50, sunk));
-  float step = 2.0 * tool_radius;
-  float top = smoothstep(0.9, 0.999, surface_normal.y);
-  base *= 1.0 - top * grid * max(line_of_grid(material.x, step), line_of_grid(material.z, step));
+  // A dome is another piece of rubber.
+  float cap = dome > 0.0 ? clamp((dome_radius - r) / fwidth(r) + 0.5, 0.0, 1.0) : 0.0;
+  vec3 base = mix(colour * (1.0 - 0.35 * cap), mark_colour, mark * smoothstep(0.12, 0.42, sunk));
+  base *= 1.0 - top * grid * lines(material.xz);
   base *= 1.0 - pores * pits(material);
 
   // What keeps the room's light away: the ball above (its solid angle), the hollow's own walls, the table below.
@@ -85,7 +92,7 @@ void main() {
   float ball_m = length(to_ball);
   float ball = clamp(dot(n, to_ball) * tool_radius * tool_radius / (ball_m * ball_m * ball_m), 0.0, 1.0);
   float up = 1.0 + material.y / half_size.y;
-  float open = (1.0 - 0.8 * ball) * (1.0 - 0.40 * sunk * min(dent / tool_radius, 1.0)) *
+  float open = (1.0 - 0.8 * ball) * (1.0 - 0.75 * sunk * sqrt(min(dent / tool_radius, 1.0))) *
                (0.55 + 0.45 * smoothstep(0.0, 0.22, up));
 
   // How far it is to the nearest edge: of the distances to the three faces the second.
@@ -98,7 +105,7 @@ void main() {
 
   float lamp = 1.0 - 0.75 * shadows(at) * top;
   vec3 room = mix(vec3(0.30, 0.29, 0.28), vec3(0.44, 0.45, 0.46), 0.5 + 0.5 * n.y);
-  vec3 lit = base * (room * open + 0.62 * lamp * wrapped(n, mix(vec3(0.15), vec3(0.55, 0.40, 0.32), translucent)) *
+  vec3 lit = base * (room * open + 0.62 * lamp * wrapped(n, mix(vec3(0.15), 0.55 * own * own, translucent)) *
                                        mix(1.0, open, 0.4));
   lit += own * own * colour * translucent * through * thin * mix(0.45, 1.0, open);
 

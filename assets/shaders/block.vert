@@ -9,10 +9,9 @@ out vec3 world;
 out vec3 surface_normal;
 
 void main() {
-  float slope;
   material = position;
   surface_normal = normal;
   world = position + offset;
-  world.y -= dent_at(length(position.xz), slope);
+  if (normal.y > 0.999) world.y -= surface_at(length(position.xz)).depth;
   gl_Position = view_projection * vec4(world, 1.0);
 }

@@ -1,14 +1,24 @@
-// Depth of the dent at the distance `r` from the ball's axis, and its slope (rendering/picture/dent.h):
+// How deep the surface lies at the distance `r` from the ball's axis, and its slope (rendering/picture/dent.h):
 //   r <= a:  u = d - R + sqrt(R^2 - r^2)                                        the ball
 //   r >  a:  u = u_a (2 / pi) ((2 - x^2) asin(1 / x) + sqrt(x^2 - 1)), x = r / a    the half-space beside it
 // It fades towards the rim, so that the sides stand still.
+// A dome of the rise h over the radius b lies at u_0 = h (1 - (1 - r^2 / b^2)^2). Where it has snapped through, its
+// middle is its own mirror image at the depth d / 2, which bends a thin shell without stretching it (Pogorelov 1988).
 uniform float dent;         // d, metres
 uniform float contact;      // a, metres, above 0
 uniform float edge;         // u_a, metres
 uniform float tool_radius;  // R, metres
 uniform float rim;          // metres from the middle to the nearest side
+uniform float dome;         // h, metres; 0: flat
+uniform float dome_radius;  // b, metres
 
-float dent_at(float r, out float slope) {
+struct Surface {
+  float depth;  // metres below the undisturbed top
+  float slope;
+  float given;  // how far it has given way, metres
+};
+
+Surface surface_at(float r) {
   const float kPi = 3.14159265;
   float inner = min(r, contact);
   float ball = sqrt(tool_radius * tool_radius - inner * inner);
@@ -17,11 +27,24 @@ float dent_at(float r, out float slope) {
   float angle = asin(1.0 / x);
   bool touches = r < contact;
   float u = touches ? dent - tool_radius + ball : edge * (2.0 / kPi) * ((2.0 - x * x) * angle + root);
-  slope = touches ? -inner / ball : edge / contact * (4.0 / kPi) * (root / x - x * angle);
+  float slope = touches ? -inner / ball : edge / contact * (4.0 / kPi) * (root / x - x * angle);
   float out_there = clamp((r / rim - 0.35) / 0.55, 0.0, 1.0);
   float kept = 1.0 - out_there * out_there * (3.0 - 2.0 * out_there);
   slope = slope * kept - u * 6.0 * out_there * (1.0 - out_there) / (0.55 * rim);
   bool pressed = dent > 0.0;
-  slope = pressed ? slope : 0.0;
-  return pressed ? u * kept : 0.0;
+  Surface here = Surface(pressed ? u * kept : 0.0, pressed ? slope : 0.0, 0.0);
+  here.given = here.depth;
+  if (dome <= 0.0) return here;
+
+  float inside = max(1.0 - r * r / (dome_radius * dome_radius), 0.0);
+  float rest = dome * (1.0 - inside * inside);
+  float rest_slope = dome * 4.0 * inside * r / (dome_radius * dome_radius);
+  float mirror = min(0.5 * dent, dome);
+  float above = rest - mirror;
+  float ridge = sqrt(above * above + 0.01 * dome * dome);  // rounded
+  float through = smoothstep(0.4 * dome, 1.1 * dome, dent);
+  here.depth = mix(rest + here.depth, mirror + ridge, through);
+  here.slope = mix(rest_slope + here.slope, rest_slope * above / ridge, through);
+  here.given = here.depth - rest;
+  return here;
 }

@@ -3,15 +3,14 @@
 // pixel is read that far across the edge as the step covers it there. Drawn only where find_edges.frag
 // has found one: the depth test spares the others, which a branch would not where the processor draws.
 uniform sampler2D picture;
-uniform vec2 corner;  // of the window's part, pixels
-uniform vec2 size;
+uniform vec2 corner;  // of what is drawn into, pixels
 uniform int steps;    // along an edge to either side; a number that the compiler knows would be unrolled
 
 out vec4 pixel;
 
 void main() {
   vec2 whole = vec2(textureSize(picture, 0));
-  vec2 at = (gl_FragCoord.xy - corner) / size;
+  vec2 at = (gl_FragCoord.xy - corner) / whole;
   float here = textureLod(picture, at, 0.0).g;
   float up = textureLodOffset(picture, at, 0.0, ivec2(0, 1)).g;
   float down = textureLodOffset(picture, at, 0.0, ivec2(0, -1)).g;

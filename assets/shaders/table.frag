@@ -8,8 +8,6 @@ uniform float reach;       // metres to where the table has faded
 uniform vec2 half_size;    // of a block, metres
 uniform int block_count;
 uniform vec2 blocks[4];    // where they stand
-uniform vec4 chosen;       // colour under the one in the hand; alpha 0: none
-uniform vec2 chosen_at;
 
 out vec4 pixel;
 
@@ -31,7 +29,5 @@ void main() {
     light *= (0.66 + 0.34 * wide) * (0.62 + 0.38 * contact);
   }
   colour *= light;
-  float ring = abs(box_distance(place - chosen_at) - 0.007);
-  colour = mix(colour, chosen.rgb, chosen.a * (1.0 - smoothstep(0.0012, 0.0026, ring)));
   pixel = vec4(colour, 1.0);
 }

@@ -251,6 +251,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
 }
 
 Status DemoApp::screenshot(const std::string& path, bool overwrite) {
+  resolution_ = {};  // whatever the machine has to do
   draw();
   return window_->save_frame(path, overwrite);
 }

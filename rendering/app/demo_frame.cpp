@@ -82,7 +82,7 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   const auto deeper = [&](float depth_m) {
     return depth_m > 0.0F ? std::min(kDeeperDents * depth_m, std::max(depth_m, deepest_m)) : depth_m;
   };
-  if (poses.size() < 2 || view_.exhibit) return poses;
+  if (view_.exhibit) return poses;
   for (BlockPose& pose : poses) {
     pose.tool_m = deeper(pose.tool_m);
     pose.dent_m = deeper(pose.dent_m);

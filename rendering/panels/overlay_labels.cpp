@@ -65,6 +65,11 @@ void draw_labels(const LiveSession& session, const BlockView& blocks, const View
     const float pad = 0.25F * height_of(font);
     draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, 0.5F * pad}, ink(style.colours().panel, 0.88F),
                colour);
+    if (slots.size() > 1 && chosen) {
+      ImGui::GetBackgroundDrawList()->AddRect({at.x - 2.0F * pad, at.y - 0.5F * pad},
+                                              {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour),
+                                              6.0F, 0, 2.0F);
+    }
     text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
     if (slots.size() < 2 || !chosen) continue;
     const std::string active = "active model";

@@ -30,7 +30,7 @@ void draw_block_buttons(const LiveSession& session, ViewState& view) {
   if (view.feel) {
     ImGui::TextColored(paint(kAboveJndColour), "%s", scale_words(session.scale()).c_str());
   } else {
-    ImGui::TextDisabled(shown_slots(session, view.block_count).size() > 1 ? "blocks, dents x 2" : "blocks");
+    ImGui::TextDisabled("blocks, dents x 2");
   }
 }
 

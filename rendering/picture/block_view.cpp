@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -20,11 +21,16 @@ constexpr float kLongestArrow = 0.6F;
 constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
+constexpr float kRailGap_m = 0.005F, kRailHeight_m = 0.003F;  // around the active block
+constexpr float kHiddenRail = 0.2F;                          // its opacity behind what stands before it
+// Of a dome, in radii of the tool: the virtual button's own rise (scenes/material/button_block.h), and wide enough to
+// be seen.
+constexpr float kDomeRise = 0.5F, kDomeRadius = 2.6F;
 // Of every Finish, in its order: light comes through, the skin shines, pits, lines of a grid.
 struct Material {
   float translucent, gloss, pores, grid;
 };
-constexpr Material kMaterials[] = {{0.75F, 0.55F, 0.0F, 0.16F}, {0.25F, 0.06F, 0.30F, 0.10F},
+constexpr Material kMaterials[] = {{0.75F, 0.55F, 0.0F, 0.20F}, {0.25F, 0.06F, 0.30F, 0.10F},
                                    {1.00F, 1.00F, 0.0F, 0.12F}, {0.05F, 0.45F, 0.0F, 0.25F},
                                    {0.90F, 0.20F, 0.0F, 0.12F}, {0.30F, 0.50F, 0.0F, 0.14F}};
 const glm::vec3 kLight = glm::normalize(glm::vec3(-0.35F, 0.85F, 0.45F));
@@ -72,14 +78,15 @@ std::vector<glm::vec2> tip_profile() {
 
 }  // namespace
 
-BlockView::Bodies::Bodies(const BlockGeometry& block, const Detail& detail)
+BlockView::Bodies::Bodies(const BlockGeometry& block, float dome_m, const Detail& detail)
     : top(block_top(glm::vec2(block.width_m, block.length_m), detail)),
-      sides(block_sides(glm::vec2(block.width_m, block.length_m), static_cast<float>(block.height_m), detail)),
+      sides(block_sides(glm::vec2(block.width_m, block.length_m), static_cast<float>(block.height_m) - dome_m, detail)),
       ball(lathe_mesh(ball_profile(detail), detail.around)),
       sensor(lathe_mesh(sensor_profile(), detail.around)),
       handle(lathe_mesh(handle_profile(), detail.around)),
       shaft(lathe_mesh(shaft_profile(), detail.around / 2)),
-      tip(lathe_mesh(tip_profile(), detail.around)) {}
+      tip(lathe_mesh(tip_profile(), detail.around)),
+      rail(rail_mesh(glm::vec2(block.width_m, block.length_m), kRailGap_m, kRailHeight_m, detail)) {}
 
 Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::optional<Smoothing> smoothing) {
   const auto assets = find_assets();
@@ -106,6 +113,7 @@ Result<std::unique_ptr<BlockView>> BlockView::create(const Scene& scene, std::op
 
 BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader table, std::optional<EdgeFilter> edges)
     : geometry_(scene.block),
+      dome_m_(scene.finish == Finish::dome ? kDomeRise * static_cast<float>(scene.block.tool_radius_m) : 0.0F),
       finish_(scene.finish),
       block_colour_(rgb(scene.block_colour)),
       tool_colour_(rgb(scene.tool_colour)),
@@ -116,8 +124,8 @@ BlockView::BlockView(const Scene& scene, Shader block, Shader solid, Shader tabl
       block_shader_(std::move(block)),
       solid_shader_(std::move(solid)),
       table_shader_(std::move(table)),
-      fine_(scene.block, kFine),
-      coarse_(scene.block, kCoarse),
+      fine_(scene.block, dome_m_, kFine),
+      coarse_(scene.block, dome_m_, kCoarse),
       square_(square_mesh()),
       smooth_(std::move(edges)) {
   show(1, true);
@@ -177,14 +185,17 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
   glDisable(GL_BLEND);
   glEnable(GL_CULL_FACE);
   smooth_.begin(viewport, scale);
-  if (smooth_.filters() && refresh_still(blocks, shown, theme)) {
+  if (smooth_.filters() && refresh_still(blocks.size(), shown, theme)) {
     smooth_.use_still();
   } else {
-    draw_all_still(blocks, shown, theme);
+    draw_all_still(blocks.size(), shown, theme);
   }
   glEnable(GL_DEPTH_TEST);
   for (std::size_t i = 0; i < blocks.size(); ++i) draw_tool(blocks[i], place(i, blocks.size()), shown, theme);
   for (std::size_t i = 0; i < blocks.size(); ++i) draw_top(blocks[i], place(i, blocks.size()), shown);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (blocks.size() > 1 && blocks[i].chosen) draw_rail(blocks[i].arrow, place(i, blocks.size()), shown);
+  }
   glDisable(GL_CULL_FACE);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
@@ -192,58 +203,62 @@ void BlockView::draw(const std::vector<BlockPose>& blocks, const Viewport& viewp
 }
 
 // Whether what stands still is kept as it is now; false: the driver refuses.
-bool BlockView::refresh_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme) {
-  Still now{view_projection_, smooth_.width(), smooth_.height(), blocks.size(), blocks.size(), Rgb(0.0F), theme};
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (!blocks[i].chosen) continue;
-    now.chosen = i;
-    now.ring = blocks[i].arrow;
-  }
+bool BlockView::refresh_still(std::size_t count, const Bodies& bodies, Theme theme) {
+  const Still now{view_projection_, smooth_.width(), smooth_.height(), count, theme};
   if (now == still_) return true;
   if (!smooth_.begin_still()) return false;
-  draw_all_still(blocks, bodies, theme);
+  draw_all_still(count, bodies, theme);
   still_ = now;
   return true;
 }
 
-void BlockView::draw_all_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme) const {
+void BlockView::draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const {
   const Rgb& background = palette(theme).background;
   glClearColor(background.r, background.g, background.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  draw_table(blocks, theme);
+  draw_table(count, theme);
   glEnable(GL_DEPTH_TEST);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    begin_block({}, place(i, blocks.size()));
+  for (std::size_t i = 0; i < count; ++i) {
+    begin_block({}, place(i, count) - glm::vec3(0.0F, dome_m_, 0.0F));
     bodies.sides.draw();
   }
   glDisable(GL_DEPTH_TEST);
 }
 
 // It lies behind and below all else: it needs no depth.
-void BlockView::draw_table(const std::vector<BlockPose>& blocks, Theme theme) const {
-  const auto width = static_cast<float>(geometry_.width_m);
-  const std::size_t count = std::min<std::size_t>(blocks.size(), 4);
+void BlockView::draw_table(std::size_t count, Theme theme) const {
   begin(table_shader_);
   table_shader_.set("table_y", -static_cast<float>(geometry_.height_m));
-  table_shader_.set("reach", width * (count <= 1 ? 2.3F : 3.2F));
+  table_shader_.set("reach", static_cast<float>(geometry_.width_m) * (count <= 1 ? 2.3F : 3.2F));
   table_shader_.set("table_colour", palette(theme).table);
   table_shader_.set("background", palette(theme).background);
   table_shader_.set("half_size", 0.5F * glm::vec2(geometry_.width_m, geometry_.length_m));
   glm::vec2 places[4];
-  glm::vec4 chosen(0.0F);  // the ring's colour; alpha 0: none
-  glm::vec2 chosen_at(0.0F);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 at = place(i, count);
-    places[i] = {at.x, at.z};
-    if (!blocks[i].chosen || count == 1) continue;
-    chosen = glm::vec4(blocks[i].arrow, 1.0F);
-    chosen_at = places[i];
-  }
-  table_shader_.set("block_count", static_cast<int>(count));
-  table_shader_.set("blocks", places, static_cast<int>(count));
-  table_shader_.set("chosen", chosen);
-  table_shader_.set("chosen_at", chosen_at);
+  const std::size_t drawn = std::min<std::size_t>(count, std::size(places));
+  for (std::size_t i = 0; i < drawn; ++i) places[i] = {place(i, count).x, place(i, count).z};
+  table_shader_.set("block_count", static_cast<int>(drawn));
+  table_shader_.set("blocks", places, static_cast<int>(drawn));
   square_.draw();
+}
+
+// Where something stands before it, it shines through.
+void BlockView::draw_rail(const Rgb& colour, const glm::vec3& at, const Bodies& bodies) const {
+  begin(solid_shader_);
+  solid_shader_.set("offset", at - glm::vec3(0.0F, static_cast<float>(geometry_.height_m), 0.0F));
+  solid_shader_.set("stretch", glm::vec3(1.0F));
+  solid_shader_.set("colour", colour);
+  solid_shader_.set("shininess", 0.0F);
+  glDepthMask(GL_FALSE);
+  solid_shader_.set("opacity", 1.0F);
+  bodies.rail.draw();
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  solid_shader_.set("opacity", kHiddenRail);
+  bodies.rail.draw();
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
 }
 
 // What a block's top and sides have in common.
@@ -256,6 +271,8 @@ void BlockView::begin_block(const DentShape& dent, const glm::vec3& at) const {
   block_shader_.set("edge", dent.edge_m);
   block_shader_.set("tool_radius", static_cast<float>(geometry_.tool_radius_m));
   block_shader_.set("rim", 0.5F * static_cast<float>(std::min(geometry_.width_m, geometry_.length_m)));
+  block_shader_.set("dome", 0.0F);
+  block_shader_.set("dome_radius", kDomeRadius * static_cast<float>(geometry_.tool_radius_m));
   block_shader_.set("half_size", glm::vec3(0.5 * geometry_.width_m, geometry_.height_m, 0.5 * geometry_.length_m));
   block_shader_.set("colour", block_colour_);
   block_shader_.set("translucent", material.translucent);
@@ -272,6 +289,7 @@ void BlockView::draw_top(const BlockPose& pose, const glm::vec3& at, const Bodie
   block_shader_.set("mark_colour", error_colour(static_cast<double>(pose.error_over_jnd)));
   // Shallow dents have no colour yet: there is nothing to judge.
   block_shader_.set("mark", pose.shows_error ? 0.92F * glm::smoothstep(0.0001F, 0.0009F, pose.dent_m) : 0.0F);
+  block_shader_.set("dome", dome_m_);
   block_shader_.set("tip", pose.tool_m);
   const glm::vec3 foot = arrow_foot();
   block_shader_.set("arrow", glm::vec3(foot.x, pose.force_N < kShortestArrow_N ? 0.0F : arrow_length_m(pose), foot.z));
@@ -282,6 +300,7 @@ void BlockView::draw_tool(const BlockPose& pose, const glm::vec3& at, const Bodi
   begin(solid_shader_);
   solid_shader_.set("offset", at - glm::vec3(0.0F, pose.tool_m, 0.0F));
   solid_shader_.set("stretch", glm::vec3(static_cast<float>(geometry_.tool_radius_m)));
+  solid_shader_.set("opacity", 1.0F);
   const auto part = [&](const GpuMesh& mesh, const Rgb& colour, float shininess) {
     solid_shader_.set("colour", colour);
     solid_shader_.set("shininess", shininess);
@@ -301,7 +320,7 @@ glm::vec3 BlockView::arrow_foot() const {
 }
 
 void BlockView::draw_arrow(const BlockPose& pose, const glm::vec3& at, const Bodies& bodies) const {
-  const glm::vec3 foot = at + arrow_foot() + glm::vec3(0.0F, 0.001F, 0.0F);
+  const glm::vec3 foot = at + arrow_foot() + glm::vec3(0.0F, 0.001F - dome_m_, 0.0F);
   const float length_m = arrow_length_m(pose);
   solid_shader_.set("colour", pose.arrow);
   solid_shader_.set("shininess", 0.0F);

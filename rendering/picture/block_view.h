@@ -31,8 +31,7 @@ struct BlockPose {
   bool chosen = false;      // the active model
   bool shows_error = true;  // the dent shows the error's colour
 };
-// How much deeper than they are presses are drawn where several blocks make each small; who
-// shows the picture says so.
+// How much deeper than they are presses are drawn; the window says so.
 inline constexpr float kDeeperDents = 2.0F;
 
 class BlockView {
@@ -61,15 +60,14 @@ class BlockView {
  private:
   // The bodies of one block, as fine as they are seen.
   struct Bodies {
-    Bodies(const BlockGeometry& block, const Detail& detail);
-    GpuMesh top, sides, ball, sensor, handle, shaft, tip;
+    Bodies(const BlockGeometry& block, float dome_m, const Detail& detail);
+    GpuMesh top, sides, ball, sensor, handle, shaft, tip, rail;
   };
   // What a picture of all that stands still depends on.
   struct Still {
     glm::mat4 view_projection{0.0F};
     int width = 0, height = 0;
-    std::size_t blocks = 0, chosen = 0;
-    Rgb ring{0.0F};
+    std::size_t blocks = 0;
     Theme theme = Theme::light;
     bool operator==(const Still&) const = default;
   };
@@ -78,9 +76,10 @@ class BlockView {
   float arrow_length_m(const BlockPose& pose) const;
   glm::vec3 arrow_foot() const;  // beside the middle of a block
   const Bodies& bodies(std::size_t count, const Viewport& viewport) const;
-  bool refresh_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme);
-  void draw_all_still(const std::vector<BlockPose>& blocks, const Bodies& bodies, Theme theme) const;
-  void draw_table(const std::vector<BlockPose>& blocks, Theme theme) const;
+  bool refresh_still(std::size_t count, const Bodies& bodies, Theme theme);
+  void draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const;
+  void draw_table(std::size_t count, Theme theme) const;
+  void draw_rail(const Rgb& colour, const glm::vec3& place, const Bodies& bodies) const;
   void draw_top(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
   void draw_tool(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies, Theme theme) const;
   void draw_arrow(const BlockPose& pose, const glm::vec3& place, const Bodies& bodies) const;
@@ -88,6 +87,7 @@ class BlockView {
   void begin_block(const DentShape& dent, const glm::vec3& place) const;
 
   BlockGeometry geometry_;
+  float dome_m_;  // rises so far over its block, whose own top lies below the undisturbed one
   Finish finish_;
   Rgb block_colour_;
   Rgb tool_colour_;

@@ -37,6 +37,9 @@ inline constexpr Detail kCoarse{5, 4, 14, 3, 16};
 Mesh block_top(const glm::vec2& size_m, const Detail& detail);
 Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail);
 
+// A low rail on the ground, y = 0, around such a block and so far from it; lit as if it lay.
+Mesh rail_mesh(const glm::vec2& size_m, float gap_m, float height_m, const Detail& detail);
+
 // A body of revolution around y: `profile` has (radius, y) from bottom to top.
 Mesh lathe_mesh(const std::vector<glm::vec2>& profile, int sides);
 

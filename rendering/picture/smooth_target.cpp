@@ -24,7 +24,7 @@ Smoothing smoothing_for(std::string_view renderer) noexcept {
 }
 
 SmoothTarget::SmoothTarget(std::optional<EdgeFilter> filter)
-    : filter_(std::move(filter)), pixels_(filter_ ? 0 : kSamples), still_(0) {
+    : filter_(std::move(filter)), pixels_(filter_ ? 0 : kSamples), still_(0), smoothed_(0) {
   glGenVertexArrays(1, &no_vertices_);
 }
 
@@ -48,29 +48,29 @@ void SmoothTarget::use_still() { still_.copy_to(pixels_); }
 
 void SmoothTarget::end() {
   if (refused_) return;
-  if (filters()) {
-    filter_edges();
+  const Viewport& to = viewport_;
+  const bool enlarged = filters() && (width() != to.width || height() != to.height);
+  if (filters() && !enlarged) {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    filter_edges(to);
     return;
   }
-  const Viewport& to = viewport_;
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, pixels_.framebuffer());
+  if (enlarged && smoothed_.draw_into(width(), height())) filter_edges({0, 0, width(), height()});
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, enlarged ? smoothed_.framebuffer() : pixels_.framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, to.width, to.height, to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
-                    GL_NEAREST);
+  glBlitFramebuffer(0, 0, width(), height(), to.x, to.y, to.x + to.width, to.y + to.height, GL_COLOR_BUFFER_BIT,
+                    enlarged ? GL_LINEAR : GL_NEAREST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 // Everything is copied and its edges found, then what has one is drawn again.
-void SmoothTarget::filter_edges() const {
-  const Viewport& to = viewport_;
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+void SmoothTarget::filter_edges(const Viewport& to) const {
   glViewport(to.x, to.y, to.width, to.height);
   glBindTexture(GL_TEXTURE_2D, pixels_.colour());
   glBindVertexArray(no_vertices_);
   const auto draw = [&](const Shader& shader) {
     shader.use();
     shader.set("corner", glm::vec2(to.x, to.y));
-    shader.set("size", glm::vec2(to.width, to.height));
     shader.set("steps", kSteps);
     glDrawArrays(GL_TRIANGLES, 0, 3);
   };

@@ -1,7 +1,7 @@
 // The picture with smooth edges, for itself alone: text and curves have smooth edges of their own.
 // A graphics card takes several samples a pixel. Where the processor draws, each sample costs as much as a pixel: there
-// the edges of the finished picture are filtered (assets/shaders/edges.frag), which can also enlarge a picture of fewer
-// pixels, and what stands still is drawn once.
+// the edges of the finished picture are filtered (assets/shaders/edges.frag), what stands still is drawn
+// once, and a picture of fewer pixels is enlarged.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
@@ -50,11 +50,11 @@ class SmoothTarget {
   void end();
 
  private:
-  void filter_edges() const;
+  void filter_edges(const Viewport& to) const;
 
   std::optional<EdgeFilter> filter_;
   Viewport viewport_;
-  Pixels pixels_, still_;
+  Pixels pixels_, still_, smoothed_;
   bool refused_ = false;
   unsigned no_vertices_ = 0;  // three corners need no buffer
 };

@@ -26,13 +26,40 @@ const Palette kDark{hex(0x131516), hex(0x222426), hex(0x1B1F23), hex(0x2D343B), 
 // green of viridis: nothing is no shadow, and what is large is dark.
 constexpr std::array<Rgb, 5> kScale{hex(0xFAF6D0), hex(0xD3E59C), hex(0x93D285), hex(0x50BA85), hex(0x1FA387)};
 
+double luminance(const Rgb& colour) noexcept {
+  const auto linear = [](float value) {
+    return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
+  };
+  return static_cast<double>(0.2126F * linear(colour.r) + 0.7152F * linear(colour.g) + 0.0722F * linear(colour.b));
+}
+
+// Towards white on a dark panel; on a light one towards a dark green, as far as it must: orange that is mixed with
+// black becomes vermilion.
+Rgb legible(const Rgb& colour, Theme theme) noexcept {
+  constexpr float kStep = 0.02F;
+  const Palette& p = palette(theme);
+  const Rgb end = theme == Theme::light ? Rgb(0.0F, 0.32F, 0.2F) : Rgb(1.0F);
+  const auto enough = [&](const Rgb& shade) {
+    return std::min(contrast(shade, p.panel), contrast(shade, p.background)) >= kLeastContrast;
+  };
+  float share = 0.0F;
+  while (!enough(glm::mix(colour, end, share)) && share < 1.0F) share += kStep;
+  return glm::mix(colour, end, share);
+}
+
 }  // namespace
 
 const Palette& palette(Theme theme) noexcept { return theme == Theme::light ? kLight : kDark; }
 
+double contrast(const Rgb& a, const Rgb& b) noexcept {
+  const double high = std::max(luminance(a), luminance(b));
+  const double low = std::min(luminance(a), luminance(b));
+  return (high + 0.05) / (low + 0.05);
+}
+
 Rgb method_colour(std::string_view method, Theme theme) {
   const std::uint32_t colour = method_rgb(method);
-  if (colour != 0) return hex(colour);
+  if (colour != 0) return legible(hex(colour), theme);
   return theme == Theme::light ? Rgb(0.0F) : Rgb(1.0F);
 }
 
@@ -44,7 +71,7 @@ Rgb method_colour(std::string_view method, Theme theme, std::size_t which) {
   // Away from the background first.
   const bool turned = colour == Rgb(0.0F) || (theme == Theme::dark && colour != Rgb(1.0F));
   const float shade = kShades[(which - 1) % kShades.size()] * (turned ? -1.0F : 1.0F);
-  return glm::mix(colour, Rgb(shade < 0.0F ? 0.0F : 1.0F), std::abs(shade));
+  return legible(glm::mix(colour, Rgb(shade < 0.0F ? 0.0F : 1.0F), std::abs(shade)), theme);
 }
 
 Rgb error_colour(double error_over_jnd) noexcept {

@@ -28,8 +28,13 @@ struct Palette {
 };
 const Palette& palette(Theme theme) noexcept;
 
-// Of a fitting method (scenes/scene/scene.h); one without a hue is black or
-// white, and so is what is not known.
+// Ratio of luminances as WCAG 2 defines it, 1 to 21.
+double contrast(const Rgb& a, const Rgb& b) noexcept;
+// What carries a meaning has at least this much against what is behind it (WCAG 2.1, 1.4.11).
+inline constexpr double kLeastContrast = 3.0;
+
+// Of a fitting method (scenes/scene/scene.h), lighter or darker where the theme asks for it; one without a hue is
+// black or white, and so is what is not known.
 Rgb method_colour(std::string_view method, Theme theme);
 // Of the `which`-th model of one method, 0 for the first: another shade of it.
 Rgb method_colour(std::string_view method, Theme theme, std::size_t which);

@@ -7,14 +7,16 @@ depends on what else the machine does.
 What starts once (the driver compiles its shaders) is left out: two runs, one of a quarter of the time, and their
 difference. Programs draw under Xvfb in turns, so that before and after share their minutes. Columns: processor
 milliseconds a frame of the main thread, of the driver's threads, and of the whole program with its haptics loop and,
-without --models, the fits of the scene's own models.
+without --models, the fits of the scene's own models; how late its loop is, and one beside it that does nothing.
 """
 import argparse
+import ctypes
 import json
 import os
 import pathlib
 import subprocess
 import tempfile
+import threading
 import time
 
 
@@ -32,24 +34,53 @@ def thread_seconds(pid):
     return seconds
 
 
+class IdealLoop(threading.Thread):
+    """1 kHz of absolute deadlines and nothing to do, FIFO where it is allowed: what the machine grants now."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.late_us, self.running = [], True
+
+    def run(self):
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(80))
+        except PermissionError:
+            pass
+        sleep = ctypes.CDLL(None).clock_nanosleep
+        due = time.clock_gettime_ns(time.CLOCK_MONOTONIC)
+        while self.running:
+            due = max(due + 1_000_000, time.clock_gettime_ns(time.CLOCK_MONOTONIC) - 1_000_000)
+            sleep(1, 1, ctypes.byref((ctypes.c_long * 2)(due // 10**9, due % 10**9)), None)  # until that time
+            self.late_us.append((time.clock_gettime_ns(time.CLOCK_MONOTONIC) - due) / 1e3)
+
+    def p99_9(self):
+        self.running = False
+        self.join()
+        return sorted(self.late_us)[int(0.999 * (len(self.late_us) - 1))]
+
+
 def run(program, blocks, seconds, options, display):
     with tempfile.TemporaryDirectory() as folder:
         config = pathlib.Path(folder, "config/palpate")
         config.mkdir(parents=True)
         (config / "window.json").write_text(json.dumps({"blocks": blocks}))
         stats = pathlib.Path(folder, "stats.json")
-        environment = dict(os.environ, DISPLAY=display, XDG_CONFIG_HOME=f"{folder}/config", XDG_DATA_HOME=f"{folder}/data")
+        environment = dict(os.environ, DISPLAY=display, XDG_CONFIG_HOME=f"{folder}/config",
+                           XDG_DATA_HOME=f"{folder}/data")
         command = [program, "--seconds", str(seconds), "--stats", str(stats)]
         if options.size != "1280x720":
             command += ["--fullscreen"]
         for model in options.models:
             command += ["--model", model]
         process = subprocess.Popen(command, env=environment)
+        ideal = IdealLoop()
+        ideal.start()
         spent = {}
         while process.poll() is None:
             spent.update(thread_seconds(process.pid))
             time.sleep(0.1)
         figures = json.loads(stats.read_text())
+        figures["ideal_us"] = ideal.p99_9()
     parts = {"main": 0.0, "driver": 0.0, "whole": sum(spent.values())}
     for (task, name), seconds_spent in spent.items():
         if task == str(process.pid):
@@ -65,9 +96,12 @@ def row(program, blocks, options, display):
     graphics = both["graphics"]
     frames = graphics["frames"] - first["graphics"]["frames"]
     cost = [1e3 * (both_s[part] - first_s[part]) / max(frames, 1) for part in both_s]
-    return (f"{blocks},{program},{frames},{graphics['fps']:.1f},{graphics['frame_ms']['p50']:.1f},"
-            f"{graphics['frame_ms']['p99']:.1f},{graphics.get('picture_scale', 1.0):.2f},"
-            f"{','.join(f'{ms:.2f}' for ms in cost)},{both['haptics']['lateness_us']['p99_9']:.0f}")
+    haptics = both["haptics"]
+    values = [blocks, program, frames, f"{graphics['fps']:.1f}", f"{graphics['frame_ms']['p50']:.1f}",
+              f"{graphics['frame_ms']['p99']:.1f}", f"{graphics.get('picture_scale', 1.0):.2f}",
+              *(f"{ms:.2f}" for ms in cost), f"{haptics['lateness_us']['p99_9']:.0f}", f"{both['ideal_us']:.0f}",
+              haptics["missed_deadlines"]]
+    return ",".join(map(str, values))
 
 
 def main():
@@ -86,7 +120,7 @@ def main():
         time.sleep(0.05)
     try:
         print("blocks,program,frames,fps,frame_ms_p50,frame_ms_p99,picture_scale,main_processor_ms,driver_processor_ms,"
-              "whole_processor_ms,lateness_us_p99_9")
+              "whole_processor_ms,lateness_us_p99_9,ideal_loop_us_p99_9,missed_deadlines")
         for _ in range(options.rounds):
             for blocks in options.blocks:
                 for program in options.programs:

@@ -116,6 +116,20 @@ TEST_F(BlockViewTest, WhatStandsStillFollowsCameraThemeAndChoice) {
   expect_fresh("more blocks");
 }
 
+// Half a millimetre, drawn twice as deep: what changes so much that an eye sees it.
+TEST_F(BlockViewTest, ASmallDentIsSeen) {
+  for (const Smoothing smoothing : {Smoothing::samples, Smoothing::filter}) {
+    const auto one = view(smoothing);
+    std::vector<BlockPose> flat = poses(1, 0.001F), pressed = flat;
+    flat[0].dent_m = 0.0F;
+    for (auto* blocks : {&flat, &pressed}) (*blocks)[0].shows_error = false;
+    const Picture a = draw(*one, flat), b = draw(*one, pressed);
+    int seen = 0;
+    for (std::size_t i = 0; i < a.size(); i += 3) seen += std::abs(a[i] - b[i]) > 6 ? 1 : 0;
+    EXPECT_GT(seen, 40) << "of the some 12,000 pixels of the top";
+  }
+}
+
 TEST(Smoothing, IsAFilterWhereTheRendererIsAProgram) {
   EXPECT_EQ(smoothing_for("llvmpipe (LLVM 15.0.6, 256 bits)"), Smoothing::filter);
   EXPECT_EQ(smoothing_for("softpipe"), Smoothing::filter);

@@ -9,21 +9,6 @@
 namespace palpate {
 namespace {
 
-// Relative luminance and contrast ratio of WCAG 2.
-double luminance(const Rgb& colour) {
-  const auto linear = [](float c) {
-    const auto value = static_cast<double>(c);
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-  };
-  return 0.2126 * linear(colour.r) + 0.7152 * linear(colour.g) + 0.0722 * linear(colour.b);
-}
-
-double contrast(const Rgb& a, const Rgb& b) {
-  const double high = std::max(luminance(a), luminance(b));
-  const double low = std::min(luminance(a), luminance(b));
-  return (high + 0.05) / (low + 0.05);
-}
-
 TEST(Colours, TextCanBeReadInBothThemes) {
   for (const Theme theme : {Theme::light, Theme::dark}) {
     const Palette& p = palette(theme);
@@ -33,6 +18,34 @@ TEST(Colours, TextCanBeReadInBothThemes) {
     EXPECT_GE(contrast(p.quiet, p.background), 4.5);
     EXPECT_GE(contrast(p.fault, p.panel), 4.5);
   }
+}
+
+TEST(Colours, ContrastIsThatOfWcag) {
+  EXPECT_NEAR(contrast(Rgb(0.0F), Rgb(1.0F)), 21.0, 1e-4);
+  EXPECT_NEAR(contrast(Rgb(1.0F, 0.0F, 0.0F), Rgb(1.0F)), 3.998, 1e-3) << "published examples";
+  EXPECT_NEAR(contrast(Rgb(1.0F), Rgb(0.466667F)), 4.478, 1e-3) << "#777777";
+  EXPECT_EQ(contrast(Rgb(0.3F), Rgb(0.3F)), 1.0);
+}
+
+// WCAG 2.1, 1.4.11: 3 : 1 for all that carries a meaning.
+TEST(Colours, WhatCarriesAMeaningIsSeenInBothThemes) {
+  for (const Theme theme : {Theme::light, Theme::dark}) {
+    const Palette& p = palette(theme);
+    for (const Rgb& behind : {p.panel, p.background}) {
+      for (const char* method : {"trend", "direct", "voxel", "random", "kdtree", "greedy", "position"}) {
+        for (std::size_t which = 0; which < 5; ++which)
+          EXPECT_GE(contrast(method_colour(method, theme, which), behind), kLeastContrast) << method << which;
+      }
+      EXPECT_GE(contrast(kReferenceColour, behind), kLeastContrast);
+      EXPECT_GE(contrast(kAboveJndColour, behind), kLeastContrast);
+      EXPECT_GE(contrast(p.rubber, behind), kLeastContrast) << "the probe";
+    }
+  }
+}
+
+TEST(Colours, AHueThatIsSeenStaysAsItIs) {
+  EXPECT_EQ(method_colour("greedy", Theme::light), (Rgb(213.0F, 94.0F, 0.0F) / 255.0F));
+  EXPECT_EQ(method_colour("voxel", Theme::dark), (Rgb(86.0F, 180.0F, 233.0F) / 255.0F));
 }
 
 TEST(Colours, MethodsDifferFromEachOtherAndFromTheReference) {
@@ -49,10 +62,11 @@ TEST(Colours, MethodsDifferFromEachOtherAndFromTheReference) {
 }
 
 TEST(Colours, TheScaleDarkensFromLightAndEndsAtOne) {
-  double last = 1.0;
-  EXPECT_GT(luminance(error_colour(0.0)), 0.8) << "no error is no shadow";
+  const Rgb black(0.0F);
+  double last = 21.0;
+  EXPECT_GT(contrast(error_colour(0.0), black), 17.0) << "no error is no shadow";
   for (double error = 0.0; error <= 1.0; error += 0.05) {
-    const double now = luminance(error_colour(error));
+    const double now = contrast(error_colour(error), black);
     EXPECT_LT(now, last) << error;
     last = now;
   }

@@ -112,6 +112,8 @@ TEST(SceneReader, RefusesWithPlaceFoundAndExpected) {
             "x.json:10:46: jnd.weber_fraction: found 7, expected a number from 0 up to 1");
   EXPECT_EQ(complaint_after("#56B4E9", "red"),
             "x.json:12:24: colours.block: found \"red\", expected a colour such as \"#56B4E9\"");
+  EXPECT_EQ(complaint_after("\"default_models\"", "\"finish\": \"wood\", \"default_models\""),
+            "x.json:13:13: finish: found \"wood\", expected one of silicone, foam, gel, rubber, skin, dome");
   EXPECT_EQ(
       complaint_after("\"greedy\"", "\"best\""),
       "x.json:13:22: default_models[0]: found \"best\", expected one of trend, direct, voxel, random, kdtree, greedy");
