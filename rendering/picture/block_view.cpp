@@ -22,7 +22,7 @@ constexpr float kUsualSize_m = 0.1F;
 constexpr float kArrowTip_m = 0.0085F;
 constexpr float kShortestArrow_N = 0.03F;
 constexpr float kRailGap_m = 0.005F, kRailHeight_m = 0.003F;  // around the active block
-constexpr float kHiddenRail = 0.2F;                          // its opacity behind what stands before it
+constexpr float kHiddenRail = 0.2F;                           // its opacity behind what stands before it
 // Of a dome, in radii of the tool: the virtual button's own rise (scenes/material/button_block.h), and wide enough to
 // be seen.
 constexpr float kDomeRise = 0.5F, kDomeRadius = 2.6F;
