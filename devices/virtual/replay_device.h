@@ -32,6 +32,12 @@ class ReplayDevice final : public Device, public ReplayControl {
   ForceLimits limits() const noexcept override { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double) noexcept override {}
+  // A recording that is paused or slow is not late.
+  DeviceHealth health(double) noexcept override {
+    DeviceHealth health;
+    if (started_) health.sample_age_s = 0.0;
+    return health;
+  }
   ReplayControl* replay() noexcept override { return this; }
 
   // Any thread, wait-free. `speed`: times the recording's own pace, kept between

@@ -25,8 +25,10 @@ struct DeviceHealth {
   Zeroing zeroing = Zeroing::not_needed;
   bool grip_held = false;         // of a dead-man switch on the handle
   float zeroing_progress = 0.0F;  // 0 to 1 while hold_still
-  double sample_age_s = 0.0;      // of the newest sample
-  double interval_s = 0.0;        // between samples, of late; 0: not known
+  // Of the newest sample. Infinite, the default: the device does not say, and the tick counts from the last sample
+  // that it was given; before the first there is no force.
+  double sample_age_s = std::numeric_limits<double>::infinity();
+  double interval_s = 0.0;  // between samples, of late; 0: not known
   // From a command to the report that confirms it; NaN: the device confirms none.
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
 

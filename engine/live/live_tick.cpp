@@ -105,6 +105,12 @@ void LiveTick::process_samples(double now_s) noexcept {
   snapshot_.restarted = false;
   DeviceSample sample;
   for (int i = 0; i < kMaxSamplesPerTick && device_.read(now_s, sample); ++i) process_sample(sample);
+  if (snapshot_.samples > 0) sampled_s_ = now_s;
+}
+
+void LiveTick::read_health(double now_s) noexcept {
+  snapshot_.device = device_.health(now_s);
+  if (std::isinf(snapshot_.device.sample_age_s)) snapshot_.device.sample_age_s = now_s - sampled_s_;
 }
 
 void LiveTick::process_sample(const DeviceSample& sample) noexcept {
@@ -225,7 +231,7 @@ const LoopSnapshot& LiveTick::run(double now_s, const LoopControls& controls) no
   acknowledge(controls);
   update_models();
   process_samples(now_s);
-  snapshot_.device = device_.health(now_s);
+  read_health(now_s);
   const double commanded_N = source_ != nullptr ? source_->next_force_N(snapshot_.rendered_N) : mix(controls, step_s);
   render(commanded_N, passive(commanded_N, step_s), step_s, dead_man_released(controls));
   snapshot_.faults_latched |= snapshot_.faults;
@@ -243,7 +249,7 @@ bool LiveTick::release(double now_s) noexcept {
   const double step_s = now_s - now_s_;
   now_s_ = now_s;
   snapshot_.faults = 0;
-  snapshot_.device = device_.health(now_s);
+  read_health(now_s);
   render(0.0, 0.0, step_s, false);
   return snapshot_.rendered_N == 0.0;
 }

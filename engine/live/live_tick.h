@@ -174,6 +174,7 @@ class LiveTick {
  private:
   void update_models() noexcept;
   void process_samples(double now_s) noexcept;
+  void read_health(double now_s) noexcept;
   void process_sample(const DeviceSample& sample) noexcept;
   void step_models(const DeviceSample& sample) noexcept;
   void publish_sample(const DeviceSample& sample) noexcept;
@@ -200,6 +201,7 @@ class LiveTick {
   std::uint32_t acknowledged_ = 0;
   double ns_per_cycle_;
   double now_s_ = 0.0;
+  double sampled_s_ = -std::numeric_limits<double>::infinity();  // the tick that took the last sample
   bool started_ = false;
 };
 

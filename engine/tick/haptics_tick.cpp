@@ -47,6 +47,8 @@ void HapticsTick::reset() noexcept {
   motion_.reset();
   for (FeatureFilter& filter : filters_) filter.reset();
   started_ = false;
+  // No force of the stream before.
+  snapshot_ = {.tick = snapshot_.tick, .model_count = snapshot_.model_count};
 }
 
 void HapticsTick::rehearse() noexcept {

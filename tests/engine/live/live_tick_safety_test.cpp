@@ -163,6 +163,44 @@ TEST(LiveTickSafety, ADeviceInTroubleGetsNoForceAndIsRemembered) {
   }
 }
 
+// Models are evaluated in contact once before they are used; nothing of that reaches a device.
+TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
+  class SilentDevice final : public Device {
+   public:
+    const std::string& name() const noexcept override { return name_; }
+    SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
+    bool renders_force() const noexcept override { return true; }
+    ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.0}; }
+    bool read(double now_s, DeviceSample& sample) noexcept override {
+      sample.tool.time_s = now_s;
+      sample.tool.position_m = 5e-3;
+      return speaks;
+    }
+    void write(double force_N) noexcept override { written_N = force_N; }
+    double written_N = 0.0;
+    bool speaks = false;
+
+   private:
+    std::string name_ = "silent";
+  } device;
+  ModelSlot<LiveModels> slot;
+  LiveTick live(device, slot);
+  slot.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(1000.0)}));
+  live.warm_up();
+  for (int i = 0; i < 100; ++i) {
+    const LoopSnapshot& snapshot = live.run(kTick_s * i, {});
+    ASSERT_EQ(snapshot.commanded_N, 0.0);
+    ASSERT_EQ(device.written_N, 0.0);
+    ASSERT_NE(snapshot.faults & loop_fault::kStaleSample, 0u);
+  }
+  device.speaks = true;
+  for (int i = 100; i < 200; ++i) live.run(kTick_s * i, {});
+  EXPECT_NEAR(device.written_N, 5.0, 1e-9);
+  device.speaks = false;
+  for (int i = 200; i < 225; ++i) live.run(kTick_s * i, {});
+  EXPECT_EQ(device.written_N, 0.0) << "its last sample is too old";
+}
+
 TEST(LiveTickSafety, KeepsTheTicksAroundAFault) {
   FrailDevice device;
   ModelSlot<LiveModels> slot;
