@@ -11,7 +11,7 @@ MonitorSettings monitor_settings(const HidCalibration& calibration) noexcept {
   settings.knows_position = calibration.driver->knows_position;
   settings.counts_per_metre = calibration.counts_per_metre;
   settings.fastest_m_per_s = calibration.fastest_m_per_s;
-  settings.stale_after_s = settings.knows_position ? HidEndpoint::kHeldBack_s : calibration.limits.stale_after_s;
+  settings.stale_after_s = calibration.limits.stale_after_s;
   settings.stuck_after_s = calibration.stuck_after_s;
   return settings;
 }
@@ -125,16 +125,10 @@ void HidEndpoint::write(double force_N) noexcept {
   command_.write(next_command_);
 }
 
-double HidEndpoint::late_after_s(const MonitorState& state) const noexcept {
-  const double late_s = calibration_.limits.stale_after_s;
-  if (!calibration_.driver->knows_position) return late_s;
-  return std::clamp(kLateIntervals * state.interval_s, late_s, kLongestSilence_s);
-}
-
 // Whether a sample is late is for `health` to say; the limiter's own limit is the longest.
 ForceLimits HidEndpoint::limits() const noexcept {
   ForceLimits limits = calibration_.limits;
-  if (calibration_.driver->knows_position) limits.stale_after_s = kLongestSilence_s;
+  if (calibration_.driver->knows_position) limits.stale_after_s = StreamMonitor::kLongestSilence_s;
   return limits;
 }
 
@@ -157,7 +151,7 @@ DeviceHealth HidEndpoint::health(double now_s) noexcept {
   if (!link.connected) {
     health.faults |= device_fault::kUnplugged;
   } else {
-    if (health.sample_age_s > late_after_s(state)) health.faults |= device_fault::kLate;
+    if (health.sample_age_s > state.late_after_s) health.faults |= device_fault::kLate;
     if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
   }
   health.interval_s = state.interval_s;

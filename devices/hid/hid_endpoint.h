@@ -34,14 +34,8 @@ class HidEndpoint final : public HidListener {
   static constexpr double kWriteStalled_s = 0.05;
   // Nothing new to say: at least this often all the same.
   static constexpr double kRepeat_s = 0.005;
-  // A device that gives samples at its own rate is late when five are missing, after 10 ms
-  // at the earliest (its calibration's stale_after_s) and after 100 ms at the latest, and
-  // hears of commands no more often than it gives samples, down to 100 Hz.
-  static constexpr double kLateIntervals = 5.0;
-  static constexpr double kLongestSilence_s = 0.1;
+  // A device that gives samples at its own rate hears of commands no more often than that, down to 100 Hz.
   static constexpr double kSlowestSample_s = 0.01;
-  // USB serial chips hold bytes back for 16 ms.
-  static constexpr double kHeldBack_s = 0.02;
 
   explicit HidEndpoint(const HidCalibration& calibration) noexcept;
 
@@ -75,7 +69,6 @@ class HidEndpoint final : public HidListener {
   HidCommand command_for(double force_N) noexcept;
   double position_m(const MonitorState& state) const noexcept;
   bool stalled(const LinkState& state, double now_s) const noexcept;
-  double late_after_s(const MonitorState& state) const noexcept;
   void publish_sample() noexcept;
 
   HidCalibration calibration_;

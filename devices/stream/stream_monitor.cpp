@@ -22,6 +22,7 @@ bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::
 }  // namespace
 
 StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {
+  state_.late_after_s = settings.stale_after_s;
   if (settings.knows_position) state_.zeroing = Zeroing::not_needed;
 }
 
@@ -76,6 +77,15 @@ bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcep
   return false;
 }
 
+// What comes after a pause or with another time is a new stream: the old line of the clock says nothing of it, nor the
+// old motion.
+void StreamMonitor::watch_clock(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.knows_position || !connected_) return;
+  const bool set_back = static_cast<std::int32_t>(reading.time_us - last_.time_us) <= 0;
+  if (set_back) fault(device_fault::kReset, now_s);
+  if (set_back || now_s - state_.sample_time_s > kLongestSilence_s) connected_ = false;
+}
+
 bool StreamMonitor::settled(const DeviceReading& reading, double now_s) noexcept {
   if (!settings_.knows_position || connected_) return true;
   if (first_s_ < 0.0) {
@@ -97,15 +107,9 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
     return !together;
   }
   read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
-  if (now_s - read_time_s_ <= settings_.stale_after_s) {
-    late_since_s_ = now_s;
-    return true;
-  }
-  // Late for so long, the device's clock has paused: begin anew. Whether the way itself is
-  // that long shows in the time that a command takes to be confirmed.
-  if (now_s - late_since_s_ > kClockPaused_s) connected_ = false;
-  fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
-  return false;
+  late_ = now_s - read_time_s_ > (late_ ? kOnTimeAgain : 1.0) * state_.late_after_s;
+  if (late_) fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
+  return !late_;
 }
 
 // Unwraps the counter and judges the step.
@@ -153,7 +157,9 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   if (reading.own_fault) fault(device_fault::kOwn, now_s);
   if (reading.stopped) fault(device_fault::kWriteStalled, now_s);
   if (verdict != ReportVerdict::position) return;
-  if (!in_order(reading, now_s) || !settled(reading, now_s) || !recent(reading, now_s)) return;
+  if (!in_order(reading, now_s)) return;
+  watch_clock(reading, now_s);
+  if (!settled(reading, now_s) || !recent(reading, now_s)) return;
   const std::int64_t before = state_.counts;
   move(reading, now_s);
   if (!connected_ && settings_.knows_position) ++state_.streams;
@@ -164,8 +170,13 @@ void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, 
   }
   const double before_s = state_.sample_time_s;
   state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
-  const double step_s = connected_ ? std::min(state_.sample_time_s - before_s, kHold_s) : 0.0;
-  state_.interval_s += (step_s - state_.interval_s) * (state_.samples > 0 ? kIntervalShare : 1.0);
+  if (connected_) {
+    const double step_s = std::min(state_.sample_time_s - before_s, kHold_s);
+    state_.interval_s += (step_s - state_.interval_s) * (state_.interval_s > 0.0 ? kIntervalShare : 1.0);
+  }
+  if (settings_.knows_position) {
+    state_.late_after_s = std::clamp(kLateIntervals * state_.interval_s, settings_.stale_after_s, kLongestSilence_s);
+  }
   state_.measured_N = reading.measured_N;
   state_.grip = reading.grip;
   ++state_.samples;

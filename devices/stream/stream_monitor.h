@@ -31,7 +31,7 @@ struct MonitorSettings {
   bool knows_position = false;  // nothing is zeroed; readings carry a sequence and a time
   double counts_per_metre = 1.0;
   double fastest_m_per_s = 5.0;
-  double stale_after_s = 0.01;
+  double stale_after_s = 0.01;  // the least of late_after_s
   double stuck_after_s = 0.5;
 };
 
@@ -48,6 +48,7 @@ struct MonitorState {
   std::uint32_t lost = 0;       // device_fault, until zeroed
   std::uint32_t streams = 0;    // begun so far: at a zeroing, or where the position is found again
   double interval_s = 0.0;      // between samples, of the last ten or so
+  double late_after_s = 0.0;    // age of a sample that is too old, see StreamMonitor
   double measured_N = std::numeric_limits<double>::quiet_NaN();
   Zeroing zeroing = Zeroing::needed;
   float zeroing_progress = 0.0F;
@@ -65,10 +66,14 @@ class StreamMonitor {
   // As many readings in order among themselves that were expected earlier: the device
   // counts anew.
   static constexpr int kStartedAgain = 8;
-  // Readings of a device that knows its position first tell what its clock shows, for the
-  // first of them may have waited in a queue; HID nodes have none when they are opened.
+  // A sample is late when it is older than five intervals, 10 ms at least (the calibration's stale_after_s) and
+  // 100 ms at most; a stream that was late is on time again when its samples are half as old.
+  static constexpr double kLateIntervals = 5.0;
+  static constexpr double kLongestSilence_s = 0.1;
+  static constexpr double kOnTimeAgain = 0.5;
+  // A timed stream begins anew after kLongestSilence_s without a usable reading and where its clock was set back. The
+  // readings of its first kSettling_s only set the clock, for they may have waited in a queue.
   static constexpr double kSettling_s = 0.05;
-  static constexpr double kClockPaused_s = 0.5;
 
   explicit StreamMonitor(const MonitorSettings& settings) noexcept;
 
@@ -86,6 +91,7 @@ class StreamMonitor {
   void lose(std::uint32_t bit, double now_s) noexcept;
   bool started_again(const DeviceReading& reading) noexcept;
   bool in_order(const DeviceReading& reading, double now_s) noexcept;
+  void watch_clock(const DeviceReading& reading, double now_s) noexcept;
   bool settled(const DeviceReading& reading, double now_s) noexcept;
   bool recent(const DeviceReading& reading, double now_s) noexcept;
   void move(const DeviceReading& reading, double now_s) noexcept;
@@ -103,7 +109,7 @@ class StreamMonitor {
   double read_time_s_ = 0.0;                   // of the present reading
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three reports, newest first
   double still_since_s_ = 0.0;
-  double late_since_s_ = 0.0;
+  bool late_ = false;
   double zeroing_since_s_ = -1.0;  // below 0: not begun
   std::int64_t zeroing_from_ = 0, zeroing_to_ = 0;
 };

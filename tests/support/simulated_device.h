@@ -116,6 +116,8 @@ class BridgeModel final : public DeviceModel {
   std::uint32_t period_us = 1000;
   std::function<std::uint32_t()> next_period_us;  // of an irregular one
   std::uint32_t samples = 0;
+  double clock_drift = 0.0;  // of the times in its frames
+  std::uint32_t clock_offset_us = 0;
 
   // The board, as bridge_firmware.h names it.
   std::uint32_t now_us() const { return now_us_; }
@@ -127,7 +129,8 @@ class BridgeModel final : public DeviceModel {
   }
   bool sample(std::uint32_t& time_us, std::int32_t& position_nm, std::int32_t& force_uN) {
     if (now_us_ - sampled_us_ < period_us) return false;
-    sampled_us_ = time_us = now_us_;
+    sampled_us_ = now_us_;
+    time_us = static_cast<std::uint32_t>(std::llround((1.0 + clock_drift) * now_us_)) + clock_offset_us;
     ++samples;
     if (next_period_us) period_us = next_period_us();
     position_nm = counts_;

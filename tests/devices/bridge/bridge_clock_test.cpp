@@ -1,0 +1,97 @@
+// A device whose clock is wrong against the host, in simulated time: by rate, drift and what happens to the line.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <deque>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/simulated_device.h"
+
+namespace palpate {
+namespace {
+
+using test::BridgeModel;
+using test::Report;
+using test::SimulatedDevice;
+
+struct Event {
+  const char* name;
+  void (*begin)(SimulatedDevice&);
+  double lasts_s;
+  bool ends;  // as before afterwards
+};
+
+void later_by_15_ms(SimulatedDevice& simulated) {
+  auto queue = std::make_shared<std::deque<std::pair<double, Report>>>();
+  simulated.on_the_way_in = [queue, &simulated](const Report& report) {
+    queue->emplace_back(simulated.now_s + 0.015, report);
+    std::vector<Report> due;
+    for (; !queue->empty() && queue->front().first <= simulated.now_s; queue->pop_front()) {
+      due.push_back(queue->front().second);
+    }
+    return due;
+  };
+}
+
+void silence(SimulatedDevice& simulated) {
+  simulated.on_the_way_in = [](const Report&) { return std::vector<Report>{}; };
+}
+
+constexpr Event kEvents[] = {
+    {"nothing", [](SimulatedDevice&) {}, 0.0, false},
+    {"15 ms later from now on", later_by_15_ms, 0.0, false},
+    {"clock set back by 10 ms",
+     [](SimulatedDevice& s) { dynamic_cast<BridgeModel&>(*s.model).clock_offset_us -= 10'000; }, 0.0, false},
+    {"clock set forward by 10 ms",
+     [](SimulatedDevice& s) { dynamic_cast<BridgeModel&>(*s.model).clock_offset_us += 10'000; }, 0.0, false},
+    {"silent for 1 s", silence, 1.0, true},
+    {"silent for 10 s", silence, 10.0, true},
+};
+
+// From the event to its end the device may get no force, and for so long afterwards: 100 ms until the old stream is
+// given up, 50 ms until the new clock is known, 100 ms that a fault lasts.
+constexpr double kRecovery_s = 0.3;
+constexpr double kWatched_s = 2.5;
+
+TEST(BridgeClock, NeitherDriftNorDelayCostsTheForceForLong) {
+  std::printf("%8s %8s  %-28s %s\n", "rate", "drift", "event", "without force after 1 s, after recovery [ms]");
+  for (const std::uint32_t period_us : {10'000u, 3'333u, 1'000u, 100u}) {
+    for (const double drift : {-0.01, -150e-6, 0.0, 0.01}) {
+      for (const Event& event : kEvents) {
+        SimulatedDevice simulated(&kBridgeDriver);
+        simulated.step_us = period_us < 250 ? 100 : 250;
+        auto& model = dynamic_cast<BridgeModel&>(*simulated.model);
+        model.period_us = period_us;
+        model.clock_drift = drift;
+        simulated.rest = false;
+        simulated.run_s(1.0);
+        const auto without_ms = [&](double seconds) {
+          int ticks = 0;
+          for (int i = 0; i < static_cast<int>(1e3 * seconds); ++i) ticks += simulated.tick().rendered_N == 0.0 ? 1 : 0;
+          return ticks;
+        };
+        const int before = without_ms(1.0);
+        event.begin(simulated);
+        simulated.run_s(event.lasts_s);
+        if (event.ends) simulated.on_the_way_in = nullptr;
+        simulated.run_s(kRecovery_s);
+        const int after = without_ms(kWatched_s);
+        const std::string row =
+            std::to_string(1'000'000 / period_us) + " Hz, " + std::to_string(1e6 * drift) + " ppm, " + event.name;
+        if (before + after > 0)
+          std::printf("%8u %8.0f  %-28s %d %d\n", 1'000'000 / period_us, 1e6 * drift, event.name, before, after);
+        EXPECT_EQ(before, 0) << row;
+        EXPECT_EQ(after, 0) << row;
+        EXPECT_EQ(simulated.snapshot.device.faults, 0u) << row;
+        EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), 0.3)
+            << row << ": but for 15 ms of tremor";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
