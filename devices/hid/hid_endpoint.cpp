@@ -140,6 +140,13 @@ bool HidEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
   return now_s - confirmed_s > kWriteStalled_s;
 }
 
+// A round trip contains the wait for the next sample, on the mean half the time for which a force is held. A device
+// that confirms nothing is on USB, which takes a frame of 1 ms each way.
+double HidEndpoint::late_s(const LinkState& link) const noexcept {
+  const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
+  return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.monitor.interval_s);
+}
+
 DeviceHealth HidEndpoint::health(double now_s) noexcept {
   const LinkState& link = state_.newest();
   const MonitorState& state = link.monitor;
@@ -159,6 +166,7 @@ DeviceHealth HidEndpoint::health(double now_s) noexcept {
   health.zeroing_progress = state.zeroing_progress;
   health.grip_held = state.grip;
   health.round_trip_s = link.round_trip_s;
+  health.late_s = late_s(link);
   return health;
 }
 

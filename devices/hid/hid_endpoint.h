@@ -34,6 +34,8 @@ class HidEndpoint final : public HidListener {
   static constexpr double kWriteStalled_s = 0.05;
   // Nothing new to say: at least this often all the same.
   static constexpr double kRepeat_s = 0.005;
+  // Half a tick until a sample is used, half a period of the writer until the force is sent.
+  static constexpr double kWaits_s = 0.75e-3;
   // A device that gives samples at its own rate hears of commands no more often than that, down to 100 Hz.
   static constexpr double kSlowestSample_s = 0.01;
 
@@ -68,6 +70,7 @@ class HidEndpoint final : public HidListener {
 
   HidCommand command_for(double force_N) noexcept;
   double position_m(const MonitorState& state) const noexcept;
+  double late_s(const LinkState& link) const noexcept;
   bool stalled(const LinkState& state, double now_s) const noexcept;
   void publish_sample() noexcept;
 

@@ -31,6 +31,9 @@ struct DeviceHealth {
   double interval_s = 0.0;  // between samples, of late; 0: not known
   // From a command to the report that confirms it; NaN: the device confirms none.
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
+  // From a motion to the force that answers it: transport, waits, half the time for which a force is held. NaN: the
+  // device takes part in the tick itself.
+  double late_s = std::numeric_limits<double>::quiet_NaN();
 
   bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
 };

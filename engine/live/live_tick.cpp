@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "engine/base/cycle_clock.h"
@@ -13,6 +14,9 @@ namespace {
 // Strokes for warming up: in and out of contact, a second of each.
 constexpr int kWarmUpSamples = 500;
 constexpr double kWarmUpStep_s = 1e-3;
+constexpr double kTick_s = 1e-3;
+// A force that is written in a tick is there in the next one, and held for one.
+constexpr double kInTick_s = 1.5 * kTick_s;
 
 ToolSample warm_up_sample(int index) noexcept {
   const double time_s = kWarmUpStep_s * index;
@@ -28,6 +32,54 @@ constexpr std::uint32_t fault_bits(TickFault fault) noexcept {
 static_assert(fault_bits(TickFault::bad_sample) == loop_fault::kBadSample &&
               fault_bits(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
               fault_bits(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
+
+// At each depth the tool comes to rest, then makes a cycle; a force that relaxes meanwhile is taken off as a straight
+// line, and of the rest the first harmonic counts.
+constexpr double kProbedDepths_m[] = {0.5e-3, 1e-3, 2e-3, 3e-3, 4.5e-3, 6e-3, 8e-3, 10e-3};
+constexpr double kProbe_m = 0.1e-3;
+constexpr int kCycleSamples = 20, kRestSamples = 10;
+constexpr double kProbeStep_s = 2e-3;
+constexpr double kProbedForce_N = 10.0;
+using CycleForces = std::array<double, kCycleSamples + 1>;
+
+Impedance impedance_of(const CycleForces& force_N) noexcept {
+  double in_phase_N = 0.0, out_of_phase_N = 0.0;
+  for (std::size_t i = 0; i < kCycleSamples; ++i) {
+    const double share = static_cast<double>(i) / kCycleSamples;
+    const double rest_N = force_N[i] - force_N.front() - share * (force_N.back() - force_N.front());
+    in_phase_N += 2.0 / kCycleSamples * rest_N * std::sin(2.0 * std::numbers::pi * share);
+    out_of_phase_N += 2.0 / kCycleSamples * rest_N * std::cos(2.0 * std::numbers::pi * share);
+  }
+  constexpr double kSpeed_m_per_s = 2.0 * std::numbers::pi / (kCycleSamples * kProbeStep_s) * kProbe_m;
+  return {in_phase_N / kProbe_m, out_of_phase_N / kSpeed_m_per_s};
+}
+
+void measure_impedance(const std::vector<std::shared_ptr<const ForceModel>>& models, LiveModels& set) {
+  HapticsTick tick({}, models);
+  std::vector<CycleForces> forces_N(models.size());
+  ToolSample sample;
+  for (const double depth_m : kProbedDepths_m) {
+    const double from_m = sample.position_m;
+    for (int i = 1; i <= kRestSamples; ++i) {
+      sample.time_s += kProbeStep_s;
+      sample.position_m = from_m + std::min(1.0, 2.0 * i / kRestSamples) * (depth_m - from_m);
+      tick.step(sample);
+    }
+    for (std::size_t i = 0; i <= kCycleSamples; ++i) {
+      const double phase = 2.0 * std::numbers::pi * static_cast<double>(i) / kCycleSamples;
+      sample.time_s += kProbeStep_s;
+      sample.position_m = depth_m + kProbe_m * std::sin(phase);
+      const TickSnapshot& snapshot = tick.step(sample);
+      for (std::size_t model = 0; model < models.size(); ++model) forces_N[model][i] = snapshot.force_N[model];
+    }
+    for (std::size_t model = 0; model < models.size(); ++model) {
+      if (std::abs(forces_N[model].front()) > kProbedForce_N) continue;
+      const Impedance here = impedance_of(forces_N[model]);
+      set.stiffness_N_per_m[model] = std::max(set.stiffness_N_per_m[model], here.stiffness_N_per_m);
+      set.damping_Ns_per_m[model] = std::max(set.damping_Ns_per_m[model], here.damping_Ns_per_m);
+    }
+  }
+}
 
 std::uint32_t limiter_bits(std::uint32_t flags) noexcept {
   std::uint32_t bits = 0;
@@ -50,7 +102,8 @@ ForceMixer::Forces forces_of(const TickSnapshot& snapshot) noexcept {
 LiveModels::LiveModels(std::uint32_t set_id, const SensorSpec& sensor,
                        std::vector<std::shared_ptr<const ForceModel>> models,
                        std::shared_ptr<ReferenceForce> true_force)
-    : id(set_id), tick(sensor, std::move(models)), reference(std::move(true_force)) {
+    : id(set_id), tick(sensor, models), reference(std::move(true_force)) {
+  measure_impedance(models, *this);
   for (int i = 0; i < 2; ++i) tick.step({kWarmUpStep_s * i, 1e-3, 0.0, 0.0});
   tick.reset();
   tick.time_evaluations(true);
@@ -60,6 +113,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
     : device_(device),
       slot_(slot),
       mixer_(settings.jnd),
+      stability_(device.sensor().encoder_step_m),
       passivity_(device.sensor().encoder_step_m),
       passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
@@ -173,8 +227,29 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
     outgoing_ = nullptr;
   }
   snapshot_.fading = !mixer_.settled_on(snapshot_.selected);
+  return scale(force_N, controls.scale, step_s);
+}
+
+// Of what is in the hand: a mixture of models while they fade.
+Impedance LiveTick::impedance() const noexcept {
+  ForceMixer::Forces stiffness = models_->stiffness_N_per_m, damping = models_->damping_Ns_per_m;
+  if (outgoing_ != nullptr) {
+    stiffness[ForceMixer::kOutgoing] = outgoing_mixer_.current(outgoing_->stiffness_N_per_m);
+    damping[ForceMixer::kOutgoing] = outgoing_mixer_.current(outgoing_->damping_Ns_per_m);
+  }
+  return {mixer_.current(stiffness), mixer_.current(damping)};
+}
+
+double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) noexcept {
+  const double late_s = snapshot_.device.late_s;
+  stability_.update(late_s > kInTick_s ? late_s : kInTick_s, step_s);
+  const Impedance model = impedance();
+  const ForceScale limited = wanted.limited(stability_, model);
+  snapshot_.stiffness_share = static_cast<float>(limited.stiffness / wanted.limited(StabilityLimit(), {}).stiffness);
+  snapshot_.late_ms = static_cast<float>(1e3 * stability_.late_s());
+  model_damping_Ns_per_m_ = limited.stiffness * model.damping_Ns_per_m;
   const TickSnapshot& tick = snapshot_.tick;
-  return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, controls.scale, step_s);
+  return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
 }
 
 void LiveTick::acknowledge(const LoopControls& controls) noexcept {
@@ -201,8 +276,13 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
   if (!passivity_on_) return commanded_N;
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
-  return passivity_.apply(commanded_N, {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading},
-                          snapshot_.rendered_N, step_s);
+  const double hold_s = std::max(kTick_s, snapshot_.device.interval_s);
+  const PassivityController::Loop loop{
+      std::max(0.0, stability_.late_s() - 0.5 * hold_s),
+      std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m - model_damping_Ns_per_m_), hold_s};
+  return passivity_.apply(commanded_N,
+                          {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading, snapshot_.samples > 0},
+                          loop, snapshot_.rendered_N, step_s);
 }
 
 void LiveTick::render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept {

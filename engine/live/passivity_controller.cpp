@@ -39,10 +39,25 @@ double PassivityController::energy_when_passed(double depth_m) noexcept {
   return deeper.energy_J;
 }
 
-double PassivityController::apply(double commanded_N, const Tool& tool, double written_N, double step_s) noexcept {
-  const double felt_N = felt_N_;
-  felt_N_ = under_way_N_;
-  under_way_N_ = written_N;
+// The mean since the last sample.
+double PassivityController::arrived_N(const Tool& tool, double transport_s, double written_N, double step_s) noexcept {
+  written_N_[ticks_ % kMostUnderWay] = written_N;
+  const double most = static_cast<double>(std::min(ticks_, kMostUnderWay - 1));
+  const double ago = step_s > 0.0 ? std::clamp(std::round(transport_s / step_s), 0.0, most) : 0.0;
+  arrived_N_ += written_N_[(ticks_ - static_cast<std::size_t>(ago)) % kMostUnderWay];
+  ++ticks_;
+  ++arrivals_;
+  const double mean_N = arrived_N_ / arrivals_;
+  if (tool.fresh) {
+    arrived_N_ = 0.0;
+    arrivals_ = 0;
+  }
+  return mean_N;
+}
+
+double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
+                                  double step_s) noexcept {
+  const double felt_N = arrived_N(tool, loop.transport_s, written_N, step_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
     return less(commanded_N, 0.0);
@@ -70,7 +85,8 @@ double PassivityController::apply(double commanded_N, const Tool& tool, double w
   depth_m_ = depth_m;
   const double out_m_per_s = -tool.velocity_m_per_s;
   if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return less(commanded_N, 0.0);
-  const double damping_Ns_per_m = std::min(kDamping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * step_s));
+  const double damping_Ns_per_m =
+      std::min(loop.damping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * std::max(step_s, loop.hold_s)));
   return less(commanded_N, damping_Ns_per_m * out_m_per_s);
 }
 

@@ -68,10 +68,15 @@ void draw_faults(const HealthView& health, const UiStyle& style) {
 std::string device_line(const HealthView& health) {
   const DeviceHealth& device = health.device;
   const bool real = device.zeroing != Zeroing::not_needed || device.interval_s > 0.0;
-  if (!real && device.faults == 0) return {};
+  const bool softened = health.stiffness_share < 0.995;
+  if (!real && device.faults == 0 && !softened) return {};
   std::string line = health.device_name + text_of(": sample %.1f ms old", 1e3 * device.sample_age_s);
   if (device.interval_s > 0.0) line += text_of(", %.0f samples a second", 1.0 / device.interval_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
+  if (softened) {
+    line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, more would swing", health.late_ms,
+                    100.0 * health.stiffness_share);
+  }
   line += text_of(", motor heat %.0f %%", 100.0 * health.heat_share);
   return line;
 }

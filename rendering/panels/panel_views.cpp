@@ -67,6 +67,8 @@ HealthView health_view(const LiveSession& session) {
   view.device_name = session.device_name();
   view.device = session.newest().device;
   view.heat_share = static_cast<double>(session.newest().heat_share);
+  view.stiffness_share = static_cast<double>(session.newest().stiffness_share);
+  view.late_ms = static_cast<double>(session.newest().late_ms);
   return view;
 }
 

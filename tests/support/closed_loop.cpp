@@ -32,11 +32,23 @@ double SimulatedTool::time_s() const noexcept { return kStep_s * static_cast<dou
 bool SimulatedTool::read(double now_s, DeviceSample& sample) noexcept {
   if (read_step_ == step_) return false;
   read_step_ = step_;
+  // More often than ticks come: the newest of them.
+  if (step_ < sample_step_) return false;
+  sample_step_ = step_ + std::llround(settings_.sample_s * kStepsPerSecond) -
+                 (settings_.sample_s > 1e-3 ? static_cast<std::int64_t>(kLatest) : 0);
   sample = {};
   sample.tool.time_s = now_s;
   const double quantum_m = settings_.encoder_step_m;
   sample.tool.position_m = quantum_m > 0.0 ? quantum_m * std::round(position_m_ / quantum_m) : position_m_;
   return true;
+}
+
+DeviceHealth SimulatedTool::health(double) noexcept {
+  DeviceHealth health;
+  health.sample_age_s = 0.0;
+  health.interval_s = settings_.sample_s;
+  health.late_s = settings_.delay_s + 0.5 * std::max(1e-3, settings_.sample_s);
+  return health;
 }
 
 void SimulatedTool::write(double force_N) noexcept {
@@ -73,7 +85,9 @@ void SimulatedTool::place(double position_m, double velocity_m_per_s) noexcept {
 ClosedLoop::ClosedLoop(const LoopSettings& settings)
     : tool_(settings),
       live_(tool_, slot_, LiveTickSettings{{}, nullptr, nullptr, settings.passivity}),
-      ticking_(settings.ticking) {}
+      ticking_(settings.ticking) {
+  controls_.scale = settings.scale;
+}
 
 void ClosedLoop::publish(std::shared_ptr<const ForceModel> model) {
   slot_.publish(std::make_unique<LiveModels>(++id_, tool_.sensor(), std::vector{std::move(model)}));
@@ -96,7 +110,7 @@ void ClosedLoop::run(double seconds, const Path& path, const AfterTick& after_ti
   for (; step_ < end; ++step_) {
     if (step_ == due_) {
       RtGuard guard;
-      const LoopSnapshot& snapshot = live_.run(tool_.time_s(), {});
+      const LoopSnapshot& snapshot = live_.run(tool_.time_s(), controls_);
       offences_ += guard.stop().total();
       faults_ |= snapshot.faults;
       ++ticks_;

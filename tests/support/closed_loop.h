@@ -45,6 +45,8 @@ struct LoopSettings {
   Ticking ticking = Ticking::even;
   ForceLimits limits{10.0, 5000.0, 0.0};  // as a force-feedback device bears
   bool passivity = true;                  // false: without the passivity controller
+  double sample_s = 0.0;                  // between samples; 0: one a tick
+  ForceScale scale{};
 };
 
 // What the tool has exchanged with the rendered force, joules: `put_in_J` while
@@ -65,6 +67,8 @@ class SimulatedTool final : public Device {
   ForceLimits limits() const noexcept override { return settings_.limits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
+  // As an endpoint that knows its delays.
+  DeviceHealth health(double now_s) noexcept override;
 
   // One step of 50 us towards `aim_m`, which moves at `aim_m_per_s`.
   void advance(double aim_m, double aim_m_per_s, double push_N) noexcept;
@@ -86,8 +90,9 @@ class SimulatedTool final : public Device {
   std::string name_ = "simulated tool";
   std::int64_t step_ = 0;
   std::int64_t read_step_ = -1;
+  std::int64_t sample_step_ = 0;
   double position_m_ = -2e-3, velocity_m_per_s_ = 0.0, force_N_ = 0.0;
-  std::array<Written, 16> written_{};
+  std::array<Written, 64> written_{};
   std::size_t first_ = 0, count_ = 0;
   LoopEnergy energy_;
 };
@@ -124,6 +129,7 @@ class ClosedLoop {
   ModelSlot<LiveModels> slot_;
   LiveTick live_;
   Ticking ticking_;
+  LoopControls controls_;
   RandomStream random_{1, 77};
   std::int64_t step_ = 0, deadline_ = 0, due_ = 0;
   std::uint32_t id_ = 0, faults_ = 0;

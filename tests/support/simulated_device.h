@@ -174,7 +174,8 @@ class EndpointDevice final : public Device {
 
 class SimulatedDevice {
  public:
-  static constexpr double kStiffness_N_per_m = 1300.0;  // nearly 4 N where the tool is held
+  static constexpr double kStiffness_N_per_m = 650.0;  // nearly 4 N where the tool is held
+  static constexpr double kHeld_m = 6e-3;
   static constexpr double kStart_s = 100.0;
 
   explicit SimulatedDevice(const HidDriver* driver)
@@ -191,8 +192,10 @@ class SimulatedDevice {
   // The tool, as the hand moves it, m after `time_s`; with tremor unless frozen.
   double position_m() const {
     const double tremor_m = 1e-4 * std::sin(2.0 * 3.14159265358979 * 9.0 * (now_s - kStart_s));
-    return calibration.rest_position_m + inside_ * (3e-3 + tremor_m - calibration.rest_position_m);
+    return calibration.rest_position_m + inside_ * (kHeld_m + tremor_m - calibration.rest_position_m);
   }
+  // What a late or slow line leaves of the spring.
+  double spring_N(double depth_m) const { return snapshot.stiffness_share * kStiffness_N_per_m * depth_m; }
   double motor_N() const { return std::abs(model->force_units() * calibration.force_N_per_unit); }
 
   // One haptics tick, and what the device and the two I/O threads do meanwhile.

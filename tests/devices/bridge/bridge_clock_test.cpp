@@ -86,8 +86,7 @@ TEST(BridgeClock, NeitherDriftNorDelayCostsTheForceForLong) {
         EXPECT_EQ(before, 0) << row;
         EXPECT_EQ(after, 0) << row;
         EXPECT_EQ(simulated.snapshot.device.faults, 0u) << row;
-        EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), 0.3)
-            << row << ": but for 15 ms of tremor";
+        EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), 0.15) << row;
       }
     }
   }

@@ -111,9 +111,7 @@ void press(SimulatedDevice& simulated) {
   simulated.run_s(1.0);
 }
 
-double wanted_N(const SimulatedDevice& simulated) {
-  return SimulatedDevice::kStiffness_N_per_m * simulated.snapshot.tick.position_m;
-}
+double wanted_N(const SimulatedDevice& simulated) { return simulated.spring_N(simulated.snapshot.tick.position_m); }
 
 TEST(BridgeEndpoint, PushesWithoutZeroingAndMeasuresForce) {
   SimulatedDevice simulated(&kBridgeDriver);
@@ -171,7 +169,7 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
     dynamic_cast<test::BridgeModel&>(*simulated.model).period_us = period_us;
     press(simulated);
     EXPECT_EQ(simulated.snapshot.device.faults, 0u) << period_us;
-    EXPECT_GT(simulated.snapshot.rendered_N, 3.5) << period_us;
+    EXPECT_NEAR(simulated.snapshot.rendered_N, wanted_N(simulated), kResolution_N) << period_us;
     EXPECT_NEAR(simulated.snapshot.device.interval_s, 1e-6 * period_us, 0.1e-6 * period_us);
     std::uint32_t samples = 0;
     for (int i = 0; i < 100; ++i) samples += simulated.tick().samples;

@@ -34,7 +34,7 @@ TEST(HidEndpoint, PushesOnceItIsZeroed) {
   EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
   EXPECT_EQ(simulated.snapshot.device.faults, 0u);
   EXPECT_NEAR(simulated.snapshot.tick.position_m, simulated.position_m(), 30e-6);
-  EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), kResolution_N);
+  EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N);
   EXPECT_LT(simulated.model->force_units(), 0.0) << "against the growing counts";
   EXPECT_LT(simulated.snapshot.device.sample_age_s, 2e-3);
   EXPECT_TRUE(std::isnan(simulated.snapshot.device.round_trip_s)) << "it confirms nothing";
@@ -224,8 +224,7 @@ TEST(HidEndpoint, WhatLosesThePositionAsksForZeroing) {
     EXPECT_EQ(simulated.snapshot.samples, 0u);
     simulated.press();
     EXPECT_EQ(simulated.snapshot.device.faults, 0u) << injection.name;
-    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), kResolution_N)
-        << injection.name;
+    EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N) << injection.name;
   }
 }
 
@@ -241,8 +240,7 @@ TEST(HidEndpoint, WhatKeepsThePositionComesBackByItself) {
     simulated.tick();
     EXPECT_TRUE(!stopped || simulated.snapshot.rendered_N < 0.2) << "not at once";
     simulated.run_s(1.0);
-    EXPECT_NEAR(simulated.motor_N(), SimulatedDevice::kStiffness_N_per_m * simulated.position_m(), kResolution_N)
-        << injection.name;
+    EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N) << injection.name;
     EXPECT_NE(simulated.snapshot.device_faults_latched, 0u);
     simulated.controls.acknowledged = 1;
     simulated.run_s(0.01);

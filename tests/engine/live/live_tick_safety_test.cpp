@@ -81,7 +81,7 @@ TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
   double last_N = 0.0, largest_N = 0.0;
   LoopControls controls;
   for (int tick = 0; tick < 4000; ++tick) {
-    if (tick == 1000) controls.scale = {4.0, 10.0};
+    if (tick == 1000) controls.scale = {4.0, 8.0};
     if (tick == 3000) controls.scale = {};
     const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
     const LoopSnapshot as_it_is = plain.run(kTick_s * tick, {});
@@ -90,7 +90,7 @@ TEST(LiveTickSafety, AScaledForceIsEasedAndLimitedAndNeverPulls) {
       ASSERT_EQ(scaled.commanded_N, force_N) << "its bits";
     }
     if (tick > 1600 && tick < 3000) {
-      const double damped_N = 4.0 * force_N + 10.0 * as_it_is.tick.velocity_m_per_s;
+      const double damped_N = 4.0 * force_N + 8.0 * as_it_is.tick.velocity_m_per_s;
       ASSERT_NEAR(scaled.commanded_N, as_it_is.tick.in_contact ? std::max(0.0, damped_N) : 0.0, 1e-9) << tick;
     }
     ASSERT_GE(scaled.rendered_N, 0.0);
@@ -120,8 +120,8 @@ TEST(LiveTickSafety, AScaledForceIsKeptAsPassiveAsThatOfAStifferModel) {
   for (int tick = 0; tick < 3000; ++tick) {
     const LoopSnapshot scaled = live.run(kTick_s * tick, controls);
     const LoopSnapshot as_stiff = stiff.run(kTick_s * tick, {});
-    ASSERT_EQ(scaled.commanded_N, as_stiff.commanded_N) << tick;
-    ASSERT_EQ(scaled.rendered_N, as_stiff.rendered_N) << tick;
+    ASSERT_NEAR(scaled.commanded_N, as_stiff.commanded_N, 1e-9) << tick;
+    ASSERT_NEAR(scaled.rendered_N, as_stiff.rendered_N, 1e-6) << tick;
     taken_N = std::max(taken_N, std::abs(scaled.passive_N - scaled.commanded_N));
   }
   EXPECT_GT(taken_N, 0.01) << "or the controller had nothing to do";

@@ -14,6 +14,8 @@ namespace {
 constexpr double kTick_s = 1e-3;
 constexpr double kStep_m = 1e-5;  // a tick
 constexpr double kSpeed_m_per_s = kStep_m / kTick_s;
+constexpr double kDamping_Ns_per_m = 12.0;
+constexpr PassivityController::Loop kLoop{1e-3, kDamping_Ns_per_m};
 
 // A tool moved one step a tick; what it is given is felt two ticks later, as the
 // observer assumes.
@@ -29,8 +31,8 @@ struct Stroke {
     const double direction = steps < 0 ? -1.0 : 1.0;
     for (int i = 0; i < std::abs(steps); ++i) {
       depth_m += direction * kStep_m;
-      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, written_N,
-                                   kTick_s);
+      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, kLoop,
+                                   written_N, kTick_s);
     }
     return written_N;
   }
@@ -50,7 +52,7 @@ TEST(PassivityController, TakesWhatIsGivenBackTooMuchAndNoMore) {
   stroke.move(200, 1.0);
   // 2 N are asked for on the way out, b v = 0.12 N less are given; two ticks of the
   // way in's force are felt at the turn.
-  EXPECT_NEAR(stroke.move(-50, 2.0), 2.0 - PassivityController::kDamping_Ns_per_m * kSpeed_m_per_s, 1e-12);
+  EXPECT_NEAR(stroke.move(-50, 2.0), 2.0 - kDamping_Ns_per_m * kSpeed_m_per_s, 1e-12);
   const double debt_J = stroke.controller.debt_J();
   EXPECT_NEAR(debt_J, 50 * kStep_m * (1.88 - 1.0), 3 * kStep_m);
   // Too little is asked for: the debt is repaid, by what is taken as well, to 0.
@@ -78,7 +80,7 @@ TEST(PassivityController, ForgetsInTheAir) {
   stroke.move(100, 1.0);
   stroke.move(-50, 3.0);
   ASSERT_GT(stroke.controller.debt_J(), 0.0);
-  EXPECT_EQ(stroke.controller.apply(0.5, {-1e-3, -0.1, false, false}, 0.5, kTick_s), 0.5);
+  EXPECT_EQ(stroke.controller.apply(0.5, {-1e-3, -0.1, false, false}, kLoop, 0.5, kTick_s), 0.5);
   EXPECT_EQ(stroke.controller.debt_J(), 0.0);
 }
 
@@ -102,7 +104,8 @@ TEST(PassivityController, AFlickeringEncoderIsNoMotion) {
     const double depth_m = 1e-3 + (tick / 3 % 2 == 0 ? 0.0 : kEncoder_m);
     // Late: more on the way out than on the way in.
     const double force_N = 3000.0 * (1e-3 + (tick / 3 % 2 == 0 ? kEncoder_m : 0.0));
-    written_N = controller.apply(force_N, {depth_m, tick / 3 % 2 == 0 ? -1e-3 : 1e-3, true, false}, written_N, kTick_s);
+    written_N =
+        controller.apply(force_N, {depth_m, tick / 3 % 2 == 0 ? -1e-3 : 1e-3, true, false}, kLoop, written_N, kTick_s);
     ASSERT_EQ(written_N, force_N) << tick;
   }
 }
@@ -115,14 +118,16 @@ TEST(PassivityController, NeverAddsNeverPullsNeverBreaks) {
     const double depth_m = 5e-3 * random.uniform(-0.2, 1.8) * (tick % 7 == 0 ? 10.0 : 1.0);
     const double commanded_N = std::max(0.0, random.uniform(-1.0, 7.0));
     const double speed_m_per_s = random.uniform(-2.0, 2.0);
-    written_N = controller.apply(commanded_N, {depth_m, speed_m_per_s, depth_m > 0.0, false}, written_N, kTick_s);
+    written_N =
+        controller.apply(commanded_N, {depth_m, speed_m_per_s, depth_m > 0.0, false}, kLoop, written_N, kTick_s);
     ASSERT_LE(written_N, commanded_N);
     ASSERT_GE(written_N, 0.0);
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(controller.apply(nan, {1e-3, -0.1, true, false}, 0.0, kTick_s))) << "the limiter's to refuse";
-  EXPECT_EQ(controller.apply(1.0, {nan, -0.1, true, false}, 0.0, kTick_s), 1.0);
-  EXPECT_EQ(controller.apply(1.0, {1e-3, nan, true, false}, 0.0, kTick_s), 1.0);
+  EXPECT_TRUE(std::isnan(controller.apply(nan, {1e-3, -0.1, true, false}, kLoop, 0.0, kTick_s)))
+      << "the limiter's to refuse";
+  EXPECT_EQ(controller.apply(1.0, {nan, -0.1, true, false}, kLoop, 0.0, kTick_s), 1.0);
+  EXPECT_EQ(controller.apply(1.0, {1e-3, nan, true, false}, kLoop, 0.0, kTick_s), 1.0);
 }
 
 }  // namespace

@@ -60,6 +60,8 @@ TEST(PanelWords, OnlyAZeroedDeviceHasALine) {
   health.device.round_trip_s = 0.0021;
   health.heat_share = 0.4;
   EXPECT_EQ(device_line(health), "hid: sample 1.2 ms old, round trip 2.1 ms, motor heat 40 %");
+  health.stiffness_share = 0.5;
+  EXPECT_NE(device_line(health).find("50 % of the stiffness"), std::string::npos) << "a late line is said";
 }
 
 TEST(PanelWords, AModelThatIsNotReadyTellsHowFarItIs) {

@@ -1,0 +1,110 @@
+// The closed loop (closed_loop_test.cpp) over a line that is late or slow: what is rendered is bounded by what delay
+// and rate allow (engine/live/stability_limit.h), so that no hand is driven.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "engine/live/stability_limit.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/live_doubles.h"
+
+namespace palpate {
+namespace {
+
+using test::ClosedLoop;
+using test::Grip;
+using test::LoopSettings;
+using test::spring;
+
+// 50 to 300 g, each as little damped as relaxed hands are, 0.35 to 0.7 of critical.
+const Grip kHands[] = {{"finger, 50 g", 0.05, 100.0, 2.2},
+                       {"relaxed, 80 g", 0.08, 150.0, 3.5},
+                       {"braced, 120 g", 0.12, 800.0, 14.0},
+                       {"loose, 300 g", 0.3, 150.0, 4.7}};
+
+struct Swing {
+  double position_m = 0.0;  // peak to peak in the last half second
+  double given_J = 0.0;     // by the rendered force in it
+  double share = 1.0;       // of the stiffness that was rendered
+};
+
+// Presses with a newton, gets a knock, and holds still.
+Swing swing(const std::shared_ptr<const ForceModel>& model, const LoopSettings& settings) {
+  constexpr double kPress_N = 1.0, kSeconds = 2.5, kStill_s = 2.0;
+  ClosedLoop loop(settings);
+  loop.publish(model);
+  const double aim_m = 1e-3 + kPress_N / settings.grip.stiffness_N_per_m;
+  const auto path = [&](double time_s) {
+    ClosedLoop::Drive drive = test::minimum_jerk(-2e-3, aim_m, 0.3, time_s);
+    if (time_s >= 0.6 && time_s < 0.62) drive.push_N = 1.0;
+    return drive;
+  };
+  Swing result;
+  test::Span span;
+  double before_J = 0.0;
+  loop.run(kSeconds, path, [&](const LoopSnapshot& snapshot) {
+    result.share = snapshot.stiffness_share;
+    if (snapshot.loop_time_s < kStill_s) {
+      before_J = loop.tool().energy().balance_J();
+    } else {
+      span.add(loop.tool().position_m());
+    }
+  });
+  result.position_m = span.width();
+  result.given_J = before_J - loop.tool().energy().balance_J();
+  return result;
+}
+
+// What a user adds is part of the same sum and has the same limits.
+TEST(ClosedLoop, NeitherScaleNorDampingOfTheUserDrivesAHand) {
+  for (const double encoder_m : {5e-6, 10e-6}) {
+    for (const ForceScale& scale : {ForceScale{4.0, 0.0}, ForceScale{1.0, 20.0}, ForceScale{4.0, 20.0}}) {
+      for (const double delay_s : {0.0, 1e-3, 3e-3}) {
+        LoopSettings settings{kHands[0], encoder_m, delay_s};
+        settings.scale = scale;
+        const Swing one = swing(spring(3000.0), settings);
+        std::printf("x %.0f, %2.0f N s/m, %.0f ms, %2.0f um: %.3f mm\n", scale.stiffness, scale.damping_Ns_per_m,
+                    1e3 * delay_s, 1e6 * encoder_m, 1e3 * one.position_m);
+        EXPECT_LE(one.position_m, 0.1e-3) << scale.stiffness << ", " << scale.damping_Ns_per_m << ", " << delay_s;
+      }
+    }
+  }
+}
+
+TEST(ClosedLoop, NoHandIsDrivenHoweverLateOrSlowTheLineIs) {
+  std::printf("%9s %9s %9s %12s  %s\n", "stiffness", "delay", "rate", "swing [mm]", "of the stiffness");
+  double worst_m = 0.0;
+  for (const double stiffness_N_per_m : {600.0, 3000.0, 7000.0}) {
+    for (const double delay_s : {0.0, 1e-3, 3e-3, 5e-3, 10e-3}) {
+      for (const double sample_s : {1e-4, 1e-3, 3e-3, 10e-3}) {
+        Swing worst;
+        for (const Grip& grip : kHands) {
+          for (const double encoder_m : {5e-6, 10e-6, 30e-6}) {
+            LoopSettings settings{grip, encoder_m, delay_s};
+            settings.sample_s = sample_s;
+            const Swing one = swing(spring(stiffness_N_per_m), settings);
+            const std::string row = grip.name + ", " + std::to_string(stiffness_N_per_m) + " N/m, " +
+                                    std::to_string(1e3 * delay_s) + " ms, every " + std::to_string(1e3 * sample_s) +
+                                    " ms, encoder " + std::to_string(1e6 * encoder_m) + " um";
+            // A coarse encoder leaves a cycle of some of its steps.
+            EXPECT_LE(one.position_m, std::max(0.1e-3, 5.0 * encoder_m)) << row << ", " << one.share;
+            EXPECT_LE(one.given_J, 60e-6) << row << ": two encoder steps of a newton";
+            worst.position_m = std::max(worst.position_m, one.position_m);
+            worst.share = std::min(worst.share, one.share);
+          }
+        }
+        worst_m = std::max(worst_m, worst.position_m);
+        std::printf("%9.0f %6.1f ms %6.0f Hz %12.3f  %5.1f %%\n", stiffness_N_per_m, 1e3 * delay_s, 1.0 / sample_s,
+                    1e3 * worst.position_m, 100.0 * worst.share);
+      }
+    }
+  }
+  std::printf("largest swing %.3f mm\n", 1e3 * worst_m);
+}
+
+}  // namespace
+}  // namespace palpate
