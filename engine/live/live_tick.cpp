@@ -277,9 +277,9 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
   const double hold_s = std::max(kTick_s, snapshot_.device.interval_s);
-  const PassivityController::Loop loop{
-      std::max(0.0, stability_.late_s() - 0.5 * hold_s),
-      std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m - model_damping_Ns_per_m_), hold_s};
+  const PassivityController::Loop loop{std::max(0.0, stability_.late_s() - 0.5 * hold_s),
+                                       std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
+                                       hold_s};
   return passivity_.apply(commanded_N,
                           {tick.position_m, tick.velocity_m_per_s, in_contact, snapshot_.fading, snapshot_.samples > 0},
                           loop, snapshot_.rendered_N, step_s);

