@@ -11,6 +11,7 @@ MonitorSettings monitor_settings(const HidCalibration& calibration) noexcept {
   settings.knows_position = calibration.driver->knows_position;
   settings.counts_per_metre = calibration.counts_per_metre;
   settings.fastest_m_per_s = calibration.fastest_m_per_s;
+  settings.encoder_step_m = calibration.encoder_step_m;
   settings.stale_after_s = calibration.limits.stale_after_s;
   settings.stuck_after_s = calibration.stuck_after_s;
   return settings;

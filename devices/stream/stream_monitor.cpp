@@ -6,8 +6,8 @@
 namespace palpate {
 namespace {
 
-// Beyond the fastest motion: a few counts of noise.
-constexpr double kNoiseCounts = 4.0;
+// Beyond the fastest motion: a few steps of the sensor.
+constexpr double kNoiseSteps = 4.0;
 // Time steps between samples are at least this, else a report on the heels of
 // another would look fast.
 constexpr double kShortestStep_s = 1e-3;
@@ -116,13 +116,19 @@ bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept 
 void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
   if (!connected_) {
     state_.counts = reading.counts;
+    speed_ = 0.0;
     return;
   }
   const std::int64_t step =
       static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) - static_cast<std::uint32_t>(last_.counts));
   const double step_s = std::max(kShortestStep_s, read_time_s_ - state_.sample_time_s);
-  const double most = settings_.counts_per_metre * settings_.fastest_m_per_s * step_s + kNoiseCounts;
-  if (std::abs(static_cast<double>(step)) > most) lose(device_fault::kJump, now_s);
+  const double quickest = speed_ + settings_.counts_per_metre * kQuickest_m_per_s2 * step_s;
+  const double fastest = std::min(quickest, settings_.counts_per_metre * settings_.fastest_m_per_s);
+  const double noise = kNoiseSteps * std::max(1.0, settings_.encoder_step_m * settings_.counts_per_metre);
+  const double way = std::abs(static_cast<double>(step));
+  const bool jumped = way > fastest * step_s + noise;
+  if (jumped) lose(device_fault::kJump, now_s);
+  speed_ = jumped ? 0.0 : way / step_s;
   state_.counts += step;
 }
 

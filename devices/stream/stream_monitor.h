@@ -6,7 +6,7 @@
 //   a sequence number that goes back                      kOutOfOrder
 //   reports that waited in a queue (device time, or four
 //   within kTogether_s)                                   kBurst
-//   a step faster than the device can move                kJump
+//   a step faster than the device, or a hand, can move    kJump
 //   sequence numbers that begin anew                      kReset
 //   no count in `stuck_after_s` in spite of kPushing_N    kStuck
 //   a device that stopped by its watchdog                 kWriteStalled
@@ -31,6 +31,7 @@ struct MonitorSettings {
   bool knows_position = false;  // nothing is zeroed; readings carry a sequence and a time
   double counts_per_metre = 1.0;
   double fastest_m_per_s = 5.0;
+  double encoder_step_m = 0.0;  // a step of the sensor, where it is more than a count
   double stale_after_s = 0.01;  // the least of late_after_s
   double stuck_after_s = 0.5;
 };
@@ -60,6 +61,9 @@ class StreamMonitor {
   static constexpr double kHold_s = 0.1;
   static constexpr double kTogether_s = 0.5e-3;
   static constexpr double kPushing_N = 0.2;
+  // From one sample to the next the speed grows by less: 50 N, a hand and a motor together, on 50 g. So 5 mm within
+  // 1 ms are a glitch, however fast the device may be in the long run.
+  static constexpr double kQuickest_m_per_s2 = 1000.0;
   // The tool has to rest for as long, within kRest_m, to be zeroed.
   static constexpr double kZeroing_s = 0.2;
   static constexpr double kRest_m = 0.5e-3;
@@ -107,6 +111,7 @@ class StreamMonitor {
   bool connected_ = false;                     // a report was accepted since the start or since unplugging
   double first_s_ = -1.0;                      // of a device that knows its position: the first reading since
   double read_time_s_ = 0.0;                   // of the present reading
+  double speed_ = 0.0;                         // counts a second, of the last step
   double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three reports, newest first
   double still_since_s_ = 0.0;
   bool late_ = false;

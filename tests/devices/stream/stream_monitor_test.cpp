@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace palpate {
@@ -94,14 +95,25 @@ TEST(StreamMonitor, SequenceMayWrap) {
 TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
   Stream stream;
   stream.zero();
-  for (int i = 1; i <= 100; ++i) stream.step(250 * i);  // 5 m/s
+  std::int32_t counts = 0;
+  for (int i = 1; i <= 100; ++i) stream.step(counts += std::min(250, 50 * i));  // 5 m/s after 5 ms
   EXPECT_EQ(stream.monitor.state().lost, 0u);
-  stream.step(250 * 100 + 300);
+  stream.step(counts + 300);
   EXPECT_EQ(stream.monitor.state().lost, device_fault::kJump);
   EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::needed);
   stream.zero();
   EXPECT_EQ(stream.monitor.state().lost, 0u);
   EXPECT_EQ(stream.monitor.state().streams, 2u);
+}
+
+// 5 mm within a millisecond would be 5 m/s from rest, 250 N on 50 g.
+TEST(StreamMonitor, AStepFromRestThatNoHandCanMakeIsAJump) {
+  for (const int mm : {1, 2, 5}) {
+    Stream stream;
+    stream.zero();
+    stream.step(50 * mm);
+    EXPECT_EQ(stream.monitor.state().lost, mm == 1 ? 0u : device_fault::kJump) << mm;
+  }
 }
 
 TEST(StreamMonitor, TheCounterMayWrap) {
@@ -110,10 +122,10 @@ TEST(StreamMonitor, TheCounterMayWrap) {
   double now_s = 1.0;
   for (std::uint32_t i = 0; i < 1000; ++i) {
     DeviceReading reading;
-    reading.counts = static_cast<std::int32_t>(kFirst + 100 * i);
+    reading.counts = static_cast<std::int32_t>(kFirst + 50 * i);
     monitor.update(ReportVerdict::position, reading, now_s += 1e-3, 0.0);
   }
-  EXPECT_EQ(monitor.state().counts, std::int64_t{kFirst} + 99'900);
+  EXPECT_EQ(monitor.state().counts, std::int64_t{kFirst} + 49'950);
   EXPECT_EQ(monitor.state().lost, 0u);
 }
 
