@@ -39,10 +39,10 @@ const std::map<std::string, Names> kRooms = {
     {"models/fit_library", {"models/fit", "models/check", "models/library", "engine/import"}},
     {"devices/firmware", {}},
     {"devices/virtual", {"engine/live"}},
-    {"devices/stream", {"engine/live"}},
-    {"devices/hid", {"devices/virtual", "devices/stream", "devices/firmware", "engine/json"}},
-    {"devices/bridge", {"devices/hid"}},
-    {"devices/registry", {"devices/bridge"}},
+    {"devices/link", {"engine/live", "engine/json"}},
+    {"devices/hid", {"devices/virtual", "devices/link", "devices/firmware"}},
+    {"devices/bridge", {"devices/link", "devices/firmware"}},
+    {"devices/registry", {"devices/hid", "devices/bridge"}},
     {"scenes/material", {"devices/virtual"}},
     {"scenes/scene", {"models/fit", "scenes/material"}},
     {"scenes/evaluation", {"models/surface"}},
@@ -154,16 +154,16 @@ TEST(IncludeDirection, NoSourceIncludesAgainstIt) {
 TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_EQ(find_fault("models/model", "engine/tick/jnd.h", true), "");
   EXPECT_EQ(find_fault("models/fit", "models/model/trend.h", true), "");
-  EXPECT_EQ(find_fault("scenes/live", "devices/hid/hid_bus.h", true), "");
+  EXPECT_EQ(find_fault("scenes/live", "devices/link/device_bus.h", true), "");
   EXPECT_EQ(find_fault("engine/tick", "vector", false), "");
   EXPECT_NE(find_fault("engine/tick", "engine/live/pacer.h", true), "");
   EXPECT_NE(find_fault("engine/live", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/solve/lapack.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/training/sites.h", true), "");
-  EXPECT_NE(find_fault("models/model", "devices/hid/hid_bus.h", true), "");
+  EXPECT_NE(find_fault("models/model", "devices/link/device_bus.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");
   EXPECT_NE(find_fault("scenes/study", "scenes/live/live_session.h", true), "");
-  EXPECT_NE(find_fault("devices/stream", "devices/hid/hid_bus.h", true), "");
+  EXPECT_NE(find_fault("devices/stream", "devices/link/device_bus.h", true), "");
   EXPECT_NE(find_fault("devices/hid", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("rendering/ui", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("scenes/live", "rendering/ui/plot.h", true), "");

@@ -1,13 +1,10 @@
 #include "devices/bridge/bridge_bus.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <cstring>
 #include <utility>
 
-#include "devices/hid/device_stop.h"
-#include "devices/hid/hid_drivers.h"
+#include "devices/link/device_stop.h"
 #include "engine/base/signals.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
@@ -26,36 +23,15 @@ BridgeConnection::~BridgeConnection() { unregister_device_stop(stop_slot_); }
 
 int BridgeConnection::read(std::uint8_t* bytes, std::size_t capacity) noexcept {
   if (capacity < bridge::kDeviceBytes) return 0;
-  if (!frame_waits_ && next_ == count_) {
-    const int came = stream_->read(bytes_, sizeof bytes_, kRead_ms);
-    if (came <= 0) return came;
-    next_ = 0;
-    count_ = static_cast<std::size_t>(came);
+  if (const int size = reports_.next(next_, end_, bytes); size > 0) return size;
+  const int came = stream_->read(bytes_, sizeof bytes_, kRead_ms);
+  if (came <= 0) return came;
+  next_ = bytes_;
+  end_ = bytes_ + came;
+  for (const std::uint8_t* at = next_; at != end_ && !reports_.any_frame() && first_count_ < sizeof first_;) {
+    first_[first_count_++] = *at++;
   }
-  bool found = std::exchange(frame_waits_, false);
-  while (!found && next_ < count_) {
-    if (!any_frame_ && first_count_ < sizeof first_) first_[first_count_++] = bytes_[next_];
-    found = finder_.add(bytes_[next_++]);
-  }
-  // What a stream begins with may be the rest of a frame.
-  const bool gap = any_frame_ && finder_.skipped() != skipped_;
-  skipped_ = finder_.skipped();
-  any_frame_ = any_frame_ || found;
-  if (!found && finder_.other_version() != 0) {
-    const std::uint8_t header[4] = {0x50, 0x42, finder_.other_version(), bridge::kFromDevice};
-    std::copy(header, header + 4, bytes);
-    finder_ = {};
-    skipped_ = 0;
-    return 4;
-  }
-  if (gap) {
-    frame_waits_ = found;
-    bytes[0] = 0;
-    return 1;
-  }
-  if (!found) return 0;
-  std::memcpy(bytes, finder_.frame(), bridge::kDeviceBytes);
-  return static_cast<int>(bridge::kDeviceBytes);
+  return reports_.next(next_, end_, bytes);
 }
 
 bool BridgeConnection::write(const std::uint8_t* bytes, std::size_t size) noexcept {
@@ -81,29 +57,29 @@ std::string BridgeConnection::garbage() const {
 }
 
 BridgeBus::BridgeBus(BridgeTarget target, const std::string& text) : target_(std::move(target)) {
-  info_.path = std::string(kBridgePath) + text;
+  info_.path = "bridge:" + text;
 }
 
-Result<std::unique_ptr<HidConnection>> BridgeBus::open(const HidDeviceInfo&) {
+Result<std::unique_ptr<DeviceConnection>> BridgeBus::open(const DeviceNode&) {
   Result<std::unique_ptr<ByteStream>> stream = ByteStream::open(target_);
   if (!stream) return stream.error();
-  return Result<std::unique_ptr<HidConnection>>(std::make_unique<BridgeConnection>(std::move(*stream)));
+  return Result<std::unique_ptr<DeviceConnection>>(std::make_unique<BridgeConnection>(std::move(*stream)));
 }
 
-Result<HidOpened> BridgeBus::open_and_identify() {
+Result<OpenedDevice> BridgeBus::open_and_identify() {
   ignore_broken_pipes();  // a program that ends is an error of the write
-  Result<std::unique_ptr<HidConnection>> opened = open(info_);
+  Result<std::unique_ptr<DeviceConnection>> opened = open(info_);
   if (!opened) return opened.error();
   auto& connection = static_cast<BridgeConnection&>(**opened);
-  const OutReports start = kBridgeDriver.encode_start();
+  const OutReports start = kBridgeProtocol.encode_start();
   connection.write(start.bytes[0].data(), start.sizes[0]);
-  HidOpened result;
+  OpenedDevice result;
   int frames = 0;
   double last_sent_s = steady_now_s();
   const double patience_s = target_.kind == BridgeTarget::Kind::command ? kFirstFrameOfProgram_s : kFirstFrame_s;
   for (const double until_s = last_sent_s + patience_s; frames < kFramesToInspect && steady_now_s() < until_s;) {
     if (stop_requested() != 0) return Error{"interrupted"};
-    std::uint8_t bytes[kLargestHidReport];
+    std::uint8_t bytes[kLargestReport];
     const int size = connection.read(bytes, sizeof bytes);
     if (size < 0) {
       const std::string said = connection.garbage();
@@ -116,7 +92,8 @@ Result<HidOpened> BridgeBus::open_and_identify() {
       last_sent_s = steady_now_s();
     }
     DeviceReading reading;
-    switch (size > 0 ? kBridgeDriver.decode(bytes, static_cast<std::size_t>(size), reading) : ReportVerdict::nothing) {
+    switch (size > 0 ? kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading)
+                     : ReportVerdict::nothing) {
       case ReportVerdict::position:
         ++frames;
         result.measures_force = result.measures_force || reading.measured_N == reading.measured_N;
@@ -142,9 +119,9 @@ Result<HidOpened> BridgeBus::open_and_identify() {
   result.info = info_;
   result.info.product = result.measures_force ? "measures force" : "measures no force";
   if (target_.remote) result.info.product += ", on a network: its delays count";
-  result.driver = &kBridgeDriver;
+  result.protocol = &kBridgeProtocol;
   result.connection = std::move(*opened);
-  return Result<HidOpened>(std::move(result));
+  return Result<OpenedDevice>(std::move(result));
 }
 
 }  // namespace palpate

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/hid_drivers.h"
 #include "engine/base/text.h"
 #include "engine/live/pacer.h"
 
@@ -20,7 +19,7 @@ constexpr double kPatience_s = 0.5;
 
 class BridgeTest {
  public:
-  explicit BridgeTest(HidOpened opened) : opened_(std::move(opened)) {}
+  explicit BridgeTest(OpenedDevice opened) : opened_(std::move(opened)) {}
 
   Result<std::string> run() {
     step_until(kDriven_s, {true, true}, [] { return false; });
@@ -52,11 +51,11 @@ class BridgeTest {
   }
 
   void send(bool drive, bool beat) {
-    HidCommand command;
+    DeviceCommand command;
     command.sequence = ++sequence_;
     command.heartbeat = beat ? ++heartbeat_ : heartbeat_;
     command.drive = drive;
-    const OutReports reports = kBridgeDriver.encode_command(command);
+    const OutReports reports = kBridgeProtocol.encode_command(command);
     opened_.connection->write(reports.bytes[0].data(), reports.sizes[0]);
     last_sent_s_ = steady_now_s();
     sent_at_s_.resize(65536, 0.0);
@@ -84,11 +83,12 @@ class BridgeTest {
         send(drive_, sent.heartbeat);
         next_s += kStep_s;
       }
-      std::uint8_t bytes[kLargestHidReport];
+      std::uint8_t bytes[kLargestReport];
       const int size = opened_.connection->read(bytes, sizeof bytes);
       gone_ = size < 0;
       DeviceReading reading;
-      if (size > 0 && kBridgeDriver.decode(bytes, static_cast<std::size_t>(size), reading) == ReportVerdict::position) {
+      if (size > 0 &&
+          kBridgeProtocol.decode(bytes, static_cast<std::size_t>(size), reading) == ReportVerdict::position) {
         take(reading);
       }
       if (done()) return true;
@@ -132,7 +132,7 @@ class BridgeTest {
            "\n  heartbeat   stopped " + ms(stands_still_s) + " after it stood still (limit 50 ms)\n";
   }
 
-  HidOpened opened_;
+  OpenedDevice opened_;
   std::uint32_t sequence_ = 0;
   std::uint16_t heartbeat_ = 0;
   std::vector<double> sent_at_s_;  // by the low half of the sequence
@@ -150,7 +150,7 @@ Result<std::string> test_bridge(const std::string& target) {
   const Result<BridgeTarget> parsed = parse_bridge_target(target);
   if (!parsed) return parsed.error();
   BridgeBus bus(*parsed, target);
-  Result<HidOpened> opened = bus.open_and_identify();
+  Result<OpenedDevice> opened = bus.open_and_identify();
   if (!opened) return opened.error();
   return BridgeTest(std::move(*opened)).run();
 }

@@ -85,7 +85,7 @@ Opened open_serial(const BridgeTarget& target) {
   if (tcsetattr(line, TCSANOW, &settings) != 0) {
     return close_with(line, failure(target.path, errno, "choose another baud rate"));
   }
-  // Where the driver has it: bytes at once instead of every 16 ms.
+  // Where the protocol has it: bytes at once instead of every 16 ms.
   serial_struct serial{};
   if (ioctl(line, TIOCGSERIAL, &serial) == 0) {
     serial.flags |= ASYNC_LOW_LATENCY;

@@ -10,7 +10,8 @@
 #include <cstring>
 #include <mutex>
 
-#include "devices/hid/device_stop.h"
+#include "devices/hid/hid_protocols.h"
+#include "devices/link/device_stop.h"
 
 namespace palpate {
 namespace {
@@ -29,7 +30,7 @@ std::string narrow(const wchar_t* text) {
   return result;
 }
 
-class HidapiConnection final : public HidConnection {
+class HidapiConnection final : public DeviceConnection {
  public:
   HidapiConnection(hid_device* reader, hid_device* writer, int descriptor, int wait_ms) noexcept
       : reader_(reader), writer_(writer), descriptor_(descriptor), wait_ms_(wait_ms) {}
@@ -65,8 +66,8 @@ class HidapiConnection final : public HidConnection {
 };
 
 // hidapi lists a node once for each usage of its descriptor.
-bool better(const HidDeviceInfo& a, const HidDeviceInfo& b) {
-  return matching_driver(a) != nullptr && matching_driver(b) == nullptr;
+bool better(const DeviceNode& a, const DeviceNode& b) {
+  return hid_protocol_of(a) != nullptr && hid_protocol_of(b) == nullptr;
 }
 
 }  // namespace
@@ -92,12 +93,12 @@ std::string open_error_words(const std::string& path, int error_number) {
   }
 }
 
-std::vector<HidDeviceInfo> HidapiBus::list() {
+std::vector<DeviceNode> HidapiBus::list() {
   const std::lock_guard<std::mutex> lock(hidapi_mutex());
-  std::vector<HidDeviceInfo> all;
+  std::vector<DeviceNode> all;
   hid_device_info* const first = hid_enumerate(0, 0);
   for (const hid_device_info* entry = first; entry != nullptr; entry = entry->next) {
-    HidDeviceInfo info;
+    DeviceNode info;
     info.path = entry->path != nullptr ? entry->path : "";
     info.product = narrow(entry->product_string);
     info.vendor_id = entry->vendor_id;
@@ -115,7 +116,7 @@ std::vector<HidDeviceInfo> HidapiBus::list() {
   return all;
 }
 
-Result<std::unique_ptr<HidConnection>> HidapiBus::open(const HidDeviceInfo& info) {
+Result<std::unique_ptr<DeviceConnection>> HidapiBus::open(const DeviceNode& info) {
   if (info.path.empty()) return Error{open_error_words(info.product, ENOENT)};
   const int descriptor = ::open(info.path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return Error{open_error_words(info.path, errno)};
@@ -133,11 +134,11 @@ Result<std::unique_ptr<HidConnection>> HidapiBus::open(const HidDeviceInfo& info
     ::close(descriptor);
     return Error{info.path + ": is no HID device that can be opened (" + words + "); plug it in again"};
   }
-  return Result<std::unique_ptr<HidConnection>>(
+  return Result<std::unique_ptr<DeviceConnection>>(
       std::make_unique<HidapiConnection>(reader, writer, descriptor, wait_ms_));
 }
 
-HidBus& system_hid_bus() {
+DeviceBus& system_hid_bus() {
   static HidapiBus bus;
   return bus;
 }

@@ -27,7 +27,7 @@ void SpaceMouseAxis::unplugged() noexcept {
 
 void SpaceMouseAxis::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
   DeviceReading reading;
-  switch (calibration_.driver->decode(bytes, size, reading)) {
+  switch (calibration_.protocol->decode(bytes, size, reading)) {
     case ReportVerdict::position:
       break;
     case ReportVerdict::corrupt:
@@ -75,7 +75,7 @@ DeviceHealth SpaceMouseAxis::health(double now_s) noexcept {
   return health;
 }
 
-SpaceMouse::SpaceMouse(HidBus& bus, const HidCalibration& calibration, HidOpened opened)
+SpaceMouse::SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened)
     : axis_(calibration), link_(bus, axis_, std::move(opened)) {}
 
 bool SpaceMouseDevice::read(double now_s, DeviceSample& sample) noexcept {

@@ -12,8 +12,8 @@
 #include <memory>
 #include <string>
 
-#include "devices/hid/hid_calibration.h"
-#include "devices/hid/hid_link.h"
+#include "devices/link/device_calibration.h"
+#include "devices/link/device_link.h"
 #include "devices/virtual/mouse_device.h"
 #include "engine/live/device.h"
 #include "engine/live/triple_buffer.h"
@@ -21,7 +21,7 @@
 namespace palpate {
 
 // From reports to a position at any time. No thread of its own.
-class SpaceMouseAxis final : public HidListener {
+class SpaceMouseAxis final : public LinkListener {
  public:
   // Between reports; longer is a rest.
   static constexpr double kShortest_s = 0.004;
@@ -29,7 +29,7 @@ class SpaceMouseAxis final : public HidListener {
   // Nearer to 0 than this the cap is not touched.
   static constexpr int kDeadCounts = 8;
 
-  explicit SpaceMouseAxis(const HidCalibration& calibration) noexcept : calibration_(calibration) {}
+  explicit SpaceMouseAxis(const DeviceCalibration& calibration) noexcept : calibration_(calibration) {}
 
   // Reader thread, wait-free.
   void connected(double) noexcept override;
@@ -55,7 +55,7 @@ class SpaceMouseAxis final : public HidListener {
     bool connected = false;
   };
 
-  HidCalibration calibration_;
+  DeviceCalibration calibration_;
   TripleBuffer<Deflection> newest_;
   Deflection deflection_;  // reader thread's own
   // Haptics thread's own: on the way from one value to the next.
@@ -67,8 +67,8 @@ class SpaceMouseAxis final : public HidListener {
 // The cap and its threads.
 class SpaceMouse {
  public:
-  // As HidDevice.
-  SpaceMouse(HidBus& bus, const HidCalibration& calibration, HidOpened opened);
+  // As LinkedDevice.
+  SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened);
   Status start() { return link_.start(); }
   void stop() noexcept { link_.stop(); }
   SpaceMouseAxis& axis() noexcept { return axis_; }
@@ -76,7 +76,7 @@ class SpaceMouse {
 
  private:
   SpaceMouseAxis axis_;
-  HidLink link_;
+  DeviceLink link_;
 };
 
 class SpaceMouseDevice final : public Device {
@@ -86,7 +86,7 @@ class SpaceMouseDevice final : public Device {
 
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return tool_.sensor(); }
-  bool renders_force() const noexcept override { return false; }
+  Holder holder() const noexcept override { return Holder::simulated; }
   ForceLimits limits() const noexcept override { return tool_.limits(); }
   Status open() override { return mouse_->start(); }
   void close() noexcept override { mouse_->stop(); }

@@ -33,7 +33,7 @@ class AutoDevice final : public Device, public ToolInput {
   }
   std::string note() const override { return note_; }
   SensorSpec sensor() const noexcept override { return hand_.sensor(); }
-  bool renders_force() const noexcept override { return true; }
+  Holder holder() const noexcept override { return Holder::simulated; }
   ForceLimits limits() const noexcept override { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/hid_device.h"
-#include "devices/hid/hid_drivers.h"
+#include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/hid/spacemouse.h"
+#include "devices/link/linked_device.h"
 #include "devices/registry/auto_device.h"
 #include "devices/virtual/hand_device.h"
 #include "devices/virtual/mouse_device.h"
@@ -16,39 +16,39 @@
 namespace palpate {
 namespace {
 
-using Made = Result<std::unique_ptr<Device>>;
+using Made = MadeDevice;
 
-HidDrivers drivers_that(bool render_force) {
-  HidDrivers drivers;
-  for (const HidDriver* driver : kHidDrivers) {
-    if (driver->renders_force == render_force) drivers.push_back(driver);
+DeviceProtocols protocols_that(bool render_force) {
+  DeviceProtocols protocols;
+  for (const DeviceProtocol* protocol : kHidProtocols) {
+    if (protocol->renders_force == render_force) protocols.push_back(protocol);
   }
-  return drivers;
+  return protocols;
 }
 
-HidBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
+DeviceBus& bus_of(const DeviceRequest& request) { return request.bus != nullptr ? *request.bus : system_hid_bus(); }
 
-Result<HidCalibration> calibration_of(const DeviceRequest& request, const HidDriver& driver) {
+Result<DeviceCalibration> calibration_of(const DeviceRequest& request, const DeviceProtocol& protocol) {
   if (request.calibrations.empty()) {
     return Error{"the calibrations of HID devices are nowhere; set PALPATE_ASSETS to the assets folder"};
   }
-  return read_hid_calibration(request.calibrations, driver);
+  return read_calibration(request.calibrations, protocol);
 }
 
 // An open HID device with its calibration, made a `T` of; one that pushes, or one that does
 // not. `none_found`: there is none to open.
 template <typename T>
 Result<std::unique_ptr<T>> make_hid_device(const DeviceRequest& request, bool renders_force, bool& none_found) {
-  Result<HidOpened> opened = open_first(bus_of(request), drivers_that(renders_force), &none_found);
+  Result<OpenedDevice> opened = open_first(bus_of(request), protocols_that(renders_force), &none_found);
   if (!opened) return opened.error();
-  const Result<HidCalibration> calibration = calibration_of(request, *opened->driver);
+  const Result<DeviceCalibration> calibration = calibration_of(request, *opened->protocol);
   if (!calibration) return calibration.error();
   return std::make_unique<T>(bus_of(request), *calibration, std::move(*opened));
 }
 
 Made make_hid(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
-  auto haptic = make_hid_device<HidDevice>(request, true, no_haptic);
+  auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
   if (haptic) return Made(std::move(*haptic));
   if (!no_haptic) return haptic.error();
   bool no_mouse = false;
@@ -60,7 +60,7 @@ Made make_hid(const std::string&, const DeviceRequest& request) {
 
 Made make_auto(const std::string&, const DeviceRequest& request) {
   bool no_haptic = false;
-  auto haptic = make_hid_device<HidDevice>(request, true, no_haptic);
+  auto haptic = make_hid_device<LinkedDevice>(request, true, no_haptic);
   if (haptic) return Made(std::move(*haptic));
   auto device = std::make_unique<AutoDevice>(request.seed, request.hand);
   std::string note = no_haptic ? "no haptic device is plugged in" : haptic.error().message;
@@ -90,44 +90,40 @@ Made make_replay(const std::string& path, const DeviceRequest&) {
 Made make_bridge(const std::string& target, const DeviceRequest& request) {
   const Result<BridgeTarget> parsed = parse_bridge_target(target);
   if (!parsed) return parsed.error();
-  const Result<HidCalibration> calibration = calibration_of(request, kBridgeDriver);
+  const Result<DeviceCalibration> calibration = calibration_of(request, kBridgeProtocol);
   if (!calibration) return calibration.error();
   auto bus = std::make_unique<BridgeBus>(*parsed, target);
-  Result<HidOpened> opened = bus->open_and_identify();
+  Result<OpenedDevice> opened = bus->open_and_identify();
   if (!opened) return opened.error();
-  return Made(std::make_unique<HidDevice>(std::move(bus), *calibration, std::move(*opened), "bridge"));
+  return Made(std::make_unique<LinkedDevice>(std::move(bus), *calibration, std::move(*opened), "bridge"));
 }
 
-struct Entry {
-  DeviceDescription description;
-  Made (*make)(const std::string& path, const DeviceRequest& request);
-};
-
-// A new device is a line here.
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all = {
-      {{"auto", "a haptic device, else the simulated hand until the mouse takes over", true, ""}, make_auto},
-      {{"hand", "a simulated hand that explores by itself and feels the force", true, ""}, make_hand},
-      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", true, ""}, make_mouse},
-      {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", true, ""}, make_hid},
-      {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", false, ""},
-       make_replay},
-      {{"bridge:TARGET", "any device: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND", true, ""}, make_bridge},
-  };
-  return all;
-}
-
-std::string known_names() {
+std::string known_names(const std::vector<DeviceEntry>& entries) {
   std::string names;
-  for (const Entry& entry : entries()) names += (names.empty() ? "" : ", ") + entry.description.name;
+  for (const DeviceEntry& entry : entries) names += (names.empty() ? "" : ", ") + entry.description.name;
   return names;
 }
 
 }  // namespace
 
+const std::vector<DeviceEntry>& device_entries() {
+  static const std::vector<DeviceEntry> all = {
+      {{"auto", "a haptic device, else the simulated hand until the mouse takes over", Holder::simulated, ""},
+       make_auto},
+      {{"hand", "a simulated hand that explores by itself and feels the force", Holder::simulated, ""}, make_hand},
+      {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""}, make_mouse},
+      {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", Holder::person, ""}, make_hid},
+      {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", Holder::nobody, ""},
+       make_replay},
+      {{"bridge:TARGET", "any device: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND", Holder::person, ""},
+       make_bridge},
+  };
+  return all;
+}
+
 std::vector<DeviceDescription> list_devices(const DeviceRequest& request) {
   std::vector<DeviceDescription> list;
-  for (const Entry& entry : entries()) {
+  for (const DeviceEntry& entry : device_entries()) {
     list.push_back(entry.description);
     if (entry.make != make_hid) continue;
     if (const Made hid = make_hid("", request); !hid) list.back().problem = hid.error().message;
@@ -135,11 +131,11 @@ std::vector<DeviceDescription> list_devices(const DeviceRequest& request) {
   return list;
 }
 
-Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceRequest& request) {
+MadeDevice open_device(const std::string& name, const DeviceRequest& request, const std::vector<DeviceEntry>& entries) {
   // Some take what stands behind a colon.
   const std::size_t colon = name.find(':');
   const std::string what = colon == std::string::npos ? "" : name.substr(colon + 1);
-  for (const Entry& entry : entries()) {
+  for (const DeviceEntry& entry : entries) {
     const std::string& known = entry.description.name;
     const std::size_t end = known.find(':');
     if (name.substr(0, colon) != known.substr(0, end) || (colon == std::string::npos) != (end == std::string::npos)) {
@@ -150,11 +146,8 @@ Result<std::unique_ptr<Device>> open_device(const std::string& name, const Devic
     if (const Status status = (*device)->open(); !status) return status.error();
     return device;
   }
-  return Error{"unknown device \"" + name + "\", expected one of: " + known_names() + " (palpate devices explains)"};
-}
-
-bool is_felt(Device& device) noexcept {
-  return device.renders_force() && device.mouse() == nullptr && device.name() != "hand";
+  return Error{"unknown device \"" + name + "\", expected one of: " + known_names(entries) +
+               " (palpate devices explains)"};
 }
 
 }  // namespace palpate

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/hid/hid_bus.h"
+#include "devices/link/device_bus.h"
 #include "devices/virtual/hand_motion.h"
 #include "engine/live/device.h"
 
@@ -16,7 +16,7 @@ namespace palpate {
 struct DeviceDescription {
   std::string name;     // as --device takes it
   std::string summary;  // one line
-  bool renders_force = false;
+  Holder holder = Holder::nobody;
   std::string problem;  // why it cannot be opened here and what to do; empty: it can
 };
 
@@ -26,10 +26,19 @@ struct DeviceRequest {
   // Where the calibrations of HID devices are: assets/devices. Without it no HID
   // device can be used, and "auto" says so.
   std::string calibrations;
-  HidBus* bus = nullptr;  // null: the machine's own
+  DeviceBus* bus = nullptr;  // null: the machine's own
 };
 
-// All there are, the default first. Opens and closes HID devices to see whether
+// What makes a device: `what` stands behind the colon of its name.
+using MadeDevice = Result<std::unique_ptr<Device>>;
+struct DeviceEntry {
+  DeviceDescription description;
+  MadeDevice (*make)(const std::string& what, const DeviceRequest& request);
+};
+// All there are, the default first. A new device is a line of this table.
+const std::vector<DeviceEntry>& device_entries();
+
+// Those of the table. Opens and closes HID devices to see whether
 // they can be used; takes half a second when one cannot.
 std::vector<DeviceDescription> list_devices(const DeviceRequest& request = {});
 
@@ -39,10 +48,7 @@ std::vector<DeviceDescription> list_devices(const DeviceRequest& request = {});
 // until the mouse or a SpaceMouse takes over, and its `note` says why. Errors: an
 // unknown name (lists the known ones), a recording that cannot be read, a device
 // that cannot be opened.
-Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceRequest& request = {});
-
-// Whether a person at this device feels its force: a mouse and a hand that moves by
-// itself take a force as well, but nobody feels it. Pure.
-bool is_felt(Device& device) noexcept;
+MadeDevice open_device(const std::string& name, const DeviceRequest& request = {},
+                       const std::vector<DeviceEntry>& entries = device_entries());
 
 }  // namespace palpate

@@ -42,7 +42,7 @@ class SimulatedDevice : public Device {
   const std::string& name() const noexcept final { return name_; }
   // Exact up to these.
   SensorSpec sensor() const noexcept final;
-  bool renders_force() const noexcept final { return true; }
+  Holder holder() const noexcept final { return Holder::simulated; }
   ForceLimits limits() const noexcept final { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override { force_N_ = force_N; }

@@ -6,7 +6,7 @@
 // flag, so that the program ends in its own order and removes what it made; the second, of
 // whatever kind, ends it at once. A signal that is ignored stays ignored, and a handler that
 // was installed before is called after the forces are gone. Nothing runs on SIGKILL or a
-// power cut; what becomes of the force then, devices/hid/device_stop.h says for each device.
+// power cut; what becomes of the force then, devices/link/device_stop.h says for each device.
 #pragma once
 
 namespace palpate {

@@ -69,14 +69,16 @@ class ReplayControl {
   virtual const Recording& recording() const noexcept = 0;  // as it was read; any thread
 };
 
+// What feels the force that is written.
+enum class Holder { nobody, simulated, person };
+
 class Device {
  public:
   virtual ~Device() = default;
 
   virtual const std::string& name() const noexcept = 0;
   virtual SensorSpec sensor() const noexcept = 0;
-  // Whether the force that is written is felt by whatever moves the tool.
-  virtual bool renders_force() const noexcept = 0;
+  virtual Holder holder() const noexcept = 0;
   // Whether its samples carry the force of a sensor.
   virtual bool measures_force() const noexcept { return false; }
   // What the device may be given, see ForceLimiter.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "devices/bridge/bridge_bus.h"
-#include "devices/hid/hid_drivers.h"
+#include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
 #include "devices/registry/device_registry.h"
 #include "scenes/cli/verbs.h"
@@ -16,11 +16,10 @@
 namespace palpate::cli {
 namespace {
 
-void print_hid_drivers() {
+void print_hid_protocols() {
   std::printf("\nWHAT hid KNOWS\n");
-  for (const HidDriver* driver : kHidDrivers) {
-    if (driver->knows_position) continue;  // of a bridge, not of hid
-    std::printf("  %s: %s; tried %s\n", driver->name, driver->description, kHidTried);
+  for (const DeviceProtocol* protocol : kHidProtocols) {
+    std::printf("  %s: %s; tried %s\n", protocol->name, protocol->description, kTried);
   }
 }
 
@@ -29,8 +28,8 @@ void print_plugged_in(const std::vector<HidDiagnosis>& all, const std::string& a
   if (all.empty()) std::printf("  nothing; a haptic device shows up here as soon as it is plugged in\n");
   bool problems = false;
   for (const HidDiagnosis& one : all) {
-    std::printf("  %s  %04x:%04x  %s: %s\n", one.info.path.empty() ? "(no node)" : one.info.path.c_str(),
-                one.info.vendor_id, one.info.product_id, one.info.product.c_str(), one.use.c_str());
+    std::printf("  %s  %04x:%04x  %s: %s\n", one.node.path.empty() ? "(no node)" : one.node.path.c_str(),
+                one.node.vendor_id, one.node.product_id, one.node.product.c_str(), one.use.c_str());
     if (one.problem.empty()) continue;
     problems = true;
     std::printf("    cannot be used: %s\n", one.problem.c_str());
@@ -56,11 +55,11 @@ Status print_devices() {
   const int column = static_cast<int>(width);
   std::printf("%-*s  %-5s  %-6s  %s\n", column, "DEVICE", "FORCE", "USABLE", "WHAT IT IS");
   for (const DeviceDescription& device : devices) {
-    std::printf("%-*s  %-5s  %-6s  %s\n", column, device.name.c_str(), device.renders_force ? "yes" : "no",
+    std::printf("%-*s  %-5s  %-6s  %s\n", column, device.name.c_str(), device.holder != Holder::nobody ? "yes" : "no",
                 device.problem.empty() ? "yes" : "no", device.summary.c_str());
     if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
   }
-  print_hid_drivers();
+  print_hid_protocols();
   print_plugged_in(plugged_in, assets);
   return {};
 }

@@ -275,7 +275,7 @@ void LiveSession::move_surface(bool moved) {
   if (surface_.move(moved)) comparison_.forget_errors("the surface moved");
 }
 
-bool LiveSession::renders_force() const noexcept { return is_felt(*device_); }
+bool LiveSession::renders_force() const noexcept { return device_->holder() == Holder::person; }
 
 void LiveSession::use_dead_man(DeadMan what) {
   controls_.dead_man = what;

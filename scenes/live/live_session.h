@@ -24,7 +24,7 @@
 
 namespace palpate {
 
-class HidBus;
+class DeviceBus;
 
 struct SessionRequest {
   std::string scene;      // empty: silicone, or of model files alone what they were fitted for
@@ -35,8 +35,8 @@ struct SessionRequest {
   std::uint64_t seed = 1;           // of the hand, the training recording, the fits
   bool position_only = false;       // one more slot: a model that knows the depth alone
   bool realtime = true;
-  std::string data_folder;  // for files about faults; empty: where the program runs
-  HidBus* bus = nullptr;    // outlives the session; null: the machine's own
+  std::string data_folder;   // for files about faults; empty: where the program runs
+  DeviceBus* bus = nullptr;  // outlives the session; null: the machine's own
 };
 
 // The devices that a session can be opened with, for whoever does not see them.

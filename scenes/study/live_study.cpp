@@ -22,7 +22,7 @@ Result<std::unique_ptr<Device>> open_study_device(const std::string& name) {
 bool study_can_be_felt(const std::string& device) {
   const auto opened = open_study_device(device);
   if (!opened) return false;
-  const bool felt = is_felt(**opened);
+  const bool felt = (*opened)->holder() == Holder::person;
   (*opened)->close();
   return felt;
 }
@@ -33,7 +33,7 @@ Result<std::unique_ptr<LiveStudy>> LiveStudy::open(const LiveStudyRequest& reque
   if (!device) return device.error();
   StudyHeader header = request.header;
   header.device = (*device)->name();
-  header.rendered = is_felt(**device);
+  header.rendered = (*device)->holder() == Holder::person;
   auto file = StudyFile::open(request.path, header);
   if (!file) return file.error();
   auto session = StudySession::create(header, std::move(*file));

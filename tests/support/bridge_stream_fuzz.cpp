@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
-#include "devices/hid/hid_drivers.h"
-#include "devices/hid/hid_endpoint.h"
+#include "devices/link/device_endpoint.h"
 
 namespace palpate::test {
 namespace {
@@ -22,9 +22,9 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-HidCalibration calibration() {
-  HidCalibration calibration;
-  calibration.driver = &kBridgeDriver;
+DeviceCalibration calibration() {
+  DeviceCalibration calibration;
+  calibration.protocol = &kBridgeProtocol;
   calibration.counts_per_metre = 1e9;
   calibration.fastest_m_per_s = 5.0;
   calibration.force_N_per_unit = 1e-6;
@@ -57,7 +57,7 @@ Stream expanded(const std::uint8_t* data, std::size_t size) {
 
 class Host {
  public:
-  Host() : endpoint_(std::make_unique<HidEndpoint>(calibration())) { endpoint_->connected(now_s_); }
+  Host() : endpoint_(std::make_unique<DeviceEndpoint>(calibration())) { endpoint_->connected(now_s_); }
 
   void take(const std::uint8_t* frame, std::size_t size) {
     now_s_ += 1e-3;
@@ -82,7 +82,7 @@ class Host {
   }
 
  private:
-  std::unique_ptr<HidEndpoint> endpoint_;
+  std::unique_ptr<DeviceEndpoint> endpoint_;
   double now_s_ = 100.0, last_s_ = 0.0;
 };
 
@@ -108,7 +108,7 @@ std::size_t check_bridge_stream(const std::uint8_t* data, std::size_t size) {
   // One may still be hidden behind an unfinished false beginning.
   require(next_whole + 1 >= stream.whole.size(), "a whole frame was not found");
   // As reports, too: whatever was cut.
-  host.take(data, size < kLargestHidReport ? size : kLargestHidReport);
+  host.take(data, size < kLargestReport ? size : kLargestReport);
   return found;
 }
 

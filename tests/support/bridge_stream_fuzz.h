@@ -9,7 +9,7 @@ namespace palpate::test {
 
 // `data`: bytes of a device's stream; 0x00 0xF5 in it stands for a whole frame, of the next
 // sequence and of a position that the byte behind says. Feeds all of it to the finders of
-// both ends and its frames to a HidEndpoint. Aborts when a frame is found that has no right
+// both ends and its frames to a DeviceEndpoint. Aborts when a frame is found that has no right
 // checksum, when one that was whole is not found, when bytes are counted wrongly, or when
 // what is handed over is not finite or a force above the peak would be sent. Returns how
 // many frames were found.

@@ -63,7 +63,7 @@ class SimulatedTool final : public Device {
 
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return {.encoder_step_m = settings_.encoder_step_m}; }
-  bool renders_force() const noexcept override { return true; }
+  Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return settings_.limits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;

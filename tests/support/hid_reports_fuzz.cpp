@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "devices/firmware/bridge_protocol.h"
-#include "devices/hid/hid_drivers.h"
-#include "devices/hid/hid_endpoint.h"
+#include "devices/bridge/bridge_bus.h"
+#include "devices/hid/hid_protocols.h"
 #include "devices/hid/spacemouse.h"
+#include "devices/link/device_endpoint.h"
 
 namespace palpate::test {
 namespace {
@@ -22,9 +23,9 @@ void require(bool holds, const char* what) {
   std::abort();
 }
 
-HidCalibration calibration_of(const HidDriver* driver) {
-  HidCalibration calibration;
-  calibration.driver = driver;
+DeviceCalibration calibration_of(const DeviceProtocol* protocol) {
+  DeviceCalibration calibration;
+  calibration.protocol = protocol;
   calibration.counts_per_metre = 50000.0;
   calibration.rest_position_m = -0.01;
   calibration.fastest_m_per_s = 5.0;
@@ -34,20 +35,20 @@ HidCalibration calibration_of(const HidDriver* driver) {
   return calibration;
 }
 
-void check_decoder(const HidDriver* driver, const std::uint8_t* bytes, std::size_t size) {
+void check_decoder(const DeviceProtocol* protocol, const std::uint8_t* bytes, std::size_t size) {
   DeviceReading reading;
-  const ReportVerdict verdict = driver->decode(bytes, size, reading);
+  const ReportVerdict verdict = protocol->decode(bytes, size, reading);
   DeviceReading again;
-  require(driver->decode(bytes, size, again) == verdict && again.counts == reading.counts, "not repeatable");
+  require(protocol->decode(bytes, size, again) == verdict && again.counts == reading.counts, "not repeatable");
   if (verdict != ReportVerdict::position) return;
-  if (driver == &kSpaceMouseDriver) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
-  if (driver == &kOpenFfBoardDriver) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
-  if (driver != &kBridgeDriver) return;
+  if (protocol == &kSpaceMouseProtocol) require(std::abs(reading.counts) <= 1000, "beyond any deflection");
+  if (protocol == &kOpenFfBoardProtocol) require(size == 25 && bytes[0] == 0xA1, "not a vendor report");
+  if (protocol != &kBridgeProtocol) return;
   require(size == bridge::kDeviceBytes, "not a frame");
   require(wire::crc32(bytes, kChecksumAt) == wire::read32(bytes + kChecksumAt), "checksum");
 }
 
-void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_s) {
+void check_handed_over(DeviceEndpoint& endpoint, double now_s, double& last_sample_s) {
   DeviceSample sample;
   if (endpoint.read(sample)) {
     require(std::isfinite(sample.tool.position_m) && std::isfinite(sample.tool.time_s), "sample not finite");
@@ -60,10 +61,10 @@ void check_handed_over(HidEndpoint& endpoint, double now_s, double& last_sample_
   require(!std::isnan(health.zeroing_progress) && health.zeroing_progress <= 1.0F, "progress");
 }
 
-void check_sent(const HidDriver* driver, const OutReports& reports) {
+void check_sent(const DeviceProtocol* protocol, const OutReports& reports) {
   require(reports.count <= reports.sizes.size(), "too many reports");
-  for (std::size_t i = 0; i < reports.count; ++i) require(reports.sizes[i] <= kLargestHidReport + 1, "too long");
-  if (driver != &kBridgeDriver || reports.count == 0) return;
+  for (std::size_t i = 0; i < reports.count; ++i) require(reports.sizes[i] <= kLargestReport + 1, "too long");
+  if (protocol != &kBridgeProtocol || reports.count == 0) return;
   bridge::FromHost out{};
   require(bridge::decode(reports.bytes[0].data(), out), "sent a bad frame");
   require(std::abs(out.force_uN) <= 1250, "above the peak");
@@ -72,29 +73,29 @@ void check_sent(const HidDriver* driver, const OutReports& reports) {
 // One stream of reports into everything that reads them.
 class Stream {
  public:
-  explicit Stream(const HidDriver* driver)
-      : driver_(driver), endpoint_(calibration_of(driver)), cap_(calibration_of(&kSpaceMouseDriver)) {
+  explicit Stream(const DeviceProtocol* protocol)
+      : protocol_(protocol), endpoint_(calibration_of(protocol)), cap_(calibration_of(&kSpaceMouseProtocol)) {
     endpoint_.connected(now_s_);
     cap_.connected(now_s_);
   }
 
   void take(const std::uint8_t* bytes, std::size_t size, std::uint8_t step) {
     now_s_ += 50e-6 * step;
-    check_decoder(driver_, bytes, size);
+    check_decoder(protocol_, bytes, size);
     if (step == 255) endpoint_.start_zeroing();
     if (step == 254) endpoint_.unplugged();
     endpoint_.report_arrived(bytes, size, now_s_);
     check_handed_over(endpoint_, now_s_, last_sample_s_);
     endpoint_.write(step * 1e3);
-    check_sent(driver_, endpoint_.next(now_s_));
+    check_sent(protocol_, endpoint_.next(now_s_));
     endpoint_.written(now_s_);
     cap_.report_arrived(bytes, size, now_s_);
     require(std::isfinite(cap_.target_m(now_s_)), "target not finite");
   }
 
  private:
-  const HidDriver* driver_;
-  HidEndpoint endpoint_;
+  const DeviceProtocol* protocol_;
+  DeviceEndpoint endpoint_;
   SpaceMouseAxis cap_;
   double now_s_ = 100.0;
   double last_sample_s_ = 0.0;
@@ -104,16 +105,16 @@ class Stream {
 
 std::size_t check_hid_reports(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const HidDriver* driver = kHidDrivers[data[0] % kHidDrivers.size()];
+  const DeviceProtocol* protocol = kHidProtocols[data[0] % kHidProtocols.size()];
   // A bit above: frames of the bridge get the checksum they need to be read.
   const bool mended = (data[0] & 4) != 0;
-  Stream stream(driver);
+  Stream stream(protocol);
   std::size_t count = 0;
   for (std::size_t at = 1; at + 2 <= size; ++count) {
     const std::size_t length = std::min<std::size_t>(data[at] % 80u, size - at - 2);
     // A copy of just its length, for the address sanitizer to watch.
     std::vector<std::uint8_t> report(data + at + 2, data + at + 2 + length);
-    if (mended && driver == &kBridgeDriver && length == bridge::kDeviceBytes) {
+    if (mended && protocol == &kBridgeProtocol && length == bridge::kDeviceBytes) {
       const std::uint8_t header[] = {0x50, 0x42, bridge::kVersion, bridge::kFromDevice};
       std::copy(header, header + 4, report.begin());
       wire::write32(report.data() + kChecksumAt, wire::crc32(report.data(), kChecksumAt));

@@ -8,7 +8,7 @@
 namespace palpate::test {
 
 // `data`: the kind of device, then reports, each behind its length and the time
-// since the one before. Decodes each and feeds it to a HidEndpoint and a
+// since the one before. Decodes each and feeds it to a DeviceEndpoint and a
 // SpaceMouse. Aborts when a reading is accepted that its encoder would not have
 // written, when time does not go on, when anything that is handed to the haptics
 // thread is not finite, or when a force above the peak would be sent. Returns how

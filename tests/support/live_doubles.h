@@ -69,7 +69,7 @@ class PathDevice final : public Device {
 
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
-  bool renders_force() const noexcept override { return true; }
+  Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return limits_; }
   bool read(double now_s, DeviceSample& sample) noexcept override {
     if (now_s == now_s_) return false;

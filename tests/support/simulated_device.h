@@ -1,4 +1,4 @@
-// Host and device in simulated time, without threads: a HidEndpoint behind a
+// Host and device in simulated time, without threads: a DeviceEndpoint behind a
 // LiveTick on one side, the reference firmware (or what is known of the others)
 // on the other, reports between them that a test may hold back, change or lose.
 #pragma once
@@ -12,9 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_firmware.h"
-#include "devices/hid/hid_drivers.h"
-#include "devices/hid/hid_endpoint.h"
+#include "devices/hid/hid_protocols.h"
+#include "devices/link/device_endpoint.h"
 #include "engine/live/live_tick.h"
 #include "tests/support/live_doubles.h"
 
@@ -22,9 +23,9 @@ namespace palpate::test {
 
 using Report = std::vector<std::uint8_t>;
 
-inline HidCalibration example_calibration(const HidDriver* driver) {
-  HidCalibration calibration;
-  calibration.driver = driver;
+inline DeviceCalibration example_calibration(const DeviceProtocol* protocol) {
+  DeviceCalibration calibration;
+  calibration.protocol = protocol;
   calibration.counts_per_metre = 50000.0;
   calibration.rest_position_m = -0.01;
   calibration.fastest_m_per_s = 5.0;
@@ -33,7 +34,7 @@ inline HidCalibration example_calibration(const HidDriver* driver) {
   calibration.limits = {5.0, 200.0, 0.1};
   calibration.limits.continuous_N = 4.5;
   calibration.limits.stale_after_s = 0.008;
-  if (driver->knows_position) {
+  if (protocol->absolute) {
     calibration.counts_per_metre = 1e9;
     calibration.rest_position_m = 0.0;
     calibration.force_N_per_unit = 1e-6;
@@ -71,7 +72,7 @@ class OpenFfBoardModel final : public DeviceModel {
   }
   // As a host that asks where the tool is.
   void be_asked() {
-    const OutReports asking = kOpenFfBoardDriver.encode_command({});
+    const OutReports asking = kOpenFfBoardProtocol.encode_command({});
     hear(Report(asking.bytes[0].begin(), asking.bytes[0].begin() + static_cast<std::ptrdiff_t>(asking.sizes[0])));
   }
   void step(std::uint32_t now_us, std::int32_t counts) override {
@@ -149,24 +150,24 @@ class BridgeModel final : public DeviceModel {
   std::int32_t counts_ = 0, pushed_uN_ = 0;
 };
 
-inline std::unique_ptr<DeviceModel> device_model(const HidDriver* driver) {
-  if (driver == &kBridgeDriver) return std::make_unique<BridgeModel>();
+inline std::unique_ptr<DeviceModel> device_model(const DeviceProtocol* protocol) {
+  if (protocol == &kBridgeProtocol) return std::make_unique<BridgeModel>();
   return std::make_unique<OpenFfBoardModel>();
 }
 
 // The endpoint as a device of the live tick.
 class EndpointDevice final : public Device {
  public:
-  explicit EndpointDevice(const HidCalibration& calibration) : endpoint(calibration) {}
+  explicit EndpointDevice(const DeviceCalibration& calibration) : endpoint(calibration) {}
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return {1.0 / endpoint.calibration().counts_per_metre}; }
-  bool renders_force() const noexcept override { return true; }
+  Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return endpoint.limits(); }
   bool read(double, DeviceSample& sample) noexcept override { return endpoint.read(sample); }
   void write(double force_N) noexcept override { endpoint.write(force_N); }
   DeviceHealth health(double now_s) noexcept override { return endpoint.health(now_s); }
   void start_zeroing() noexcept override { endpoint.start_zeroing(); }
-  HidEndpoint endpoint;
+  DeviceEndpoint endpoint;
 
  private:
   std::string name_ = "simulated";
@@ -178,15 +179,15 @@ class SimulatedDevice {
   static constexpr double kHeld_m = 6e-3;
   static constexpr double kStart_s = 100.0;
 
-  explicit SimulatedDevice(const HidDriver* driver)
-      : calibration(example_calibration(driver)),
+  explicit SimulatedDevice(const DeviceProtocol* protocol)
+      : calibration(example_calibration(protocol)),
         device(calibration),
-        model(device_model(driver)),
+        model(device_model(protocol)),
         live(device, slot_) {
     slot_.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(kStiffness_N_per_m)}));
     live.warm_up();
     device.endpoint.connected(kStart_s);
-    hear(driver->encode_start());
+    hear(protocol->encode_start());
   }
 
   // The tool, as the hand moves it, m after `time_s`; with tremor unless frozen.
@@ -232,7 +233,7 @@ class SimulatedDevice {
 
   std::int32_t counts() const { return counts_; }
 
-  HidCalibration calibration;
+  DeviceCalibration calibration;
   EndpointDevice device;
   std::unique_ptr<DeviceModel> model;
   LoopControls controls;
@@ -257,8 +258,17 @@ class SimulatedDevice {
       model->outbox.pop_front();
       if (unplugged) continue;
       for (const Report& one : on_the_way_in ? on_the_way_in(report) : std::vector<Report>{report}) {
-        device.endpoint.report_arrived(one.data(), one.size(), now_s);
+        arrive(one);
       }
+    }
+  }
+  // Frames of the bridge come out of a stream of bytes.
+  void arrive(const Report& one) {
+    if (calibration.protocol != &kBridgeProtocol) return device.endpoint.report_arrived(one.data(), one.size(), now_s);
+    const std::uint8_t* at = one.data();
+    std::uint8_t report[bridge::kDeviceBytes];
+    while (const int size = frames_.next(at, one.data() + one.size(), report)) {
+      device.endpoint.report_arrived(report, static_cast<std::size_t>(size), now_s);
     }
   }
   void hear(const OutReports& reports) {
@@ -271,6 +281,7 @@ class SimulatedDevice {
   }
 
   ModelSlot<LiveModels> slot_;
+  BridgeReports frames_;
   std::int32_t counts_ = 0;
   double inside_ = 0.0;  // 0 at rest, 1 pressed in
 

@@ -61,7 +61,7 @@ TEST(BridgeClock, NeitherDriftNorDelayCostsTheForceForLong) {
   for (const std::uint32_t period_us : {10'000u, 3'333u, 1'000u, 100u}) {
     for (const double drift : {-0.01, -150e-6, 0.0, 0.01}) {
       for (const Event& event : kEvents) {
-        SimulatedDevice simulated(&kBridgeDriver);
+        SimulatedDevice simulated(&kBridgeProtocol);
         simulated.step_us = period_us < 250 ? 100 : 250;
         auto& model = dynamic_cast<BridgeModel&>(*simulated.model);
         model.period_us = period_us;

@@ -114,7 +114,7 @@ void press(SimulatedDevice& simulated) {
 double wanted_N(const SimulatedDevice& simulated) { return simulated.spring_N(simulated.snapshot.tick.position_m); }
 
 TEST(BridgeEndpoint, PushesWithoutZeroingAndMeasuresForce) {
-  SimulatedDevice simulated(&kBridgeDriver);
+  SimulatedDevice simulated(&kBridgeProtocol);
   press(simulated);
   EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::not_needed);
   EXPECT_EQ(simulated.snapshot.device.faults, 0u);
@@ -129,7 +129,7 @@ TEST(BridgeEndpoint, PushesWithoutZeroingAndMeasuresForce) {
 TEST(BridgeEndpoint, EveryFaultTakesTheForceAwayAndItComesBackByItself) {
   std::printf("%-32s %9s  %s\n", "fault", "to 0 [ms]", "message");
   for (const Injection& injection : injections()) {
-    SimulatedDevice simulated(&kBridgeDriver);
+    SimulatedDevice simulated(&kBridgeProtocol);
     press(simulated);
     ASSERT_GT(simulated.snapshot.rendered_N, 3.5) << injection.name;
     const double from_s = simulated.now_s;
@@ -164,7 +164,7 @@ TEST(BridgeEndpoint, EveryFaultTakesTheForceAwayAndItComesBackByItself) {
 
 TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
   for (const std::uint32_t period_us : {10'000u, 2'000u, 1'000u, 250u, 100u}) {
-    SimulatedDevice simulated(&kBridgeDriver);
+    SimulatedDevice simulated(&kBridgeProtocol);
     simulated.step_us = period_us < 250 ? 50 : 250;
     dynamic_cast<test::BridgeModel&>(*simulated.model).period_us = period_us;
     press(simulated);
@@ -179,7 +179,7 @@ TEST(BridgeEndpoint, RunsFromOneHundredToTenThousandSamplesASecond) {
 
 // Anything from 10 kHz to 200 Hz from one sample to the next, half a second together.
 TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
-  SimulatedDevice simulated(&kBridgeDriver);
+  SimulatedDevice simulated(&kBridgeProtocol);
   simulated.step_us = 50;
   auto& model = dynamic_cast<test::BridgeModel&>(*simulated.model);
   RandomStream random(3, 0);
@@ -200,7 +200,7 @@ TEST(BridgeEndpoint, IrregularSamplesAreAllHandedOverAndNoFault) {
 }
 
 TEST(BridgeEndpoint, TheGripIsADeadManSwitch) {
-  SimulatedDevice simulated(&kBridgeDriver);
+  SimulatedDevice simulated(&kBridgeProtocol);
   auto& board = dynamic_cast<test::BridgeModel&>(*simulated.model);
   simulated.controls.dead_man = DeadMan::grip;
   press(simulated);
@@ -216,11 +216,11 @@ TEST(BridgeEndpoint, TheGripIsADeadManSwitch) {
 
 TEST(BridgeEndpoint, TheDeviceStopsByItselfWithoutFramesOrHeartbeat) {
   test::BridgeModel model;
-  HidCommand command;
+  DeviceCommand command;
   command.drive = true;
   command.units = -1e6;
   const auto send = [&] {
-    const OutReports out = kBridgeDriver.encode_command(command);
+    const OutReports out = kBridgeProtocol.encode_command(command);
     model.hear(Report(out.bytes[0].begin(), out.bytes[0].begin() + bridge::kHostBytes));
   };
   const auto status = [&] {

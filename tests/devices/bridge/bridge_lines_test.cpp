@@ -13,9 +13,9 @@
 #include <optional>
 
 #include "devices/bridge/bridge_target.h"
-#include "devices/hid/hid_device.h"
+#include "devices/link/linked_device.h"
 #include "tests/support/bridge_session.h"
-#include "tests/support/fake_hid_bus.h"
+#include "tests/support/fake_device_bus.h"
 #include "tests/support/hid_ticks.h"
 #include "tests/support/temporary_folder.h"
 
@@ -253,11 +253,11 @@ void print_latencies(const char* name, SpringSession& session) {
 
 TEST(BridgeLines, LatenciesBesideAHidDevice) {
   if (!everything()) return;  // a measurement, which asserts nothing: PALPATE_FAULT_TABLE=1 runs it
-  test::FakeHidBus bus;
-  auto opened = open_first(bus, {&kOpenFfBoardDriver});
+  test::FakeDeviceBus bus;
+  auto opened = open_first(bus, {&kOpenFfBoardProtocol});
   ASSERT_TRUE(opened.ok());
-  auto hid = std::make_unique<HidDevice>(bus, test::patient(test::example_calibration(&kOpenFfBoardDriver)),
-                                         std::move(*opened));
+  auto hid = std::make_unique<LinkedDevice>(bus, test::patient(test::example_calibration(&kOpenFfBoardProtocol)),
+                                            std::move(*opened));
   ASSERT_TRUE(hid->open().ok());
   SpringSession board(std::move(hid));
   print_latencies("hid", board);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "devices/bridge/bridge_bus.h"
 #include "devices/firmware/bridge_protocol.h"
-#include "devices/hid/hid_drivers.h"
 
 namespace palpate {
 namespace {
@@ -49,9 +49,14 @@ Bytes joined(std::initializer_list<Bytes> parts) {
   return all;
 }
 
+// As a connection reads them: corrupt where nothing is found.
 ReportVerdict verdict_of(const Bytes& bytes, DeviceReading* reading = nullptr) {
   DeviceReading none;
-  return kBridgeDriver.decode(bytes.data(), bytes.size(), reading != nullptr ? *reading : none);
+  BridgeReports reports;
+  std::uint8_t report[bridge::kDeviceBytes];
+  const std::uint8_t* at = bytes.data();
+  const int size = reports.next(at, bytes.data() + bytes.size(), report);
+  return kBridgeProtocol.decode(report, static_cast<std::size_t>(size), reading != nullptr ? *reading : none);
 }
 
 TEST(BridgeProtocol, IsThatOfThePageByteForByte) {
@@ -78,17 +83,17 @@ TEST(BridgeProtocol, TheHostReadsWhatTheDeviceMeans) {
 }
 
 TEST(BridgeProtocol, PushesOutwardForAPositiveForce) {
-  HidCommand command;
+  DeviceCommand command;
   command.sequence = 7;
   command.drive = true;
   command.units = -2e6;  // uN towards growing positions
-  const OutReports reports = kBridgeDriver.encode_command(command);
+  const OutReports reports = kBridgeProtocol.encode_command(command);
   ASSERT_EQ(reports.sizes[0], bridge::kHostBytes);
   bridge::FromHost out{};
   ASSERT_TRUE(bridge::decode(reports.bytes[0].data(), out));
   EXPECT_EQ(out.force_uN, 2'000'000);
   EXPECT_EQ(out.flags, bridge::kDrive);
-  const OutReports stop = kBridgeDriver.encode_stop();
+  const OutReports stop = kBridgeProtocol.encode_stop();
   ASSERT_TRUE(bridge::decode(stop.bytes[0].data(), out));
   EXPECT_EQ(out.force_uN, 0);
   EXPECT_EQ(out.flags, 0);

@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "devices/hid/hid_device.h"
-#include "devices/hid/hid_drivers.h"
+#include "devices/hid/hid_protocols.h"
 #include "devices/hid/hidapi_bus.h"
+#include "devices/link/linked_device.h"
 #include "engine/base/signals.h"
 #include "engine/live/pacer.h"
 #include "tests/devices/emulated/emulated_board.h"
@@ -43,7 +43,7 @@ class HidEmulated : public ::testing::Test {
 
 TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EmulatedBoard board;
-  const std::vector<HidDeviceInfo> found = bus.list();
+  const std::vector<DeviceNode> found = bus.list();
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].path, "/dev/hidraw0");
   EXPECT_EQ(found[0].product, "FFBoard");
@@ -53,27 +53,27 @@ TEST_F(HidEmulated, IsFoundOpenedAndIdentified) {
   EXPECT_EQ(found[0].usage, 1);
   const std::vector<HidDiagnosis> diagnosis = diagnose(bus);
   ASSERT_EQ(diagnosis.size(), 1u);
-  EXPECT_EQ(diagnosis[0].driver, &kOpenFfBoardDriver);
+  EXPECT_EQ(diagnosis[0].protocol, &kOpenFfBoardProtocol);
   EXPECT_EQ(diagnosis[0].problem, "");
 }
 
 TEST_F(HidEmulated, IsOpenedByOneProgramAtATime) {
   EmulatedBoard board;
-  Result<HidOpened> first = open_first(bus, {&kOpenFfBoardDriver});
+  Result<OpenedDevice> first = open_first(bus, {&kOpenFfBoardProtocol});
   ASSERT_TRUE(first.ok());
   EXPECT_EQ(diagnose(bus).at(0).problem, "/dev/hidraw0: in use by another program; close it");
 }
 
 TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
   EmulatedBoard board;
-  Result<HidOpened> opened = open_first(bus, {&kOpenFfBoardDriver});
+  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   std::uint8_t bytes[65] = {};
   ASSERT_EQ(opened->connection->read(bytes, sizeof bytes), 25);
   DeviceReading reading;
-  ASSERT_EQ(kOpenFfBoardDriver.decode(bytes, 25, reading), ReportVerdict::position);
+  ASSERT_EQ(kOpenFfBoardProtocol.decode(bytes, 25, reading), ReportVerdict::position);
   EXPECT_EQ(reading.counts, 1000);
-  const OutReports stop = kOpenFfBoardDriver.encode_stop();
+  const OutReports stop = kOpenFfBoardProtocol.encode_stop();
   ASSERT_TRUE(opened->connection->write(stop.bytes[0].data(), stop.sizes[0]));
   EXPECT_EQ(board.last_write_size, 25u) << "the report id comes first";
   board.gone = true;
@@ -83,10 +83,10 @@ TEST_F(HidEmulated, ReadsAndWritesWholeReports) {
 
 TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
   EmulatedBoard board;
-  const HidCalibration calibration = test::patient(test::example_calibration(&kOpenFfBoardDriver));
-  Result<HidOpened> opened = open_first(bus, {&kOpenFfBoardDriver});
+  const DeviceCalibration calibration = test::patient(test::example_calibration(&kOpenFfBoardProtocol));
+  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
   ASSERT_TRUE(opened.ok()) << opened.error().message;
-  HidDevice device(bus, calibration, std::move(*opened));
+  LinkedDevice device(bus, calibration, std::move(*opened));
   ASSERT_TRUE(device.open().ok());
   device.start_zeroing();
   ASSERT_TRUE(tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); }));
@@ -109,12 +109,12 @@ TEST_F(HidEmulated, PushesLetsGoAndSaysWhenItIsLost) {
 
 // Another process that pushes until a signal ends it; a byte through `ready` says that
 // it does.
-[[noreturn]] void push_until_ended(HidBus& bus, int ready) {
+[[noreturn]] void push_until_ended(DeviceBus& bus, int ready) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
   const StopListener listener;
-  Result<HidOpened> opened = open_first(bus, {&kOpenFfBoardDriver});
+  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
   if (!opened) _exit(3);
-  HidDevice device(bus, test::patient(test::example_calibration(&kOpenFfBoardDriver)), std::move(*opened));
+  LinkedDevice device(bus, test::patient(test::example_calibration(&kOpenFfBoardProtocol)), std::move(*opened));
   if (!device.open()) _exit(4);
   device.start_zeroing();
   tick_until(device, 0.0, [](const DeviceHealth& health) { return health.may_push(); });

@@ -19,7 +19,7 @@ using test::SimulatedDevice;
 // stalls and restarts; whatever happens, the motor never gets a force that no
 // model could have asked for, nor a step, nor any force on old data.
 TEST(BridgeFirmwareAndHost, TenMinutesOfTroubleAndNoUnsafeForce) {
-  SimulatedDevice simulated(&kBridgeDriver);
+  SimulatedDevice simulated(&kBridgeProtocol);
   RandomStream random(1, 0);
   std::int64_t lost = 0, corrupted = 0, swapped = 0, restarts = 0, stalls = 0;
   int silent_in = 0, silent_out = 0;

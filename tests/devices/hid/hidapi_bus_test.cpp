@@ -18,7 +18,7 @@ TEST(HidapiBus, SaysWhatToDoAboutAnErrorOfTheSystem) {
 }
 
 TEST(HidapiBus, TheRealOneWorksWithoutAnyDevice) {
-  for (const HidDeviceInfo& found : system_hid_bus().list()) EXPECT_FALSE(found.path.empty());
+  for (const DeviceNode& found : system_hid_bus().list()) EXPECT_FALSE(found.path.empty());
   EXPECT_FALSE(system_hid_bus().open({"/dev/no-such-node", "", 0, 0, 0, 0}).ok());
 }
 

@@ -1,20 +1,20 @@
 // The cap of a SpaceMouse as a tool.
 #include "devices/hid/spacemouse.h"
-#include "devices/hid/hid_drivers.h"
+#include "devices/hid/hid_protocols.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "devices/registry/auto_device.h"
-#include "tests/support/fake_hid_bus.h"
+#include "tests/support/fake_device_bus.h"
 
 namespace palpate {
 namespace {
 
-HidCalibration calibration() {
-  HidCalibration result;
-  result.driver = &kSpaceMouseDriver;
+DeviceCalibration calibration() {
+  DeviceCalibration result;
+  result.protocol = &kSpaceMouseProtocol;
   result.counts_per_metre = 17500.0;
   result.rest_position_m = -0.006;
   return result;
@@ -82,10 +82,10 @@ TEST(SpaceMouse, SaysWhenItIsUnplugged) {
 }
 
 TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
-  test::FakeHidBus bus(test::found_space_mouse());
+  test::FakeDeviceBus bus(test::found_space_mouse());
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
   AutoDevice device;
-  device.use(std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
+  device.use(std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
   DeviceSample sample;
   for (int ms = 0; ms < 5; ++ms) device.read(1e-3 * ms, sample);
   EXPECT_TRUE(device.hand_is_exploring());
@@ -99,11 +99,11 @@ TEST(SpaceMouse, TakesOverFromTheHandInAuto) {
 }
 
 TEST(SpaceMouse, IsADeviceWithoutForce) {
-  test::FakeHidBus bus(test::found_space_mouse());
+  test::FakeDeviceBus bus(test::found_space_mouse());
   bus.report = {1, 0, 0, 0, 0, 0x2C, 0x01};
   SpaceMouseDevice device(
-      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseDriver}))));
-  EXPECT_FALSE(device.renders_force());
+      std::make_unique<SpaceMouse>(bus, calibration(), std::move(*open_first(bus, {&kSpaceMouseProtocol}))));
+  EXPECT_EQ(device.holder(), Holder::simulated);
   EXPECT_EQ(device.note(),
             "SpaceMouse, input only: no force: SpaceNavigator, /dev/hidraw8; tried on real hardware: no; on an "
             "emulated device: yes");

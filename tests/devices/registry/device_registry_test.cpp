@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/example_model.h"
-#include "tests/support/fake_hid_bus.h"
+#include "tests/support/fake_device_bus.h"
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -12,15 +12,15 @@ namespace palpate {
 namespace {
 
 // No device but what a test plugs in.
-DeviceRequest request_with(HidBus& bus) {
+DeviceRequest request_with(DeviceBus& bus) {
   DeviceRequest request;
   request.bus = &bus;
   request.calibrations = std::string(PALPATE_SOURCE_DIR) + "/assets/devices";
   return request;
 }
 
-test::FakeHidBus& nothing_plugged_in() {
-  static test::FakeHidBus bus;
+test::FakeDeviceBus& nothing_plugged_in() {
+  static test::FakeDeviceBus bus;
   bus.plugged_in = false;
   return bus;
 }
@@ -37,7 +37,7 @@ TEST(DeviceRegistry, OpensEveryDeviceThatItListsAsUsable) {
     ASSERT_EQ(device.ok(), description.problem.empty()) << description.name;
     if (!device) continue;
     EXPECT_EQ((*device)->name(), replay ? "replay:press" : description.name);
-    EXPECT_EQ((*device)->renders_force(), description.renders_force) << description.name;
+    EXPECT_EQ((*device)->holder(), description.holder) << description.name;
     DeviceSample sample;
     EXPECT_TRUE((*device)->read(1.0, sample)) << description.name;
     (*device)->close();
@@ -46,7 +46,7 @@ TEST(DeviceRegistry, OpensEveryDeviceThatItListsAsUsable) {
 }
 
 TEST(DeviceRegistry, AutoPrefersAHapticDevice) {
-  test::FakeHidBus bus;
+  test::FakeDeviceBus bus;
   auto device = open_device("auto", request_with(bus));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "hid");
@@ -62,18 +62,18 @@ TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->name(), "auto");
   EXPECT_EQ((*device)->note(), "no haptic device is plugged in: a simulated hand until the mouse takes over");
-  test::FakeHidBus refused;
+  test::FakeDeviceBus refused;
   refused.refusals = 1000;
   device = open_device("auto", request_with(refused));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->note(), "/dev/hidraw7: no permission: a simulated hand until the mouse takes over");
-  test::FakeHidBus mouse(test::found_space_mouse());
+  test::FakeDeviceBus mouse(test::found_space_mouse());
   mouse.silent = true;
   device = open_device("auto", request_with(mouse));
   ASSERT_TRUE(device.ok());
   EXPECT_EQ((*device)->note(),
             "no haptic device is plugged in: a simulated hand until the mouse or the SpaceMouse (no force) takes over");
-  test::FakeHidBus board;
+  test::FakeDeviceBus board;
   DeviceRequest request;
   request.bus = &board;
   device = open_device("auto", request);
@@ -86,14 +86,14 @@ TEST(DeviceRegistry, AutoSaysWhatItFellBackToAndWhy) {
 TEST(DeviceRegistry, HidIsNeverAnythingElse) {
   EXPECT_EQ(open_device("hid", request_with(nothing_plugged_in())).error().message,
             "no haptic device is plugged in; plug one in or use --device auto (palpate devices explains)");
-  test::FakeHidBus refused;
+  test::FakeDeviceBus refused;
   refused.refusals = 1000;
   EXPECT_EQ(open_device("hid", request_with(refused)).error().message, "/dev/hidraw7: no permission");
-  test::FakeHidBus mouse(test::found_space_mouse());
+  test::FakeDeviceBus mouse(test::found_space_mouse());
   mouse.silent = true;
   auto device = open_device("hid", request_with(mouse));
   ASSERT_TRUE(device.ok());
-  EXPECT_FALSE((*device)->renders_force());
+  EXPECT_EQ((*device)->holder(), Holder::simulated);
 }
 
 TEST(DeviceRegistry, ExplainsWhatItCannotOpen) {
@@ -111,9 +111,8 @@ TEST(DeviceRegistry, TheProgramListsThem) {
   for (const DeviceDescription& description : list_devices()) {
     EXPECT_NE(run.out.find(description.name), std::string::npos) << run.out;
   }
-  for (const HidDriver* driver : kHidDrivers) {
-    if (driver->knows_position) continue;  // of a bridge, not of hid
-    EXPECT_NE(run.out.find(std::string(driver->description) + "; tried on real hardware: no"), std::string::npos)
+  for (const DeviceProtocol* protocol : kHidProtocols) {
+    EXPECT_NE(run.out.find(std::string(protocol->description) + "; tried on real hardware: no"), std::string::npos)
         << run.out;
   }
   EXPECT_NE(run.out.find("PLUGGED IN"), std::string::npos) << run.out;

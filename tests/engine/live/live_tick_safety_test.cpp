@@ -24,7 +24,7 @@ class FrailDevice final : public Device {
  public:
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
-  bool renders_force() const noexcept override { return true; }
+  Holder holder() const noexcept override { return Holder::person; }
   ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.05}; }
   bool read(double now_s, DeviceSample& sample) noexcept override {
     sample = {};
@@ -169,7 +169,7 @@ TEST(LiveTickSafety, ADeviceThatHasGivenNothingIsNotDriven) {
    public:
     const std::string& name() const noexcept override { return name_; }
     SensorSpec sensor() const noexcept override { return {0.0, 1e-6}; }
-    bool renders_force() const noexcept override { return true; }
+    Holder holder() const noexcept override { return Holder::person; }
     ForceLimits limits() const noexcept override { return {10.0, 1000.0, 0.0}; }
     bool read(double now_s, DeviceSample& sample) noexcept override {
       sample.tool.time_s = now_s;

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "tests/support/demo_window.h"
-#include "tests/support/fake_hid_bus.h"
+#include "tests/support/fake_device_bus.h"
 
 namespace palpate {
 namespace {
@@ -35,8 +35,8 @@ class ExhibitTest : public test::DemoWindowTest {
 
   struct Setting {
     ExhibitTimes times{1.0, 4.0, 2.0};
-    HidBus* bus = nullptr;  // a force device
-    bool learned = false;   // the models of the exhibit, which take a while, in place of made up ones
+    DeviceBus* bus = nullptr;  // a force device
+    bool learned = false;      // the models of the exhibit, which take a while, in place of made up ones
     int height = 720;
   };
   void open_exhibit(const Setting& setting) {
@@ -67,7 +67,7 @@ class ExhibitTest : public test::DemoWindowTest {
     }
   }
 
-  test::FakeHidBus bus_;  // outlives the window, which a failed test leaves open
+  test::FakeDeviceBus bus_;  // outlives the window, which a failed test leaves open
   std::string pictures_;
 
   // So far under the middle of a block's top, in pixels.

@@ -7,7 +7,7 @@
 #include "rendering/panels/panel_health.h"
 #include "scenes/live/live_session.h"
 #include "tests/support/example_model.h"
-#include "tests/support/fake_hid_bus.h"
+#include "tests/support/fake_device_bus.h"
 #include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
 
@@ -22,7 +22,7 @@ TEST(PanelHealth, KeepsTheWordsOfAnAlarmUntilTheyWereSeen) {
   std::filesystem::current_path(folder.path());  // for the file of the fault
   const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
   ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
-  test::FakeHidBus bus;
+  test::FakeDeviceBus bus;
   SessionRequest request;
   request.scene = "skin";
   request.device = "hid";

@@ -13,7 +13,7 @@
 #include "models/model/file/model_io.h"
 #include "scenes/live/live_session.h"
 #include "tests/support/example_model.h"
-#include "tests/support/fake_hid_bus.h"
+#include "tests/support/fake_device_bus.h"
 #include "tests/support/replaced.h"
 #include "tests/support/session_frames.h"
 #include "tests/support/temporary_folder.h"
@@ -86,7 +86,7 @@ class SessionDevice : public ::testing::Test {
   test::TemporaryFolder folder_;
   fs::path before_ = fs::current_path();
   std::vector<Notice> notices_;
-  test::FakeHidBus bus_;
+  test::FakeDeviceBus bus_;
   int target_ = 0;  // counts to move to
   std::unique_ptr<LiveSession> session_;
 };

@@ -1,0 +1,133 @@
+// OpenFFBoard: vendor report 0xA1, 25 bytes: type u8, class u16, instance u8, command
+// u32, data u64, address u64; firmware in its mode "HID Gamepad (Ext FFB)": position
+// of axis 0, one constant force in 1/32767 of full force. The force ends 50 ms after the
+// host last renewed it; firmware that does not know durations refuses the command, which
+// counts as a fault of the device.
+// Source: its published list of commands and the source of its effects manager.
+#include <algorithm>
+#include <cmath>
+
+#include "devices/firmware/wire.h"
+#include "devices/hid/hid_protocols.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::uint16_t kFfbVendor = 0x1209, kFfbProduct = 0xFFB0;
+constexpr std::size_t kFfbBytes = 25;
+constexpr std::uint8_t kFfbReport = 0xA1;
+constexpr std::uint16_t kFfbAxis = 0xA01;
+constexpr std::uint32_t kFfbPosition = 0x9;
+constexpr std::uint16_t kFfbEffects = 0xA03;
+constexpr std::uint32_t kFfbActive = 0x0, kFfbReset = 0x1, kFfbNew = 0x2, kFfbMagnitude = 0x4, kFfbState = 0x5,
+                        kFfbDuration = 0x7;
+constexpr std::uint64_t kFfbConstantForce = 1;
+// The force ends so long after it was last started, as that of a board of the bridge does.
+constexpr std::uint64_t kFfbDuration_ms = 50;
+// It is started again by every fourth command. Commands go out every 5 ms at least
+// (DeviceEndpoint::kRepeat_s), so that one start may be lost. Not by every command: a third
+// report each millisecond would take the bus from the other two.
+constexpr std::uint32_t kFfbRenewEvery = 4;
+enum FfbType : std::uint8_t {
+  kWrite = 0,
+  kRequest = 1,
+  kWriteTo = 3,
+  kAck = 10,
+  kNotFound = 13,
+  kNotify = 14,
+  kErr = 15
+};
+
+std::int16_t int16_units(const DeviceCommand& command) noexcept {
+  if (!command.drive || !std::isfinite(command.units)) return 0;
+  return static_cast<std::int16_t>(std::lround(std::clamp(command.units, -32767.0, 32767.0)));
+}
+
+bool is_openffboard(const DeviceNode& info) noexcept {
+  return info.vendor_id == kFfbVendor && info.product_id == kFfbProduct;
+}
+
+ReportVerdict decode_openffboard(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept {
+  using wire::read16;
+  using wire::read32;
+  if (size == 0 || bytes[0] != kFfbReport) return size == 0 ? ReportVerdict::corrupt : ReportVerdict::nothing;
+  if (size != kFfbBytes) return ReportVerdict::corrupt;
+  const std::uint8_t type = bytes[1];
+  const bool known = type <= 4 || type == kAck || type == kNotFound || type == kNotify || type == kErr;
+  if (!known) return ReportVerdict::corrupt;
+  if (type == kNotFound || type == kErr) {
+    reading.own_fault = true;
+    return ReportVerdict::nothing;
+  }
+  const bool answer = type == kRequest || type == kAck;
+  if (!answer || read16(bytes + 2) != kFfbAxis || bytes[4] != 0 || read32(bytes + 5) != kFfbPosition) {
+    return ReportVerdict::nothing;
+  }
+  // A 64-bit field for a 32-bit position: the upper half only repeats the sign.
+  const auto low = static_cast<std::int32_t>(read32(bytes + 9));
+  const std::uint32_t high = read32(bytes + 13);
+  if (high != 0 && high != 0xFFFFFFFFu) return ReportVerdict::corrupt;
+  reading.counts = low;
+  return ReportVerdict::position;
+}
+
+void append_ffb(OutReports& reports, FfbType type, std::uint16_t object, std::uint32_t command,
+                std::uint64_t data) noexcept {
+  reports.sizes[reports.count] = kFfbBytes;
+  std::uint8_t* at = reports.bytes[reports.count++].data();
+  *at++ = kFfbReport;
+  at[0] = type;
+  wire::write16(at + 1, object);
+  at[3] = 0;
+  wire::write32(at + 4, command);
+  wire::write32(at + 8, static_cast<std::uint32_t>(data));
+  wire::write32(at + 12, static_cast<std::uint32_t>(data >> 32));
+  // The address, of axis or effect 0.
+  wire::write32(at + 16, 0);
+  wire::write32(at + 20, 0);
+}
+
+void append_ffb_force(OutReports& reports, std::int16_t magnitude) noexcept {
+  const auto data = static_cast<std::uint64_t>(static_cast<std::int64_t>(magnitude));
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbMagnitude, data);
+}
+
+// The board makes an effect that never ends: it has its duration before it is started,
+// which the commands do.
+OutReports start_openffboard() noexcept {
+  OutReports reports;
+  append_ffb(reports, kRequest, kFfbEffects, kFfbReset, 0);
+  append_ffb(reports, kWrite, kFfbEffects, kFfbNew, kFfbConstantForce);
+  append_ffb(reports, kWriteTo, kFfbEffects, kFfbDuration, kFfbDuration_ms);
+  append_ffb(reports, kWrite, kFfbEffects, kFfbActive, 1);
+  return reports;
+}
+
+OutReports encode_openffboard(const DeviceCommand& command) noexcept {
+  OutReports reports;
+  append_ffb(reports, kRequest, kFfbAxis, kFfbPosition, 0);
+  append_ffb_force(reports, int16_units(command));
+  if (command.sequence % kFfbRenewEvery == 0) append_ffb(reports, kWriteTo, kFfbEffects, kFfbState, 1);
+  return reports;
+}
+
+OutReports stop_openffboard() noexcept {
+  OutReports reports;
+  append_ffb_force(reports, 0);
+  return reports;
+}
+
+}  // namespace
+
+const DeviceProtocol kOpenFfBoardProtocol = {
+    .name = "openffboard",
+    .description = "OpenFFBoard, one axis",
+    .renders_force = true,
+    .matches = is_openffboard,
+    .decode = decode_openffboard,
+    .encode_start = start_openffboard,
+    .encode_command = encode_openffboard,
+    .encode_stop = stop_openffboard,
+};
+
+}  // namespace palpate

@@ -1,0 +1,175 @@
+#include "devices/link/device_endpoint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+MonitorSettings monitor_settings(const DeviceCalibration& calibration) noexcept {
+  MonitorSettings settings;
+  settings.absolute = calibration.protocol->absolute;
+  settings.timed = calibration.protocol->timed;
+  settings.counts_per_metre = calibration.counts_per_metre;
+  settings.fastest_m_per_s = calibration.fastest_m_per_s;
+  settings.encoder_step_m = calibration.encoder_step_m;
+  settings.stale_after_s = calibration.limits.stale_after_s;
+  settings.stuck_after_s = calibration.stuck_after_s;
+  return settings;
+}
+
+}  // namespace
+
+DeviceEndpoint::DeviceEndpoint(const DeviceCalibration& calibration) noexcept
+    : calibration_(calibration), monitor_(monitor_settings(calibration)) {}
+
+void DeviceEndpoint::connected(double now_s) noexcept {
+  last_written_s_.store(now_s, std::memory_order_relaxed);
+  connected_at_s_.store(now_s, std::memory_order_relaxed);
+  link_.connected = true;
+  state_.write(link_);
+}
+
+void DeviceEndpoint::unplugged() noexcept {
+  monitor_.unplugged();
+  link_.monitor = monitor_.state();
+  link_.connected = false;
+  state_.write(link_);
+}
+
+void DeviceEndpoint::report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept {
+  if (zeroing_asked_.exchange(false, std::memory_order_relaxed)) monitor_.start_zeroing();
+  const std::uint32_t confirmed = monitor_.state().confirmed;
+  DeviceReading reading;
+  const ReportVerdict verdict = calibration_.protocol->decode(bytes, size, reading);
+  monitor_.update(verdict, reading, now_s, commanded_N_.load(std::memory_order_relaxed));
+  const bool accepted = monitor_.state().samples != link_.monitor.samples;
+  link_.monitor = monitor_.state();
+  if (accepted) publish_sample();
+  if (link_.monitor.confirmed != confirmed) {
+    const double sent_s = sent_at_s_[link_.monitor.confirmed % sent_at_s_.size()].load(std::memory_order_relaxed);
+    if (sent_s > 0.0) link_.round_trip_s = now_s - sent_s;
+  }
+  state_.write(link_);
+}
+
+void DeviceEndpoint::publish_sample() noexcept {
+  const MonitorState& state = link_.monitor;
+  accepted_.store(state.samples, std::memory_order_relaxed);
+  const bool known = state.zeroing == Zeroing::done || state.zeroing == Zeroing::not_needed;
+  if (!known || state.lost != 0) return;
+  DeviceSample sample;
+  sample.tool.time_s = state.sample_time_s;
+  sample.tool.position_m = position_m(state);
+  sample.measured_force_N = state.measured_N;
+  sample.restart = state.streams != streams_published_;
+  if (samples_.push(sample)) streams_published_ = state.streams;
+}
+
+DeviceCommand DeviceEndpoint::command_for(double force_N) noexcept {
+  const double peak_N = calibration_.limits.largest_N;
+  const double safe_N = std::isfinite(force_N) ? std::clamp(force_N, -peak_N, peak_N) : 0.0;
+  commanded_N_.store(safe_N, std::memory_order_relaxed);
+  DeviceCommand command;
+  command.sequence = ++sequence_;
+  command.heartbeat = last_heartbeat_;
+  command.drive = safe_N != 0.0;
+  command.units = -calibration_.direction * safe_N / calibration_.force_N_per_unit;
+  return command;
+}
+
+OutReports DeviceEndpoint::next(double now_s) noexcept {
+  const Command command = command_.newest();
+  const bool fresh = command.heartbeat != last_heartbeat_;
+  if (fresh) {
+    last_heartbeat_ = command.heartbeat;
+    last_beat_s_ = now_s;
+  }
+  const std::uint64_t samples = accepted_.load(std::memory_order_relaxed);
+  const bool due = calibration_.protocol->timed ? samples != answered_ : fresh;
+  const double repeat_s = calibration_.protocol->timed ? kSlowestSample_s : kRepeat_s;
+  // Letting go waits for nothing.
+  const bool lets_go = fresh && command.force_N == 0.0 && commanded_N_.load(std::memory_order_relaxed) != 0.0;
+  if (!(due && fresh) && !lets_go && last_sent_s_ >= 0.0 && now_s - last_sent_s_ < repeat_s) return {};
+  last_sent_s_ = now_s;
+  answered_ = samples;
+  const bool haptics_live = now_s - last_beat_s_ < kHapticsSilent_s;
+  const DeviceCommand next = command_for(haptics_live ? command.force_N : 0.0);
+  sent_at_s_[next.sequence % sent_at_s_.size()].store(now_s, std::memory_order_relaxed);
+  return calibration_.protocol->encode_command(next);
+}
+
+void DeviceEndpoint::written(double now_s) noexcept { last_written_s_.store(now_s, std::memory_order_relaxed); }
+
+double DeviceEndpoint::position_m(const MonitorState& state) const noexcept {
+  const double counts = static_cast<double>(state.counts) - state.zero_counts;
+  return calibration_.rest_position_m + calibration_.direction * counts / calibration_.counts_per_metre;
+}
+
+// After a pause of the haptics thread the newest count, and what they continue.
+bool DeviceEndpoint::read(DeviceSample& sample) noexcept {
+  bool restart = false;
+  DeviceSample next;
+  do {
+    if (!samples_.pop(next)) return false;
+    restart = restart || next.restart;
+  } while (samples_.size() >= static_cast<std::size_t>(kMaxSamplesPerTick));
+  sample = next;
+  sample.restart = restart;
+  began_ = true;
+  return true;
+}
+
+void DeviceEndpoint::write(double force_N) noexcept {
+  // Never zeroed: whatever the limiter thinks. Later, its ramp brings the force down.
+  next_command_.force_N = began_ ? force_N : 0.0;
+  ++next_command_.heartbeat;
+  command_.write(next_command_);
+}
+
+// Whether a sample is late is for `health` to say; the limiter's own limit is the longest.
+ForceLimits DeviceEndpoint::limits() const noexcept {
+  ForceLimits limits = calibration_.limits;
+  if (calibration_.protocol->timed) limits.stale_after_s = StreamMonitor::kLongestSilence_s;
+  return limits;
+}
+
+bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept {
+  if (now_s - last_written_s_.load(std::memory_order_relaxed) > kWriteStalled_s) return true;
+  if (!calibration_.protocol->confirms) return false;
+  if (link.round_trip_s > kWriteStalled_s) return true;
+  const double confirmed_s = std::max(link.monitor.confirmed_at_s, connected_at_s_.load(std::memory_order_relaxed));
+  return now_s - confirmed_s > kWriteStalled_s;
+}
+
+// A round trip contains the wait for the next sample, on the mean half the time for which a force is held. A device
+// that confirms nothing is on USB, which takes a frame of 1 ms each way.
+double DeviceEndpoint::late_s(const LinkState& link) const noexcept {
+  const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
+  return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.monitor.interval_s);
+}
+
+DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
+  const LinkState& link = state_.newest();
+  const MonitorState& state = link.monitor;
+  DeviceHealth health;
+  health.faults = state.lost;
+  if (now_s < state.transient_until_s) health.faults |= state.transient;
+  health.sample_age_s =
+      state.samples > 0 ? std::max(0.0, now_s - state.sample_time_s) : std::numeric_limits<double>::infinity();
+  if (!link.connected) {
+    health.faults |= device_fault::kUnplugged;
+  } else {
+    if (health.sample_age_s > state.late_after_s) health.faults |= device_fault::kLate;
+    if (stalled(link, now_s)) health.faults |= device_fault::kWriteStalled;
+  }
+  health.interval_s = state.interval_s;
+  health.zeroing = state.zeroing;
+  health.zeroing_progress = state.zeroing_progress;
+  health.grip_held = state.grip;
+  health.round_trip_s = link.round_trip_s;
+  health.late_s = late_s(link);
+  return health;
+}
+
+}  // namespace palpate

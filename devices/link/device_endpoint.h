@@ -1,0 +1,103 @@
+// The host's end of one HID device that pushes, without threads and without I/O:
+// a reader gives it reports, a writer asks it what to send, the haptics thread
+// moves the tool and the force. What is handed over goes through TripleBuffers.
+//
+// The writer is the host's watchdog: when the haptics thread has not written for
+// kHapticsSilent_s it sends no force, and the heartbeat in a frame of the bridge
+// stands still, which stops the board as well.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "devices/link/device_calibration.h"
+#include "devices/link/device_link.h"
+#include "devices/link/stream_monitor.h"
+#include "engine/live/device.h"
+#include "engine/live/spsc_ring.h"
+#include "engine/live/triple_buffer.h"
+
+namespace palpate {
+
+// What a reader knows beside the reports themselves.
+struct LinkState {
+  MonitorState monitor;
+  double round_trip_s = std::numeric_limits<double>::quiet_NaN();
+  bool connected = false;
+};
+
+class DeviceEndpoint final : public LinkListener {
+ public:
+  static constexpr double kHapticsSilent_s = 0.02;
+  // Without a written or a confirmed command for so long, the device hears nothing.
+  static constexpr double kWriteStalled_s = 0.05;
+  // Nothing new to say: at least this often all the same.
+  static constexpr double kRepeat_s = 0.005;
+  // Half a tick until a sample is used, half a period of the writer until the force is sent.
+  static constexpr double kWaits_s = 0.75e-3;
+  // A device that gives samples at its own rate hears of commands no more often than that, down to 100 Hz.
+  static constexpr double kSlowestSample_s = 0.01;
+
+  explicit DeviceEndpoint(const DeviceCalibration& calibration) noexcept;
+
+  // Reader thread, wait-free. `now_s`: steady clock, never back.
+  void connected(double now_s) noexcept override;
+  void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
+  void unplugged() noexcept override;
+
+  // Writer thread, wait-free. What to write now; nothing when there is no need.
+  OutReports next(double now_s) noexcept override;
+  // After it was written; `now_s`: when that was done.
+  void written(double now_s) noexcept override;
+
+  // Haptics thread, wait-free; as Device.
+  bool read(DeviceSample& sample) noexcept;
+  void write(double force_N) noexcept;
+  DeviceHealth health(double now_s) noexcept;
+
+  // Any thread, wait-free.
+  void start_zeroing() noexcept { zeroing_asked_.store(true, std::memory_order_relaxed); }
+
+  const DeviceCalibration& calibration() const noexcept { return calibration_; }
+  ForceLimits limits() const noexcept;
+
+ private:
+  struct Command {
+    double force_N = 0.0;
+    std::uint16_t heartbeat = 0;
+  };
+
+  DeviceCommand command_for(double force_N) noexcept;
+  double position_m(const MonitorState& state) const noexcept;
+  double late_s(const LinkState& link) const noexcept;
+  bool stalled(const LinkState& state, double now_s) const noexcept;
+  void publish_sample() noexcept;
+
+  DeviceCalibration calibration_;
+  std::atomic<bool> zeroing_asked_{false};
+  std::atomic<double> commanded_N_{0.0};  // last sent
+  std::atomic<double> last_written_s_{0.0};
+  std::atomic<std::uint64_t> accepted_{0};            // samples
+  std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence
+  static_assert(std::atomic<double>::is_always_lock_free);
+  TripleBuffer<LinkState> state_;
+  SpscRing<DeviceSample, 256> samples_;
+  TripleBuffer<Command> command_;
+  // Reader thread's own.
+  StreamMonitor monitor_;
+  LinkState link_;
+  std::uint32_t streams_published_ = 0;
+  // Writer thread's own.
+  std::uint32_t sequence_ = 0;
+  std::uint16_t last_heartbeat_ = 0;
+  double last_beat_s_ = 0.0;
+  double last_sent_s_ = -1.0;
+  std::uint64_t answered_ = 0;  // samples when a command was sent last
+  std::atomic<double> connected_at_s_{0.0};
+  // Haptics thread's own.
+  Command next_command_;
+  bool began_ = false;  // a sample was read: the position is known
+};
+
+}  // namespace palpate

@@ -1,0 +1,148 @@
+#include "devices/link/device_link.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "engine/live/pacer.h"
+#include "engine/live/rt_thread.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kOpenTries = 6;
+constexpr auto kBetweenTries = std::chrono::milliseconds(100);
+constexpr auto kPause = std::chrono::milliseconds(10);
+// Below the haptics thread's 80, above everything that is not real-time.
+constexpr int kPriority = 70;
+
+// One look at the bus; what cannot be opened adds to `problems`.
+std::optional<OpenedDevice> try_open(DeviceBus& bus, const DeviceProtocols& protocols, std::string& problems) {
+  problems.clear();
+  for (const DeviceNode& info : bus.list()) {
+    const auto needed =
+        std::find_if(protocols.begin(), protocols.end(), [&](const DeviceProtocol* one) { return one->matches(info); });
+    if (needed == protocols.end()) continue;
+    Result<std::unique_ptr<DeviceConnection>> connection = bus.open(info);
+    if (connection) return OpenedDevice{info, *needed, std::move(*connection)};
+    problems += (problems.empty() ? "" : "; ") + connection.error().message;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols, bool* none_found) {
+  std::string problems;
+  for (int i = 0; i < kOpenTries; ++i) {
+    if (i > 0) std::this_thread::sleep_for(kBetweenTries);
+    if (std::optional<OpenedDevice> opened = try_open(bus, protocols, problems)) {
+      return Result<OpenedDevice>(std::move(*opened));
+    }
+    if (problems.empty()) break;
+  }
+  if (none_found != nullptr) *none_found = problems.empty();
+  return Error{problems.empty() ? "no device that the program knows is plugged in" : problems};
+}
+
+DeviceLink::DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice opened)
+    : bus_(bus),
+      listener_(listener),
+      info_(std::move(opened.info)),
+      protocol_(*opened.protocol),
+      connection_(std::move(opened.connection)) {}
+
+DeviceLink::~DeviceLink() { stop(); }
+
+std::string DeviceLink::description() const {
+  return std::string(protocol_.description) + ": " + info_.product + ", " + info_.path + "; tried " + kTried;
+}
+
+std::shared_ptr<DeviceConnection> DeviceLink::connection() noexcept {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return connection_;
+}
+
+void DeviceLink::use(std::shared_ptr<DeviceConnection> connection) noexcept {
+  if (connection != nullptr) connection->stop_with(protocol_.encode_stop());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  connection_.swap(connection);
+}
+
+Status DeviceLink::start() {
+  use(connection());
+  write(*connection(), protocol_.encode_start());
+  listener_.connected(steady_now_s());
+  try {
+    reader_ = std::thread([this] { read_all(); });
+    if (protocol_.renders_force) writer_ = std::thread([this] { write_all(); });
+  } catch (const std::system_error& error) {
+    stop();
+    return Error{std::string("cannot start a thread for the device: ") + error.what() + "; close other programs"};
+  }
+  return {};
+}
+
+void DeviceLink::stop() noexcept {
+  stop_.store(true, std::memory_order_relaxed);
+  if (writer_.joinable()) writer_.join();
+  // Before the reader ends: an idle device may keep it waiting.
+  if (const std::shared_ptr<DeviceConnection> last = connection()) write(*last, protocol_.encode_stop());
+  if (reader_.joinable()) reader_.join();
+  use(nullptr);
+}
+
+void DeviceLink::read_all() noexcept {
+  make_this_thread_realtime({kPriority, false});
+  std::array<std::uint8_t, kLargestReport + 1> bytes{};
+  while (!stop_.load(std::memory_order_relaxed)) {
+    const std::shared_ptr<DeviceConnection> current = connection();
+    if (current == nullptr) {
+      look_again();
+      continue;
+    }
+    const int size = current->read(bytes.data(), bytes.size());
+    if (size > 0) listener_.report_arrived(bytes.data(), static_cast<std::size_t>(size), steady_now_s());
+    if (size < 0 && !stop_.load(std::memory_order_relaxed)) {
+      listener_.unplugged();
+      use(nullptr);
+    }
+  }
+}
+
+void DeviceLink::look_again() noexcept {
+  for (double waited_s = 0.0; waited_s < kLookAgain_s; waited_s += 0.01) {
+    std::this_thread::sleep_for(kPause);
+    if (stop_.load(std::memory_order_relaxed)) return;
+  }
+  std::string problems;
+  std::optional<OpenedDevice> opened = try_open(bus_, {&protocol_}, problems);
+  if (!opened) return;
+  write(*opened->connection, protocol_.encode_start());
+  listener_.connected(steady_now_s());
+  use(std::move(opened->connection));
+}
+
+void DeviceLink::write(DeviceConnection& connection, const OutReports& reports) noexcept {
+  bool good = reports.count > 0;
+  for (std::size_t i = 0; i < reports.count; ++i) {
+    good = connection.write(reports.bytes[i].data(), reports.sizes[i]) && good;
+  }
+  if (good) listener_.written(steady_now_s());
+}
+
+void DeviceLink::write_all() noexcept {
+  make_this_thread_realtime({kPriority, false});
+  SteadyPacer pacer;
+  Deadlines deadlines(pacer.now_ns(), kWritePeriod_ns);
+  while (!stop_.load(std::memory_order_relaxed)) {
+    pacer.wait_until(deadlines.next_ns());
+    deadlines.wake(pacer.now_ns());
+    if (const std::shared_ptr<DeviceConnection> current = connection()) write(*current, listener_.next(steady_now_s()));
+  }
+}
+
+}  // namespace palpate

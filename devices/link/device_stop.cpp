@@ -1,0 +1,77 @@
+#include "devices/link/device_stop.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+
+#include "engine/base/signals.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kSlots = 8;
+
+struct Slot {
+  std::atomic<int> descriptor{-1};
+  std::atomic<bool> taken{false};
+  OutReports reports;  // fixed while descriptor >= 0
+};
+static_assert(std::atomic<int>::is_always_lock_free);
+std::array<Slot, kSlots> slots;
+
+// Writes of forces that are under way, and whether any more may begin. The two are read
+// and written in one order by all threads (sequentially consistent).
+std::atomic<int> writes_under_way{0};
+std::atomic<bool> no_more_forces{false};
+constexpr int kLongestWrite_ms = 20;  // several times what a report takes on USB
+
+}  // namespace
+
+int register_device_stop(int descriptor, const OutReports& reports) noexcept {
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    if (slots[i].taken.exchange(true)) continue;
+    slots[i].reports = reports;
+    slots[i].descriptor.store(descriptor, std::memory_order_release);
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void unregister_device_stop(int slot) noexcept {
+  if (slot < 0) return;
+  Slot& one = slots[static_cast<std::size_t>(slot)];
+  one.descriptor.store(-1, std::memory_order_release);
+  one.taken.store(false, std::memory_order_release);
+}
+
+bool begin_force_write() noexcept {
+  writes_under_way.fetch_add(1);
+  if (!no_more_forces.load()) return true;
+  end_force_write();
+  return false;
+}
+
+void end_force_write() noexcept { writes_under_way.fetch_sub(1); }
+
+void stop_all_devices() noexcept {
+  no_more_forces.store(true);
+  // The thread that this handler interrupted may be the one that writes.
+  for (int i = 0; i < kLongestWrite_ms && writes_under_way.load() > 0; ++i) poll(nullptr, 0, 1);
+  for (Slot& slot : slots) {
+    const int descriptor = slot.descriptor.load(std::memory_order_acquire);
+    if (descriptor < 0) continue;
+    for (std::size_t i = 0; i < slot.reports.count; ++i) {
+      // Whether it arrives or not, there is nothing else to do here.
+      [[maybe_unused]] const ssize_t written = ::write(descriptor, slot.reports.bytes[i].data(), slot.reports.sizes[i]);
+    }
+  }
+}
+
+void stop_devices_on_signals() noexcept {
+  stop_forces_by(stop_all_devices);
+  own_signals();
+}
+
+}  // namespace palpate

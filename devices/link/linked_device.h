@@ -1,0 +1,52 @@
+// A haptic device on a USB port: a DeviceEndpoint with the threads that serve it.
+//
+// The tool does not move and nothing pushes until the device was zeroed: bring
+// the tool to its marked rest position (rest_position_m of the calibration), call
+// `start_zeroing`, hold it still; `health` says how far it is, zeroing_words what
+// to do. The same after the device was unplugged, jumped or started again.
+//
+// Thread guarantee: as Device.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "devices/link/device_endpoint.h"
+#include "devices/link/device_link.h"
+#include "engine/live/device.h"
+
+namespace palpate {
+
+class LinkedDevice final : public Device {
+ public:
+  // `bus` outlives this; `opened` is of the calibration's protocol, which renders force.
+  LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened);
+  // With a bus of its own; `name`: as --device has it.
+  LinkedDevice(std::unique_ptr<DeviceBus> bus, const DeviceCalibration& calibration, OpenedDevice opened,
+               std::string name);
+  ~LinkedDevice() override { close(); }
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override;
+  Holder holder() const noexcept override { return Holder::person; }
+  bool measures_force() const noexcept override { return measures_force_; }
+  ForceLimits limits() const noexcept override { return endpoint_.limits(); }
+  // Errors: no thread.
+  Status open() override;
+  void close() noexcept override { link_.stop(); }
+  bool read(double, DeviceSample& sample) noexcept override { return endpoint_.read(sample); }
+  void write(double force_N) noexcept override { endpoint_.write(force_N); }
+  DeviceHealth health(double now_s) noexcept override { return endpoint_.health(now_s); }
+  void start_zeroing() noexcept override { endpoint_.start_zeroing(); }
+  // Which device on which node.
+  std::string note() const override { return link_.description(); }
+
+ private:
+  std::unique_ptr<DeviceBus> own_bus_;
+  std::string name_ = "hid";
+  bool measures_force_ = false;
+  DeviceEndpoint endpoint_;
+  DeviceLink link_;
+};
+
+}  // namespace palpate

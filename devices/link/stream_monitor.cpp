@@ -1,0 +1,196 @@
+#include "devices/link/stream_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+// Beyond the fastest motion: a few steps of the sensor.
+constexpr double kNoiseSteps = 4.0;
+// Time steps between samples are at least this, else a report on the heels of
+// another would look fast.
+constexpr double kShortestStep_s = 1e-3;
+// Of a new interval in the mean of the last ten or so.
+constexpr double kIntervalShare = 0.1;
+// Two samples must not have the same time.
+constexpr double kLeastStep_s = 1e-6;
+
+// Of sequence numbers that wrap at 32 bits.
+bool later(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::int32_t>(a - b) > 0; }
+
+}  // namespace
+
+StreamMonitor::StreamMonitor(const MonitorSettings& settings) noexcept : settings_(settings) {
+  state_.late_after_s = settings.stale_after_s;
+  if (settings.absolute) state_.zeroing = Zeroing::not_needed;
+}
+
+void StreamMonitor::fault(std::uint32_t bit, double now_s) noexcept {
+  if (now_s >= state_.transient_until_s) state_.transient = 0;
+  state_.transient |= bit;
+  state_.transient_until_s = now_s + kHold_s;
+}
+
+void StreamMonitor::lose(std::uint32_t bit, double now_s) noexcept {
+  if (settings_.absolute) {
+    fault(bit, now_s);
+    if (bit == device_fault::kJump) ++state_.streams;
+    return;
+  }
+  state_.lost |= bit;
+  state_.zeroing = Zeroing::needed;
+  state_.zeroing_progress = 0.0F;
+}
+
+void StreamMonitor::unplugged() noexcept {
+  connected_ = false;
+  // Of a device that knows its position the link alone says so.
+  if (!settings_.absolute) lose(device_fault::kUnplugged, 0.0);
+}
+
+void StreamMonitor::start_zeroing() noexcept {
+  if (state_.zeroing == Zeroing::not_needed) return;
+  state_.zeroing = Zeroing::hold_still;
+  state_.zeroing_progress = 0.0F;
+  zeroing_since_s_ = -1.0;
+}
+
+bool StreamMonitor::started_again(const DeviceReading& reading) noexcept {
+  refused_in_order_ = reading.sequence == refused_ + 1 ? refused_in_order_ + 1 : 0;
+  refused_ = reading.sequence;
+  return refused_in_order_ >= kStartedAgain;
+}
+
+bool StreamMonitor::in_order(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.timed || !connected_) return true;
+  const bool newer = later(reading.sequence, last_.sequence);
+  // The same report again says nothing new; its age will tell.
+  const bool again = reading.sequence == last_.sequence;
+  if (!newer && !again && started_again(reading)) {
+    lose(device_fault::kReset, now_s);
+    connected_ = false;
+    return true;
+  }
+  if (newer) return true;
+  if (!again) fault(device_fault::kOutOfOrder, now_s);
+  return false;
+}
+
+// What comes after a pause or with another time is a new stream: the old line of the clock says nothing of it, nor the
+// old motion.
+void StreamMonitor::watch_clock(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.timed || !connected_) return;
+  const bool set_back = static_cast<std::int32_t>(reading.time_us - last_.time_us) <= 0;
+  if (set_back) fault(device_fault::kReset, now_s);
+  if (set_back || now_s - state_.sample_time_s > kLongestSilence_s) connected_ = false;
+}
+
+bool StreamMonitor::settled(const DeviceReading& reading, double now_s) noexcept {
+  if (!settings_.timed || connected_) return true;
+  if (first_s_ < 0.0) {
+    clock_.restart();
+    first_s_ = now_s;
+  }
+  if (now_s - first_s_ >= kSettling_s) return true;
+  clock_.host_time_s(reading.time_us, now_s);
+  return false;
+}
+
+bool StreamMonitor::recent(const DeviceReading& reading, double now_s) noexcept {
+  const bool together = now_s - arrivals_s_[2] < kTogether_s;
+  std::copy_backward(arrivals_s_, arrivals_s_ + 2, arrivals_s_ + 3);
+  arrivals_s_[0] = now_s;
+  if (!settings_.timed) {
+    read_time_s_ = now_s;
+    if (together) fault(device_fault::kBurst, now_s);
+    return !together;
+  }
+  read_time_s_ = clock_.host_time_s(reading.time_us, now_s);
+  late_ = now_s - read_time_s_ > (late_ ? kOnTimeAgain : 1.0) * state_.late_after_s;
+  if (late_) fault(now_s - arrivals_s_[1] < kTogether_s ? device_fault::kBurst : device_fault::kLate, now_s);
+  return !late_;
+}
+
+// Unwraps the counter and judges the step.
+void StreamMonitor::move(const DeviceReading& reading, double now_s) noexcept {
+  if (!connected_) {
+    state_.counts = reading.counts;
+    speed_ = 0.0;
+    return;
+  }
+  const std::int64_t step =
+      static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts) - static_cast<std::uint32_t>(last_.counts));
+  const double step_s = std::max(kShortestStep_s, read_time_s_ - state_.sample_time_s);
+  const double quickest = speed_ + settings_.counts_per_metre * kQuickest_m_per_s2 * step_s;
+  const double fastest = std::min(quickest, settings_.counts_per_metre * settings_.fastest_m_per_s);
+  const double noise = kNoiseSteps * std::max(1.0, settings_.encoder_step_m * settings_.counts_per_metre);
+  const double way = std::abs(static_cast<double>(step));
+  const bool jumped = way > fastest * step_s + noise;
+  if (jumped) lose(device_fault::kJump, now_s);
+  speed_ = jumped ? 0.0 : way / step_s;
+  state_.counts += step;
+}
+
+void StreamMonitor::watch_stuck(double now_s, double force_N) noexcept {
+  const bool stuck = now_s - still_since_s_ > settings_.stuck_after_s;
+  // Found stuck, only motion ends it where no zeroing does.
+  if (!(std::abs(force_N) >= kPushing_N) && !(stuck && settings_.absolute)) still_since_s_ = now_s;
+  if (now_s - still_since_s_ > settings_.stuck_after_s) lose(device_fault::kStuck, now_s);
+}
+
+void StreamMonitor::watch_zeroing(double now_s) noexcept {
+  if (state_.zeroing != Zeroing::hold_still) return;
+  zeroing_from_ = std::min(zeroing_from_, state_.counts);
+  zeroing_to_ = std::max(zeroing_to_, state_.counts);
+  const double most = std::max(2.0, kRest_m * settings_.counts_per_metre);
+  if (zeroing_since_s_ < 0.0 || static_cast<double>(zeroing_to_ - zeroing_from_) > most) {
+    zeroing_since_s_ = now_s;
+    zeroing_from_ = zeroing_to_ = state_.counts;
+  }
+  const double share = (now_s - zeroing_since_s_) / kZeroing_s;
+  state_.zeroing_progress = static_cast<float>(std::min(1.0, share));
+  if (share < 1.0) return;
+  state_.zero_counts = 0.5 * static_cast<double>(zeroing_from_ + zeroing_to_);
+  state_.zeroing = Zeroing::done;
+  state_.lost = 0;
+  ++state_.streams;
+}
+
+void StreamMonitor::update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept {
+  if (verdict == ReportVerdict::corrupt) fault(device_fault::kCorrupt, now_s);
+  if (verdict == ReportVerdict::wrong_version) fault(device_fault::kWrongFirmware, now_s);
+  if (reading.own_fault) fault(device_fault::kOwn, now_s);
+  if (reading.stopped) fault(device_fault::kWriteStalled, now_s);
+  if (verdict != ReportVerdict::position) return;
+  if (!in_order(reading, now_s)) return;
+  watch_clock(reading, now_s);
+  if (!settled(reading, now_s) || !recent(reading, now_s)) return;
+  const std::int64_t before = state_.counts;
+  move(reading, now_s);
+  if (!connected_ && settings_.absolute) ++state_.streams;
+  if (!connected_ || state_.counts != before) still_since_s_ = now_s;
+  if (!connected_ || reading.confirmed != last_.confirmed) {
+    state_.confirmed = reading.confirmed;
+    state_.confirmed_at_s = now_s;
+  }
+  const double before_s = state_.sample_time_s;
+  state_.sample_time_s = std::max(read_time_s_, before_s + kLeastStep_s);
+  if (connected_) {
+    const double step_s = std::min(state_.sample_time_s - before_s, kHold_s);
+    state_.interval_s += (step_s - state_.interval_s) * (state_.interval_s > 0.0 ? kIntervalShare : 1.0);
+  }
+  if (settings_.timed) {
+    state_.late_after_s = std::clamp(kLateIntervals * state_.interval_s, settings_.stale_after_s, kLongestSilence_s);
+  }
+  state_.measured_N = reading.measured_N;
+  state_.grip = reading.grip;
+  ++state_.samples;
+  last_ = reading;
+  connected_ = true;
+  first_s_ = -1.0;
+  watch_stuck(now_s, force_N);
+  watch_zeroing(now_s);
+}
+
+}  // namespace palpate

@@ -1,0 +1,331 @@
+// Host and device against each other, in simulated time: every fault takes the
+// force away, and what it takes to come back.
+#include "devices/link/device_endpoint.h"
+#include "devices/hid/hid_protocols.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/support/rt_guard.h"
+#include "tests/support/simulated_device.h"
+
+namespace palpate {
+namespace {
+
+using test::Report;
+using test::SimulatedDevice;
+
+// Of an encoder step and a tick of tremor.
+constexpr double kResolution_N = 0.1;
+constexpr const DeviceProtocol* kProtocol = &kOpenFfBoardProtocol;
+constexpr const DeviceProtocol* kPushing[] = {&kOpenFfBoardProtocol, &kBridgeProtocol};
+
+TEST(DeviceEndpoint, PushesOnceItIsZeroed) {
+  SimulatedDevice simulated(kProtocol);
+  simulated.rest = false;
+  simulated.run_s(1.0);
+  EXPECT_EQ(simulated.motor_N(), 0.0) << "not zeroed";
+  EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::needed);
+  EXPECT_EQ(simulated.snapshot.samples, 0u) << "nobody knows where the tool is";
+  simulated.press();
+  EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
+  EXPECT_EQ(simulated.snapshot.device.faults, 0u);
+  EXPECT_NEAR(simulated.snapshot.tick.position_m, simulated.position_m(), 30e-6);
+  EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N);
+  EXPECT_LT(simulated.model->force_units(), 0.0) << "against the growing counts";
+  EXPECT_LT(simulated.snapshot.device.sample_age_s, 2e-3);
+  EXPECT_TRUE(std::isnan(simulated.snapshot.device.round_trip_s)) << "it confirms nothing";
+}
+
+TEST(DeviceEndpoint, ZeroingWaitsForRest) {
+  SimulatedDevice simulated(kProtocol);
+  simulated.device.start_zeroing();
+  for (int i = 0; i < 600; ++i) {
+    simulated.counts_offset = i;  // 1 m/s / 50
+    simulated.tick();
+  }
+  EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::hold_still);
+  EXPECT_EQ(simulated.motor_N(), 0.0);
+  simulated.run_s(0.21);
+  EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::done);
+}
+
+TEST(DeviceEndpoint, DirectionTurnsPositionAndForce) {
+  DeviceCalibration calibration = test::example_calibration(kProtocol);
+  calibration.direction = -1.0;
+  DeviceEndpoint endpoint(calibration);
+  endpoint.connected(0.0);
+  test::OpenFfBoardModel board;
+  const auto arrive = [&](std::int32_t counts, double now_s) {
+    board.step(0, counts);
+    board.be_asked();
+    endpoint.report_arrived(board.outbox.back().data(), board.outbox.back().size(), now_s);
+  };
+  endpoint.start_zeroing();
+  double now_s = 0.0;
+  for (; now_s < 0.3; now_s += 1e-3) arrive(0, now_s);
+  arrive(40, now_s);
+  DeviceSample sample;
+  ASSERT_TRUE(endpoint.read(sample));
+  EXPECT_TRUE(sample.restart);
+  while (endpoint.read(sample)) EXPECT_FALSE(sample.restart);
+  EXPECT_NEAR(sample.tool.position_m, -0.01 - 40.0 / 50000.0, 1e-12);
+  endpoint.write(2.0);
+  const OutReports out = endpoint.next(now_s);
+  ASSERT_GE(out.count, 2u) << "asks for the position, sets the force";
+  EXPECT_EQ(wire::read32(out.bytes[1].data() + 9), 6667u);
+}
+
+// A way to hurt the stream, and how it is found.
+struct Injection {
+  const char* name;
+  void (*inject)(SimulatedDevice&);
+  std::uint32_t fault;
+  double found_after_s;  // no fault before that, by its nature
+};
+
+void hold_back(SimulatedDevice& simulated, bool newest_first_again) {
+  auto held = std::make_shared<std::vector<Report>>();
+  simulated.on_the_way_in = [held, newest_first_again](const Report& report) {
+    held->push_back(report);
+    if (held->size() < 30) return std::vector<Report>{};
+    std::vector<Report> all = newest_first_again ? std::vector<Report>{report} : *held;
+    held->clear();
+    return all;
+  };
+}
+
+const std::vector<Injection>& injections() {
+  using namespace device_fault;
+  static const std::vector<Injection> all = {
+      {"unplugged",
+       [](SimulatedDevice& s) {
+         s.unplugged = true;
+         s.device.endpoint.unplugged();
+       },
+       kUnplugged, 0.0},
+      {"silent", [](SimulatedDevice& s) { s.on_the_way_in = [](const Report&) { return std::vector<Report>{}; }; },
+       kLate, 0.0},
+      {"stuck at one value", [](SimulatedDevice& s) { s.encoder_frozen = true; }, kStuck, 0.5},
+      {"the same report again and again",
+       [](SimulatedDevice& s) {
+         auto first = std::make_shared<Report>();
+         s.on_the_way_in = [first](const Report& report) {
+           if (first->empty()) *first = report;
+           return std::vector<Report>{*first};
+         };
+       },
+       kStuck, 0.0},
+      {"late by 20 ms",
+       [](SimulatedDevice& s) {
+         auto queue = std::make_shared<std::deque<Report>>();
+         s.on_the_way_in = [queue](const Report& report) {
+           queue->push_back(report);
+           if (queue->size() <= 20) return std::vector<Report>{};
+           const Report oldest = queue->front();
+           queue->pop_front();
+           return std::vector<Report>{oldest};
+         };
+       },
+       kLate, 0.0},
+      {"corrupted",
+       [](SimulatedDevice& s) {
+         s.on_the_way_in = [](Report report) {
+           report[report.size() / 2 + 1] ^= 0x5A;
+           return std::vector<Report>{report};
+         };
+       },
+       kCorrupt, 0.0},
+      {"cut short",
+       [](SimulatedDevice& s) {
+         s.on_the_way_in = [](const Report& report) {
+           return std::vector<Report>{Report(report.begin(), report.begin() + 12)};
+         };
+       },
+       kCorrupt, 0.0},
+      {"a burst of old ones", [](SimulatedDevice& s) { hold_back(s, false); }, kLate | kBurst, 0.0},
+      {"encoder jump", [](SimulatedDevice& s) { s.counts_offset = 5000; }, kJump, 0.0},
+      {"firmware reset",
+       [](SimulatedDevice& s) {
+         s.model->restart();
+         s.counts_offset = -s.counts();
+       },
+       kJump, 0.0},
+      {"an error of its own",
+       [](SimulatedDevice& s) {
+         s.on_the_way_in = [](Report report) {
+           report[1] = 15;
+           return std::vector<Report>{report};
+         };
+       },
+       kOwn, 0.0},
+      {"commands do not get through", [](SimulatedDevice& s) { s.writer_hangs = true; }, kWriteStalled | kLate, 0.05},
+  };
+  return all;
+}
+
+struct Outcome {
+  double to_zero_s = -1.0;  // of the force that the host asks for
+  std::uint32_t faults = 0;
+  std::uint32_t first_faults = 0;
+  double largest_step_N = 0.0;
+};
+
+Outcome run(const Injection& injection, SimulatedDevice& simulated) {
+  Outcome outcome;
+  simulated.press();
+  EXPECT_GT(simulated.snapshot.rendered_N, 3.5);
+  const double from_s = simulated.now_s;
+  double last_N = simulated.snapshot.rendered_N;
+  injection.inject(simulated);
+  for (int i = 0; i < 800; ++i) {
+    simulated.tick();
+    outcome.faults |= simulated.snapshot.device.faults;
+    if (outcome.first_faults == 0) outcome.first_faults = outcome.faults;
+    outcome.largest_step_N = std::max(outcome.largest_step_N, std::abs(last_N - simulated.snapshot.rendered_N));
+    last_N = simulated.snapshot.rendered_N;
+    if (last_N == 0.0 && outcome.to_zero_s < 0.0) outcome.to_zero_s = simulated.now_s - from_s;
+  }
+  return outcome;
+}
+
+TEST(DeviceEndpoint, EveryFaultTakesTheForceAway) {
+  std::printf("%-32s %9s  %s\n", "fault", "to 0 [ms]", "message");
+  for (const Injection& injection : injections()) {
+    SimulatedDevice simulated(kProtocol);
+    const Outcome outcome = run(injection, simulated);
+    const auto words = device_fault_words(outcome.first_faults);
+    std::printf("%-32s %9.1f  %s\n", injection.name, 1e3 * outcome.to_zero_s,
+                words.empty() ? "" : words.front().c_str());
+    const bool stuck = injection.fault == device_fault::kStuck;
+    EXPECT_NE(outcome.faults & injection.fault, 0u) << injection.name;
+    EXPECT_GT(outcome.to_zero_s, 0.0) << injection.name;
+    EXPECT_LE(outcome.to_zero_s, 0.0205 + (stuck ? 0.5 : injection.found_after_s)) << injection.name;
+    EXPECT_NE(simulated.snapshot.faults_latched & loop_fault::kDeviceFault, 0u);
+    EXPECT_NE(simulated.snapshot.device_faults_latched & injection.fault, 0u);
+  }
+}
+
+TEST(DeviceEndpoint, WhatLosesThePositionAsksForZeroing) {
+  for (const Injection& injection : injections()) {
+    if ((injection.fault & device_fault::kLosesPosition) == 0) continue;
+    SimulatedDevice simulated(kProtocol);
+    run(injection, simulated);
+    simulated.encoder_frozen = simulated.unplugged = false;
+    simulated.on_the_way_in = nullptr;
+    simulated.device.endpoint.connected(simulated.now_s);
+    simulated.run_s(1.0);
+    EXPECT_EQ(simulated.snapshot.rendered_N, 0.0) << injection.name;
+    EXPECT_NE(simulated.snapshot.device.faults & injection.fault, 0u) << "until it is zeroed";
+    EXPECT_EQ(simulated.snapshot.device.zeroing, Zeroing::needed);
+    EXPECT_EQ(simulated.snapshot.samples, 0u);
+    simulated.press();
+    EXPECT_EQ(simulated.snapshot.device.faults, 0u) << injection.name;
+    EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N) << injection.name;
+  }
+}
+
+TEST(DeviceEndpoint, WhatKeepsThePositionComesBackByItself) {
+  for (const Injection& injection : injections()) {
+    if ((injection.fault & (device_fault::kLosesPosition | device_fault::kOwn)) != 0) continue;
+    SimulatedDevice simulated(kProtocol);
+    run(injection, simulated);
+    // Reports without a time that come late, but regularly, look like any others.
+    const bool stopped = simulated.snapshot.rendered_N == 0.0;
+    simulated.on_the_way_in = nullptr;
+    simulated.writer_hangs = false;
+    simulated.tick();
+    EXPECT_TRUE(!stopped || simulated.snapshot.rendered_N < 0.2) << "not at once";
+    simulated.run_s(1.0);
+    EXPECT_NEAR(simulated.motor_N(), simulated.spring_N(simulated.position_m()), kResolution_N) << injection.name;
+    EXPECT_NE(simulated.snapshot.device_faults_latched, 0u);
+    simulated.controls.acknowledged = 1;
+    simulated.run_s(0.01);
+    EXPECT_EQ(simulated.snapshot.device_faults_latched, 0u);
+    EXPECT_EQ(simulated.snapshot.faults_latched & loop_fault::kStops, 0u);
+  }
+}
+
+TEST(DeviceEndpoint, AHapticsThreadThatHangsPushesNoLonger) {
+  for (const DeviceProtocol* protocol : kPushing) {
+    SimulatedDevice simulated(protocol);
+    simulated.press();
+    EXPECT_GT(simulated.motor_N(), 3.5);
+    DeviceEndpoint& endpoint = simulated.device.endpoint;
+    // The writer goes on alone.
+    for (double now_s = simulated.now_s; now_s < simulated.now_s + 0.04; now_s += 0.5e-3) {
+      const OutReports reports = endpoint.next(now_s);
+      for (std::size_t i = 0; i < reports.count; ++i) {
+        const std::size_t skip = reports.bytes[i][0] == 0 ? 1 : 0;
+        simulated.model->hear(Report(reports.bytes[i].data() + skip, reports.bytes[i].data() + reports.sizes[i]));
+      }
+      simulated.model->step(static_cast<std::uint32_t>(1e6 * (now_s - SimulatedDevice::kStart_s)), 0);
+    }
+    EXPECT_EQ(simulated.motor_N(), 0.0) << protocol->name;
+  }
+}
+
+// As after SIGKILL: nothing is sent any more, and nobody is there to see it.
+TEST(DeviceEndpoint, AHostThatDiesPushesNoLonger) {
+  for (const DeviceProtocol* protocol : kPushing) {
+    SimulatedDevice simulated(protocol);
+    simulated.press();
+    for (int i = 0; i < 3000; ++i) {
+      simulated.tick();
+      ASSERT_GT(simulated.motor_N(), 3.5) << protocol->name << ": what is renewed goes on";
+    }
+    std::int64_t now_us = simulated.now_us;
+    const std::int64_t died_us = now_us;
+    while (simulated.motor_N() > 0.0 && now_us - died_us < 1'000'000) {
+      simulated.model->step(static_cast<std::uint32_t>(now_us += 250), simulated.counts());
+    }
+    std::printf("%-12s pushes for %.1f ms after its host died\n", protocol->name,
+                1e-3 * static_cast<double>(now_us - died_us));
+    EXPECT_LE(now_us - died_us, 52'000) << protocol->name;
+  }
+}
+
+TEST(DeviceEndpoint, AForceThatIsSaidAgainOnlyNowAndThenGoesOn) {
+  const DeviceProtocol& protocol = kOpenFfBoardProtocol;
+  test::OpenFfBoardModel board;
+  const auto hear = [&](const OutReports& reports) {
+    for (std::size_t i = 0; i < reports.count; ++i) {
+      board.hear(Report(reports.bytes[i].data(), reports.bytes[i].data() + reports.sizes[i]));
+    }
+  };
+  hear(protocol.encode_start());
+  board.step(0, 0);
+  EXPECT_EQ(board.force_units(), 0.0);
+  const auto repeat_us = static_cast<std::uint32_t>(std::lround(1e6 * DeviceEndpoint::kRepeat_s));
+  for (std::uint32_t sequence = 1; sequence < 400; ++sequence) {
+    board.step(sequence * repeat_us, 0);
+    if (sequence > 4) {
+      ASSERT_EQ(board.force_units(), 1000.0) << sequence;
+    }
+    // Every second of the starts, which every fourth command carries, is lost.
+    if (sequence % 8 != 0) hear(protocol.encode_command({sequence, 0, true, 1000.0}));
+  }
+}
+
+TEST(DeviceEndpoint, DoesNothingForbiddenInTheTick) {
+  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const DeviceProtocol* protocol : kPushing) {
+    SimulatedDevice simulated(protocol);
+    simulated.press();
+    int offences = 0;
+    for (int i = 0; i < 2000; ++i) {
+      if (i == 1000) simulated.device.endpoint.unplugged();
+      simulated.tick();
+      test::RtGuard guard;
+      simulated.live.run(simulated.now_s + 1e-4, {});
+      offences += guard.stop().total();
+    }
+    EXPECT_EQ(offences, 0) << protocol->name;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,37 @@
+// Finding and opening a device; its threads are in hid_device_test.
+#include "devices/link/device_link.h"
+#include "devices/hid/hid_protocols.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_device_bus.h"
+
+namespace palpate {
+namespace {
+
+using test::FakeDeviceBus;
+
+TEST(DeviceLink, TriesAgainWhenItCannotBeOpenedAtFirst) {
+  FakeDeviceBus bus;
+  bus.refusals = 2;
+  EXPECT_TRUE(open_first(bus, {&kOpenFfBoardProtocol}).ok());
+  EXPECT_EQ(bus.opened, 3);
+  bus.refusals = 100;
+  bool none_found = true;
+  EXPECT_EQ(open_first(bus, {&kOpenFfBoardProtocol}, &none_found).error().message, "/dev/hidraw7: no permission");
+  EXPECT_FALSE(none_found);
+  bus.plugged_in = false;
+  EXPECT_EQ(open_first(bus, {&kOpenFfBoardProtocol}, &none_found).error().message,
+            "no device that the program knows is plugged in");
+  EXPECT_TRUE(none_found);
+}
+
+TEST(DeviceLink, TakesOnlyTheKindsAskedFor) {
+  FakeDeviceBus bus;
+  EXPECT_EQ(open_first(bus, {&kOpenFfBoardProtocol})->protocol, &kOpenFfBoardProtocol);
+  EXPECT_FALSE(open_first(bus, {&kSpaceMouseProtocol}).ok());
+  EXPECT_EQ(bus.opened, 1) << "what was not asked for is left alone";
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,93 @@
+// A device with its threads, in real time, on a bus made up.
+#include "devices/link/linked_device.h"
+#include "devices/hid/hid_protocols.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "engine/live/haptics_loop.h"
+#include "tests/support/fake_device_bus.h"
+#include "tests/support/hid_ticks.h"
+
+namespace palpate {
+namespace {
+
+using test::FakeDeviceBus;
+using test::tick_until;
+
+std::unique_ptr<LinkedDevice> open_board(FakeDeviceBus& bus) {
+  const DeviceCalibration calibration = test::patient(test::example_calibration(&kOpenFfBoardProtocol));
+  Result<OpenedDevice> opened = open_first(bus, {&kOpenFfBoardProtocol});
+  EXPECT_TRUE(opened.ok());
+  auto device = std::make_unique<LinkedDevice>(bus, calibration, std::move(*opened));
+  EXPECT_TRUE(device->open().ok());
+  return device;
+}
+
+bool zeroed(const DeviceHealth& health) { return health.zeroing == Zeroing::done && health.faults == 0; }
+
+TEST(LinkedDevice, PushesAfterZeroingAndLetsGoWhenClosed) {
+  FakeDeviceBus bus;
+  auto device = open_board(bus);
+  EXPECT_EQ(device->note(),
+            "OpenFFBoard, one axis: FFBoard, /dev/hidraw7; tried on real hardware: no; on an emulated device: yes");
+  EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth& health) {
+    return health.faults == 0 && health.zeroing == Zeroing::needed;
+  }));
+  EXPECT_EQ(bus.motor_units(), 0.0) << "not zeroed";
+  device->start_zeroing();
+  ASSERT_TRUE(tick_until(*device, 0.0, zeroed));
+  EXPECT_TRUE(tick_until(*device, 1.0, [&](const DeviceHealth&) { return bus.motor_units() == -3333.0; }));
+  device->close();
+  EXPECT_EQ(bus.motor_units(), 0.0);
+}
+
+TEST(LinkedDevice, ComesBackAfterItWasPluggedInAgain) {
+  FakeDeviceBus bus;
+  auto device = open_board(bus);
+  device->start_zeroing();
+  ASSERT_TRUE(tick_until(*device, 0.0, zeroed));
+  bus.plugged_in = false;
+  EXPECT_TRUE(tick_until(*device, 1.0, [](const DeviceHealth& health) {
+    return (health.faults & device_fault::kUnplugged) != 0 && !health.may_push();
+  }));
+  bus.plugged_in = true;
+  EXPECT_TRUE(tick_until(*device, 0.0, [&](const DeviceHealth& health) {
+    return bus.opened == 2 && health.faults == device_fault::kUnplugged && health.zeroing == Zeroing::needed;
+  })) << "it says why it has to be zeroed";
+  device->start_zeroing();
+  EXPECT_TRUE(tick_until(*device, 0.0, zeroed));
+}
+
+LoopStatistics run_loop(int write_ms, int& writes) {
+  FakeDeviceBus bus;
+  bus.write_ms = write_ms;
+  auto device = open_board(bus);
+  LoopSettings settings;
+  settings.realtime = false;
+  HapticsLoop loop(*device, settings);
+  EXPECT_TRUE(loop.start().ok());
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  loop.stop();
+  writes = bus.writes;
+  return loop.statistics();
+}
+
+// The figures are for people; what is asserted is that the ticks go on.
+TEST(LinkedDevice, ADeviceThatBlocksOnEveryWriteDoesNotHoldTheTickUp) {
+  for (const int write_ms : {0, 5}) {
+    int writes = 0;
+    const LoopStatistics statistics = run_loop(write_ms, writes);
+    std::printf("writes of %d ms: %llu ticks, %llu missed, longest tick %.1f us, %d writes\n", write_ms,
+                static_cast<unsigned long long>(statistics.ticks),
+                static_cast<unsigned long long>(statistics.missed_deadlines), statistics.tick.max_us, writes);
+    EXPECT_GT(writes, 0);
+    if (write_ms == 5) {
+      EXPECT_LT(writes, static_cast<int>(statistics.ticks)) << "only the newest command is written";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate

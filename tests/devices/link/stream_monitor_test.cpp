@@ -1,0 +1,175 @@
+// One stream of readings at a time, without a transport; hid_endpoint_test has them
+// with reports, force and time.
+#include "devices/link/stream_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace palpate {
+namespace {
+
+MonitorSettings settings_for(bool absolute_and_timed) {
+  MonitorSettings settings;
+  settings.absolute = settings.timed = absolute_and_timed;
+  settings.counts_per_metre = 50000.0;
+  settings.fastest_m_per_s = 5.0;
+  return settings;
+}
+
+// Readings 1 ms apart; of a device that knows its position, numbered.
+struct Stream {
+  explicit Stream(bool absolute_and_timed = false) : monitor(settings_for(absolute_and_timed)) {
+    if (absolute_and_timed) steps(60);  // until its clock is known
+  }
+  StreamMonitor monitor;
+  DeviceReading next;
+  double now_s = 10.0;
+
+  void send(const DeviceReading& reading, double force_N = 0.0) {
+    monitor.update(ReportVerdict::position, reading, now_s, force_N);
+  }
+  void step(std::int32_t counts = 0, double force_N = 0.0) {
+    now_s += 1e-3;
+    ++next.sequence;
+    next.time_us += 1000;
+    next.counts = counts;
+    send(next, force_N);
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) step(next.counts);
+  }
+  void zero() {
+    monitor.start_zeroing();
+    steps(210);
+    EXPECT_EQ(monitor.state().zeroing, Zeroing::done);
+  }
+};
+
+TEST(StreamMonitor, CountsAndTimesWhatItAccepts) {
+  Stream stream;
+  for (int i = 0; i < 50; ++i) stream.step(i);
+  const MonitorState& state = stream.monitor.state();
+  EXPECT_EQ(state.samples, 50u);
+  EXPECT_EQ(state.counts, 49);
+  EXPECT_NEAR(state.sample_time_s, stream.now_s, 1e-6);
+  EXPECT_EQ(state.transient, 0u);
+  EXPECT_EQ(state.lost, 0u);
+}
+
+TEST(StreamMonitor, LostReportsAreNoFault) {
+  Stream stream(true);
+  stream.steps(10);
+  stream.next.sequence += 5;
+  stream.next.time_us += 5000;
+  stream.now_s += 5e-3;
+  stream.step(3);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+  EXPECT_EQ(stream.monitor.state().counts, 3);
+}
+
+TEST(StreamMonitor, AnOlderReportIsNotUsed) {
+  Stream stream(true);
+  stream.steps(10);
+  DeviceReading older = stream.next;
+  older.sequence -= 3;
+  older.counts = 99;
+  stream.send(older);
+  EXPECT_EQ(stream.monitor.state().counts, 0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kOutOfOrder);
+  EXPECT_NEAR(stream.monitor.state().transient_until_s, stream.now_s + 0.1, 1e-9);
+}
+
+TEST(StreamMonitor, SequenceMayWrap) {
+  Stream stream(true);
+  stream.next.sequence = 0x7FFFFFF0u;
+  stream.steps(1);
+  stream.next.sequence = 0xFFFFFFE0u;
+  const std::uint64_t before = stream.monitor.state().samples;
+  stream.steps(64);
+  EXPECT_EQ(stream.monitor.state().samples, before + 64u);
+  EXPECT_EQ(stream.monitor.state().transient, 0u);
+}
+
+TEST(StreamMonitor, TheHandMayBeFastAndTheEncoderMayNotJump) {
+  Stream stream;
+  stream.zero();
+  std::int32_t counts = 0;
+  for (int i = 1; i <= 100; ++i) stream.step(counts += std::min(250, 50 * i));  // 5 m/s after 5 ms
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  stream.step(counts + 300);
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kJump);
+  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::needed);
+  stream.zero();
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  EXPECT_EQ(stream.monitor.state().streams, 2u);
+}
+
+// 5 mm within a millisecond would be 5 m/s from rest, 250 N on 50 g.
+TEST(StreamMonitor, AStepFromRestThatNoHandCanMakeIsAJump) {
+  for (const int mm : {1, 2, 5}) {
+    Stream stream;
+    stream.zero();
+    stream.step(50 * mm);
+    EXPECT_EQ(stream.monitor.state().lost, mm == 1 ? 0u : device_fault::kJump) << mm;
+  }
+}
+
+TEST(StreamMonitor, TheCounterMayWrap) {
+  StreamMonitor monitor(settings_for(false));
+  constexpr std::uint32_t kFirst = 0x7FFF'FF00u;
+  double now_s = 1.0;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    DeviceReading reading;
+    reading.counts = static_cast<std::int32_t>(kFirst + 50 * i);
+    monitor.update(ReportVerdict::position, reading, now_s += 1e-3, 0.0);
+  }
+  EXPECT_EQ(monitor.state().counts, std::int64_t{kFirst} + 49'950);
+  EXPECT_EQ(monitor.state().lost, 0u);
+}
+
+TEST(StreamMonitor, StandingStillIsStuckOnlyUnderForce) {
+  Stream stream;
+  stream.zero();
+  for (int i = 0; i < 2000; ++i) stream.step(0, 0.1);
+  EXPECT_EQ(stream.monitor.state().lost, 0u);
+  for (int i = 0; i < 2000; ++i) stream.step(i / 400, 3.0);
+  EXPECT_EQ(stream.monitor.state().lost, 0u) << "a count now and then";
+  for (int i = 0; i < 510; ++i) stream.step(4, 3.0);
+  EXPECT_EQ(stream.monitor.state().lost, device_fault::kStuck);
+}
+
+TEST(StreamMonitor, ASequenceThatBeginsAnewIsAReset) {
+  Stream stream(true);
+  stream.next = {};
+  stream.steps(7);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kOutOfOrder);
+  stream.steps(5);
+  EXPECT_NE(stream.monitor.state().transient & device_fault::kReset, 0u);
+  EXPECT_EQ(stream.monitor.state().lost, 0u) << "it knows where it is";
+}
+
+TEST(StreamMonitor, FaultsAddUpWhileTheyLast) {
+  Stream stream(true);
+  stream.steps(10);
+  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
+  DeviceReading older = stream.next;
+  older.sequence -= 3;
+  stream.send(older);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt | device_fault::kOutOfOrder);
+  stream.now_s += 1.0;
+  stream.monitor.update(ReportVerdict::corrupt, {}, stream.now_s, 0.0);
+  EXPECT_EQ(stream.monitor.state().transient, device_fault::kCorrupt);
+}
+
+TEST(StreamMonitor, ZeroingTakesTheMiddleOfWhereItRested) {
+  Stream stream;
+  stream.monitor.start_zeroing();
+  for (int i = 0; i < 210; ++i) stream.step(100 + i % 2 * 10);
+  EXPECT_EQ(stream.monitor.state().zeroing, Zeroing::done);
+  EXPECT_EQ(stream.monitor.state().zero_counts, 105.0);
+}
+
+}  // namespace
+}  // namespace palpate

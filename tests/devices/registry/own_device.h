@@ -1,0 +1,34 @@
+// The first of the three files that a new device takes: six functions. A tool that a motor of its own moves in and out.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "devices/registry/device_registry.h"
+
+namespace palpate::test {
+
+class OwnDevice final : public Device {
+ public:
+  explicit OwnDevice(double stroke_m) : stroke_m_(stroke_m) {}
+
+  const std::string& name() const noexcept override { return name_; }
+  SensorSpec sensor() const noexcept override { return {.encoder_step_m = 1e-6}; }
+  Holder holder() const noexcept override { return Holder::person; }
+  ForceLimits limits() const noexcept override { return {5.0, 2000.0, 0.05}; }
+  bool read(double now_s, DeviceSample& sample) noexcept override;
+  void write(double force_N) noexcept override { force_N_ = force_N; }
+
+  double force_N() const noexcept { return force_N_; }
+
+ private:
+  std::string name_ = "own";
+  double stroke_m_;
+  double force_N_ = 0.0;
+  double read_s_ = -1.0;
+};
+
+// For its row in the table of devices.
+MadeDevice make_own_device(const std::string& stroke_mm, const DeviceRequest& request);
+
+}  // namespace palpate::test
