@@ -179,15 +179,13 @@ class SimulatedDevice {
   static constexpr double kHeld_m = 6e-3;
   static constexpr double kStart_s = 100.0;
 
-  explicit SimulatedDevice(const DeviceProtocol* protocol)
-      : calibration(example_calibration(protocol)),
-        device(calibration),
-        model(device_model(protocol)),
-        live(device, slot_) {
+  explicit SimulatedDevice(const DeviceProtocol* protocol) : SimulatedDevice(example_calibration(protocol)) {}
+  explicit SimulatedDevice(const DeviceCalibration& of)
+      : calibration(of), device(calibration), model(device_model(calibration.protocol)), live(device, slot_) {
     slot_.publish(std::make_unique<LiveModels>(1, device.sensor(), std::vector{spring(kStiffness_N_per_m)}));
     live.warm_up();
     device.endpoint.connected(kStart_s);
-    hear(protocol->encode_start());
+    hear(calibration.protocol->encode_start());
   }
 
   // The tool, as the hand moves it, m after `time_s`; with tremor unless frozen.
