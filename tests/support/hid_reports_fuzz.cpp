@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "devices/firmware/bridge_protocol.h"
 #include "devices/bridge/bridge_bus.h"
+#include "devices/firmware/bridge_protocol.h"
 #include "devices/hid/hid_protocols.h"
 #include "devices/hid/spacemouse.h"
 #include "devices/link/device_endpoint.h"

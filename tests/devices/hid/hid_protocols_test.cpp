@@ -1,6 +1,6 @@
 // Every report, there and back; what is not one is refused.
-#include "devices/bridge/bridge_bus.h"
 #include "devices/hid/hid_protocols.h"
+#include "devices/bridge/bridge_bus.h"
 
 #include <gtest/gtest.h>
 
