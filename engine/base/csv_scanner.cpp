@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -214,6 +215,13 @@ std::string printable(std::string_view text, std::size_t limit) {
     i += sequence.size();
   }
   return out;
+}
+
+const char* parse_number(const char* begin, const char* end, double& value) {
+  // from_chars takes no '+'; "+-1" must stay wrong.
+  if (begin != end && *begin == '+' && ++begin != end && *begin == '-') return nullptr;
+  const auto parsed = std::from_chars(begin, end, value);
+  return parsed.ec == std::errc() && std::isfinite(value) ? parsed.ptr : nullptr;
 }
 
 std::string shortest(double value) {

@@ -111,6 +111,10 @@ bool is_utf8(std::string_view text, std::size_t& bad_offset);
 // cut with "..." after about `limit` bytes.
 std::string printable(std::string_view text, std::size_t limit = 40);
 
+// One decimal number at `begin`, '.' as decimal point whatever the locale, exactly rounded; a leading '+' is
+// accepted. Returns where it ends, or nullptr where no finite number begins.
+const char* parse_number(const char* begin, const char* end, double& value);
+
 // The shortest decimal form that reads back as the same double.
 std::string shortest(double value);
 

@@ -14,12 +14,15 @@ namespace {
 // inside a word (German compounds: "Standardkraft").
 constexpr std::string_view kTimeWords =
     "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit "
-    "testzeit zeitstempel datetime";
+    "testzeit zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
 constexpr std::string_view kPositionWords =
     "position pos weg displacement disp depth extension stroke crosshead travel compression indentation "
-    "penetration allongement traversenweg standardweg verschiebung eindringtiefe tiefe deplacement height encoder "
+    "penetration allongement traversenweg standardweg verschiebung eindringtiefe tiefe hub deplacement enfoncement "
+    "desplazamiento posicion recorrido profundidad \xE4\xBD\x8D\xE7\xA7\xBB height encoder "
     "x y z";
-constexpr std::string_view kForceWords = "force f kraft load last fn fx fy fz charge loadcell newton";
+constexpr std::string_view kForceWords =
+    "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga "
+    "\xE5\x8A\x9B \xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
 // Columns that are something else, whatever other word stands in their name.
 constexpr std::string_view kOtherWords =
     "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel "
@@ -28,6 +31,8 @@ constexpr std::string_view kOtherWords =
 // Second choice: what was asked for and not measured, what is not the raw value.
 // Times that begin anew: "Cycle Elapsed Time" beside "Total Time".
 constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
+
+constexpr std::string_view kVelocityWords = "velocity speed geschwindigkeit vitesse velocidad";
 
 constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
@@ -38,14 +43,16 @@ constexpr int kSecondChoice = 3;  // taken off
 // Lower case, umlauts and accents as plain letters.
 std::string plain_name(std::string_view text) {
   std::string plain = lower_ascii(text);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kLetters = {{{"\xC3\xBC", "ue"},
-                                                                                      {"\xC3\x9C", "ue"},
-                                                                                      {"\xC3\xA4", "ae"},
-                                                                                      {"\xC3\xA9", "e"},
-                                                                                      {"\xC3\x89", "e"},
-                                                                                      {"\xC3\xB6", "oe"},
-                                                                                      {"\xC3\xA8", "e"},
-                                                                                      {"\xC3\x9F", "ss"}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kLetters = {{{"\xC3\xBC", "ue"},
+                                                                                       {"\xC3\x9C", "ue"},
+                                                                                       {"\xC3\xA4", "ae"},
+                                                                                       {"\xC3\xA9", "e"},
+                                                                                       {"\xC3\x89", "e"},
+                                                                                       {"\xC3\xB6", "oe"},
+                                                                                       {"\xC3\xA8", "e"},
+                                                                                       {"\xC3\xB3", "o"},
+                                                                                       {"\xC3\xAD", "i"},
+                                                                                       {"\xC3\x9F", "ss"}}};
   for (const auto& [from, to] : kLetters) {
     for (std::size_t at = 0; (at = plain.find(from, at)) != std::string::npos; at += to.size()) {
       plain.replace(at, from.size(), to);
@@ -108,6 +115,7 @@ std::array<int, kRoles> claims_of(const ForeignColumn& column) {
     if (!column.parts.foreign_unit.empty() && !volts) claims[role] = 0;
     if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
   }
+  if (column.constant) claims[0] = 0;
   // What a column is called most clearly, that it is.
   const int strongest = *std::max_element(claims.begin(), claims.end());
   for (int& claim : claims) claim = claim < strongest ? 0 : claim;
@@ -115,6 +123,16 @@ std::array<int, kRoles> claims_of(const ForeignColumn& column) {
   if (claims[2] > 0 && !unit) claims[1] = 0;
   if (any_word_in(kOtherWords, words) && !unit) claims = {};
   return claims;
+}
+
+// Metres per second in one of `text`, such as "mm/s"; 0: no velocity.
+double velocity_unit(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string_view::npos) return 0.0;
+  const auto length = find_unit(text.substr(0, slash));
+  const auto time = find_unit(text.substr(slash + 1));
+  if (!length || !time || length->quantity != Quantity::length || time->quantity != Quantity::time) return 0.0;
+  return length->to_si / time->to_si;
 }
 
 std::string flag_for(std::size_t role, const std::string& what) {
@@ -225,6 +243,18 @@ Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, con
     }
   }
   return choice;
+}
+
+std::optional<VelocityColumn> find_velocity(const std::vector<ForeignColumn>& columns) {
+  std::optional<VelocityColumn> found;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::vector<std::string> words = words_of(columns[i].parts.name);
+    const double to_si = velocity_unit(columns[i].parts.foreign_unit);
+    if (to_si == 0.0 || !any_word_in(kVelocityWords, words) || any_word_in(kSecondWords, words)) continue;
+    if (found) return std::nullopt;
+    found = VelocityColumn{i, to_si};
+  }
+  return found;
 }
 
 }  // namespace palpate

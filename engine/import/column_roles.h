@@ -22,6 +22,7 @@ inline constexpr std::array<const char*, kRoles> kRoleNames = {"time", "position
 struct ForeignColumn {
   std::string header;  // as written
   NameAndUnit parts;
+  bool constant = false;  // over the first rows: no time
 };
 
 // What the user has said of each role: a name or a number from 1; empty: guess.
@@ -37,6 +38,13 @@ struct RoleChoice {
 // column for two roles.
 Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
                                   bool has_header, bool needs_time);
+
+// The one column that is a measured velocity, by its name and unit ("Speed (mm/s)").
+struct VelocityColumn {
+  std::size_t column = 0;
+  double to_si = 1.0;
+};
+std::optional<VelocityColumn> find_velocity(const std::vector<ForeignColumn>& columns);
 
 // The header for a message: 1 "Zeit [s]", 2 "Weg [mm]".
 std::string list_columns(const std::vector<ForeignColumn>& columns);

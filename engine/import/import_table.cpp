@@ -17,6 +17,7 @@ namespace {
 constexpr std::int64_t kHalfDay_s = 43200;
 // Of the first rows, to see what unit the time is in.
 constexpr std::size_t kTimeUnitRows = 200;
+constexpr double kVelocitySlope = 0.2;
 constexpr auto kNoColumn = static_cast<std::size_t>(-1);
 
 class Importer {
@@ -49,7 +50,11 @@ class Importer {
   bool parse_row(std::string_view line, TableTime& time, RecordingRow& row);
   bool is_bad_row(std::string_view line);
   Error explain_row(std::string_view line, std::uint64_t number);
-  Status add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
+  Result<bool> add_time(const TableTime& time, std::uint64_t line, RecordingRow& row);
+  void mark_constant_columns();
+  double own_seconds(const TableTime& time) const;
+  void check_rate();
+  void check_velocity();
   Status read_rows();
   void describe_time();
 
@@ -68,6 +73,9 @@ class Importer {
   TableTime first_;
   double last_time_s_ = 0.0;
   std::int64_t midnights_ = 0;
+  std::uint64_t repeated_ = 0;
+  bool own_time_ = false;  // beside a given rate
+  std::optional<VelocityColumn> velocity_;
 };
 
 const Unit* requested_unit(const ImportRequest& request, Quantity quantity) {
@@ -114,15 +122,33 @@ Status Importer::find_columns() {
     }
     header_.push_back(std::move(column));
   }
-  const auto choice = choose_columns(header_, request_.columns, has_header, !request_.rate_Hz);
+  mark_constant_columns();
+  auto choice = choose_columns(header_, request_.columns, has_header, true);
+  // With a rate the file's own times serve to compare.
+  if (request_.rate_Hz && !choice) choice = choose_columns(header_, request_.columns, has_header, false);
   if (!choice) return fail(choice.error().message);
+  velocity_ = has_header ? find_velocity(header_) : std::nullopt;
   for (std::size_t role = 0; role < kRoles; ++role) {
     index_[role] = choice->column[role].value_or(kNoColumn);
-    if (!choice->column[role]) continue;
+    if (!choice->column[role] || (role == 0 && request_.rate_Hz)) continue;
     table_.columns[role] = {index_[role] + 1, has_header ? header_[index_[role]].header : "", "",
                             choice->guessed[role]};
   }
   return {};
+}
+
+void Importer::mark_constant_columns() {
+  std::string_view rest = text_.substr(table_.layout.data_offset);
+  std::vector<std::string> first;
+  std::vector<bool> changes(header_.size(), false);
+  std::size_t rows = 0;
+  for (; rows < kTimeUnitRows && !rest.empty(); ++rows) {
+    split_table_fields(next_line(rest), table_.layout.delimiter, row_);
+    if (rows == 0) first.assign(row_.begin(), row_.end());
+    for (std::size_t i = 0; i < std::min({row_.size(), first.size(), header_.size()}); ++i)
+      changes[i] = changes[i] || row_[i] != first[i];
+  }
+  for (std::size_t i = 0; i < header_.size(); ++i) header_[i].constant = rows > 1 && !changes[i];
 }
 
 // Position and force: what the user says, then the header.
@@ -203,10 +229,7 @@ Status Importer::find_time_unit() {
   std::vector<Unit> possible;
   for (const char* name : {"s", "ms", "us", "ns"}) {
     const Unit candidate = *find_unit(name);
-    const double rate_Hz = 1.0 / (step * candidate.to_si);
-    const bool in_range =
-        rate_Hz >= kMinimumRate_Hz * (1.0 - kRateTolerance) && rate_Hz <= kMaximumRate_Hz * (1.0 + kRateTolerance);
-    if (step > 0.0 && in_range) possible.push_back(candidate);
+    if (step > 0.0 && rate_in_range(step * candidate.to_si)) possible.push_back(candidate);
   }
   if (possible.size() != 1) {
     const std::string choices = possible.empty()
@@ -236,6 +259,11 @@ bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& r
       !parse_table_number(fields_[2], decimal, row.force_N)) {
     return false;
   }
+  if (velocity_) {
+    const auto field = velocity_->column < row_.size() ? row_[velocity_->column] : std::string_view();
+    if (!parse_table_number(field, decimal, row.velocity_m_per_s)) return false;
+    row.velocity_m_per_s *= velocity_->to_si;
+  }
   row.position_m *= to_si_[1];
   row.force_N *= to_si_[2];
   return true;
@@ -252,7 +280,7 @@ bool Importer::is_bad_row(std::string_view line) {
 Error Importer::explain_row(std::string_view line, std::uint64_t number) {
   split(line);
   for (std::size_t role = 0; role < kRoles; ++role) {
-    if (index_[role] == kNoColumn) continue;
+    if (index_[role] == kNoColumn || (role == 0 && request_.rate_Hz)) continue;
     TableTime time;
     double value = 0.0;
     const bool good =
@@ -266,13 +294,15 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) {
                        ", expected the " + kRoleNames[role] +
                        "; remove the row, repair the value, or say how many such rows may go: --skip-bad-rows N");
   }
-  return fail_at(number, "found a row that cannot be read; remove it");
+  return fail_at(number, "found no number in column " + std::to_string(velocity_ ? velocity_->column + 1 : 1) +
+                             ", the velocity; remove the row or repair the value");
 }
 
-Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
+// False: a time that repeats the last one.
+Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
   if (request_.rate_Hz) {
     row.time_s = static_cast<double>(table_.recording.rows.size()) / *request_.rate_Hz;
-    return {};
+    return true;
   }
   if (!started_) first_ = time;
   const auto since_first = [&] {
@@ -286,12 +316,21 @@ Status Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRo
     row.time_s = since_first();
     note("the clock passes midnight in line " + std::to_string(line) + ": a day is added from there");
   }
+  if (started_ && row.time_s == last_time_s_) {
+    ++repeated_;
+    return false;
+  }
   if (started_ && !(row.time_s > last_time_s_)) {
     return fail_at(line, time_fault_words(quoted_name(0), row.time_s, last_time_s_, table_.recording.rows.size()));
   }
   started_ = true;
   last_time_s_ = row.time_s;
-  return {};
+  return true;
+}
+
+// The seconds from the file's first own time to `time`.
+double Importer::own_seconds(const TableTime& time) const {
+  return (static_cast<double>(time.whole - first_.whole) + (time.fraction - first_.fraction)) * to_si_[0];
 }
 
 // Every row in one pass. Lines that are no rows may stand at the end only, but for as
@@ -333,17 +372,25 @@ Status Importer::read_rows() {
     bad_rows += std::exchange(footer_lines, 0);
     if (footer_line > 0 && bad_rows > request_.skip_bad_rows) return explain_row(footer, footer_line);
     footer_line = 0;
-    if (request_.flip_position) row.position_m = -row.position_m;
+    if (request_.flip_position) {
+      row.position_m = -row.position_m;
+      row.velocity_m_per_s = -row.velocity_m_per_s;
+    }
     if (request_.flip_force) row.force_N = -row.force_N;
     const bool position_fits = std::abs(row.position_m) <= kMaximumPosition_m;
     if (!position_fits || !(std::abs(row.force_N) <= kMaximumForce_N)) {
       const std::size_t role = position_fits ? 2 : 1;
       return fail_at(number, size_fault_words(row, table_.columns[role], role, quoted_name(role)));
     }
-    if (const Status status = add_time(time, number, row); !status) return status;
-    rows.push_back(row);
+    const auto added = add_time(time, number, row);
+    if (!added) return added.error();
+    if (*added) rows.push_back(row);
+    if (!own_time_ || !parse_time(fields_[0], time)) continue;
+    if (!std::exchange(started_, true)) first_ = time;
+    last_time_s_ = own_seconds(time);
   }
   if (comments > 0) note(count_of(comments, "comment line") + " between the rows left out");
+  if (repeated_ > 0) note(count_of(repeated_, "row") + " with the time of the row before left out");
   if (bad_rows > 0) note(count_of(bad_rows, "row") + " that could not be read left out");
   if (footer_lines > 0) {
     note(count_of(footer_lines, "line") + " behind the table left out, from line " + std::to_string(footer_line) +
@@ -361,6 +408,35 @@ void Importer::describe_time() {
   if (start_s != 0.0) note("time began at " + short_number(start_s) + " s and begins at 0 now");
 }
 
+// What a wrong rate makes of the length.
+void Importer::check_rate() {
+  if (!own_time_) return;
+  const double seconds = table_.recording.rows.back().time_s;
+  if (std::abs(seconds - last_time_s_) <= kRateTolerance * last_time_s_) return;
+  note("warning: with --rate " + short_number(*request_.rate_Hz) + " the recording is " + short_number(seconds) +
+       " s long, by the times of the file " + short_number(last_time_s_) + " s");
+}
+
+// A velocity that is not the rate of the position (unsigned, a set value) is left out: the slope of the one over
+// the other is 1 within a fifth.
+void Importer::check_velocity() {
+  if (!velocity_) return;
+  auto& rows = table_.recording.rows;
+  double both = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
+    const double rate = (rows[i + 1].position_m - rows[i - 1].position_m) / (rows[i + 1].time_s - rows[i - 1].time_s);
+    both += rows[i].velocity_m_per_s * rate;
+    squares += rows[i].velocity_m_per_s * rows[i].velocity_m_per_s;
+  }
+  const std::string column =
+      "column " + std::to_string(velocity_->column + 1) + " \"" + printable(header_[velocity_->column].header) + "\"";
+  table_.recording.columns.velocity = squares > 0.0 && std::abs(both / squares - 1.0) <= kVelocitySlope;
+  if (table_.recording.columns.velocity) return note("velocity from " + column);
+  for (RecordingRow& row : rows) row.velocity_m_per_s = 0.0;
+  note(column + " is not the rate of the position: left out");
+}
+
 Result<ImportedTable> Importer::run() {
   auto layout = find_table_layout(text_, request_.decimal);
   if (!layout) return fail(layout.error().message);
@@ -369,6 +445,11 @@ Result<ImportedTable> Importer::run() {
   if (const Status status = find_columns(); !status) return status.error();
   if (!request_.rate_Hz) {
     if (const Status status = find_time_unit(); !status) return status.error();
+  } else if (index_[0] != kNoColumn) {
+    const std::size_t notes = table_.notes.size();
+    own_time_ = find_time_unit().ok();
+    table_.notes.resize(notes);
+    table_.columns[0] = {};
   }
   for (const std::size_t role : {1u, 2u}) {
     if (const Status status = find_unit_of(role); !status) return status.error();
@@ -379,6 +460,8 @@ Result<ImportedTable> Importer::run() {
                 std::to_string(kRecordingMinimumRows) + "; record for longer");
   }
   describe_time();
+  check_rate();
+  check_velocity();
   table_.layout.names.clear();
   table_.layout.units.clear();
   table_.recording.name = std::filesystem::path(label_).stem().string();

@@ -20,12 +20,7 @@ constexpr std::int64_t kSecondsPerDay = 86400;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-bool parse_plain(const char* begin, const char* end, double& value) {
-  if (begin != end && *begin == '+') ++begin;
-  if (begin == end || !(is_digit(*begin) || *begin == '.' || *begin == '-')) return false;
-  const auto parsed = std::from_chars(begin, end, value);
-  return parsed.ec == std::errc() && parsed.ptr == end && std::isfinite(value);
-}
+bool parse_plain(const char* begin, const char* end, double& value) { return parse_number(begin, end, value) == end; }
 
 bool is_thousands_mark(char c, char decimal) {
   return c == '\'' || c == ' ' || (c == ',' && decimal == '.') || (c == '.' && decimal == ',');

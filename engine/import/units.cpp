@@ -27,7 +27,7 @@ constexpr std::array kUnits = {
     SpelledUnit{{"mm", Quantity::length, 1e-3}, "mm millimeter millimeters"},
     SpelledUnit{{"um", Quantity::length, 1e-6}, "um \xC2\xB5m \xCE\xBCm micron microns"},
     SpelledUnit{{"nm", Quantity::length, 1e-9}, "nm"},
-    SpelledUnit{{"inch", Quantity::length, 25.4e-3}, "inch inches"},
+    SpelledUnit{{"inch", Quantity::length, 25.4e-3}, "in inch inches"},
     SpelledUnit{{"N", Quantity::force, 1.0}, "N newton newtons"},
     SpelledUnit{{"mN", Quantity::force, 1e-3}, "mN"},
     SpelledUnit{{"uN", Quantity::force, 1e-6}, "uN \xC2\xB5N \xCE\xBCN"},
@@ -35,7 +35,8 @@ constexpr std::array kUnits = {
     SpelledUnit{{"kN", Quantity::force, 1e3}, "kN"},
     SpelledUnit{{"g", Quantity::force, kGramForce_N}, "g gf gram grams"},
     SpelledUnit{{"kg", Quantity::force, 1e3 * kGramForce_N}, "kg kgf"},
-    SpelledUnit{{"lbf", Quantity::force, kPoundForce_N}, "lbf lb"},
+    SpelledUnit{{"lbf", Quantity::force, kPoundForce_N}, "lbf lb lbs"},
+    SpelledUnit{{"kip", Quantity::force, 1e3 * kPoundForce_N}, "kip kips"},
 };
 
 constexpr std::string_view kOpening = "[(<{";

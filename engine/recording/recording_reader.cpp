@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -28,15 +27,9 @@ const char* find_comma(const char* at, const char* end) {
 }  // namespace
 
 const char* parse_recording_number(const char* begin, const char* end, double& value) {
-  const char* at = skip_blanks(begin, end);
-  // from_chars takes no '+'; "+-1" must stay wrong.
-  if (at != end && *at == '+') {
-    ++at;
-    if (at != end && *at == '-') return nullptr;
-  }
-  const auto parsed = std::from_chars(at, end, value);
-  if (parsed.ec != std::errc() || !std::isfinite(value)) return nullptr;
-  at = skip_blanks(parsed.ptr, end);
+  const char* at = parse_number(skip_blanks(begin, end), end, value);
+  if (at == nullptr) return nullptr;
+  at = skip_blanks(at, end);
   return at == end || *at == ',' ? at : nullptr;
 }
 

@@ -12,10 +12,6 @@ std::array<double, kKnownColumns> values_of(const RecordingRow& row) {
   return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
 }
 
-bool rate_in_range(double step_s) {
-  return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz && step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
-}
-
 // What to do about a median step that no recording has.
 std::string rate_advice(double step_s) {
   struct Unit {
@@ -45,6 +41,10 @@ RowFault time_fault(double time_s, double last_time_s) {
 }
 
 }  // namespace
+
+bool rate_in_range(double step_s) {
+  return step_s <= (1.0 + kRateTolerance) / kMinimumRate_Hz && step_s >= (1.0 - kRateTolerance) / kMaximumRate_Hz;
+}
 
 RowRules::RowRules() { steps_s_.reserve(kRateRows); }
 

@@ -35,6 +35,8 @@ inline constexpr double kMaximumForce_N = 1e6;
 inline constexpr double kMinimumRate_Hz = 10.0;
 inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;
+// Whether rows so far apart have a rate in that range.
+bool rate_in_range(double step_s);
 // The rate is checked once, from this many rows, so that rows can stream.
 inline constexpr std::size_t kRateRows = 1000;
 

@@ -115,8 +115,8 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
   snapshot_.fault = TickFault::none;
   snapshot_.time_s = sample.time_s;
   snapshot_.position_m = sample.position_m;
-  snapshot_.in_contact = sample.position_m > 0.0;
-  // A model's own surface may lie further out.
+  // Each model has a surface of its own.
+  snapshot_.in_contact = filters_.empty() && sample.position_m > 0.0;
   for (const FeatureFilter& one : filters_) snapshot_.in_contact = snapshot_.in_contact || one.vector().in_contact;
   snapshot_.depth_m = std::max(0.0, sample.position_m);
   snapshot_.velocity_m_per_s = motion.velocity_m_per_s;

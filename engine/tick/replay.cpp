@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "engine/tick/jnd.h"
@@ -21,11 +22,11 @@ constexpr std::size_t kFewestAirRows = 20;
 
 // The deviation of the force before the first contact: a sensor that wanders, a mass that
 // it carries, cables that drag. 0 where too little of it was recorded.
-double air_deviation_N(const RecordingRow* rows, std::size_t count) {
+double air_deviation_N(const RecordingRow* rows, std::size_t count, double surface_m) {
   double sum = 0.0;
   double squares = 0.0;
   std::size_t air = 0;
-  for (; air < count && rows[air].position_m <= 0.0; ++air) {
+  for (; air < count && rows[air].position_m <= surface_m; ++air) {
     sum += rows[air].force_N;
     squares += rows[air].force_N * rows[air].force_N;
   }
@@ -35,18 +36,38 @@ double air_deviation_N(const RecordingRow* rows, std::size_t count) {
 }
 
 // Beyond it a measured force is contact.
-double least_contact_N(const RecordingRow* rows, std::size_t count) {
-  const double noise_N = std::max(identify_force_noise_N(rows, count), air_deviation_N(rows, count));
+double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m) {
+  const double noise_N = std::max(identify_force_noise_N(rows, count), air_deviation_N(rows, count, surface_m));
   return certain_force_N(noise_N);
 }
 
-void run(HapticsTick& tick, double least_contact_N, const RecordingRow* rows, std::size_t count,
+double common_surface_m(const ForceModels& models) {
+  double outermost_m = std::numeric_limits<double>::infinity();
+  for (const auto& model : models) {
+    const double own_m = surface_position_m(model->features());
+    if (own_m != 0.0) outermost_m = std::min(outermost_m, own_m);
+  }
+  return std::isfinite(outermost_m) ? outermost_m : 0.0;
+}
+
+struct ContactRule {
+  double surface_m = 0.0;
+  double least_N = 0.0;
+};
+
+ContactRule contact_rule(const ForceModels& models, const RecordingRow* rows, std::size_t count,
+                         double surface_offset_m) {
+  const double surface_m = common_surface_m(models);
+  return {surface_m, least_contact_N(rows, count, surface_m + surface_offset_m)};
+}
+
+void run(HapticsTick& tick, const ContactRule& contact, const RecordingRow* rows, std::size_t count,
          const ReplayVisitor& visitor, double surface_offset_m, ReplaySummary& summary) {
   for (std::size_t i = 0; i < count; ++i) {
     ToolSample sample = tool_sample(rows[i]);
     sample.position_m -= surface_offset_m;
     TickSnapshot snapshot = tick.step(sample);
-    snapshot.in_contact = sample.position_m > 0.0 || std::abs(rows[i].force_N) > least_contact_N;
+    snapshot.in_contact = sample.position_m > contact.surface_m || std::abs(rows[i].force_N) > contact.least_N;
     ++summary.samples;
     if (snapshot.in_contact) ++summary.contact_samples;
     if (visitor) visitor(rows[i], snapshot, tick);
@@ -61,8 +82,9 @@ Result<ReplaySummary> replay(const Recording& recording, const ForceModels& mode
   ReplaySummary summary;
   summary.sensor = identify_sensor(recording.rows.data(), recording.rows.size(), recording.columns);
   HapticsTick tick(summary.sensor, models);
-  run(tick, least_contact_N(recording.rows.data(), recording.rows.size()), recording.rows.data(), recording.rows.size(),
-      visitor, surface_offset_m, summary);
+  const RecordingRow* const rows = recording.rows.data();
+  run(tick, contact_rule(models, rows, recording.rows.size(), surface_offset_m), rows, recording.rows.size(), visitor,
+      surface_offset_m, summary);
   return summary;
 }
 
@@ -75,10 +97,10 @@ Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models,
   if (!count) return count.error();
   ReplaySummary summary;
   summary.sensor = identify_sensor(rows.data(), *count, reader.columns());
-  const double least_N = least_contact_N(rows.data(), *count);
+  const ContactRule contact = contact_rule(models, rows.data(), *count, surface_offset_m);
   HapticsTick tick(summary.sensor, models);
   while (*count > 0) {
-    run(tick, least_N, rows.data(), *count, visitor, surface_offset_m, summary);
+    run(tick, contact, rows.data(), *count, visitor, surface_offset_m, summary);
     count = reader.read(rows.data(), rows.size());
     if (!count) return count.error();
   }

@@ -5,9 +5,9 @@
 // kSensorIdentificationRows rows, so a recording in memory and the same one read
 // in chunks give the same forces.
 //
-// In contact, for the visitor, is a sample at a position above 0, or one whose measured
-// force is beyond both the JND at 0 N and five times its noise: an adhesive material pulls
-// outside, too.
+// In contact, for the visitor, is a sample beyond the surface, or one whose measured force is beyond both the
+// JND at 0 N and five times its noise: an adhesive material pulls outside, too. The surface is the outermost of
+// the models that have one of their own; without any it is at 0.
 //
 // Thread guarantee: slow side (allocates before the first row, calls the
 // visitor); one thread at a time.

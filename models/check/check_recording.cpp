@@ -1,11 +1,11 @@
 #include "models/check/check_recording.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "engine/recording/content_hash.h"
 #include "engine/recording/press_direction.h"
 #include "engine/tick/jnd.h"
 #include "engine/tick/sensor_identification.h"
@@ -18,16 +18,12 @@ namespace {
 
 // A range of forces below this, or below five deviations of its noise, is no press.
 constexpr double kLeastTravel_m = 10e-6;
-// A hand presses with some 100 N at most; stiffer than 15 kN/m is harder than any
-// haptic device renders (the stiff block of the scenes has 3 kN/m). A testing machine
-// presses a shoe sole with 2 kN over 10 mm, which looks like a hand's press in grams:
-// only what is beyond it can be refused.
-constexpr double kStrangeForce_N = 100.0;
-constexpr double kImpossibleForce_N = 3000.0;
-constexpr double kStrangeStiffness_N_per_m = 15e3;
-constexpr double kImpossibleStiffness_N_per_m = 400e3;
+// A flat punch of 20 mm on the hardest rubber: 2 E a / (1 - nu^2) with E = 10 MPa, a = 10 mm (Johnson 1985, section
+// 3.4). What is stiffer is no soft material, or its unit is wrong; a testing machine may press as hard.
+constexpr double kHardRubber_N_per_m = 270e3;
+// A bench testing machine's load cell.
+constexpr double kLargestForce_N = 10e3;
 constexpr double kStrangeDepth_m = 0.05;
-constexpr double kImpossibleDepth_m = 0.2;
 constexpr double kGap_s = 0.25;
 constexpr double kGapSteps = 20.0;
 constexpr double kClippedTravelShare = 0.015;
@@ -49,7 +45,8 @@ std::string words(const char* format, Values... values) {
 
 class Checker {
  public:
-  Checker(const Recording& recording, const CheckRequest& request) : recording_(recording), request_(request) {}
+  Checker(const Recording& recording, const CheckRequest& request, const RecordingFaults& faults)
+      : recording_(recording), request_(request), faults_(faults) {}
   RecordingCheck run();
 
  private:
@@ -57,6 +54,7 @@ class Checker {
     check_.findings.push_back({code, severity, value, std::move(text), std::move(advice)});
   }
   bool check_signal();
+  void check_faults();
   void check_signs();
   void check_units();
   void check_sampling();
@@ -75,6 +73,7 @@ class Checker {
 
   const Recording& recording_;
   const CheckRequest& request_;
+  const RecordingFaults& faults_;
   RecordingCheck check_;
   RecordingMeasures measures_;
   SurfaceEstimate surface_;
@@ -96,6 +95,26 @@ bool Checker::check_signal() {
         "check the encoder and which column was recorded as position_m");
   }
   return force && motion;
+}
+
+void Checker::check_faults() {
+  const std::size_t dropouts = faults_.position_dropouts + faults_.force_dropouts;
+  if (dropouts > 0) {
+    const double share = static_cast<double>(dropouts) / static_cast<double>(faults_.rows);
+    add("dropouts", Severity::warning, share,
+        words("single rows leave the course of the position %zu times and that of the force %zu times, %.2g %% of the "
+              "rows: they are left out",
+              faults_.position_dropouts, faults_.force_dropouts, 100.0 * share),
+        "check cables, connectors and the interface of the sensor");
+  }
+  if (faults_.update_step_s > 0.0) {
+    add("repeated_positions", Severity::warning, faults_.update_step_s,
+        words(
+            "the position changes every %.3g ms only and is repeated in the rows between: the %zu rows with a new one "
+            "are used",
+            1e3 * faults_.update_step_s, faults_.updates),
+        "read the position as often as the force");
+  }
 }
 
 void Checker::check_signs() {
@@ -129,18 +148,15 @@ void Checker::check_signs() {
 void Checker::check_units() {
   const double peak_N = std::max(std::abs(measures_.highest_force_N), std::abs(measures_.lowest_force_N));
   if (travel_m() > kStrangeDepth_m && depth_m() > kStrangeDepth_m) {
-    add("position_unit", depth_m() > kImpossibleDepth_m ? Severity::fatal : Severity::warning, depth_m(),
-        words("the tool goes %.3g m deep", depth_m()),
+    add("position_unit", Severity::warning, depth_m(), words("the tool goes %.3g m deep", depth_m()),
         "position_m must be in metres: if it is in millimetres, divide by 1000 (palpate import --units mm,N)");
   }
   const double stiffness_N_per_m = force_range_N() / std::max(travel_m(), kLeastTravel_m);
-  const bool impossible = peak_N > kImpossibleForce_N || stiffness_N_per_m > kImpossibleStiffness_N_per_m;
-  if (!impossible && peak_N <= kStrangeForce_N && stiffness_N_per_m <= kStrangeStiffness_N_per_m) return;
-  add("force_unit", impossible ? Severity::fatal : Severity::warning, peak_N,
-      words("the force reaches %.4g N over %.3g mm, %.3g kN/m", peak_N, 1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
-      "force_N must be in newtons and position_m in metres: if the force is in mN or grams, import it with --units "
-      "mm,mN "
-      "or --units mm,g");
+  if (peak_N <= kLargestForce_N && stiffness_N_per_m <= kHardRubber_N_per_m) return;
+  add("force_unit", Severity::warning, peak_N,
+      words("the force reaches %.4g N over %.3g mm, %.3g kN/m: stiffer than hard rubber under a punch of 20 mm", peak_N,
+            1e3 * travel_m(), 1e-3 * stiffness_N_per_m),
+      "where the file is not in newtons and metres, import it with its units (palpate import --units)");
 }
 
 void Checker::check_sampling() {
@@ -271,24 +287,27 @@ void Checker::check_surface() {
 }
 
 void Checker::check_exploration() {
+  const double from_m = measures_.outermost_contact_m;
   add("strokes", Severity::note, measures_.strokes,
-      words("%d %s, %.3g s in contact, to %.3g mm", measures_.strokes, measures_.strokes == 1 ? "stroke" : "strokes",
-            static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * depth_m()),
+      words("%d %s, %.3g s in contact, from %.4g to %.4g mm", measures_.strokes,
+            measures_.strokes == 1 ? "stroke" : "strokes",
+            static_cast<double>(measures_.contact_rows) * measures_.median_step_s, 1e3 * from_m,
+            1e3 * measures_.highest_position_m),
       measures_.strokes < kFewStrokes ? "record more strokes of different depth and speed" : "");
-  if (!(depth_m() > 0.0)) return;
+  const double pressed_m = measures_.highest_position_m - from_m;
+  if (!(pressed_m > 0.0)) return;
   int empty = 0;
   std::string where;
-  constexpr const char* kBands[kSpeedBands] = {"slow (below 10 mm/s)", "by hand (10 to 50 mm/s)",
-                                               "fast (above 50 mm/s)"};
+  const auto bands = speed_band_names(measures_);
   for (std::size_t band = 0; band < kSpeedBands; ++band) {
     std::string quarters;
     for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
       if (measures_.seconds[quarter][band] >= kLeastCell_s) continue;
       ++empty;
-      quarters += words("%s%.3g-%.3g", quarters.empty() ? "" : ", ", 250.0 * static_cast<double>(quarter) * depth_m(),
-                        250.0 * static_cast<double>(quarter + 1) * depth_m());
+      const auto edge_mm = [&](std::size_t i) { return 1e3 * (from_m + 0.25 * static_cast<double>(i) * pressed_m); };
+      quarters += words("%s%.4g-%.4g", quarters.empty() ? "" : ", ", edge_mm(quarter), edge_mm(quarter + 1));
     }
-    if (!quarters.empty()) where += (where.empty() ? "" : "; ") + std::string(kBands[band]) + " at " + quarters + " mm";
+    if (!quarters.empty()) where += (where.empty() ? "" : "; ") + bands[band] + " at " + quarters + " mm";
   }
   const int cells = static_cast<int>(kDepthQuarters * kSpeedBands);
   add("explored", Severity::note, static_cast<double>(cells - empty) / cells,
@@ -304,12 +323,12 @@ void Checker::check_memory() {
     add("monotonic", Severity::warning,
         measures_.outward_travel_m / std::max(measures_.inward_travel_m, kLeastTravel_m),
         "the tool goes in and hardly comes out, so that depth and memory cannot be told apart",
-        "record releases and holds, or fit a scene without relaxation (--scene elastic_block)");
+        "record releases and holds");
   }
   if (measures_.duration_s < kRelaxationsToSee * longest_s) {
     add("too_short", Severity::warning, measures_.duration_s,
         words("%.3g s are too short for a relaxation time of %.3g s", measures_.duration_s, longest_s),
-        words("record at least %.2g s, or fit a scene with shorter times", kRelaxationsToSee * longest_s));
+        words("record at least %.2g s", kRelaxationsToSee * longest_s));
   } else if (measures_.longest_hold_s < longest_s) {
     add("no_hold", Severity::note, measures_.longest_hold_s,
         words("the longest hold in contact is %.2g s, the scene's longest relaxation time %.3g s",
@@ -331,24 +350,12 @@ void Checker::find_noise_floor() {
   check_.noise_floor_within_jnd = count > 0 ? sum / static_cast<double>(count) : 1.0;
 }
 
-// FNV-1a over the bits of the three required columns, eight bytes at a time.
-std::uint64_t hash_rows(const std::vector<RecordingRow>& rows) {
-  constexpr std::uint64_t kPrime = 0x100000001b3;
-  std::uint64_t hash = 0xcbf29ce484222325;
-  const double start_s = rows.front().time_s;
-  for (const RecordingRow& row : rows) {
-    for (const double value : {row.time_s - start_s, row.position_m, row.force_N}) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * kPrime;
-    }
-  }
-  return hash;
-}
-
 RecordingCheck Checker::run() {
   const auto& rows = recording_.rows;
-  check_.content_hash = hash_rows(rows);
+  check_.content_hash = content_hash(recording_);
   noise_N_ = identify_force_noise_N(rows.data(), rows.size());
   measures_ = measure_recording(recording_, 0.0);
+  check_faults();
   check_sampling();
   if (check_signal()) {
     check_signs();
@@ -387,8 +394,8 @@ const char* RecordingCheck::verdict() const {
   return kVerdicts[static_cast<std::size_t>(gravest)];
 }
 
-RecordingCheck check_recording(const Recording& recording, const CheckRequest& request) {
-  return Checker(recording, request).run();
+RecordingCheck check_recording(const Recording& recording, const CheckRequest& request, const RecordingFaults& faults) {
+  return Checker(recording, request, faults).run();
 }
 
 }  // namespace palpate

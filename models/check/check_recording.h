@@ -2,7 +2,7 @@
 // matters and what to do, for palpate check, fit, replay and report alike.
 //
 // Fatal is what makes a fit meaningless: a flipped sign, no force, no motion, no
-// contact, a wrong unit. Warnings are what a fit survives and its user should know;
+// contact. Warnings are what a fit survives and its user should know;
 // notes say what was measured.
 // Thread guarantee: slow side, pure but for check_recording_file (does I/O).
 #pragma once
@@ -16,6 +16,7 @@
 #include "engine/tick/jnd.h"
 #include "engine/tick/motion_estimator.h"
 #include "models/check/recording_measures.h"
+#include "models/recordings/recording_faults.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
@@ -55,14 +56,16 @@ struct RecordingCheck {
 };
 
 // `recording`: at least kRecordingMinimumRows rows.
-RecordingCheck check_recording(const Recording& recording, const CheckRequest& request);
+// `faults`: what was left out of it.
+RecordingCheck check_recording(const Recording& recording, const CheckRequest& request,
+                               const RecordingFaults& faults = {});
 
 // Longer recordings are checked by their first rows: 100 minutes at 1 kHz.
 inline constexpr std::size_t kMostCheckedRows = 6000000;
 
 struct CheckedFile {
   std::string path;
-  Recording recording;  // what was checked
+  Recording recording;  // what was checked, without its faults
   bool whole = true;    // false: the file is longer than kMostCheckedRows
   RecordingCheck check;
 };

@@ -1,25 +1,51 @@
 // Recordings read and checked, for the verbs.
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
+#include "engine/base/text.h"
 #include "models/check/check_recording.h"
+#include "models/check/contradiction.h"
 
 namespace palpate {
 namespace {
+
+// Beyond it a material may have other forces on the way in.
+constexpr double kOtherSpeed = 3.0;
+
+void add_finding(CheckedFile& file, Finding finding) {
+  auto& findings = file.check.findings;
+  findings.insert(findings.begin(), std::move(finding));
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+}
 
 void add_repetitions(std::vector<CheckedFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (files[i].check.content_hash != files[j].check.content_hash) continue;
-      files[i].check.findings.insert(
-          files[i].check.findings.begin(),
-          {"repeated", Severity::warning, 1.0, "it has the same rows as " + files[j].path,
-           "name every recording once: a repeated one counts twice, and errors on it say nothing"});
-      auto& findings = files[i].check.findings;
-      std::stable_sort(findings.begin(), findings.end(),
-                       [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+      add_finding(files[i], {"repeated", Severity::warning, 1.0, "it has the same rows as " + files[j].path,
+                             "name every recording once: a repeated one counts twice, and errors on it say nothing"});
       break;
+    }
+  }
+}
+
+// A finding of the first file that contradicts an earlier one.
+void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto found = find_contradiction(files[j].recording, files[i].recording, jnd);
+      if (!found) continue;
+      const bool speed = found->speed_ratio > kOtherSpeed;
+      add_finding(files[i], {"contradiction", Severity::warning, found->force_N,
+                             "its forces differ by " + general(std::abs(found->force_N), 2) + " N from those of " +
+                                 files[j].path + " at the same depth: another specimen, a preload, " +
+                                 (speed ? "a force zero, or the " + general(found->speed_ratio, 2) + "-fold speed"
+                                        : std::string("or a force zero")),
+                             "no single model renders both: fit them one by one, or subtract what differs"});
+      return;
     }
   }
 }
@@ -31,10 +57,11 @@ std::string finding_line(const CheckedFile& file, const Finding& finding) {
 }  // namespace
 
 Result<CheckedFile> check_recording_file(const std::string& path, const CheckRequest& request) {
-  auto recording = read_recording(path, kMostCheckedRows);
+  RecordingFaults faults;
+  auto recording = read_usable_recording(path, kMostCheckedRows, &faults);
   if (!recording) return recording.error();
-  const bool whole = recording->rows.size() < kMostCheckedRows;
-  RecordingCheck check = check_recording(*recording, request);
+  const bool whole = faults.rows < kMostCheckedRows;
+  RecordingCheck check = check_recording(*recording, request, faults);
   return CheckedFile{path, std::move(*recording), whole, std::move(check)};
 }
 
@@ -47,6 +74,7 @@ Result<std::vector<CheckedFile>> check_recording_files(const std::vector<std::st
     files.push_back(std::move(*file));
   }
   add_repetitions(files);
+  add_contradiction(files, request.jnd);
   return files;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/base/text.h"
+
 namespace palpate {
 namespace {
 
@@ -61,8 +63,10 @@ void measure_flat_tops(const std::vector<RecordingRow>& rows, RecordingMeasures&
 
 class MotionMeasure {
  public:
-  MotionMeasure(RecordingMeasures& measures, double surface_m)
-      : measures_(measures), surface_m_(surface_m), deepest_m_(measures.highest_position_m - surface_m) {}
+  explicit MotionMeasure(RecordingMeasures& measures)
+      : measures_(measures),
+        surface_m_(measures.outermost_contact_m),
+        deepest_m_(measures.highest_position_m - measures.outermost_contact_m) {}
 
   // A row and the first row of the window that ends with it.
   void add(const RecordingRow& before, const RecordingRow& row, double step_s) {
@@ -76,8 +80,8 @@ class MotionMeasure {
     (speed_m_per_s > 0.0 ? measures_.inward_travel_m : measures_.outward_travel_m) += std::abs(speed_m_per_s) * step_s;
     const auto quarter = static_cast<std::size_t>(depth_m / deepest_m_ * static_cast<double>(kDepthQuarters));
     const auto band = static_cast<std::size_t>(
-        std::upper_bound(kSpeedEdges_m_per_s.begin(), kSpeedEdges_m_per_s.end(), std::abs(speed_m_per_s)) -
-        kSpeedEdges_m_per_s.begin());
+        std::upper_bound(kSpeedEdges_per_s.begin(), kSpeedEdges_per_s.end(), std::abs(speed_m_per_s) / deepest_m_) -
+        kSpeedEdges_per_s.begin());
     measures_.seconds[std::min(quarter, kDepthQuarters - 1)][band] += std::min(step_s, 10.0 * measures_.median_step_s);
     follow_turns(depth_m);
     if (std::abs(row.position_m - hold_m_) > kHoldShare * deepest_m_) {
@@ -129,13 +133,21 @@ RecordingMeasures measure_recording(const Recording& recording, double surface_m
   measure_sampling(rows, measures);
   measure_ranges(rows, measures);
   measure_flat_tops(rows, measures);
-  MotionMeasure motion(measures, surface_m);
+  measures.outermost_contact_m = std::max(surface_m, measures.lowest_position_m);
+  MotionMeasure motion(measures);
   std::size_t before = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     while (before + 1 < i && rows[i].time_s - rows[before].time_s > kSpeedWindow_s) ++before;
     motion.add(rows[before], rows[i], i > 0 ? rows[i].time_s - rows[i - 1].time_s : 0.0);
   }
   return measures;
+}
+
+std::array<std::string, kSpeedBands> speed_band_names(const RecordingMeasures& measures) {
+  const double pressed_mm = 1e3 * (measures.highest_position_m - measures.outermost_contact_m);
+  const std::string low = general(kSpeedEdges_per_s[0] * pressed_mm, 2);
+  const std::string high = general(kSpeedEdges_per_s[1] * pressed_mm, 2);
+  return {"below " + low + " mm/s", low + " to " + high + " mm/s", "above " + high + " mm/s"};
 }
 
 }  // namespace palpate

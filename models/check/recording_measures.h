@@ -4,15 +4,17 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "engine/recording/recording.h"
 
 namespace palpate {
 
-// Depths by quarters of the deepest, speeds by bands.
+// Depths by quarters of what was pressed, speeds by bands: one and five times that in a second, 10 and
+// 50 mm/s where a hand presses by 10 mm.
 inline constexpr std::size_t kDepthQuarters = 4;
 inline constexpr std::size_t kSpeedBands = 3;
-inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_m_per_s = {0.01, 0.05};
+inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_per_s = {1.0, 5.0};
 inline constexpr double kLeastCell_s = 0.05;  // less time in a cell: it was not visited
 
 struct RecordingMeasures {
@@ -28,7 +30,9 @@ struct RecordingMeasures {
   // the position goes on; the greatest way that it goes in one run.
   std::size_t flat_rows = 0;
   double flat_travel_m = 0.0;
-  // Inside: beyond the surface given.
+  // Inside: beyond the surface given. Where the tool never came out that far, depths count from the outermost
+  // position.
+  double outermost_contact_m = 0.0;
   std::size_t contact_rows = 0;
   int strokes = 0;
   double inward_travel_m = 0.0;
@@ -39,5 +43,8 @@ struct RecordingMeasures {
 };
 
 RecordingMeasures measure_recording(const Recording& recording, double surface_m);
+
+// "below 10 mm/s", "10 to 50 mm/s", "above 50 mm/s".
+std::array<std::string, kSpeedBands> speed_band_names(const RecordingMeasures& measures);
 
 }  // namespace palpate

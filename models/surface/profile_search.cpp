@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMostValleys = 4;
 constexpr double kMostScans = 1e6;
+constexpr int kForceSteps = 16;  // to a thousandth of the largest
 constexpr double kGolden = 0.6180339887498949;
 constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
 // In place of a cost that is not a number: worse than any other, and sums of it stay finite.
@@ -55,6 +56,8 @@ class Search {
       found.told = false;
     if (!found.told) found.standard_error = kUnknownError;
     if (found.told && found.not_zero) found.at = best_.at;
+    found.minimum_at = best_.at;
+    found.minimum = best_.costs;
     return found;
   }
 
@@ -163,6 +166,30 @@ class Search {
 
 Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
   return Search(cost, range).run();
+}
+
+Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N) {
+  if (!shift.told || !shift.not_zero || !(most_N > 0.0)) return shift;
+  // J is convex in the offset of the force, but for Huber's bound: one valley.
+  double low_N = -most_N;
+  double high_N = most_N;
+  const auto total = [&](double offset_N) { return sum(cost(offset_N)); };
+  for (int step = 0; step < kForceSteps; ++step) {
+    const double a_N = high_N - kGolden * (high_N - low_N);
+    const double b_N = low_N + kGolden * (high_N - low_N);
+    if (total(a_N) < total(b_N)) {
+      high_N = b_N;
+    } else {
+      low_N = a_N;
+    }
+  }
+  const double offset_N = 0.5 * (low_N + high_N);
+  if (!is_as_good(cost(offset_N), shift.minimum)) return shift;
+  shift.told = false;
+  shift.at = 0.0;
+  shift.standard_error = kUnknownError;
+  shift.force_offset_N = offset_N;
+  return shift;
 }
 
 }  // namespace palpate

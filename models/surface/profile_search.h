@@ -30,6 +30,10 @@ struct Located {
   bool told = false;
   double cost = 0.0;  // J there, and at 0
   double cost_at_zero = 0.0;
+  double minimum_at = 0.0;  // where J is least, told or not, and its blocks
+  BlockCosts minimum{};
+  // Another explanation, which J cannot distinguish from an offset that then is not told: N; 0: none.
+  double force_offset_N = 0.0;
 };
 
 struct SearchRange {
@@ -43,5 +47,10 @@ struct SearchRange {
 };
 
 Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
+
+// Whether an offset of the force explains as much as the shift that was found, within one standard error
+// (acceptance.h): `cost` has J by blocks for
+// an offset of the force in N, of at most `most_N` either way. Then the shift is not told.
+Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N);
 
 }  // namespace palpate

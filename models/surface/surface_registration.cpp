@@ -67,13 +67,29 @@ Member member_of(const std::vector<SurfaceRow>& rows, double force_noise_N, std:
   return member;
 }
 
+double largest_force_N(const std::vector<SurfaceRow>& rows) {
+  double largest_N = 0.0;
+  for (const SurfaceRow& row : rows) largest_N = std::max(largest_N, std::abs(row.force_N));
+  return largest_N;
+}
+
 // Where `member` lies to those in `fit`, which go from `low_m` to `high_m`.
 Located place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
   const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
   const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
-  return locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
+  const Located place = locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
+  // Recordings that do not overlap as recorded agree with any offset of the force.
+  if (from_m > 0.0 || to_m < 0.0) return place;
+  std::vector<SurfaceRow> rows = member.rows;
+  return unless_force_offset(
+      place,
+      [&](double offset_N) {
+        for (std::size_t i = 0; i < rows.size(); ++i) rows[i].force_N = member.rows[i].force_N - offset_N;
+        return fit.residual(rows, 0.0);
+      },
+      largest_force_N(member.rows));
 }
 
 // Where force begins at the same place in both, as each shows by itself, a shift is the

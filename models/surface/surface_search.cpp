@@ -14,9 +14,11 @@ constexpr double kCoarseSearch_m = 0.1e-3;
 constexpr double kMostCoarseSteps = 200.0;
 constexpr double kSearchHuberLimit = 1.0;  // JND
 
-void add_costs(const ForceModel& model, const std::vector<SurfaceRow>& rows, const std::vector<std::size_t>& blocks,
-               double offset_m, const JndLine& jnd, BlockCosts& costs) {
+using ForceErrors = std::vector<double>;  // model less measured, N, one a row
+
+ForceErrors errors_of(const ForceModel& model, const std::vector<SurfaceRow>& rows, double offset_m) {
   FeatureFilter filter(model.features());
+  ForceErrors errors(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     ToolSample sample = rows[i].sample;
     MotionEstimate motion = rows[i].motion;
@@ -24,8 +26,16 @@ void add_costs(const ForceModel& model, const std::vector<SurfaceRow>& rows, con
     motion.position_m -= offset_m;
     const FeatureVector& vector = filter.update(sample, motion);
     const double force_N = vector.in_contact ? model.evaluate(vector.values.data()).force_N : 0.0;
-    costs[blocks[i]] += huber((force_N - rows[i].force_N) / jnd.at(rows[i].force_N), kSearchHuberLimit);
+    errors[i] = force_N - rows[i].force_N;
   }
+  return errors;
+}
+
+// `force_offset_N`: what the measured force has too much.
+void add_costs(const ForceErrors& errors, double force_offset_N, const std::vector<SurfaceRow>& rows,
+               const std::vector<std::size_t>& blocks, const JndLine& jnd, BlockCosts& costs) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    costs[blocks[i]] += huber((errors[i] + force_offset_N) / jnd.at(rows[i].force_N), kSearchHuberLimit);
 }
 
 }  // namespace
@@ -42,13 +52,28 @@ Located locate_surface(const std::vector<SurfaceRow>& rows,
   const double way_m = high->motion.position_m - low->motion.position_m;
   const double reach_m = std::max({way_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
   const std::vector<std::size_t> blocks = blocks_by_way(rows, CommonFit::kBlocks);
-  return locate(
+  const Located shift = locate(
       [&](double offset_m) {
         BlockCosts costs(CommonFit::kBlocks, 0.0);
-        for (const auto& model : models) add_costs(*model, rows, blocks, offset_m, jnd, costs);
+        for (const auto& model : models) add_costs(errors_of(*model, rows, offset_m), 0.0, rows, blocks, jnd, costs);
         return costs;
       },
       {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m, kWidestSurface_m});
+  if (!shift.told || !shift.not_zero) return shift;
+  std::vector<ForceErrors> unmoved;
+  double most_N = 0.0;
+  for (const auto& model : models) {
+    unmoved.push_back(errors_of(*model, rows, 0.0));
+    for (const double error_N : unmoved.back()) most_N = std::max(most_N, std::abs(error_N));
+  }
+  return unless_force_offset(
+      shift,
+      [&](double offset_N) {
+        BlockCosts costs(CommonFit::kBlocks, 0.0);
+        for (const ForceErrors& errors : unmoved) add_costs(errors, offset_N, rows, blocks, jnd, costs);
+        return costs;
+      },
+      most_N);
 }
 
 }  // namespace palpate

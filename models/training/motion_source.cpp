@@ -1,7 +1,6 @@
 #include "models/training/motion_source.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/recording/content_hash.h"
 #include "engine/tick/sensor_identification.h"
 
 namespace palpate {
@@ -61,22 +61,6 @@ class RowStream {
 constexpr std::size_t kStretches = 4;
 constexpr std::size_t kShortestStretch = 256;
 constexpr std::size_t kLongestStretch = 16384;
-
-// FNV-1a over the numbers of the rows.
-class ContentHash {
- public:
-  void add(const RecordingRow& row) {
-    for (const double value :
-         {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2}) {
-      value_ = (value_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001B3ULL;
-      value_ ^= value_ >> 29;
-    }
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xCBF29CE484222325ULL;
-};
 
 // Rows moved by their recording's correction, contacts counted as they are then.
 class CorrectedRows {
@@ -204,6 +188,7 @@ Status MotionSource::load(const FitControl& control, double fraction) {
   });
   for (std::size_t i = 0; i < recordings_.size(); ++i) {
     names_.push_back(recordings_[i].name);
+    hashes_.push_back(recordings_[i].hash);
     for (MotionRow& row : recordings_[i].rows) row.recording = static_cast<int>(i);
   }
   return {};

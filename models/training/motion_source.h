@@ -79,6 +79,7 @@ class MotionSource {
 
   // After the first pass.
   const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/content_hash.h
   // Recorded, of which no more than about `most_rows` are kept.
   std::size_t rows() const { return rows_; }
   // The largest force noise among the recordings, the coarsest of their encoder steps, then of
@@ -109,6 +110,7 @@ class MotionSource {
   std::vector<Input> inputs_;
   std::size_t most_rows_;
   std::vector<std::string> names_;  // none: not loaded yet
+  std::vector<std::uint64_t> hashes_;
   std::vector<OneRecording> recordings_;
   std::vector<RowCorrection> corrections_;
   std::size_t rows_ = 0;

@@ -73,8 +73,8 @@ std::string check_text(const CheckedFile& file) {
          << std::string(finding.code.size() < 17 ? 17 - finding.code.size() : 1, ' ') << finding.text
          << (finding.advice.empty() ? "" : "; " + finding.advice) << "\n";
   }
-  text << "  a perfect model would be within the JND in " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
-       << " % of the contact samples\n";
+  text << "  the noise of the force sensor alone leaves " << fixed(100.0 * file.check.noise_floor_within_jnd, 1)
+       << " % of the contact samples within the JND; it says nothing of a model\n";
   if (!file.whole) text << "  checked by its first " << kMostCheckedRows << " rows\n";
   return text.str();
 }

@@ -15,6 +15,7 @@
 #include "models/fit/recipe_2009.h"
 #include "models/model/file/model_io.h"
 #include "models/model/fitted_model.h"
+#include "models/recordings/recording_faults.h"
 #include "scenes/cli/check_recordings.h"
 #include "scenes/cli/feature_list.h"
 #include "scenes/cli/fit_output.h"
@@ -172,10 +173,10 @@ std::string training_contradiction(const std::vector<std::string>& recordings, c
   const auto model = std::make_shared<const FittedModel>(data);
   ErrorFigures errors;
   for (const std::string& path : recordings) {
-    auto reader = RecordingReader::open(path);
-    if (!reader) return {};
+    const auto recording = read_usable_recording(path, kMostCheckedRows);
+    if (!recording) return {};
     const auto replayed =
-        replay(*reader, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
+        replay(*recording, {model}, [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick&) {
           if (snapshot.in_contact) errors.add(snapshot.force_N[0], row.force_N, false, data.jnd);
         });
     if (!replayed) return {};

@@ -13,7 +13,6 @@ constexpr double kPeriod_s = 2.0;
 constexpr double kRest = 10.0;  // of what a check takes
 constexpr int kSmallStrokes = 10;
 
-constexpr const char* kBands[kSpeedBands] = {"below 10 mm/s", "10 to 50 mm/s", "above 50 mm/s"};
 constexpr const char* kPresses[kSpeedBands] = {
     "slow presses: take five seconds for the way in and as long for the way out",
     "presses by hand: half a second in, half a second out",
@@ -41,7 +40,9 @@ std::string guide_advice(const RecordingMeasures& measures, double longest_relax
 }
 
 std::vector<std::string> guide_cells(const RecordingMeasures& measures, double surface_m) {
-  std::vector<std::string> lines = {"  depth [mm]     " + std::string(kBands[0]) + "  " + kBands[1] + "  " + kBands[2]};
+  std::string names = "  depth [mm]     ";
+  for (const std::string& name : speed_band_names(measures)) names.append(name).append("  ");
+  std::vector<std::string> lines = {names};
   const double deepest_mm = 1e3 * (measures.highest_position_m - surface_m);
   for (std::size_t quarter = 0; quarter < kDepthQuarters; ++quarter) {
     const auto edge = [&](std::size_t i) { return fixed(0.25 * static_cast<double>(i) * deepest_mm, 2); };

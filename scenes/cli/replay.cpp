@@ -115,6 +115,7 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_told"] = replayed.surface.told;
+  object["force_offset_or_surface_N"] = replayed.surface.force_offset_N;
   const PredictedErrors& predicted = replayed.predicted;
   object["predicted_error"] = {
       {"bound_95_held", number_or_null(!std::isnan(predicted.held_share), predicted.held_share)},
@@ -158,6 +159,21 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
   return row;
 }
 
+// Two explanations that the recording does not distinguish, for the first model that has them.
+std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const Located& surface = replayed.models[i].surface;
+    if (surface.force_offset_N == 0.0) continue;
+    char text[320];
+    std::snprintf(text, sizeof text,
+                  "a surface that lies at %+.3f mm for %s and a force that is %+.3f N too large explain this recording "
+                  "as well as each other: neither is taken off",
+                  1e3 * surface.minimum_at, models[i].name.substr(0, 64).c_str(), surface.force_offset_N);
+    return text;
+  }
+  return {};
+}
+
 // What moving the surface changes of the share within the JND, in words; empty where that is little.
 std::string surface_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   std::size_t most = models.size();
@@ -193,6 +209,12 @@ void print_recording(const ReplayedRecording& replayed, const std::vector<Loaded
   print_table(rows, true);
   if (const std::string remark = surface_remark(replayed, models); !remark.empty())
     std::printf("note: %s\n", remark.c_str());
+  if (const std::string remark = ambiguity_remark(replayed, models); !remark.empty())
+    std::printf("note: %s\n", remark.c_str());
+}
+
+RowSource rows_of_checked(const CheckedFile& file) {
+  return file.whole ? rows_of(file.recording) : rows_of_file(file.path);
 }
 
 // Where features and forces, and a figure, of one recording go; empty: not wanted.
@@ -201,7 +223,7 @@ struct Outputs {
   std::string plot;
 };
 
-Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<LoadedModel>& models,
+Result<ReplayedRecording> replay_one(const CheckedFile& checked, const std::vector<LoadedModel>& models,
                                      const Outputs& outputs, bool overwrite) {
   std::vector<EvaluatedModel> evaluated;
   for (const LoadedModel& one : models) evaluated.push_back({one.model, one.model->data().jnd});
@@ -217,12 +239,12 @@ Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<
     if (forces) forces->add(row, snapshot, tick);
     if (!outputs.plot.empty()) plot.add(row, snapshot);
   };
-  const auto evaluation = evaluate(rows_of_file(path), evaluated, request);
+  const auto evaluation = evaluate(rows_of_checked(checked), evaluated, request);
   if (!evaluation) return evaluation.error();
   if (forces) {
     if (const Status status = forces->commit(); !status) return status.error();
   }
-  ReplayedRecording replayed{path, evaluation->samples, evaluation->contact_samples, {}};
+  ReplayedRecording replayed{checked.path, evaluation->samples, evaluation->contact_samples, {}};
   std::vector<ModelPointer> pointers;
   for (const LoadedModel& one : models) pointers.push_back(one.model);
   const std::vector<ModelTiming> times = time_models(pointers, {evaluation->timing});
@@ -233,7 +255,7 @@ Result<ReplayedRecording> replay_one(const std::string& path, const std::vector<
     replayed.models.push_back({errors.back(), one.surface_moved.summary(), one.predicted, one.surface, times[i]});
   }
   if (outputs.plot.empty()) return replayed;
-  const Status drawn = plot.draw(outputs.plot, fs::path(path).filename().string(), errors, overwrite);
+  const Status drawn = plot.draw(outputs.plot, fs::path(checked.path).filename().string(), errors, overwrite);
   return drawn ? Result<ReplayedRecording>(std::move(replayed)) : drawn.error();
 }
 
@@ -252,10 +274,11 @@ Status run(const Options& options) {
   if (!models) return models.error();
   CheckRequest request;
   request.jnd = models->front().model->data().jnd;
-  if (const auto checked = check_before_use(options.recordings, request); !checked) return checked.error();
+  const auto checked = check_before_use(options.recordings, request);
+  if (!checked) return checked.error();
   std::vector<ReplayedRecording> all;
-  for (std::size_t i = 0; i < options.recordings.size(); ++i) {
-    auto replayed = replay_one(options.recordings[i], *models, {forces[i], plots[i]}, options.force);
+  for (std::size_t i = 0; i < checked->size(); ++i) {
+    auto replayed = replay_one((*checked)[i], *models, {forces[i], plots[i]}, options.force);
     if (!replayed) return replayed.error();
     all.push_back(std::move(*replayed));
   }

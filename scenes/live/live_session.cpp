@@ -6,7 +6,7 @@
 
 #include "devices/registry/device_registry.h"
 #include "engine/base/text.h"
-#include "engine/recording/recording.h"
+#include "models/recordings/recording_faults.h"
 #include "models/model/fitted_model.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
@@ -36,7 +36,7 @@ Status take_recording(const SessionRequest& request, Scene& scene) {
   scene.recording = request.recording;
   if (request.device.rfind(kReplay, 0) == 0) scene.recording = request.device.substr(kReplay.size());
   if (scene.recording.empty()) return {};
-  const Result<Recording> recording = read_recording(scene.recording);
+  const Result<Recording> recording = read_usable_recording(scene.recording);
   if (!recording) return recording.error();
   scene.material.reset();
   scene.title = recording->name;

@@ -1,7 +1,6 @@
 #include "scenes/report/recordings.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
 #include <set>
 #include <string_view>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/text.h"
+#include "engine/recording/content_hash.h"
 #include "engine/tick/sensor_identification.h"
 #include "scenes/material/rig.h"
 
@@ -73,12 +73,6 @@ Status add_virtual_silicone(std::vector<SharedRecording>& all) {
   return {};
 }
 
-std::uint64_t mixed(std::uint64_t hash, double value) {         // FNV-1a
-  const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 is 0
-  for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> (8 * byte) & 0xff)) * 1099511628211ULL;
-  return hash;
-}
-
 using Forces = std::vector<double>;
 
 Forces forces_of(const Recording& recording) {
@@ -119,12 +113,6 @@ std::string seconds(const Recording& recording, std::size_t row) {
 }
 
 }  // namespace
-
-std::uint64_t content_hash(const Recording& recording) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const RecordingRow& row : recording.rows) hash = mixed(mixed(hash, row.position_m), row.force_N);
-  return hash;
-}
 
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested) {
   const Forces known = forces_of(trained);

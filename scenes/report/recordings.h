@@ -18,7 +18,7 @@ using SharedRecording = std::shared_ptr<const Recording>;
 struct RecordingFacts {
   std::string role;  // train, test, both
   std::string name;
-  std::string content_hash;  // of positions and forces, hexadecimal
+  std::string content_hash;  // engine/recording/content_hash.h, hexadecimal
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
   double seconds = 0.0;
@@ -46,9 +46,6 @@ struct RecordingSet {
   std::vector<RecordingFacts> facts;
   bool virtual_recordings = false;
 };
-
-// FNV-1a over positions and forces, row by row. Times and names do not count.
-std::uint64_t content_hash(const Recording& recording);
 
 // A stretch of at least this many rows with the same forces, and this many different
 // ones among them, is no chance.

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/recording/recording.h"
+#include "models/recordings/recording_faults.h"
 #include "models/fit/recipe_2009.h"
 #include "models/solve/lapack.h"
 #include "scenes/evaluation/model_timing.h"
@@ -154,7 +154,7 @@ Status ModelWorker::prepare_recording() {
   settings.material = scene_.material.value_or("");
   settings.seed = seed_;
   Result<Recording> recording = scene_.recording.empty() ? record_sensors(settings, control(0.0, kRecorded).progress)
-                                                         : read_recording(scene_.recording);
+                                                         : read_usable_recording(scene_.recording);
   if (!recording) return recording.error();
   recording_ = std::make_shared<const Recording>(std::move(*recording));
   return {};

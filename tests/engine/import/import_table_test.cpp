@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -130,10 +131,9 @@ TEST(ImportTable, SaysWhatIsBrokenAndWhere) {
   EXPECT_EQ(message(header + rows_of(",") + "0.030,oops,1\n0.040,0.5,1\n"),
             "rig.txt:14: found \"oops\" in column 2 \"pos [mm]\", expected the position; remove the row, repair the "
             "value, or say how many such rows may go: --skip-bad-rows N");
-  EXPECT_EQ(
-      message(header + rows_of(",") + "0.021,0.5,1\n"),
-      "rig.txt:14: found the time of the row before once more \"t [s]\", expected later times in every row; if the "
-      "rows are evenly spaced, add --rate 1000 (the mean rate so far), or remove the repeated row");
+  EXPECT_EQ(message(header + rows_of(",") + "0.020,0.5,1\n"),
+            "rig.txt:14: found a time 0.001 s before that of the row above \"t [s]\", expected later times in every "
+            "row; split the file there, or sort its rows; if the rows are evenly spaced, add --rate 1000");
   EXPECT_EQ(message(header + rows_of(",", 4)),
             "rig.txt: found 4 rows of numbers, expected at least 10; record for longer");
 }
@@ -145,6 +145,69 @@ TEST(ImportTable, ShiftsTheTimeAndSaysSo) {
   EXPECT_EQ(table->recording.rows.front().time_s, 0.0);
   ASSERT_FALSE(table->notes.empty());
   EXPECT_EQ(table->notes.front(), "time began at 0.01 s and begins at 0 now");
+}
+
+ImportedTable imported(const std::string& bytes, const ImportRequest& request = {}) {
+  const auto table = import_table(*decode_foreign_text(bytes, "rig.txt"), "rig.txt", request);
+  EXPECT_TRUE(table.ok()) << table.error().message;
+  return table.ok() ? *table : ImportedTable{};
+}
+
+bool notes_have(const ImportedTable& table, const std::string& text) {
+  return std::any_of(table.notes.begin(), table.notes.end(),
+                     [&](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+TEST(ImportTable, KeepsTheFirstOfRowsWithOneTime) {
+  const ImportedTable table = imported("t [s],pos [mm],F [N]\n" + rows_of(",") + "0.021,0.7,9\n0.022,0.5,1\n");
+  ASSERT_EQ(table.recording.rows.size(), 13u);
+  EXPECT_NEAR(table.recording.rows[11].position_m, 0.5e-3, 1e-12);
+  EXPECT_TRUE(notes_have(table, "1 row with the time of the row before left out"));
+}
+
+TEST(ImportTable, ComparesARateWithTheTimesOfTheFile) {
+  const std::string text = "t [s],pos [mm],F [N]\n" + rows_of(",");
+  EXPECT_TRUE(notes_have(imported(text, request({}, {}, 500.0)), "by the times of the file 0.011 s"));
+  EXPECT_FALSE(notes_have(imported(text, request({}, {}, 1000.0)), "by the times of the file"));
+}
+
+TEST(ImportTable, KnowsUnitsAndNamesOfManyPrograms) {
+  const auto last_row = [](const std::string& head) { return imported(head + rows_of(",")).recording.rows.back(); };
+  EXPECT_NEAR(last_row("Time,Extension,Load\n(s),(mm),(N)\n").position_m, 0.5e-3, 1e-12);
+  EXPECT_NEAR(last_row("time (s),displacement (in),load (kip)\n").position_m, 12.7e-3, 1e-9);
+  EXPECT_NEAR(last_row("time (s),displacement (mm),load (kip)\n").force_N, 11.25 * 4448.2216, 0.1);
+  EXPECT_NEAR(last_row("time (s),displacement (mm),load (kgf)\n").force_N, 11.25 * 9.80665, 1e-6);
+  EXPECT_NEAR(last_row("time (s),displacement (mm),load (lbf)\n").force_N, 11.25 * 4.4482216, 1e-5);
+  for (const char* head :
+       {"Zeit [s],Traversenweg [mm],Standardkraft [N]\n", "Tiempo (s),Desplazamiento (mm),Fuerza (N)\n",
+        "temps (s),d\xC3\xA9placement (mm),effort (N)\n",
+        "time_history (s),displacement_history (mm),force_history (N)\n",
+        "\xE6\x97\xB6\xE9\x97\xB4(s),\xE4\xBD\x8D\xE7\xA7\xBB(mm),\xE5\x8A\x9B(N)\n"}) {
+    EXPECT_NEAR(last_row(head).position_m, 0.5e-3, 1e-12) << head;
+    EXPECT_EQ(last_row(head).force_N, 11.25) << head;
+  }
+}
+
+TEST(ImportTable, AConstantColumnIsNoTime) {
+  std::string text = "time,t2 [s],pos [mm],F [N]\n";
+  for (int i = 0; i < 12; ++i) text += "5,0.0" + std::to_string(10 + i) + ",0.5," + std::to_string(i) + "\n";
+  EXPECT_EQ(imported(text, request({"", "", ""})).columns[0].number, 2u);
+}
+
+TEST(ImportTable, ReadsAMeasuredVelocity) {
+  const auto table = [](double factor) {
+    std::string text = "t [s],pos [mm],F [N],Speed (mm/s)\n";
+    for (int i = 0; i < 40; ++i) {
+      const double t = 0.01 * i;
+      for (const double value : {t, 3.0 * t * t, 1.0 + t, factor * 6.0 * t}) text += std::to_string(value) + ",";
+      text.back() = '\n';
+    }
+    return imported(text);
+  };
+  const ImportedTable good = table(1.0);
+  EXPECT_TRUE(good.recording.columns.velocity);
+  EXPECT_NEAR(good.recording.rows[20].velocity_m_per_s, 1.2e-3, 1e-8);
+  EXPECT_FALSE(table(-1.0).recording.columns.velocity);  // not the rate of the position
 }
 
 TEST(ImportTable, NeverFlipsByItself) {

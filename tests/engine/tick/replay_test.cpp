@@ -36,6 +36,22 @@ ForceModels all_models() {
   return models;
 }
 
+// A rig whose material begins at 6.2 mm: what lies before it is air.
+TEST(Replay, ContactCountsFromTheSurfaceOfTheModel) {
+  std::vector<FeatureSpec> features = test::position_features();
+  features.front().surface_position_m = 6.2e-3;
+  const auto at_surface = std::make_shared<const FittedModel>(
+      test::example_model("random", KernelKind::cubic, std::move(features), 20));
+  const auto at_zero = std::make_shared<const FittedModel>(test::example_models().front());
+  Recording recording;
+  for (int i = 0; i < 1000; ++i) recording.rows.push_back({1e-3 * i, 1e-5 * i, 0.0, 0.0, 0.0});  // to 10 mm
+  const auto contacts = [&](const ForceModels& models) { return replay(recording, models, {})->contact_samples; };
+  EXPECT_EQ(contacts({at_surface}), 379u);
+  EXPECT_EQ(contacts({at_surface, at_zero}), 379u);
+  EXPECT_EQ(contacts({at_zero}), 999u);
+  EXPECT_EQ(contacts({}), 999u);
+}
+
 TEST(Replay, EqualsSteppingByHand) {
   const Recording recording = example_recording(3000, 1000.0, 30e-6);
   const ForceModels models = all_models();

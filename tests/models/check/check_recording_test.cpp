@@ -67,8 +67,7 @@ TEST(CheckRecording, FindsEachFault) {
        [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = -row.position_m; }); }},
       {"no_force", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = 0.0; }); }},
       {"no_motion", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); }},
-      {"force_unit", "unusable", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N *= 1000.0; }); }},
-      {"force_unit", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N /= 9.80665e-3; }); }},
+      {"force_unit", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N *= 1000.0; }); }},
       {"clipping", "care",
        [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); }},
       {"force_zero", "care", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N += 0.5; }); }},
@@ -92,6 +91,96 @@ TEST(CheckRecording, FindsEachFault) {
     if (finding == nullptr) continue;
     EXPECT_FALSE(finding->advice.empty());
   }
+}
+
+TEST(CheckRecording, WarnsOfNoForceThatAMachineReaches) {
+  Recording recording = silicone();
+  each(recording, [](RecordingRow& row) { row.force_N *= 100.0; });  // 700 N
+  const RecordingCheck check = check_recording(recording, kSilicone);
+  EXPECT_EQ(find(check, "force_unit"), nullptr) << all_of(check);
+}
+
+// Whatever a finding advises changes the finding when it is done.
+TEST(CheckRecording, AdviceThatIsFollowedChangesTheFinding) {
+  struct Advice {
+    const char* code;
+    std::function<void(Recording&)> fault;
+    std::function<void(Recording&)> remedy;
+  };
+  const auto scale_force = [](double factor) {
+    return [=](Recording& r) { each(r, [=](RecordingRow& row) { row.force_N *= factor; }); };
+  };
+  const auto add = [](double RecordingRow::*column, double value) {
+    return [=](Recording& r) { each(r, [=](RecordingRow& row) { row.*column += value; }); };
+  };
+  const auto flip_position = [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = -row.position_m; }); };
+  const auto pause = [](double seconds) {
+    return [=](Recording& r) {
+      each(r, [=](RecordingRow& row) {
+        if (row.time_s > 10.0) row.time_s += seconds;
+      });
+    };
+  };
+  const auto cut = [](double from_s, double seconds) {
+    return [=](Recording& r) { first_seconds(r, from_s, seconds); };
+  };
+  const auto record_again = [](Recording& r) { r = silicone(); };
+  const std::vector<Advice> advices = {
+      {"force_sign", scale_force(-1.0), scale_force(-1.0)},
+      {"position_sign", flip_position, flip_position},
+      {"force_unit", scale_force(1000.0), scale_force(1e-3)},
+      {"force_zero", add(&RecordingRow::force_N, 0.5), add(&RecordingRow::force_N, -0.5)},
+      {"no_contact", add(&RecordingRow::position_m, -0.05), add(&RecordingRow::position_m, 0.05)},
+      {"gap", pause(5.0), cut(0.0, 10.0)},
+      {"too_short", cut(2.0, 1.0), record_again},
+      {"clipping", [](Recording& r) { each(r, [](RecordingRow& row) { row.force_N = std::min(row.force_N, 2.0); }); },
+       record_again},
+      {"lag", [](Recording& r) { delay_force(r, 0.03); }, record_again},
+      {"no_force", scale_force(0.0), record_again},
+      {"no_motion", [](Recording& r) { each(r, [](RecordingRow& row) { row.position_m = 0.002; }); }, record_again},
+  };
+  for (const Advice& advice : advices) {
+    SCOPED_TRACE(advice.code);
+    Recording recording = silicone();
+    advice.fault(recording);
+    const RecordingCheck before = check_recording(recording, kSilicone);
+    const Finding* const finding = find(before, advice.code);
+    ASSERT_NE(finding, nullptr) << all_of(before);
+    EXPECT_FALSE(finding->advice.empty());
+    advice.remedy(recording);
+    const Finding* const after = find(check_recording(recording, kSilicone), advice.code);
+    EXPECT_TRUE(after == nullptr || after->advice.empty());
+  }
+}
+
+// A cable that yields by 46 um, at absolute positions.
+TEST(CheckRecording, AdviceScalesWithTheRecording) {
+  Recording cable;
+  for (int i = 0; i < 20000; ++i) {
+    const double pressed_m = 23e-6 * (1.0 - std::cos(2e-3 * i));
+    cable.rows.push_back({1e-2 * i, 17.2e-3 + pressed_m, 1e5 * pressed_m, 0.0, 0.0});
+  }
+  const RecordingCheck check = check_recording(cable, CheckRequest{});
+  const Finding* const strokes = find(check, "strokes");
+  ASSERT_NE(strokes, nullptr) << all_of(check);
+  EXPECT_GT(strokes->value, 5.0) << all_of(check);
+  EXPECT_NE(strokes->text.find("from 17.2 to 17.25 mm"), std::string::npos) << strokes->text;
+  const Finding* const explored = find(check, "explored");
+  ASSERT_NE(explored, nullptr) << all_of(check);
+  EXPECT_EQ(explored->advice.find("50 mm/s"), std::string::npos) << explored->advice;
+}
+
+TEST(CheckRecording, NamesTheRowsThatWereLeftOut) {
+  RecordingFaults faults;
+  faults.rows = 20000;
+  faults.position_dropouts = 300;
+  faults.update_step_s = 0.044;
+  const RecordingCheck check = check_recording(silicone(), kSilicone, faults);
+  const Finding* const dropouts = find(check, "dropouts");
+  ASSERT_NE(dropouts, nullptr);
+  EXPECT_NEAR(dropouts->value, 0.015, 1e-12);
+  EXPECT_EQ(find(check, "repeated_positions")->value, 0.044);
+  EXPECT_STREQ(check.verdict(), "care");
 }
 
 // On retreat 0.3 N more pull than the material's own force, over its last millimetre.

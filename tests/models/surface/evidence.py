@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""What palpate says of surface, force zero and lag, against what is known.
+"""What palpate says of a recording, against what is known.
 
-Usage: evidence.py PALPATE [FOLDER...]
+Usage: evidence.py [--planted] PALPATE [FOLDER...]
 
 Virtual recordings get a known shift, lag, zero, tool mass, adhesion or no free air;
 recordings in the FOLDERs get a known shift or lag on top of what they have. Prints one
-row for each: found, true, error, and whether it is right. "not told" is right where the
-recording cannot tell, harmless where it could, and never wrong. Ends with 1 when
-something was told and false.
+row for each: found, true, error, and whether it is right. Dropouts, repeated positions, repeated time stamps and
+offsets of the force are planted into both (--planted: these alone). "not told" is right where the recording
+cannot tell, harmless where it could, and never wrong. The last lines are a table: finding by right, wrong and
+silent. Ends with 1 when something was told and false.
 """
 import json
 import math
@@ -17,11 +18,13 @@ import subprocess
 import sys
 import tempfile
 
-PALPATE = sys.argv[1]
-FOLDERS = sys.argv[2:]
+ARGUMENTS = [argument for argument in sys.argv[1:] if argument != "--planted"]
+PALPATE = ARGUMENTS[0]
+FOLDERS = ARGUMENTS[1:]
 WORK = tempfile.mkdtemp()
 STIFF_MM, SOFT_MM, LAG_MS, ZERO_N = 0.1, 0.3, 2.0, 0.01
-counts = {"right": 0, "not told": 0, "rightly not told": 0, "WRONG": 0}
+counts = {}  # finding: how many right, wrong, silent
+COLUMN = {"right": 0, "rightly not told": 0, "WRONG": 1, "not told": 2}
 
 
 def run(*arguments):
@@ -58,7 +61,7 @@ def row(case, what, found, true, tolerance, unit):
         verdict = "WRONG" if abs(found) > tolerance else "right"
     else:
         verdict = "right" if abs(found - true) <= tolerance else "WRONG"
-    counts[verdict] += 1
+    counts.setdefault(what, [0, 0, 0])[COLUMN[verdict]] += 1
     say = lambda x: "-" if x is None else f"{x:+.3f}"
     error = "-" if None in (found, true) else f"{found - true:+.3f}"
     print(f"{case:44} {what:10} {say(found):>9} {say(true):>9} {error:>8} {unit:3} {verdict}", flush=True)
@@ -207,8 +210,87 @@ def real():
                          shift, SOFT_MM)
 
 
+def present(case, what, found, planted):
+    """A finding that is there or not."""
+    row(case, what, 1.0 if found else (None if planted else 0.0), 1.0 if planted else 0.0, 0.0, "")
+
+
+def codes_of(*paths):
+    found = run("check", *paths, "--json")
+    return {one["code"]: one for file in found.get("recordings", []) for one in file["findings"]}
+
+
+def plant(case, rows):
+    path = write("clean", rows)
+    clean = codes_of(path)
+    for code in ("dropouts", "repeated_positions", "force_unit", "position_unit"):
+        present(case, code, code in clean, False)
+    for column in ("position_m", "force_N"):
+        for share in (0.005, 0.01, 0.03, 0.05):
+            rng = random.Random(1)
+            dropped = [{**r, column: 0.0} if rng.random() < share else r for r in rows]
+            present(f"{case} {column[:5]} {100 * share:g} % at 0", "dropouts",
+                    "dropouts" in codes_of(write("dropped", dropped)), True)
+    for step in (2, 5, 19, 44, 100):
+        if len(rows) < 50 * step:
+            continue  # too few updates to see them
+        kept = [{**r, "position_m": rows[i - i % step]["position_m"]} for i, r in enumerate(rows)]
+        present(f"{case} positions of every {step} rows", "repeated_positions",
+                "repeated_positions" in codes_of(write("kept", kept)), True)
+    repeated = [r for i, r in enumerate(rows) for _ in range(2 if i % 50 == 7 else 1)]
+    done = run("import", write("stamps", repeated), "--units", "s,m,N", "--out", os.path.join(WORK, "imported.csv"),
+               "--force", "--json")
+    present(f"{case} repeated stamps", "stamps", done.get("rows") == len(rows), True)
+
+
+# Folders of which some recordings have other forces at the same depth, as their provenance says.
+CONTRADICTIONS = {("textile_stretch", "train_31", "train_32"), ("ecoflex_static", "0T", "100T")}
+
+
+def contradicts(folder, a, b):
+    return any(folder == name and ((one in a and other in b) or (one in b and other in a))
+               for name, one, other in CONTRADICTIONS)
+
+
+def pairs(folder, paths):
+    for i, path in enumerate(paths):
+        for other in paths[:i]:
+            if not any(kind in path and kind in other for kind in ("train", "test")):
+                continue
+            a, b = os.path.basename(path)[:-4], os.path.basename(other)[:-4]
+            present(f"{folder}/{a} and {b}", "contradiction", "contradiction" in codes_of(other, path),
+                    contradicts(folder, a, b))
+
+
+def force_offsets():
+    """A press without free air and the same with an offset: a contradiction from two JND on; never a surface."""
+    base = write("strokes", block(4, 3, 8))
+    for offset in (0.1, 0.3, 1.0, 3.0):
+        other = write("offset", changed(block(5, 3, 8), zero_N=offset))
+        model = os.path.join(WORK, "offset.json")
+        run("fit", "--recording", base, "--method", "trend", "--out", model, "--force", "--json")
+        done = run("replay", "--recording", other, "--model", model, "--json")
+        row(f"no free air, force +{offset:g} N", "offset as surface", 1e3 * done["surface_offset_m"], 0.0, SOFT_MM, "mm")
+
+
+def planted():
+    for material in ("silicone", "friction", "stiff"):
+        plant(material, synth(material, 1))
+    force_offsets()
+    for folder in FOLDERS:
+        for root, _, files in sorted(os.walk(folder)):
+            paths = sorted(os.path.join(root, name) for name in files if name.endswith(".csv"))
+            if paths:
+                plant(os.path.basename(root) + "/" + os.path.basename(paths[-1])[:-4], read(paths[-1]))
+                pairs(os.path.basename(root), paths)
+
+
 print(f"{'case':44} {'what':10} {'found':>9} {'true':>9} {'error':>8}")
-virtual()
-real()
-print(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
-sys.exit(1 if counts["WRONG"] else 0)
+if "--planted" not in sys.argv:
+    virtual()
+    real()
+planted()
+print(f"{'finding':20} {'right':>6} {'wrong':>6} {'silent':>6}")
+for what, figures in counts.items():
+    print(f"{what:20} " + " ".join(f"{figure:6}" for figure in figures))
+sys.exit(1 if any(figures[1] for figures in counts.values()) else 0)

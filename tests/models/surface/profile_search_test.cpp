@@ -107,5 +107,22 @@ TEST(ProfileSearch, WithoutARangeNothingIsTold) {
   }
 }
 
+// Forces of a straight spring: a shift of 1 is an offset of the force of 3.
+TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
+  const Located shift = locate([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
+  ASSERT_TRUE(shift.told);
+  const Located both = unless_force_offset(
+      shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 0.01); }, 10.0);
+  EXPECT_FALSE(both.told);
+  EXPECT_EQ(both.at, 0.0);
+  EXPECT_NEAR(both.minimum_at, 1.0, 0.01);
+  EXPECT_NEAR(both.force_offset_N, 3.0, 0.05);
+  const Located only = unless_force_offset(
+      shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 9.0); }, 10.0);
+  EXPECT_TRUE(only.told);
+  EXPECT_EQ(only.at, shift.at);
+  EXPECT_EQ(only.force_offset_N, 0.0);
+}
+
 }  // namespace
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/recording/content_hash.h"
 #include "engine/tick/replay.h"
 #include "models/model/file/model_io.h"
 #include "models/model/file/model_json.h"
@@ -172,6 +173,23 @@ TEST(SurfaceRegistration, AModelSaysWhereItsRecordingsWere) {
   EXPECT_EQ(back.provenance.surfaces[1].offset_m, surfaces[1].offset_m);
   EXPECT_EQ(back.provenance.surfaces[1].standard_error_m, surfaces[1].standard_error_m);
   EXPECT_EQ(back.provenance.surfaces[1].force_zero_N, surfaces[1].force_zero_N);
+}
+
+// Two files called press.csv: the report moves each by its own offset.
+TEST(SurfaceRegistration, SurfacesAreKnownByTheContentOfTheirRecordings) {
+  std::vector<RecordingPtr> recordings;
+  for (const double offset_m : {0.5e-3, 0.0}) {
+    Recording one = *rig("maxwell", recordings.empty() ? 2 : 3, offset_m);
+    one.name = "press";
+    recordings.push_back(std::make_shared<const Recording>(std::move(one)));
+  }
+  const auto prepared = test::prepare(recordings, test::scene_request("silicone_block"));
+  double offsets_m[2] = {NAN, NAN};
+  for (const RecordingSurface& surface : prepared.common.provenance.surfaces) {
+    for (std::size_t i = 0; i < 2; ++i)
+      if (surface.content_hash == content_hash(*recordings[i])) offsets_m[i] = surface.offset_m;
+  }
+  EXPECT_NEAR(offsets_m[0] - offsets_m[1], 0.5e-3, 0.1e-3);
 }
 
 // What one rig records, its model gives back where that rig has it.

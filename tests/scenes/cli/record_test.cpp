@@ -32,7 +32,7 @@ TEST(Record, WritesMotionAndForceOfADeviceAndChecksThem) {
   const auto run = run_palpate({"record", "--device", kBridge, "--seconds", "3", "--out", path});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out.rfind("recorded ", 0), 0u) << run.out;
-  EXPECT_NE(run.out.find("a perfect model would be"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("the noise of the force sensor alone"), std::string::npos) << run.out;
   const auto recording = read_recording(path);
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_GT(recording->rows.size(), 500u);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/random_stream.h"
+#include "engine/recording/content_hash.h"
 #include "tests/support/example_model.h"
 
 namespace palpate {

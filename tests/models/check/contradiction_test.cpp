@@ -1,0 +1,56 @@
+// Forces that differ at the same depth, and what only looks like that.
+#include "models/check/contradiction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/material/rig.h"
+#include "tests/support/fitting.h"
+
+namespace palpate {
+namespace {
+
+Recording press(const char* material, std::uint64_t seed) {
+  RigSettings settings = test::train_settings(material);
+  settings.seed = seed;
+  return *test::rig_recording(settings);
+}
+
+Recording changed(Recording recording, double shift_m, double offset_N) {
+  for (RecordingRow& row : recording.rows) {
+    row.position_m += shift_m;
+    row.force_N += offset_N;
+  }
+  return recording;
+}
+
+// Slow strokes from 2 mm to 8 mm: no air shows the zero.
+Recording strokes(double stiffness_N_per_m) {
+  Recording made;
+  for (int i = 0; i < 4000; ++i) {
+    const double x = 5.0 - 3.0 * std::cos(4e-3 * i);  // mm
+    made.rows.push_back({1e-2 * i, 1e-3 * x, 1e-3 * stiffness_N_per_m * x * (1.0 + 0.3 * std::sin(1.5 * x)), 0.0, 0.0});
+  }
+  return made;
+}
+
+TEST(Contradiction, RecordingsOfOneMaterialHaveNone) {
+  for (const char* material : {"silicone", "foam", "friction"}) {
+    const Recording first = press(material, 1);
+    EXPECT_FALSE(find_contradiction(first, press(material, 2), JndLine{})) << material;
+    EXPECT_FALSE(find_contradiction(first, changed(press(material, 2), 1e-3, 0.0), JndLine{})) << material;
+  }
+}
+
+TEST(Contradiction, NamesTheDifferenceOfTheForces) {
+  const auto offset = find_contradiction(strokes(1000.0), changed(strokes(1000.0), 0.0, 2.8), JndLine{});
+  ASSERT_TRUE(offset);
+  EXPECT_NEAR(offset->force_N, 2.8, 0.2);
+  EXPECT_NEAR(offset->speed_ratio, 1.0, 0.01);
+  EXPECT_TRUE(find_contradiction(strokes(1000.0), strokes(3000.0), JndLine{}));
+  EXPECT_FALSE(find_contradiction(strokes(1000.0), changed(strokes(1000.0), 0.0, 0.05), JndLine{}));
+}
+
+}  // namespace
+}  // namespace palpate
