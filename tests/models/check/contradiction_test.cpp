@@ -30,7 +30,9 @@ Recording strokes(double stiffness_N_per_m) {
   Recording made;
   for (int i = 0; i < 4000; ++i) {
     const double x = 5.0 - 3.0 * std::cos(4e-3 * i);  // mm
-    made.rows.push_back({1e-2 * i, 1e-3 * x, 1e-3 * stiffness_N_per_m * x * (1.0 + 0.3 * std::sin(1.5 * x)), 0.0, 0.0});
+    // A shell that buckles: no shift looks like an offset of its force.
+    const double force_N = 1e-3 * stiffness_N_per_m * (0.2 * x + 4.0 * std::exp(-(x - 5.0) * (x - 5.0)));
+    made.rows.push_back({1e-2 * i, 1e-3 * x, force_N, 0.0, 0.0});
   }
   return made;
 }

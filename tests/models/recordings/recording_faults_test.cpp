@@ -19,7 +19,7 @@ const Recording& silicone() {
 
 // Sets `share` of the rows to 0; returns how many.
 std::size_t drop(Recording& recording, double RecordingRow::*column, double share) {
-  RandomStream random(7);
+  RandomStream random(7, 0);
   std::size_t count = 0;
   for (RecordingRow& row : recording.rows) {
     if (random.uniform(0.0, 1.0) >= share) continue;

@@ -244,7 +244,7 @@ def plant(case, rows):
 
 
 # Folders of which some recordings have other forces at the same depth, as their provenance says.
-CONTRADICTIONS = {("textile_stretch", "train_31", "train_32"), ("ecoflex_static", "0T", "100T")}
+CONTRADICTIONS = {("textile_stretch", "train_31", "train_32"), ("ecoflex_static", "_0T", "_100T")}
 
 
 def contradicts(folder, a, b):
