@@ -111,8 +111,7 @@ Result<double> find_surfaces(MotionSource& source, const TrainingRequest& reques
     const RegisteredSurface& one = found->recordings[i];
     corrections.push_back({one.offset_m + found->surface_position_m, one.force_zero_N, found->lag_s});
     provenance.surfaces.push_back(
-        {source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N, found->lag_s,
-                                   source.hashes()[i]});
+        {source.names()[i], one.offset_m, one.standard_error_m, one.force_zero_N, found->lag_s, source.hashes()[i]});
   }
   source.correct(std::move(corrections));
   return found->surface_position_m;

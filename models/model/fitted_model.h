@@ -44,7 +44,7 @@ struct RecordingSurface {
   double offset_m = 0.0;
   double standard_error_m = 0.0;  // infinite: not known
   double force_zero_N = 0.0;
-  double lag_s = 0.0;  // by which the forces were moved back
+  double lag_s = 0.0;              // by which the forces were moved back
   std::uint64_t content_hash = 0;  // of its rows as recorded; not in files
 };
 

@@ -6,8 +6,8 @@
 
 #include "devices/registry/device_registry.h"
 #include "engine/base/text.h"
-#include "models/recordings/recording_faults.h"
 #include "models/model/fitted_model.h"
+#include "models/recordings/recording_faults.h"
 #include "scenes/live/true_force.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/user_folders.h"

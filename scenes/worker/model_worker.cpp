@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "models/recordings/recording_faults.h"
 #include "models/fit/recipe_2009.h"
+#include "models/recordings/recording_faults.h"
 #include "models/solve/lapack.h"
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
