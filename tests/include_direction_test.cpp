@@ -158,7 +158,7 @@ TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_EQ(find_fault("engine/tick", "vector", false), "");
   EXPECT_NE(find_fault("engine/tick", "engine/live/pacer.h", true), "");
   EXPECT_NE(find_fault("engine/live", "models/model/trend.h", true), "");
-  EXPECT_NE(find_fault("models/model", "models/solve/lapack.h", true), "");
+  EXPECT_NE(find_fault("models/model", "models/linear/lapack.h", true), "");
   EXPECT_NE(find_fault("models/model", "models/training/sites.h", true), "");
   EXPECT_NE(find_fault("models/model", "devices/link/device_bus.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");

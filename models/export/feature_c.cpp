@@ -261,20 +261,29 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
 
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features) {
   out.add("\n/* ---- trend: a nonlinear viscoelastic solid ---- */\n\n");
-  const std::string elastic =
-      write_curve(out, "elastic", trend.elastic_N, trend.has_elastic_knots, trend.elastic_knot_N, "u");
+  out.list("elastic", Eigen::Map<const Eigen::VectorXd>(trend.elastic.pieces_N.data(),
+                                                        static_cast<Eigen::Index>(trend.elastic.pieces_N.size())));
+  const std::string pieces = out.number(static_cast<double>(kElasticPieces));
   out.list("viscosity", Eigen::Map<const Eigen::VectorXd>(trend.viscosity_Ns_per_m.data(), kViscosityCoefficients));
   out.list("thinning", Eigen::Map<const Eigen::VectorXd>(trend.thinning_Ns_per_m.data(), kViscosityCoefficients));
   const std::string limit = out.number(trend.velocity_limit_m_per_s);
   std::string text =
-      "\nstatic real quadratic(const real *c, real u) { return (c[2] * u + c[1]) * u + c[0]; }\n\n"
+      "\n/* A cubic on each of equal pieces, beyond u = 1 along its tangent. */\n"
+      "static real elastic_at(real u) {\n  const real x = u * " +
+      pieces + ";\n  const int piece = x < " + pieces +
+      " ? (int)larger(R(0.0), x) : " + std::to_string(kElasticPieces - 1) +
+      ";\n  const real beyond = larger(R(0.0), x - " + pieces +
+      ");\n  const real t = x - (real)piece - beyond;\n  const real *c = elastic + 4 * piece;\n"
+      "  return c[0] + t * (c[1] + t * (c[2] + t * c[3])) + beyond * (c[1] + t * (R(2.0) * c[2] + t * R(3.0) * c[3]));"
+      "\n}\n\n"
+      "static real quadratic(const real *c, real u) { return (c[2] * u + c[1]) * u + c[0]; }\n\n"
       "static real trend_of(void) {\n  const real u = " +
       feature_of(features, FeatureKind::depth) + " / " + out.number(trend.reference_depth_m) +
       ";\n  const real inside = smaller(u, R(1.0));\n  const real v = clamped(" +
       feature_of(features, FeatureKind::velocity) + ", -" + limit + ", " + limit +
       ");\n  const real thinned = v / (R(1.0) + absolute(v) / " + out.number(trend.thinning_velocity_m_per_s) +
-      ");\n  real force_N = " + elastic +
-      ";\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, inside) * thinned;\n";
+      ");\n  real force_N = elastic_at(u);\n  force_N += quadratic(viscosity, inside) * v + quadratic(thinning, "
+      "inside) * thinned;\n";
   static_assert(kViscosityCoefficients == 3, "quadratic() has three");
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (is_force(features[i].kind)) text += "  force_N += value" + index_text(i) + ";\n";

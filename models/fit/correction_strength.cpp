@@ -8,12 +8,12 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random_stream.h"
+#include "models/linear/lapack.h"
 #include "models/model/nearest_points.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/lapack.h"
 #include "models/solve/penalised_weights.h"
-#include "models/training/acceptance.h"
+#include "models/training/selection.h"
 #include "models/training/weighting.h"
 
 namespace palpate {
@@ -23,12 +23,6 @@ constexpr Eigen::Index kCentres = 200;
 constexpr Eigen::Index kBlockRows = 512;  // of the design at a time
 constexpr int kLowestDecade = -9;         // of the smoothing, relative to the mean eigenvalue
 constexpr int kHighestDecade = 1;
-// RMS of a trend's errors of which one JND is four: below, one in ten thousand would be felt
-// (normal errors), and only the sum decides. A trend makes no energy; centres may (a mass thrown
-// at springs and dashpots came back with 121 % for 114, tests/accuracy/closed_loop_energy_test.cpp).
-// Without the sum recordings tie, and a gel with three given times falls from 99.9 to 99.1 %: errors
-// that are small on the whole are felt at their worst.
-constexpr double kFelt_jnd = 0.25;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 
@@ -166,27 +160,6 @@ class LeftOutFits {
   std::vector<Fold> folds_;
 };
 
-// Distance of every row of a fold to the nearest of another fold.
-void add_distances(const LeftOutRows& rows, int fold, std::vector<double>& distance) {
-  std::vector<Eigen::Index> others;
-  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-    if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
-  }
-  if (others.empty()) return;
-  const NearestDistance nearest(rows.points(Eigen::all, others));
-  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-    const Eigen::VectorXd point = rows.points.col(static_cast<Eigen::Index>(i));
-    if (rows.fold[i] == fold) distance[i] = std::sqrt(nearest.nearest_squared(point.data()));
-  }
-}
-
-double trust(double distance, double inner, double outer) {
-  if (!(distance < outer)) return 0.0;
-  if (distance <= inner) return 1.0;
-  const double t = (outer - distance) / (outer - inner);
-  return t * t * (3.0 - 2.0 * t);
-}
-
 // Rows that count: not deeper than every row of the other folds.
 std::vector<char> inside_depth(const StrengthInput& input) {
   const LeftOutRows& rows = input.rows;
@@ -206,31 +179,52 @@ std::vector<char> inside_depth(const StrengthInput& input) {
   return counts;
 }
 
-// Of error over JND, as weighting.h's robust_scale leaves it: errors that are felt anyhow
-// all count much the same.
-double saturated_square(double error_over_jnd) {
-  const double squared = error_over_jnd * error_over_jnd;
-  return squared / (1.0 + squared / (kRobustError_jnd * kRobustError_jnd));
-}
-
 struct Variant {
   double smoothing = 0.0;
   double strength = 0.0;
   double inner_radius = 0.0;
-  std::vector<double> fold_squares;  // of error over JND, over all rows
+  FoldErrors errors;
   const Eigen::VectorXd* correction_N = nullptr;
-  double total() const { return std::accumulate(fold_squares.begin(), fold_squares.end(), 0.0); }
 };
 
-// The force at row `i` without its fold.
-double force_of(const StrengthInput& input, std::size_t i, double strength_here, double h) {
-  const double limit = input.correction_limit_N;
-  const auto row = static_cast<Eigen::Index>(i);
-  const double force_N = input.rows.trend_N(row, input.rows.fold[i]) + strength_here * std::clamp(h, -limit, limit);
-  return std::max(input.lowest_force_N, force_N);
+std::vector<FoldErrors> errors_of(const std::vector<Variant>& variants) {
+  std::vector<FoldErrors> errors;
+  for (const Variant& variant : variants) errors.push_back(variant.errors);
+  return errors;
 }
 
 }  // namespace
+
+double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h) {
+  const double limit = input.correction_limit_N;
+  const auto row = static_cast<Eigen::Index>(i);
+  const double force_N = input.rows.trend_N(row, input.rows.fold[i]) + trust * std::clamp(h, -limit, limit);
+  return std::max(input.lowest_force_N, force_N);
+}
+
+double trust_at_distance(double distance, double inner_radius, double outer_radius) {
+  if (!(distance < outer_radius)) return 0.0;
+  if (distance <= inner_radius) return 1.0;
+  const double t = (outer_radius - distance) / (outer_radius - inner_radius);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+void find_distances(LeftOutRows& rows, int folds) {
+  rows.distance.assign(rows.fold.size(), std::numeric_limits<double>::infinity());
+  parallel_for(folds, [&](int fold) {
+    std::vector<Eigen::Index> others;
+    for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+      if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
+    }
+    if (others.empty()) return;
+    const NearestDistance nearest(rows.points(Eigen::all, others));
+    for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+      if (rows.fold[i] != fold) continue;
+      const Eigen::VectorXd point = rows.points.col(static_cast<Eigen::Index>(i));
+      rows.distance[i] = std::sqrt(nearest.nearest_squared(point.data()));
+    }
+  });
+}
 
 StrengthChoice choose_strength(const StrengthInput& input) {
   StrengthChoice choice;
@@ -240,23 +234,21 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   if (rows.fold.size() < 2 || input.folds < 2) return choice;
   const BlasThreads one_thread(1);
   const LeftOutFits fits(input);
-  std::vector<double> distance(rows.fold.size(), std::numeric_limits<double>::infinity());
-  parallel_for(input.folds, [&](int fold) { add_distances(rows, fold, distance); });
   const std::vector<char> counts = inside_depth(input);
   const auto score = [&](double smoothing, double strength, double radius, const Eigen::VectorXd& h) {
-    Variant variant{smoothing, strength, radius, std::vector<double>(static_cast<std::size_t>(input.folds), 0.0), &h};
+    Variant variant{smoothing, strength, radius, FoldErrors(static_cast<std::size_t>(input.folds)), &h};
     for (std::size_t i = 0; i < rows.fold.size(); ++i) {
       if (!counts[i]) continue;
       const auto row = static_cast<Eigen::Index>(i);
-      const double here = strength > 0.0 ? strength * trust(distance[i], radius, input.outer_to_inner * radius) : 0.0;
-      const double force_N = force_of(input, i, here, h(row));
-      variant.fold_squares[static_cast<std::size_t>(rows.fold[i])] +=
-          saturated_square(input.jnd.error_over_jnd(force_N, rows.force_N(row)));
+      const double trust =
+          strength > 0.0 ? trust_at_distance(rows.distance[i], radius, input.outer_to_inner * radius) : 0.0;
+      const double force_N = left_out_force_N(input, i, trust, strength * h(row));
+      const double error = input.jnd.error_over_jnd(force_N, rows.force_N(row));
+      variant.errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
     }
     return variant;
   };
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(rows.force_N.size());
-  const Variant none = score(fits.unit(), 0.0, input.least_radius, nothing);
   constexpr int kDecades = kHighestDecade - kLowestDecade + 1;
   std::array<Eigen::VectorXd, kDecades> predictions;
   std::array<std::vector<Variant>, kDecades> of_decade;
@@ -270,41 +262,21 @@ StrengthChoice choose_strength(const StrengthInput& input) {
       }
     }
   });
-  std::vector<Variant> variants;  // from the most smoothing to the least
+  const Variant none = score(fits.unit(), 0.0, input.least_radius, nothing);
+  std::vector<Variant> variants{none};
   for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
-  const Variant& best = *std::min_element(variants.begin(), variants.end(),
-                                          [](const Variant& a, const Variant& b) { return a.total() < b.total(); });
-  const Variant* chosen = &none;
-  const double counted = std::max(1.0, static_cast<double>(std::count(counts.begin(), counts.end(), char{1})));
-  const bool felt = none.total() > kFelt_jnd * kFelt_jnd * counted && best.total() < none.total();
-  if (is_worth_it(best.fold_squares, none.fold_squares) ||
-      (felt && is_certainly_worse(none.fold_squares, best.fold_squares))) {
-    // The shortest reach that is as good, and there the most smoothing. (Strokes that are
-    // all alike say nothing of how far the correction may reach.)
-    chosen = &best;
-    for (const Variant& variant : variants) {
-      if (variant.strength != best.strength || !is_as_good(variant.fold_squares, best.fold_squares)) continue;
-      if (variant.inner_radius < chosen->inner_radius ||
-          (variant.inner_radius == chosen->inner_radius && variant.smoothing > chosen->smoothing)) {
-        chosen = &variant;
-      }
-    }
-  }
+  const double strength = variants[best_score(errors_of(variants))].strength;
+  // From the simplest: no correction; then the shortest reach and with it the most smoothing. (Strokes
+  // that are all alike do not show how far the correction may reach.)
+  std::erase_if(variants, [&](const Variant& one) { return one.strength != 0.0 && one.strength != strength; });
+  std::stable_sort(variants.begin() + 1, variants.end(),
+                   [](const Variant& a, const Variant& b) { return a.inner_radius < b.inner_radius; });
+  const Variant* chosen = &variants[simplest_adequate(errors_of(variants))];
   choice.smoothing = chosen->smoothing;
   choice.strength = chosen->strength;
   choice.inner_radius = chosen->inner_radius;
-  choice.fold_squares = chosen->fold_squares;
-  choice.trend_error_over_jnd = std::sqrt(none.total() / counted);
-  choice.error_over_jnd = std::sqrt(chosen->total() / counted);
-  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
-    if (!std::isfinite(distance[i])) continue;
-    const auto row = static_cast<Eigen::Index>(i);
-    const double trusted = trust(distance[i], chosen->inner_radius, input.outer_to_inner * chosen->inner_radius);
-    const double force_N = force_of(input, i, chosen->strength * trusted, (*chosen->correction_N)(row));
-    choice.predictions.push_back({std::abs(force_N - rows.force_N(row)), force_N, distance[i]});
-    const double trend_N = force_of(input, i, 0.0, 0.0);
-    choice.trend_predictions.push_back({std::abs(trend_N - rows.force_N(row)), trend_N, distance[i]});
-  }
+  choice.trend_error_over_jnd = none.errors.rms();
+  choice.error_over_jnd = chosen->errors.rms();
   return choice;
 }
 

@@ -5,18 +5,15 @@
 // left out in turn, of the trend too, h is fitted to the other rows by penalised least squares,
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // on a few hundred random centres, and the rows left out are predicted by
-//   f = max(0, T(x) + strength g(x) clamp(h(x), -limit, limit))
+//   f = max(lowest, T(x) + g(x) clamp(strength h(x), -limit, limit))
 // with g the trust of the domain guard around the rows that were kept. Smoothing, strength
-// (from 0, none, to 1, all) and the radius of the guard are those of the least squared error
-// over the JND; of those as good the shortest radius and with it the most smoothing. None at
-// all, unless by the sum it is worth it, or the trend's errors are felt and it is certainly
-// worse, block by block (acceptance.h). The smoothing is the variance of the noise over that of the prior and
-// does not depend on the number of centres: one choice serves every method, and with more
-// centres each method comes closer to the smoothing spline through all the sites instead of
-// following the noise.
-// Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the
-// basis); Craven & Wahba (1979); Hastie, Tibshirani & Friedman (2009), 7.10.
-// Thread guarantee: slow side, pure.
+// (from 0, none, to 1, all) and the radius of the guard are selected together by the
+// common rule (models/training/selection.h), no correction being the simplest candidate, then
+// the shortest radius and with it the most smoothing. The smoothing is the variance of the noise over that of the prior
+// and does not depend on the number of centres: one choice serves every method, and with more centres each method comes
+// closer to the smoothing spline through all the sites instead of following the noise. Sources: Wahba (1990) (smoothing
+// splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie, Tibshirani & Friedman
+// (2009), 7.10. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +33,8 @@ struct LeftOutRows {
   Eigen::VectorXd row_scale;  // what an error counts
   Eigen::MatrixXd trend_N;    // of every row, by the trend without fold k in column k
   std::vector<int> fold;
-  std::vector<char> no_force;  // nothing was measured: the force is not positive
+  std::vector<char> no_force;    // nothing was measured: the force is not positive
+  std::vector<double> distance;  // to the nearest row of another fold; infinite without one
 };
 
 struct StrengthInput {
@@ -53,6 +51,7 @@ struct StrengthInput {
 // One row predicted without its fold.
 struct LeftOutPrediction {
   double error_N = 0.0;  // of the force, absolute
+  double measured_N = 0.0;
   double predicted_N = 0.0;
   double distance = 0.0;  // to the nearest row of another fold
 };
@@ -63,10 +62,14 @@ struct StrengthChoice {
   double inner_radius = 0.0;
   double trend_error_over_jnd = 0.0;  // RMS on the samples left out
   double error_over_jnd = 0.0;
-  std::vector<double> fold_squares;  // sums of squared errors over the JND, by fold
-  std::vector<LeftOutPrediction> predictions;
-  std::vector<LeftOutPrediction> trend_predictions;  // the same by the trend alone
 };
+
+// The force at row `i` without its fold, as FittedModel computes it; `h`: the correction there.
+double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h);
+// Trust of the guard at this distance.
+double trust_at_distance(double distance, double inner_radius, double outer_radius);
+// `distance` of the rows, from all the rest.
+void find_distances(LeftOutRows& rows, int folds);
 
 StrengthChoice choose_strength(const StrengthInput& input);
 

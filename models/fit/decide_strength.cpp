@@ -20,7 +20,7 @@ constexpr std::size_t kFewPresses = 3;
 constexpr double kLeastPerForce = 0.05;
 
 LeftOutRows left_out_rows(const ModelData& common, const TrendRows& rows, const Eigen::MatrixXd& row_features,
-                          const LeftOutTrend& left_out, const TrendProblem& problem) {
+                          const CrossValidated& left_out, const TrendProblem& problem) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < rows.count(); i += rows.count() / kLeftOutRows + 1) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
@@ -49,6 +49,35 @@ constexpr std::size_t kFewest = 50;
 constexpr double kHeld = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
 constexpr double kLeastShape_N = 1e-3;      // something is left to multiply
+
+constexpr Eigen::Index kLeftOutSites = 1500;  // a tenth of a second for each fold
+
+StrengthInput strength_input(const PreparedTraining& prepared) {
+  StrengthInput input{*prepared.left_out, prepared.folds, KernelKind::cubic, prepared.common.jnd};
+  input.correction_limit_N = prepared.common.correction_limit_N;
+  input.lowest_force_N = prepared.common.lowest_force_N;
+  return input;
+}
+
+// What a correction is fitted to without a fold: what the trend without it leaves over.
+Sites sites_without(const PreparedTraining& prepared, int fold) {
+  const LeftOutRows& rows = *prepared.left_out;
+  std::vector<Eigen::Index> others;
+  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+    if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
+  }
+  Sites sites;
+  sites.points = rows.points(Eigen::all, others);
+  sites.target_N = rows.force_N(others) - rows.trend_N(others, fold);
+  sites.row_scale = rows.row_scale(others);
+  for (Eigen::Index i = 0; i < sites.count(); ++i) {
+    const bool no_force = rows.no_force[static_cast<std::size_t>(others[static_cast<std::size_t>(i)])] != 0;
+    if (no_force) sites.target_N(i) = std::min(0.0, sites.target_N(i));
+  }
+  sites.smoothing = prepared.sites.smoothing;
+  sites.strength = prepared.sites.strength;
+  return even_subset(sites, kLeftOutSites);
+}
 
 }  // namespace
 
@@ -83,27 +112,57 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
 }
 
 void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
-                     const LeftOutTrend& left_out, const TrendProblem& problem, std::size_t strokes) {
+                     const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes) {
   ModelData& common = prepared.common;
-  const LeftOutRows of_rows = left_out_rows(common, rows, row_features, left_out, problem);
-  StrengthInput input{of_rows, static_cast<int>(left_out.solutions.cols()), KernelKind::cubic, problem.jnd};
-  input.correction_limit_N = common.correction_limit_N;
-  input.lowest_force_N = common.lowest_force_N;
+  prepared.left_out = left_out_rows(common, rows, row_features, left_out, problem);
+  prepared.folds = static_cast<int>(left_out.solutions.cols());
+  prepared.strokes = strokes;
+  find_distances(*prepared.left_out, prepared.folds);
+  StrengthInput input = strength_input(prepared);
   input.least_radius = common.cover.inner_radius;
   input.outer_to_inner = common.cover.outer_radius / common.cover.inner_radius;
   prepared.strength = choose_strength(input);
   prepared.sites.smoothing = prepared.strength->smoothing;
   prepared.sites.strength = prepared.strength->strength;
-  const double radius = prepared.strength->inner_radius;
-  const auto bound_from = [&](const std::vector<LeftOutPrediction>& predictions) {
-    auto bound = calibrate_bound(predictions, radius, problem.jnd, common.largest_force_N);
-    if (bound && strokes < kFewPresses) bound->per_force = std::max(bound->per_force, kLeastPerForce);
-    return bound;
-  };
-  common.error_bound = bound_from(prepared.strength->predictions);
-  prepared.trend_bound = bound_from(prepared.strength->trend_predictions);
-  common.cover.inner_radius = radius;
-  common.cover.outer_radius = input.outer_to_inner * radius;
+  common.cover.inner_radius = prepared.strength->inner_radius;
+  common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
+}
+
+Result<std::vector<LeftOutPrediction>> cross_validate(const PreparedTraining& prepared, const MethodRequest* request,
+                                                      const FitControl& control) {
+  const LeftOutRows& rows = *prepared.left_out;
+  const StrengthInput input = strength_input(prepared);
+  Eigen::VectorXd correction_N = Eigen::VectorXd::Zero(rows.force_N.size());
+  const bool corrects = request != nullptr && prepared.sites.strength > 0.0;
+  for (int fold = 0; corrects && fold < prepared.folds; ++fold) {
+    const Sites sites = sites_without(prepared, fold);
+    if (sites.count() == 0) continue;
+    const Eigen::VectorXd jnd_N = sites.row_scale.cwiseInverse();
+    const auto fitted = fit_correction({sites, prepared.common.features, jnd_N, *request, nullptr}, control);
+    if (!fitted) return fitted.error();
+    for (Eigen::Index i = 0; i < correction_N.size(); ++i) {
+      if (rows.fold[static_cast<std::size_t>(i)] != fold) continue;
+      const Eigen::VectorXd point = rows.points.col(i);
+      correction_N(i) = fitted->correction->evaluate(point.data());
+    }
+  }
+  const DomainCover& cover = prepared.common.cover;
+  std::vector<LeftOutPrediction> predictions;
+  for (std::size_t i = 0; i < rows.fold.size(); ++i) {
+    if (!std::isfinite(rows.distance[i])) continue;
+    const auto row = static_cast<Eigen::Index>(i);
+    const double trust = trust_at_distance(rows.distance[i], cover.inner_radius, cover.outer_radius);
+    const double force_N = left_out_force_N(input, i, trust, correction_N(row));
+    predictions.push_back({std::abs(force_N - rows.force_N(row)), rows.force_N(row), force_N, rows.distance[i]});
+  }
+  return predictions;
+}
+
+std::optional<ErrorBound> bound_of(const PreparedTraining& prepared, const std::vector<LeftOutPrediction>& errors) {
+  const ModelData& common = prepared.common;
+  auto bound = calibrate_bound(errors, common.cover.inner_radius, common.jnd, common.largest_force_N);
+  if (bound && prepared.strokes < kFewPresses) bound->per_force = std::max(bound->per_force, kLeastPerForce);
+  return bound;
 }
 
 }  // namespace palpate

@@ -1,6 +1,6 @@
-// What is decided about the correction by leaving folds out, of the trend and of the
-// correction: its strength, its smoothing, its reach (correction_strength.h), and the bound
-// on the error (models/model/error_bound.h).
+// What cross-validation decides about the correction: its strength, its smoothing, its reach
+// (correction_strength.h); and of every fitted method its error and the bound on it
+// (models/model/error_bound.h).
 // Thread guarantee: slow side.
 #pragma once
 
@@ -24,6 +24,14 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
 // `row_features`: of the rows, SI, one column a row. `left_out`: the trends without each fold.
 // Normalisation, sites and cover of `prepared` are there already. `strokes`: of all recordings.
 void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
-                     const LeftOutTrend& left_out, const TrendProblem& problem, std::size_t strokes);
+                     const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes);
+
+// The errors of a method on every row without its fold: the method is fitted again without each fold,
+// to at most kLeftOutSites rows, and corrects the trend without that fold. Without a method, or with
+// strength 0, those of the trend. Errors: those of the method; interrupted.
+Result<std::vector<LeftOutPrediction>> cross_validate(const PreparedTraining& prepared, const MethodRequest* request,
+                                                      const FitControl& control);
+// The bound that these errors give for a model of `prepared`.
+std::optional<ErrorBound> bound_of(const PreparedTraining& prepared, const std::vector<LeftOutPrediction>& errors);
 
 }  // namespace palpate

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "models/fit/decide_strength.h"
 
 namespace palpate {
 namespace {
@@ -36,6 +38,12 @@ std::optional<double> share_within_jnd(const PreparedTraining& prepared, const M
   return static_cast<double>(within) / static_cast<double>(count);
 }
 
+double rms_over_jnd(const std::vector<LeftOutPrediction>& errors, const JndLine& jnd) {
+  double sum = 0.0;
+  for (const LeftOutPrediction& one : errors) sum += std::pow(one.error_N / jnd.at(one.measured_N), 2);
+  return errors.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
 }  // namespace
 
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
@@ -50,11 +58,17 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
                              const MethodFit* base) {
   const Eigen::VectorXd jnd_N = site_thresholds(prepared);
   const Method& method = *request.method;
+  const bool corrects = !prepared.strength || prepared.strength->strength > 0.0;
   std::optional<FittedCorrection> from;
   if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};
-  auto fitted =
-      fit_correction({prepared.sites, prepared.common.features, jnd_N, request, from ? &*from : nullptr}, control);
+  // Where cross-validation rejected the correction, every method is the trend: a model without centres.
+  MethodRequest of_trend;
+  of_trend.method = &kTrendMethod;
+  const MethodTask task{prepared.sites, prepared.common.features, jnd_N, corrects ? request : of_trend,
+                        from && corrects ? &*from : nullptr};
+  auto fitted = fit_correction(task, control);
   if (!fitted) return fitted.error();
+  if (!corrects && method.can_take(kTakesCentres)) fitted->size = "0";
   MethodFit fit{prepared.common, std::move(fitted->report)};
   if (const auto recorded = prepared.common.provenance.samples; recorded > kMaximumRows) {
     fit.report.notes.push_back(
@@ -64,7 +78,12 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   fit.data.method = method.name;
   fit.data.provenance.seed = request.seed;
   fit.data.correction = std::move(fitted->correction);
-  if (fit.data.correction->is_none()) fit.data.error_bound = prepared.trend_bound;
+  if (prepared.left_out) {
+    const auto errors = cross_validate(prepared, fit.data.correction->is_none() ? nullptr : &request, control);
+    if (!errors) return errors.error();
+    fit.data.error_bound = bound_of(prepared, *errors);
+    fit.cross_validated_rms_jnd = rms_over_jnd(*errors, prepared.common.jnd);
+  }
   fit.data.name = method.name;
   if (!fitted->size.empty()) fit.data.name.append("-").append(fitted->size);
   if (const Status valid = validate_model(fit.data); !valid) {

@@ -23,9 +23,9 @@
 #include "models/fit/correction_strength.h"
 #include "models/fit/methods.h"
 #include "models/model/fitted_model.h"
-#include "models/training/memory_law.h"
 #include "models/training/motion_source.h"
 #include "models/training/sites.h"
+#include "models/training/slowing.h"
 #include "models/training/training_set.h"
 #include "models/training/trend_dictionary.h"
 #include "models/training/weighting.h"
@@ -59,9 +59,11 @@ struct PreparedTraining {
   TrainingSet set;
   Sites sites;                             // normalised; target: what h has to fit
   ModelData common;                        // everything of a model but its method's part
-  std::vector<FeatureWorth> worth;         // of each part of the dictionary; empty unless all of it was tried
-  std::optional<ErrorBound> trend_bound;   // of the trend alone; that of `common` is of a correction
+  std::vector<PartGain> gains;             // of each part of the dictionary; empty unless all of it was tried
   std::optional<StrengthChoice> strength;  // of the correction; none for the paper's recipe
+  std::optional<LeftOutRows> left_out;     // to cross-validate a method on; likewise
+  int folds = 0;
+  std::size_t strokes = 0;
   // In-contact feature vectors and forces to evaluate the fit with, at most 100,000.
   std::vector<std::array<double, kMaxFeatures>> evaluation_features;
   std::vector<double> evaluation_force_N;
@@ -70,6 +72,7 @@ struct PreparedTraining {
 struct MethodFit {
   ModelData data;
   FitReport report;
+  std::optional<double> cross_validated_rms_jnd{};  // of this method with these centres
 };
 
 // Errors: those of the recordings; nothing in contact; the request does not fit

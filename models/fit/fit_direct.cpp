@@ -7,9 +7,9 @@
 
 #include "engine/base/parallel.h"
 #include "models/fit/methods.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/solve/choose_smoothing.h"
-#include "models/solve/lapack.h"
 #include "models/solve/projected_kernel.h"
 
 namespace palpate {

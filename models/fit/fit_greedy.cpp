@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/base/random_stream.h"
+#include "models/linear/lapack.h"
 #include "models/solve/candidate_gains.h"
-#include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
 
 namespace palpate {

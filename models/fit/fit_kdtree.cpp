@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/lapack.h"
 #include "models/solve/orthogonal_basis.h"
 #include "models/solve/site_tree.h"
 

@@ -4,9 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "models/fit/decide_strength.h"
 #include "models/fit/methods.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_correction.h"
-#include "models/solve/lapack.h"
 #include "models/solve/penalised_weights.h"
 
 namespace palpate {
@@ -75,6 +76,11 @@ Result<NestedFit> NestedFit::make(const PreparedTraining& prepared, const Method
   ModelData common = prepared.common;
   common.method = request.method->name;
   common.provenance.seed = request.seed;
+  if (prepared.left_out) {
+    const auto errors = cross_validate(prepared, &request, control);
+    if (!errors) return errors.error();
+    common.error_bound = bound_of(prepared, *errors);
+  }
   return NestedFit(std::move(common), std::move(*weights));
 }
 

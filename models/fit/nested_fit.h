@@ -6,8 +6,8 @@
 //   row_scale * (G Phi f) = Q T,  T upper triangular,
 // and the columns of k centres have only as many rows of T as there are columns up to
 // the last of them. What is left for k is a system of that size; the numbers are those
-// of the direct fit to rounding, the ridge or the penalty included. Smoothing, strength
-// and the predicted error do not depend on the number of centres (correction_strength.h).
+// of the direct fit to rounding, the ridge or the penalty included. Smoothing and strength
+// do not depend on the number of centres (correction_strength.h); the error bound is that of all of them.
 //
 // Thread guarantee: immutable once made; `fit` is slow side and may be called by
 // several threads.

@@ -122,7 +122,6 @@ struct Given {
   MotionSource& source;
   const TrainingRequest& request;
   const TrainingExtent& extent;
-  const FoldDealer& dealer;
   const TrendProblem& problem;
 };
 
@@ -137,8 +136,8 @@ Result<std::vector<double>> scene_times(const Given& given, Provenance& provenan
   }
   if (request.relaxation == Relaxation::given) times_s = request.relaxation_times_s;
   if (request.relaxation == Relaxation::automatic) {
-    auto identified = identify_relaxation(given.source, given.dealer, given.problem, given.extent,
-                                          has_velocity(request.features), request.relaxation_count, control, 0.1);
+    auto identified = identify_relaxation(given.source, given.problem, given.extent, has_velocity(request.features),
+                                          request.relaxation_count, control, 0.1);
     if (!identified) return identified.error();
     times_s = std::move(*identified);
   }
@@ -149,24 +148,24 @@ Result<std::vector<double>> scene_times(const Given& given, Provenance& provenan
 // Everything, with the law of memory that the recordings show.
 Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& given, const FitControl& control) {
   const TrainingExtent& extent = given.extent;
-  return find_memory_law(given.source, given.dealer,
-                         dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m), given.problem,
-                         prepared.worth, control, 0.15);
+  const FeatureList list =
+      dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m, given.source.encoder_step_m());
+  return select_slowing(given.source, list, given.problem, prepared.gains, control, 0.15);
 }
 
 // Of each part of the list: what the folds left out lose without it.
-void add_worth(PreparedTraining& prepared, const FeatureList& list, const TrendRows& rows,
-               const TrendRegression& regression, const LeftOutTrend& with_all, const Eigen::VectorXd& x) {
+void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendRows& rows,
+               const TrendRegression& regression, const CrossValidated& with_all, const Eigen::VectorXd& x) {
   for (const FeatureColumns& group : feature_columns(list, rows)) {
     ColumnList others;
     for (const Eigen::Index column : regression.all_columns()) {
       if (!std::binary_search(group.columns.begin(), group.columns.end(), column)) others.push_back(column);
     }
     const bool taken = (x(group.columns).array() > 0.0).any();
-    prepared.worth.push_back({group.name, taken, with_all.rms(), regression.left_out(others, &with_all).rms()});
+    prepared.gains.push_back(
+        {group.name, taken, with_all.errors.rms(), regression.cross_validate(others).errors.rms()});
   }
-  std::stable_partition(prepared.worth.begin(), prepared.worth.end(),
-                        [](const FeatureWorth& one) { return one.taken; });
+  std::stable_partition(prepared.gains.begin(), prepared.gains.end(), [](const PartGain& one) { return one.taken; });
 }
 
 // Trend, sites and correction strength of one list of features.
@@ -178,13 +177,12 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   ModelData& common = prepared.common;
   common.corrects_trend = !papers;
   const FeatureList terms = papers ? FeatureList{} : list;
-  const auto rows = gather_rows(given.source, given.dealer, terms, given.problem, kTrendRows, 0.0, control, 0.2);
+  const auto rows = gather_rows(given.source, terms, given.problem, kTrendRows, 0.0, control, 0.2);
   if (!rows) return rows.error();
-  const TrendRegression regression(*rows, given.dealer.folds(), given.problem.weighting, request.jnd,
-                                   given.problem.force_noise_floor_N);
-  const LeftOutTrend left_out = regression.left_out(regression.all_columns());
+  const TrendRegression regression(*rows, given.source.folds(), given.problem);
+  const CrossValidated left_out = regression.cross_validate(regression.all_columns());
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
-  if (automatic) add_worth(prepared, list, *rows, regression, left_out, x);
+  if (automatic) add_gains(prepared, list, *rows, regression, left_out, x);
   FittedTrend fitted = fitted_trend(terms, *rows, x, !automatic);
   common.trend = fitted.trend;
   common.features = fitted.features;
@@ -195,7 +193,7 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   }
   const std::size_t stride = given.extent.contact_samples / kMaximumEvaluationSamples + 1;
   std::size_t seen = 0;
-  TrainingSetOptions options{0.25, papers ? nullptr : &given.dealer, {}};
+  TrainingSetOptions options{0.25, {}};
   options.also = [&](const MotionRow& row, const FeatureVector& vector) {
     if (seen++ % stride != 0) return;
     prepared.evaluation_features.push_back(vector.values);
@@ -248,8 +246,8 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
       extent->lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
   const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
                              is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
-  const FoldDealer dealer = dealer_for(source, *extent);
-  const Given given{source, request, *extent, dealer, problem};
+  source.deal(dealer_for(source, *extent));
+  const Given given{source, request, *extent, problem};
   FeatureList list = request.list;
   // The paper's recipe has the scene's features, whatever the recordings would support.
   const bool everything = request.choice == FeatureChoice::automatic && !is_papers_recipe(request);

@@ -74,8 +74,8 @@ void check_trend(Check& check, const Trend& trend) {
     return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   };
   check.positive("trend.reference_depth_m", trend.reference_depth_m);
-  check.finite("trend", finite(trend.elastic_N) && finite(trend.elastic_knot_N) && finite(trend.viscosity_Ns_per_m) &&
-                            finite(trend.thinning_Ns_per_m));
+  check.finite("trend",
+               finite(trend.elastic.pieces_N) && finite(trend.viscosity_Ns_per_m) && finite(trend.thinning_Ns_per_m));
   check.positive("trend.thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s);
   check.not_negative("trend.velocity_limit_m_per_s", trend.velocity_limit_m_per_s);
 }

@@ -5,13 +5,6 @@
 #include "models/model/bernstein.h"
 
 namespace palpate {
-namespace {
-
-double elastic_force_N(const Trend& trend, double u) noexcept {
-  return rising_curve(trend.elastic_N, trend.has_elastic_knots ? &trend.elastic_knot_N : nullptr, u);
-}
-
-}  // namespace
 
 TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
@@ -32,7 +25,7 @@ double Trend::at(const double* features, const TrendInputs& inputs) const noexce
   const double u = depth_m / reference_depth_m;
   const double speed = std::clamp(velocity_m_per_s, -velocity_limit_m_per_s, velocity_limit_m_per_s);
   const double inside = std::min(u, 1.0);
-  return elastic_force_N(*this, u) + polynomial(viscosity_Ns_per_m, inside) * speed +
+  return elastic.at(u) + polynomial(viscosity_Ns_per_m, inside) * speed +
          polynomial(thinning_Ns_per_m, inside) * thinned_velocity(speed, thinning_velocity_m_per_s) + branches_N;
 }
 

@@ -26,10 +26,10 @@
 #include <vector>
 
 #include "engine/tick/features.h"
+#include "models/model/elastic_spline.h"
 
 namespace palpate {
 
-inline constexpr std::size_t kElasticCoefficients = 6;
 inline constexpr std::size_t kViscosityCoefficients = 3;
 
 // Where the trend finds its terms among the features: made once, so that a tick does
@@ -45,10 +45,8 @@ struct TrendInputs {
 };
 
 struct Trend {
-  double reference_depth_m = 1.0;                        // greatest recorded depth; u = d / reference_depth_m
-  std::array<double, kElasticCoefficients> elastic_N{};  // E = sum e_k u^(k+1)
-  bool has_elastic_knots = false;
-  std::array<double, kDriveKnots> elastic_knot_N{};  // of a cubic spline, on top (engine/tick/rising_curve.h)
+  double reference_depth_m = 1.0;  // greatest recorded depth; u = d / reference_depth_m
+  ElasticSpline elastic;           // E
   std::array<double, kViscosityCoefficients> viscosity_Ns_per_m{};  // eta = sum c_k u^k, u <= 1
   std::array<double, kViscosityCoefficients> thinning_Ns_per_m{};   // mu, likewise
   double thinning_velocity_m_per_s = 1.0;                           // v_0

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "engine/base/parallel.h"
-#include "models/solve/lapack.h"
+#include "models/linear/lapack.h"
 
 namespace palpate {
 namespace {

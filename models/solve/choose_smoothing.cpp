@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "models/solve/lapack.h"
+#include "models/linear/lapack.h"
 #include "models/solve/projected_kernel.h"
 
 namespace palpate {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/solve/lapack.h"
 
 namespace palpate {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/lapack.h"
 
 namespace palpate {
 namespace {

@@ -13,9 +13,9 @@
 
 #include <Eigen/Core>
 
+#include "models/linear/lapack.h"
 #include "models/model/rbf/kernels.h"
 #include "models/solve/fit_report.h"
-#include "models/solve/lapack.h"
 #include "models/solve/solve_weights.h"
 
 namespace palpate {

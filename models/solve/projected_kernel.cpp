@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/solve/lapack.h"
 
 namespace palpate {
 

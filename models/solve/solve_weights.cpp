@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
 #include "models/solve/choose_smoothing.h"
-#include "models/solve/lapack.h"
 #include "models/solve/penalised_weights.h"
 
 namespace palpate {

@@ -22,11 +22,11 @@ FoldDealer::FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t 
   folds_ = static_cast<int>(std::min(pieces, by_recording_ ? static_cast<std::size_t>(kMaximumFolds) : kStrokeFolds));
 }
 
-int FoldDealer::next(const MotionRow& row) noexcept {
-  if (by_recording_) return row.recording % folds_;
-  if (row.sample.position_m > 0.0) {
-    if (row.stroke != stroke_ || in_piece_ >= longest_piece_) {
-      stroke_ = row.stroke;
+int FoldDealer::next(int recording, int stroke, bool in_contact) noexcept {
+  if (by_recording_) return recording % folds_;
+  if (in_contact) {
+    if (stroke != stroke_ || in_piece_ >= longest_piece_) {
+      stroke_ = stroke;
       in_piece_ = 0;
       ++piece_;
     }

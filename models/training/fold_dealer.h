@@ -10,8 +10,6 @@
 
 #include <cstddef>
 
-#include "models/training/motion_source.h"
-
 namespace palpate {
 
 inline constexpr int kMaximumFolds = 6;
@@ -24,7 +22,7 @@ class FoldDealer {
 
   int folds() const noexcept { return folds_; }
   // The fold of a row; every row of every recording in order, from the beginning.
-  int next(const MotionRow& row) noexcept;
+  int next(int recording, int stroke, bool in_contact) noexcept;
 
  private:
   int folds_;

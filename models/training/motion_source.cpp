@@ -65,7 +65,8 @@ constexpr std::size_t kLongestStretch = 16384;
 // Rows moved by their recording's correction, contacts counted as they are then.
 class CorrectedRows {
  public:
-  explicit CorrectedRows(const std::vector<RowCorrection>& corrections) : corrections_(corrections) {}
+  CorrectedRows(const std::vector<RowCorrection>& corrections, const std::optional<FoldDealer>& dealer)
+      : corrections_(corrections), dealer_(dealer) {}
 
   // Visits the rows that `recorded` completes: it itself, or, with a lag, those whose force
   // comes with it. False when a visit says so.
@@ -109,10 +110,12 @@ class CorrectedRows {
     if (in_contact && (recorded.first || !was_in_contact_)) ++stroke_;
     was_in_contact_ = in_contact;
     row_.stroke = stroke_;
+    if (dealer_) row_.fold = dealer_->next(row_.recording, stroke_, in_contact);
     return row_;
   }
 
   const std::vector<RowCorrection>& corrections_;
+  std::optional<FoldDealer> dealer_;
   std::deque<MotionRow> waiting_;
   std::deque<std::pair<double, double>> forces_;  // s, N
   bool first_ = true;
@@ -200,7 +203,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
     if (Status status = load(control, fraction); !status) return status;
   }
   std::size_t seen = 0;
-  CorrectedRows corrected(corrections_);
+  CorrectedRows corrected(corrections_, dealer_);
   for (const OneRecording& one : recordings_) {
     for (const MotionRow& row : one.rows) {
       if (!corrected.feed(row, visit)) return interrupted();

@@ -22,6 +22,7 @@
 #include "engine/recording/recording.h"
 #include "engine/tick/motion_estimator.h"
 #include "engine/tick/tool_sample.h"
+#include "models/training/fold_dealer.h"
 
 namespace palpate {
 
@@ -37,6 +38,7 @@ struct MotionRow {
   double force_N = 0.0;
   int recording = 0;
   int stroke = 0;       // counts contacts, over all recordings
+  int fold = 0;         // of the cross-validation (fold_dealer.h); 0 until folds are dealt
   bool first = false;   // of its recording: filters start anew
   bool run_up = false;  // between the stretches of a long one: filters take it, nothing else does
 };
@@ -77,6 +79,10 @@ class MotionSource {
     for (RowCorrection& one : corrections_) one.offset_m += offset_m;
   }
 
+  // From now on every pass deals its rows to these folds.
+  void deal(const FoldDealer& dealer) { dealer_ = dealer; }
+  int folds() const { return dealer_ ? dealer_->folds() : 1; }
+
   // After the first pass.
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/content_hash.h
@@ -113,6 +119,7 @@ class MotionSource {
   std::vector<std::uint64_t> hashes_;
   std::vector<OneRecording> recordings_;
   std::vector<RowCorrection> corrections_;
+  std::optional<FoldDealer> dealer_;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
   double encoder_step_m_ = 0.0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "models/training/acceptance.h"
+#include "models/training/selection.h"
 
 namespace palpate {
 namespace {
@@ -25,7 +25,7 @@ ColumnList columns_of(const TrendRows& rows, const std::vector<std::size_t>& cho
 
 struct Choice {
   std::vector<std::size_t> times;  // of the ladder, ascending
-  LeftOutTrend error;
+  CrossValidated error;
 };
 
 // The best set with one time more: of the last one's times each may move by a rung.
@@ -35,9 +35,9 @@ Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, c
   const auto attempt = [&](std::vector<std::size_t> times) {
     std::sort(times.begin(), times.end());
     if (std::adjacent_find(times.begin(), times.end()) != times.end() || times.back() >= ladder) return;
-    Choice one{std::move(times), {}};
-    one.error = regression.left_out(columns_of(rows, one.times), &last.error);
-    if (best.times.empty() || one.error.rms() < best.error.rms()) best = std::move(one);
+    Choice one{std::move(times), CrossValidated{}};
+    one.error = regression.cross_validate(columns_of(rows, one.times));
+    if (best.times.empty() || one.error.errors.rms() < best.error.errors.rms()) best = std::move(one);
   };
   for (std::size_t added = 0; added < ladder; ++added) {
     std::vector<std::size_t> times = last.times;
@@ -61,26 +61,26 @@ Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, c
 
 }  // namespace
 
-Result<std::vector<double>> identify_relaxation(MotionSource& source, const FoldDealer& dealer,
-                                                const TrendProblem& problem, const TrainingExtent& extent,
-                                                bool velocity, std::size_t count, const FitControl& control,
-                                                double fraction) {
-  FeatureList list = dictionary(extent.sample_s, extent.longest_recording_s, problem.reference_depth_m);
+Result<std::vector<double>> identify_relaxation(MotionSource& source, const TrendProblem& problem,
+                                                const TrainingExtent& extent, bool velocity, std::size_t count,
+                                                const FitControl& control, double fraction) {
+  FeatureList list = dictionary(extent.sample_s, extent.longest_recording_s, problem.reference_depth_m, 0.0);
   list.velocity = velocity;
   list.stop_thresholds_m.clear();
   list.creep_times_s.clear();
-  const auto rows = gather_rows(source, dealer, list, problem, kSearchedRows, 0.0, control, fraction);
+  const auto rows = gather_rows(source, list, problem, kSearchedRows, 0.0, control, fraction);
   if (!rows) return rows.error();
   const auto& ladder_s = rows->relaxation_times_s();
   if (ladder_s.empty()) {
     return Error{"the recordings are too short to tell a relaxation time; record longer, or pass --relaxation scene"};
   }
-  const TrendRegression regression(*rows, dealer.folds(), problem.weighting, problem.jnd, problem.force_noise_floor_N);
-  Choice best = with_one_more(regression, *rows, {{}, regression.left_out(columns_of(*rows, {}))});
+  const TrendRegression regression(*rows, source.folds(), problem, TrendRegression::Smoothness::fixed);
+  Choice best = with_one_more(regression, *rows, {{}, regression.cross_validate(columns_of(*rows, {}))});
   while (best.times.size() < std::min(count > 0 ? count : kMostTimes, ladder_s.size())) {
     if (!control.may_continue(fraction)) return interrupted();
     Choice more = with_one_more(regression, *rows, best);
-    if (count == 0 && !is_worth_it(more.error.fold_error, best.error.fold_error)) break;
+    const FoldErrors candidates[] = {best.error.errors, more.error.errors};
+    if (count == 0 && simplest_adequate(candidates) == 0) break;
     best = std::move(more);
   }
   std::vector<double> times_s;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -237,11 +236,8 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   ForceReduction force;
   NoReduction none;
   int recording = -1;
-  std::optional<FoldDealer> folds;
-  if (options.dealer != nullptr) folds = *options.dealer;
   status = pass([&](const MotionRow& row, const FeatureVector& vector) {
-    const int fold = folds ? folds->next(row) : 0;
-    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, fold, row.force_N <= force_noise_floor_N};
+    const TrainingSite site{vector.values, row.force_N, 1.0, row.stroke, row.fold, row.force_N <= force_noise_floor_N};
     switch (reduction) {
       case Reduction::coverage:
         coverage.add(site);

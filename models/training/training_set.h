@@ -35,7 +35,6 @@
 
 #include "engine/base/result.h"
 #include "engine/tick/features.h"
-#include "models/training/fold_dealer.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
@@ -76,8 +75,7 @@ struct TrainingSet {
 };
 
 struct TrainingSetOptions {
-  double fraction = 0.0;               // of the progress
-  const FoldDealer* dealer = nullptr;  // none: all sites are of fold 0
+  double fraction = 0.0;  // of the progress
   // Called with every sample in contact and its features, once.
   std::function<void(const MotionRow&, const FeatureVector&)> also{};
 };

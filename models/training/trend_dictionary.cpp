@@ -16,9 +16,8 @@ constexpr double kTimesPerDecade = 4.0;
 constexpr double kShortest_s = 1e-3;
 constexpr double kLongest_s = 100.0;
 constexpr std::size_t kBands = 3;
-// Skin and rubber let a fingertip or a probe creep by some tenths of a millimetre before they slip.
-constexpr std::array kThresholds_m{0.05e-3, 0.1e-3, 0.2e-3, 0.4e-3, 0.8e-3};
-constexpr double kThresholdDepth_m = 4e-3;
+constexpr std::size_t kStops = 8;
+static_assert(kStops <= kMaxFeatureParts);
 constexpr double kCreepShortest_s = 1e-3;
 constexpr double kCreepLongest_s = 100.0;
 // Faster than the recording by this factor the velocity stops counting.
@@ -54,11 +53,8 @@ ColumnList columns_from(std::size_t first, std::size_t count) {
 Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   Trend trend;
   trend.reference_depth_m = rows.reference_depth_m();
-  const DriveCurve spline = combined_spline(x.data(), rows.reference_depth_m());
-  std::copy(spline.coefficient_N.begin(), spline.coefficient_N.end(), trend.elastic_N.begin());
-  trend.has_elastic_knots = true;
-  trend.elastic_knot_N = spline.knot_N;
-  auto column = static_cast<Eigen::Index>(kSplineTerms);
+  trend.elastic = combined_spline(spline_basis(), x.data());
+  auto column = static_cast<Eigen::Index>(kElasticTerms);
   if (rows.viscous_columns() > 0) {
     trend.thinning_velocity_m_per_s = rows.thinning_velocity_m_per_s();
     for (auto* viscosity : {&trend.viscosity_Ns_per_m, &trend.thinning_Ns_per_m}) {
@@ -105,7 +101,7 @@ FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>
 
 }  // namespace
 
-FeatureList dictionary(double sample_s, double longest_s, double depth_m) {
+FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m) {
   FeatureList list;
   list.velocity = true;
   const std::vector<double> times_s =
@@ -115,8 +111,10 @@ FeatureList dictionary(double sample_s, double longest_s, double depth_m) {
     const auto to = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() * (band + 1) / kBands);
     if (from != to) list.relaxation_times_s.emplace_back(from, to);
   }
-  const double shrink = std::min(1.0, depth_m / kThresholdDepth_m);
-  for (const double threshold_m : kThresholds_m) list.stop_thresholds_m.push_back(shrink * threshold_m);
+  for (double threshold_m = 0.5 * depth_m; list.stop_thresholds_m.size() < kStops && threshold_m >= encoder_step_m;
+       threshold_m *= 0.5) {
+    list.stop_thresholds_m.insert(list.stop_thresholds_m.begin(), threshold_m);
+  }
   list.creep_times_s = ladder(kCreepShortest_s, kCreepLongest_s, 1.0);
   return list;
 }
@@ -127,17 +125,36 @@ std::vector<double> all_times(const FeatureList& list) {
   return times_s;
 }
 
+Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
+                              std::size_t most_rows, double least_step_s, const FitControl& control, double fraction) {
+  TrendRows rows(terms_of(list, problem.reference_depth_m, problem.rms_velocity_m_per_s), most_rows);
+  double last_s = 0.0;
+  const Status status = source.for_each(
+      [&](const MotionRow& row) {
+        if (row.first) rows.begin_recording();
+        if (!row.first && row.sample.time_s - last_s < least_step_s) return true;
+        last_s = row.sample.time_s;
+        if (row.run_up)
+          rows.advance(row.sample, row.motion);
+        else
+          rows.add(row.sample, row.motion, row.force_N, row.fold);
+        return true;
+      },
+      control, fraction);
+  if (!status) return status.error();
+  return rows;
+}
+
 TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s) {
   return {reference_depth_m,  list.velocity ? rms_velocity_m_per_s : 0.0,
           all_times(list),    list.stop_thresholds_m,
-          list.creep_times_s, list.slowing,
-          list.surface};
+          list.creep_times_s, list.slowing};
 }
 
 std::vector<FeatureColumns> feature_columns(const FeatureList& list, const TrendRows& rows) {
   std::vector<FeatureColumns> groups;
   if (list.velocity) {
-    groups.push_back({FeatureKind::velocity, "velocity", columns_from(kSplineTerms, rows.viscous_columns())});
+    groups.push_back({FeatureKind::velocity, "velocity", columns_from(kElasticTerms, rows.viscous_columns())});
   }
   std::size_t first = rows.first_branch();
   const auto add = [&](FeatureKind kind, std::string name, std::size_t parts) {
@@ -158,11 +175,6 @@ std::vector<FeatureColumns> feature_columns(const FeatureList& list, const Trend
 
 FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
   FittedTrend fitted{trend_from(rows, x), {FeatureSpec{}}, {}};
-  if (!list.surface.empty()) {
-    FeatureSpec lag{FeatureKind::surface_lag};
-    lag.drive = combined_spline(x.data(), rows.reference_depth_m());
-    fitted.features.push_back(lag);
-  }
   std::vector<ColumnList> sums;  // of the features that are sums of columns
   std::size_t band = 0;
   for (const FeatureColumns& group : feature_columns(list, rows)) {
@@ -193,9 +205,6 @@ FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const E
           break;
         case FeatureKind::velocity:
           value = rows.velocity_m_per_s(i);
-          break;
-        case FeatureKind::surface_lag:
-          value = rows.lag_m(i);
           break;
         default:
           value = row(sums[sum]).dot(x(sums[sum]));

@@ -7,8 +7,8 @@
 //   relaxation  Maxwell branches, kTimesPerDecade to a decade, from two samples to
 //               a third of the recording; in three bands (fast, middle, slow), each of
 //               which becomes one feature, the sum of its branches
-//   stops       dry friction with presliding, kThresholds_m; in shallower recordings
-//               they shrink with the depth
+//   stops       a Prandtl-Ishlinskii operator of kStops stops, whose thresholds halve from half of
+//               the greatest depth down to the encoder's step
 //   creep       bristles that creep by a power law, a time for each decade
 // Nothing is chosen from it: weights of what does not help become 0.
 // Thread guarantee: value types, pure functions.
@@ -18,8 +18,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/fit_control.h"
+#include "engine/base/result.h"
 #include "engine/tick/features.h"
 #include "models/model/trend.h"
+#include "models/training/motion_source.h"
 #include "models/training/trend_regression.h"
 #include "models/training/trend_rows.h"
 
@@ -32,13 +35,18 @@ struct FeatureList {
   std::vector<double> stop_thresholds_m;  // of one feature, their sum
   std::vector<double> creep_times_s;      // likewise
   double slowing = 0.0;                   // of the relaxation times
-  std::vector<FeatureSpec> surface{};     // TrendTerms::surface
 };
 
-// `sample_s`: the mean step of the recordings; `longest_s`: how long the longest is.
-FeatureList dictionary(double sample_s, double longest_s, double depth_m);
+// `sample_s`: the mean step of the recordings; `longest_s`: how long the longest is; `depth_m`: their
+// greatest depth; `encoder_step_m`: 0 where positions are not quantised.
+FeatureList dictionary(double sample_s, double longest_s, double depth_m, double encoder_step_m);
 
 std::vector<double> all_times(const FeatureList& list);
+
+// The rows of the list's terms, at most so many, with their folds. Errors: those of the
+// source; interrupted. `least_step_s`: samples sooner than this after the last are left out.
+Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
+                              std::size_t most_rows, double least_step_s, const FitControl& control, double fraction);
 
 // The terms of the trend that go with the list.
 TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s);

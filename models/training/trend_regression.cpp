@@ -2,11 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "models/training/acceptance.h"
+#include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 
 namespace palpate {
 namespace {
@@ -14,9 +16,12 @@ namespace {
 // Relative to unit-norm columns: far below any information in a recording, far
 // above rounding; decides only between columns that are equal.
 constexpr double kEqualColumns = 1e-8;
-// Which samples are on their side, and which no features explain, settles within so many.
+// Active set and robust weights settle within so many passes.
 constexpr int kPasses = 4;
-constexpr Eigen::Index kBlock = 256;
+// lambda. 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
+constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
+constexpr double kFirstSmoothness = 1e-8;
+constexpr Eigen::Index kBlock = 512;  // rows of a product
 
 // Lawson & Hanson's working state on unit-norm columns.
 class NonNegativeSolver {
@@ -102,40 +107,13 @@ class NonNegativeSolver {
   std::vector<char> passive_;
 };
 
-// Adds blocks of scaled rows to a Gram matrix.
-class GramSum {
- public:
-  explicit GramSum(Eigen::Index n) : block_(n + 1, kBlock), sum_(Eigen::MatrixXd::Zero(n + 1, n + 1)) {}
+using RowMatrix = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-  void add(const double* row, double force_N, double scale) {
-    const Eigen::Index n = block_.rows() - 1;
-    block_.col(filled_).head(n) = scale * Eigen::Map<const Eigen::VectorXd>(row, n);
-    block_(n, filled_) = scale * force_N;
-    count_ += 1.0;
-    if (++filled_ == kBlock) flush();
-  }
+RowMatrix matrix_of(const TrendRows& rows) {
+  return {rows.row(0), static_cast<Eigen::Index>(rows.count()), static_cast<Eigen::Index>(rows.columns())};
+}
 
-  // The sums; the last row and column are those of the force.
-  const Eigen::MatrixXd& finish() {
-    flush();
-    sum_.triangularView<Eigen::StrictlyUpper>() = sum_.transpose();
-    return sum_;
-  }
-  double count() const { return count_; }
-
- private:
-  void flush() {
-    if (filled_ == 0) return;
-    sum_.selfadjointView<Eigen::Lower>().rankUpdate(block_.leftCols(filled_));
-    filled_ = 0;
-  }
-
-  Eigen::MatrixXd block_;
-  Eigen::MatrixXd sum_;
-  Eigen::Index filled_ = 0;
-  double count_ = 0.0;
-};
-
+// Of every fold, how deep the others go.
 std::vector<double> deepest_elsewhere(const TrendRows& rows, int folds) {
   std::vector<double> deepest_m(static_cast<std::size_t>(folds), 0.0);
   for (std::size_t i = 0; i < rows.count(); ++i) {
@@ -167,86 +145,90 @@ Eigen::VectorXd solve_non_negative(const Eigen::MatrixXd& gram, const Eigen::Vec
   return solver.solve().cwiseMax(0.0).cwiseProduct(inverse_norm);
 }
 
-double LeftOutTrend::rms() const {
-  const double sum = std::accumulate(fold_error.begin(), fold_error.end(), 0.0);
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+TrendRegression::TrendRegression(const TrendRows& rows, int folds, const TrendProblem& problem, Smoothness smoothness)
+    : rows_(rows),
+      problem_(problem),
+      part_error_(rows.terms().creep_times_s.empty() ? kPartErrorOfFew : kPartError),
+      smoothness_(kFirstSmoothness),
+      folds_(static_cast<std::size_t>(folds)) {
+  const BlasThreads one_thread(1);
+  parallel_for(folds + 1,
+               [&](int k) { (k < folds ? folds_[static_cast<std::size_t>(k)] : all_) = gather(k < folds ? k : -1); });
+  if (smoothness == Smoothness::fixed) return;
+  std::vector<FoldErrors> errors(kSmoothness.size());
+  parallel_for(static_cast<int>(kSmoothness.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    errors[at] = cross_validate(all_columns(), kSmoothness[at]).errors;
+  });
+  smoothness_ = kSmoothness[simplest_adequate(errors)];
 }
 
-double TrendRegression::Equations::residual(const Eigen::VectorXd& x) const {
-  return std::max(0.0, squares - 2.0 * right_side.dot(x) + x.dot(gram * x));
-}
-
-TrendRegression::TrendRegression(const TrendRows& rows, int folds, Weighting weighting, const JndLine& jnd,
-                                 double force_noise_floor_N)
-    : scale_(rows.count()),
-      train_(static_cast<std::size_t>(folds)),
-      validation_(train_.size()),
-      own_error_(rows.terms().creep_times_s.empty() ? kOwnErrorOfFew : kOwnError) {
-  for (std::size_t i = 0; i < rows.count(); ++i) scale_[i] = palpate::row_scale(weighting, jnd, rows.force_N(i));
-  const std::vector<double> elsewhere_m = deepest_elsewhere(rows, folds);
-  gather(rows, elsewhere_m);
+// Iterates weights and active set on the rows outside the fold `left_out` (-1: all rows).
+TrendRegression::Equations TrendRegression::gather(int left_out) const {
+  std::vector<double> plain(rows_.count());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    plain[i] = rows_.fold(i) == left_out ? 0.0 : row_scale(problem_.weighting, problem_.jnd, rows_.force_N(i));
+  }
+  std::vector<double> scale = plain;
+  Equations equations = sum(left_out, scale);
   for (int pass = 0; pass < kPasses; ++pass) {
-    // All columns together tell well enough where the tool outran the material, and
-    // which samples no set of features will ever explain.
-    const Eigen::VectorXd x = solve(all_columns());
+    equations.near_solution = weights(equations, all_columns(), kFirstSmoothness);
+    const Eigen::VectorXd trend_N = matrix_of(rows_) * equations.near_solution;
     bool changed = false;
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-      const double trend_N = Eigen::Map<const Eigen::VectorXd>(rows.row(i), x.size()).dot(x);
-      const double plain = palpate::row_scale(weighting, jnd, rows.force_N(i));
-      double scale = plain * robust_scale(jnd.error_over_jnd(trend_N, rows.force_N(i)));
-      if (std::abs(rows.force_N(i)) <= force_noise_floor_N && trend_N <= 0.0) scale = 0.0;
-      changed = changed || std::abs(scale - scale_[i]) > 0.1 * plain;
-      scale_[i] = scale;
+    for (std::size_t i = 0; i < scale.size(); ++i) {
+      const double force_N = trend_N(static_cast<Eigen::Index>(i));
+      const bool idle = std::abs(rows_.force_N(i)) <= problem_.force_noise_floor_N && force_N <= 0.0;
+      const double robust = robust_scale(problem_.jnd.error_over_jnd(force_N, rows_.force_N(i)));
+      const double now = idle ? 0.0 : plain[i] * robust;
+      changed = changed || std::abs(now - scale[i]) > 0.1 * plain[i];
+      scale[i] = now;
     }
     if (!changed) break;
-    gather(rows, elsewhere_m);
+    Equations next = sum(left_out, scale);
+    next.near_solution = std::move(equations.near_solution);
+    equations = std::move(next);
   }
-  LeftOutTrend best = left_out(all_columns(), smoothness_, nullptr);
-  std::vector<LeftOutTrend> of_each;
-  for (const double smoothness : kSmoothness) {
-    of_each.push_back(left_out(all_columns(), smoothness, &best));
-    if (of_each.back().rms() < best.rms()) best = of_each.back();
-  }
-  for (std::size_t i = 0; i < kSmoothness.size(); ++i) {
-    smoothness_ = kSmoothness[i];
-    if (!is_worth_it(best.fold_error, of_each[i].fold_error)) break;
-  }
+  return equations;
 }
 
-void TrendRegression::gather(const TrendRows& rows, const std::vector<double>& elsewhere_m) {
-  const auto n = static_cast<Eigen::Index>(rows.columns());
-  total_ = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, 0.0};
-  for (std::size_t k = 0; k < train_.size(); ++k) {
-    GramSum shallow(n);
-    GramSum deep(n);
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-      if (scale_[i] == 0.0 || rows.fold(i) != static_cast<int>(k)) continue;
-      (rows.depth_m(i) <= elsewhere_m[k] ? shallow : deep).add(rows.row(i), rows.force_N(i), scale_[i]);
-    }
-    const Eigen::MatrixXd& validation = shallow.finish();
-    const Eigen::MatrixXd all = validation + deep.finish();
-    validation_[k] = {validation.topLeftCorner(n, n), validation.col(n).head(n), validation(n, n), shallow.count()};
-    train_[k] = {all.topLeftCorner(n, n), all.col(n).head(n), all(n, n), shallow.count() + deep.count()};
-    total_.gram += train_[k].gram;
-    total_.right_side += train_[k].right_side;
-    total_.squares += train_[k].squares;
-    total_.count += train_[k].count;
+TrendRegression::Equations TrendRegression::sum(int left_out, const std::vector<double>& scale) const {
+  const auto n = static_cast<Eigen::Index>(rows_.columns());
+  Equations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0, {}};
+  Eigen::MatrixXd block(kBlock, n);
+  Eigen::VectorXd force_N(kBlock);
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n);
+  Eigen::Index filled = 0;
+  const auto flush = [&] {
+    gram(block.topRows(filled), product);
+    equations.gram += product;
+    equations.right_side += block.topRows(filled).transpose() * force_N.head(filled);
+    filled = 0;
+  };
+  for (std::size_t i = 0; i < rows_.count(); ++i) {
+    if (rows_.fold(i) == left_out || scale[i] == 0.0) continue;
+    block.row(filled) = scale[i] * Eigen::Map<const Eigen::RowVectorXd>(rows_.row(i), n);
+    force_N(filled) = scale[i] * rows_.force_N(i);
+    equations.scale_squares += scale[i] * scale[i];
+    if (++filled == kBlock) flush();
   }
+  flush();
+  equations.gram.triangularView<Eigen::StrictlyUpper>() = equations.gram.transpose();
+  return equations;
 }
 
 ColumnList TrendRegression::all_columns() const {
-  ColumnList all(static_cast<std::size_t>(total_.gram.cols()));
+  ColumnList all(rows_.columns());
   std::iota(all.begin(), all.end(), Eigen::Index{0});
   return all;
 }
 
 // The penalised solution on these columns, over all of them. The elastic response's come first.
-Eigen::VectorXd TrendRegression::weights(Eigen::MatrixXd gram, const Eigen::VectorXd& right_side,
-                                         const ColumnList& columns, double smoothness,
-                                         const Eigen::VectorXd& start) const {
-  constexpr auto kElastic = static_cast<Eigen::Index>(kSplineTerms);
-  const double smooth = smoothness * gram.diagonal().head(kElastic).mean();
-  gram.diagonal().tail(gram.cols() - kElastic) *= 1.0 + own_error_ * own_error_;
+Eigen::VectorXd TrendRegression::weights(const Equations& equations, const ColumnList& columns,
+                                         double smoothness) const {
+  constexpr auto kElastic = static_cast<Eigen::Index>(kElasticTerms);
+  Eigen::MatrixXd gram = equations.gram;
+  const double smooth = smoothness * equations.scale_squares * static_cast<double>(kElasticPieces);
+  gram.diagonal().tail(gram.cols() - kElastic) *= 1.0 + part_error_ * part_error_;
   for (Eigen::Index k = 0; k + 1 < kElastic; ++k) {
     gram(k, k) += smooth;
     gram(k + 1, k + 1) += smooth;
@@ -254,31 +236,33 @@ Eigen::VectorXd TrendRegression::weights(Eigen::MatrixXd gram, const Eigen::Vect
     gram(k + 1, k) -= smooth;
   }
   Eigen::VectorXd x = Eigen::VectorXd::Zero(gram.cols());
-  const Eigen::VectorXd some_start = start.size() > 0 ? Eigen::VectorXd(start(columns)) : start;
-  x(columns) = solve_non_negative(gram(columns, columns), right_side(columns), some_start);
+  const Eigen::VectorXd& near = equations.near_solution;
+  const Eigen::VectorXd start = near.size() > 0 ? Eigen::VectorXd(near(columns)) : near;
+  x(columns) = columns.size() == static_cast<std::size_t>(gram.cols())
+                   ? solve_non_negative(gram, equations.right_side, start)
+                   : solve_non_negative(gram(columns, columns), equations.right_side(columns), start);
   return x;
 }
 
-LeftOutTrend TrendRegression::left_out(const ColumnList& columns, double smoothness, const LeftOutTrend* near) const {
-  LeftOutTrend result;
-  result.solutions.resize(total_.gram.cols(), static_cast<Eigen::Index>(train_.size()));
-  for (std::size_t k = 0; k < train_.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const Eigen::VectorXd start = near != nullptr ? Eigen::VectorXd(near->solutions.col(column)) : Eigen::VectorXd();
-    result.solutions.col(column) =
-        weights(total_.gram - train_[k].gram, total_.right_side - train_[k].right_side, columns, smoothness, start);
-    result.fold_error.push_back(validation_[k].residual(result.solutions.col(column)));
-    result.count += validation_[k].count;
+CrossValidated TrendRegression::cross_validate(const ColumnList& columns, double smoothness) const {
+  CrossValidated result{FoldErrors(folds_.size()),
+                        Eigen::MatrixXd::Zero(all_.gram.cols(), static_cast<Eigen::Index>(folds_.size()))};
+  for (std::size_t k = 0; k < folds_.size(); ++k) {
+    result.solutions.col(static_cast<Eigen::Index>(k)) = weights(folds_[k], columns, smoothness);
+  }
+  const std::vector<double> elsewhere_m = deepest_elsewhere(rows_, static_cast<int>(folds_.size()));
+  const Eigen::MatrixXd trend_N = matrix_of(rows_) * result.solutions;
+  for (std::size_t i = 0; i < rows_.count(); ++i) {
+    const auto fold = static_cast<std::size_t>(rows_.fold(i));
+    if (rows_.depth_m(i) > elsewhere_m[fold]) continue;
+    const double force_N = trend_N(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(fold));
+    const bool one_sided = std::isfinite(problem_.force_noise_floor_N);
+    result.errors.add(fold,
+                      problem_.jnd.error_over_jnd(one_sided ? std::max(0.0, force_N) : force_N, rows_.force_N(i)));
   }
   return result;
 }
 
-LeftOutTrend TrendRegression::left_out(const ColumnList& columns, const LeftOutTrend* near) const {
-  return left_out(columns, smoothness_, near);
-}
-
-Eigen::VectorXd TrendRegression::solve(const ColumnList& columns) const {
-  return weights(total_.gram, total_.right_side, columns, smoothness_, {});
-}
+Eigen::VectorXd TrendRegression::solve(const ColumnList& columns) const { return weights(all_, columns, smoothness_); }
 
 }  // namespace palpate

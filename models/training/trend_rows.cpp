@@ -27,31 +27,6 @@ constexpr auto kViscousBasis = [] {
   return basis;
 }();
 
-constexpr std::size_t kSplinePieces = kDriveKnots + 1;
-constexpr double kSplinePiece = 1.0 / kSplinePieces;
-
-// The knots of the quadratic B-splines: the ends three times.
-double knot_at(std::size_t i) {
-  const auto inner = static_cast<double>(std::clamp<std::size_t>(i, 2, kSplinePieces + 2) - 2);
-  return inner * kSplinePiece;
-}
-
-// N_i of a degree at u (Cox-de Boor recursion); at u = 1 its limit from the left.
-double b_spline(std::size_t i, int degree, double u) {
-  const double first = knot_at(i);
-  if (degree == 0) {
-    const double next = knot_at(i + 1);
-    return (u >= first && u < next) || (u >= 1.0 && first < next && next >= 1.0) ? 1.0 : 0.0;
-  }
-  const auto width = static_cast<std::size_t>(degree);
-  double value = 0.0;
-  if (const double rise = knot_at(i + width) - first; rise > 0.0)
-    value += (u - first) / rise * b_spline(i, degree - 1, u);
-  const double end = knot_at(i + width + 1);
-  if (const double fall = end - knot_at(i + 1); fall > 0.0) value += (end - u) / fall * b_spline(i + 1, degree - 1, u);
-  return value;
-}
-
 std::vector<DriveCurve> branch_curves(const TrendTerms& terms) {
   std::vector<DriveCurve> curves;
   for (const FeatureSpec& spec : branch_basis(1.0, terms.reference_depth_m)) curves.push_back(spec.drive);
@@ -72,43 +47,6 @@ std::vector<FeatureSpec> bristle_basis(FeatureKind kind, double threshold_m, dou
 }
 
 }  // namespace
-
-std::vector<DriveCurve> spline_basis(double reference_depth_m) {
-  std::vector<DriveCurve> basis(kSplineTerms);
-  for (std::size_t i = 0; i < kSplineTerms; ++i) {
-    DriveCurve& curve = basis[i];
-    curve.reference_depth_m = reference_depth_m;
-    curve.has_knots = true;
-    double before = 0.0;  // coefficient of the square on the piece before
-    for (std::size_t piece = 0; piece < kSplinePieces; ++piece) {
-      const double begin = kSplinePiece * static_cast<double>(piece);
-      const double at_begin = b_spline(i, 2, begin);
-      const double at_end = b_spline(i, 2, piece + 1 == kSplinePieces ? 1.0 : begin + kSplinePiece);
-      const double square =
-          2.0 * (at_begin - 2.0 * b_spline(i, 2, begin + 0.5 * kSplinePiece) + at_end) / (kSplinePiece * kSplinePiece);
-      if (piece == 0) {
-        curve.coefficient_N = {at_begin, 0.5 * ((at_end - at_begin) / kSplinePiece - square * kSplinePiece),
-                               square / 3.0, 0.0};
-      } else {
-        curve.knot_N[piece - 1] = (square - before) / 3.0;
-      }
-      before = square;
-    }
-  }
-  return basis;
-}
-
-DriveCurve combined_spline(const double* weights, double reference_depth_m) {
-  DriveCurve sum;
-  sum.reference_depth_m = reference_depth_m;
-  sum.has_knots = true;
-  const std::vector<DriveCurve> basis = spline_basis(reference_depth_m);
-  for (std::size_t i = 0; i < kSplineTerms; ++i) {
-    for (std::size_t j = 0; j < kDriveCoefficients; ++j) sum.coefficient_N[j] += weights[i] * basis[i].coefficient_N[j];
-    for (std::size_t j = 0; j < kDriveKnots; ++j) sum.knot_N[j] += weights[i] * basis[i].knot_N[j];
-  }
-  return sum;
-}
 
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m) {
   std::vector<FeatureSpec> specs(kBranchTerms);
@@ -145,8 +83,7 @@ TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows)
     : terms_(std::move(terms)),
       most_rows_(most_rows),
       ladder_(terms_.relaxation_times_s, branch_curves(terms_), terms_.slowing),
-      elastic_basis_(spline_basis(terms_.reference_depth_m)) {
-  if (!terms_.surface.empty()) surface_.emplace_back(terms_.surface);
+      elastic_basis_(spline_basis()) {
   for (const double threshold_m : terms_.stop_thresholds_m) {
     bristles_.emplace_back(bristle_basis(FeatureKind::stops, threshold_m, 0.0, terms_.reference_depth_m));
   }
@@ -163,17 +100,12 @@ std::size_t TrendRows::viscous_columns() const {
 
 void TrendRows::begin_recording() {
   ladder_.reset();
-  for (auto* filters : {&surface_, &bristles_}) {
-    for (FeatureFilter& filter : *filters) filter.reset();
-  }
+  for (FeatureFilter& filter : bristles_) filter.reset();
 }
 
 void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
-  for (auto* filters : {&surface_, &bristles_}) {
-    for (FeatureFilter& filter : *filters) filter.update(sample, motion);
-  }
-  const double depth_m = std::max(0.0, motion.position_m);
-  ladder_.update(sample.time_s, depth_m, surface_.empty() ? depth_m : surface_.front().surface_m());
+  for (FeatureFilter& filter : bristles_) filter.update(sample, motion);
+  ladder_.update(sample.time_s, std::max(0.0, motion.position_m));
 }
 
 void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold) {
@@ -185,7 +117,7 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   const double u = std::min(depth_m / terms_.reference_depth_m, 1.0);
   values_.resize(values_.size() + columns_);
   double* to = values_.data() + (values_.size() - columns_);
-  for (const DriveCurve& curve : elastic_basis_) *to++ = curve.at(depth_m);
+  for (const ElasticSpline& curve : elastic_basis_) *to++ = curve.at(u);
   if (viscous_columns() > 0) {
     for (const double v : {velocity_m_per_s, thinned_velocity(velocity_m_per_s, terms_.thinning_velocity_m_per_s)}) {
       for (const auto& power : kViscousBasis) *to++ = v * polynomial(power, u);
@@ -196,7 +128,6 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   force_N_.push_back(force_N);
   velocity_m_per_s_.push_back(velocity_m_per_s);
   depth_m_.push_back(depth_m);
-  lag_m_.push_back(surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m);
   fold_.push_back(fold);
   if (count() > most_rows_) halve();
 }
@@ -206,7 +137,6 @@ void TrendRows::halve() {
   keep_every_other(force_N_, 1);
   keep_every_other(velocity_m_per_s_, 1);
   keep_every_other(depth_m_, 1);
-  keep_every_other(lag_m_, 1);
   keep_every_other(fold_, 1);
   stride_ *= 2;
   phase_ = 1;  // the newest row was kept

@@ -22,19 +22,21 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
 
 // One row a feature: what the trend's error on strokes left out is with it and
 // without it.
-void print_worth(const std::vector<FeatureWorth>& worth) {
-  if (worth.empty()) return;
+void print_gains(const std::vector<PartGain>& gains) {
+  if (gains.empty()) return;
   std::printf("%-32s %-5s %12s %12s   RMS over the JND, strokes left out\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
-  for (const FeatureWorth& one : worth) {
+  for (const PartGain& one : gains) {
     std::printf("%-32s %-5s %12.4f %12.4f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
                 one.error_without);
   }
   std::fflush(stdout);
 }
 
-std::string strength_text(const StrengthChoice& strength) {
-  return fixed(100.0 * strength.strength, 0) + " % of it; RMS over the JND on strokes left out " +
-         fixed(strength.error_over_jnd, 4) + ", " + fixed(strength.trend_error_over_jnd, 4) + " without it";
+std::string strength_text(const StrengthChoice& strength, const std::optional<double>& rms_jnd) {
+  if (strength.strength == 0.0) return "off: it does not lower the cross-validated error, so the model is its trend";
+  return "strength " + fixed(strength.strength, 2) + "; cross-validated RMS error " +
+         fixed(rms_jnd.value_or(strength.error_over_jnd), 3) + " JND, trend alone " +
+         fixed(strength.trend_error_over_jnd, 3) + " JND";
 }
 
 void print_surfaces(const Provenance& provenance) {
@@ -70,7 +72,7 @@ nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
 
 void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
                const std::string& out) {
-  print_worth(prepared.worth);
+  print_gains(prepared.gains);
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
             << "samples             " << provenance.samples << " (" << provenance.contact_samples << " in contact)\n"
@@ -80,7 +82,9 @@ void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double se
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
     std::cout << "depth begins        at " << fixed(1e3 * begins_m, 3) << " mm, where the recordings' force does\n";
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
-            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
+            << "correction          "
+            << (prepared.strength ? strength_text(*prepared.strength, fit.cross_validated_rms_jnd) : "all of it")
+            << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";

@@ -14,7 +14,7 @@
 #endif
 
 #include "engine/base/signals.h"
-#include "models/solve/lapack.h"
+#include "models/linear/lapack.h"
 #include "scenes/cli/verbs.h"
 
 namespace palpate::cli {

@@ -125,7 +125,7 @@ class Measurement {
   Status run_fold(const Split& fold) {
     const auto prepared = prepare(fold.train);
     if (!prepared) return prepared.error();
-    if (data_.worth.empty()) remember(*prepared);
+    if (data_.gains.empty()) remember(*prepared);
     const auto fitted = fit(*prepared);
     if (!fitted) return fitted.error();
     std::vector<ModelPointer>& of_fold = fitted_.emplace_back();
@@ -150,7 +150,7 @@ class Measurement {
   void remember(const Preparations& prepared) {
     const Provenance& provenance = prepared.palpate.common.provenance;
     data_.surfaces = provenance.surfaces;
-    data_.worth = prepared.palpate.worth;
+    data_.gains = prepared.palpate.gains;
     if (prepared.palpate.strength) data_.correction_strength = prepared.palpate.strength->strength;
     for (const RelaxationTime& one : prepared.paper.common.provenance.relaxation_times)
       data_.times_2009_s.push_back(one.time_s);

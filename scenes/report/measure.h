@@ -79,7 +79,7 @@ struct ReportData {
   std::vector<RecordingSurface> surfaces;     // of the training recordings
   std::vector<double> times_2009_s;           // relaxation times fitted for the 2009 recipe
   std::optional<double> correction_strength;  // 0 to 1
-  std::vector<FeatureWorth> worth;
+  std::vector<PartGain> gains;
 };
 
 // Errors: those of the recordings and the fits, with the recordings' names; interrupted.

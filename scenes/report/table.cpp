@@ -146,9 +146,9 @@ Table bins_table(const ReportData& data) {
   return table;
 }
 
-Table worth_table(const ReportData& data) {
+Table gains_table(const ReportData& data) {
   Table table{"features"};
-  for (const FeatureWorth& one : data.worth) {
+  for (const PartGain& one : data.gains) {
     table.begin_row();
     table.add({"feature", "feature"}, one.name);
     table.add({"taken", "taken"}, yes_or_no(one.taken));
@@ -211,7 +211,7 @@ std::string table_html(const Table& table) {
 }
 
 std::vector<Table> make_tables(const ReportData& data) {
-  return {models_table(data), recordings_table(data), bins_table(data), worth_table(data), times_table(data)};
+  return {models_table(data), recordings_table(data), bins_table(data), gains_table(data), times_table(data)};
 }
 
 }  // namespace palpate

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "models/fit/recipe_2009.h"
+#include "models/linear/lapack.h"
 #include "models/recordings/recording_faults.h"
-#include "models/solve/lapack.h"
 #include "scenes/evaluation/model_timing.h"
 #include "scenes/material/rig.h"
 #include "scenes/scene/training.h"

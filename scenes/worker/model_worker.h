@@ -108,7 +108,7 @@ class ModelWorker {
   std::optional<std::size_t> working_on_;
 };
 
-// For programs without a word of models, at the beginning of main: models/solve/lapack.h.
+// For programs without a word of models, at the beginning of main: models/linear/lapack.h.
 void prepare_to_fit();
 
 }  // namespace palpate

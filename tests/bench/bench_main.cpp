@@ -27,8 +27,8 @@
 #include <string>
 
 #include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_simd.h"
-#include "models/solve/lapack.h"
 #include "tests/bench/bench_report.h"
 
 namespace {

@@ -10,8 +10,8 @@
 #include "engine/base/random_stream.h"
 #include "engine/tick/jnd.h"
 #include "models/fit/methods.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
-#include "models/solve/lapack.h"
 #include "tests/stability/hard_cases.h"
 #include "tests/stability/hard_outcome.h"
 

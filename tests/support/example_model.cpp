@@ -151,7 +151,7 @@ ModelData example_model(const std::string& method, KernelKind kernel, std::vecto
   data.lower = data.offset - data.scale;
   data.upper = data.offset + data.scale;
   data.trend.reference_depth_m = kDepth_m;
-  data.trend.elastic_N = {1.0, 0.4, 0.3, 0.2, 0.1, 0.0};
+  data.trend.elastic = spline_from_powers({1.0, 0.4, 0.3}, {0.2, 0.0, 0.1});
   data.trend.viscosity_Ns_per_m = {1.0, 0.5, -0.0};
   data.trend.thinning_Ns_per_m = {0.5, 0.0, 0.25};
   data.trend.thinning_velocity_m_per_s = 0.05;
@@ -192,8 +192,7 @@ std::vector<ModelData> example_models() {
   models.back().name = "paper-recipe";
   models.push_back(example_model("greedy", KernelKind::cubic, memory_features(), 21));
   models.push_back(example_model("greedy", KernelKind::cubic, lagging_features(), 22));
-  models.back().trend.has_elastic_knots = true;
-  models.back().trend.elastic_knot_N = models.back().features[1].drive.knot_N;
+  models.back().trend.elastic = spline_from_powers({1.0, 0.4, 0.3}, models.back().features[1].drive.knot_N);
   models.back().features[0].surface_position_m = 0.4e-3;
   return models;
 }

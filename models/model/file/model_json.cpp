@@ -78,13 +78,25 @@ void describe_feature(File& file, FeatureSpec& spec) {
   });
 }
 
+// The form of earlier files, read only: six powers of u, of which fits used three, and knots.
+template <typename File>
+void describe_earlier_elastic(File& file, ElasticSpline& elastic) {
+  std::array<double, 6> power_N{};
+  std::array<double, 7> knot_N{};
+  file.list("elastic_N", power_N);
+  if (file.has("elastic_knot_N", false)) file.list("elastic_knot_N", knot_N);
+  elastic = spline_from_powers({power_N[0], power_N[1], power_N[2]}, knot_N);
+}
+
 template <typename File>
 void describe_trend(File& file, Trend& trend) {
   file.object("trend", "an object", Layout::lines, [&] {
     file.number("reference_depth_m", trend.reference_depth_m, Sign::kPositive);
-    file.list("elastic_N", trend.elastic_N);
-    trend.has_elastic_knots = file.has("elastic_knot_N", trend.has_elastic_knots);
-    if (trend.has_elastic_knots) file.list("elastic_knot_N", trend.elastic_knot_N);
+    if (file.has("elastic_N", false)) {
+      describe_earlier_elastic(file, trend.elastic);
+    } else {
+      file.list("elastic_pieces_N", trend.elastic.pieces_N);
+    }
     file.list("viscosity_Ns_per_m", trend.viscosity_Ns_per_m);
     file.list("thinning_Ns_per_m", trend.thinning_Ns_per_m);
     file.number("thinning_velocity_m_per_s", trend.thinning_velocity_m_per_s, Sign::kPositive);

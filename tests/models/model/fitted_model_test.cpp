@@ -44,7 +44,8 @@ TEST(FittedModel, EveryFaultIsNamed) {
        "domain.lower: found a non-finite number, expected finite numbers"},
       {[](ModelData& d) { d.trend.reference_depth_m = 0.0; },
        "trend.reference_depth_m: found 0.000000, expected a positive number"},
-      {[](ModelData& d) { d.trend.elastic_N[5] = kNan; }, "trend: found a non-finite number, expected finite numbers"},
+      {[](ModelData& d) { d.trend.elastic.pieces_N[5] = kNan; },
+       "trend: found a non-finite number, expected finite numbers"},
       {[](ModelData& d) { d.trend.thinning_velocity_m_per_s = 0.0; },
        "trend.thinning_velocity_m_per_s: found 0.000000, expected a positive number"},
       {[](ModelData& d) { d.trend.velocity_limit_m_per_s = -1.0; },
@@ -74,9 +75,11 @@ TEST(FittedModel, EveryFaultIsNamed) {
 // Such a model would jump between no force and the largest one.
 TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
   void (*const spoils[])(ModelData&) = {
-      [](ModelData& d) { d.trend.elastic_N[3] = 1e300; },
+      [](ModelData& d) { d.trend.elastic.pieces_N[3] = 1e300; },
       [](ModelData& d) { d.trend.viscosity_Ns_per_m[0] = -1e300; },
-      [](ModelData& d) { d.trend.elastic_N[0] = 1e5; },
+      [](ModelData& d) {
+        d.trend.elastic = spline_from_powers({1e5, 0.0, 0.0}, {});
+      },
       [](ModelData& d) { d.scale(0) = 1e300; },
       [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.weights *= 1e12; }); },
       [](ModelData& d) { test::change_rbf(d, [](RbfFunction& f) { f.tail(0) = 1e300; }); },
@@ -85,7 +88,9 @@ TEST(FittedModel, ANumberFarBeyondTheLimitsOfTheFileIsRefused) {
     const std::string message = message_after(spoil);
     EXPECT_NE(message.find("largest_force_N"), std::string::npos) << message;
   }
-  EXPECT_EQ(message_after([](ModelData& d) { d.trend.elastic_N[0] = 1e5; }),
+  EXPECT_EQ(message_after([](ModelData& d) {
+              d.trend.elastic = spline_from_powers({1e5, 0.0, 0.0}, {});
+            }),
             "trend: found 7.03e+04 N at domain.points[0], expected at most 306.5 N, a hundred times the sum of "
             "largest_force_N, correction_limit_N and the JND");
 }

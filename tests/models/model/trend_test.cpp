@@ -12,7 +12,7 @@ namespace {
 Trend example_trend() {
   Trend trend;
   trend.reference_depth_m = 5e-3;
-  trend.elastic_N = {1.0, 0.5, 0.25, 0.0, 0.0, 0.125};
+  trend.elastic = spline_from_powers({1.0, 0.5, 0.25}, {0.0, 0.0, 2.0});
   trend.viscosity_Ns_per_m = {2.0, 1.0, 0.5};
   trend.thinning_Ns_per_m = {3.0, 0.0, 1.0};
   trend.thinning_velocity_m_per_s = 0.02;
@@ -29,7 +29,7 @@ TEST(Trend, IsItsClosedFormInsideTheData) {
   const Trend trend = example_trend();
   for (const double u : {0.0, 0.3, 1.0}) {
     for (const double v : {-0.05, 0.0, 0.08}) {
-      const double elastic = u + 0.5 * u * u + 0.25 * u * u * u + 0.125 * std::pow(u, 6);
+      const double elastic = u + 0.5 * u * u + 0.25 * u * u * u + 2.0 * std::pow(std::max(0.0, u - 0.375), 3);
       const double viscous = (2.0 + u + 0.5 * u * u) * v;
       const double thinning = (3.0 + u * u) * v / (1.0 + std::abs(v) / 0.02);
       EXPECT_NEAR(at(trend, u * 5e-3, v), elastic + viscous + thinning, 1e-14) << u << " " << v;
@@ -46,7 +46,7 @@ TEST(Trend, BranchesAddTheirForceAndLowPassesNothing) {
 TEST(Trend, ContinuesAlongItsTangentBeyondTheReferenceDepth) {
   const Trend trend = example_trend();
   const double edge = at(trend, 5e-3, 0.0);
-  const double slope_N_per_u = 1.0 + 2.0 * 0.5 + 3.0 * 0.25 + 6.0 * 0.125;
+  const double slope_N_per_u = 1.0 + 2.0 * 0.5 + 3.0 * 0.25 + 2.0 * 3.0 * 0.625 * 0.625;
   EXPECT_NEAR(at(trend, 10e-3, 0.0), edge + slope_N_per_u, 1e-13);
   EXPECT_NEAR(at(trend, 20e-3, 0.0), edge + 3.0 * slope_N_per_u, 1e-13);
   // The viscosities keep the value that they have at the edge.

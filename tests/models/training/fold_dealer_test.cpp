@@ -7,19 +7,11 @@
 namespace palpate {
 namespace {
 
-MotionRow row(int recording, int stroke, bool contact = true) {
-  MotionRow one;
-  one.recording = recording;
-  one.stroke = stroke;
-  one.sample.position_m = contact ? 1e-3 : -1e-3;
-  return one;
-}
-
 TEST(FoldDealer, WholeRecordingsFromThreeOn) {
   FoldDealer dealer(4, 9, 900);
   EXPECT_EQ(dealer.folds(), 4);
   for (int recording = 0; recording < 4; ++recording) {
-    for (int i = 0; i < 50; ++i) EXPECT_EQ(dealer.next(row(recording, 2 * recording + i / 25)), recording);
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(dealer.next(recording, 2 * recording + i / 25, true), recording);
   }
 }
 
@@ -28,7 +20,7 @@ TEST(FoldDealer, ShortStrokesStayWhole) {
   EXPECT_EQ(dealer.folds(), 5);
   for (int stroke = 1; stroke <= 20; ++stroke) {
     std::set<int> folds;
-    for (int i = 0; i < 100; ++i) folds.insert(dealer.next(row(0, stroke)));
+    for (int i = 0; i < 100; ++i) folds.insert(dealer.next(0, stroke, true));
     EXPECT_EQ(folds.size(), 1U) << stroke;
     EXPECT_EQ(*folds.begin(), (stroke - 1) % 5);
   }
@@ -41,7 +33,7 @@ TEST(FoldDealer, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
     int changes = 0;
     int last = 0;
     for (int i = 0; i < 1000; ++i) {
-      const int fold = dealer.next(row(0, 1));
+      const int fold = dealer.next(0, 1, true);
       folds.insert(fold);
       changes += fold != last ? 1 : 0;
       last = fold;
@@ -55,8 +47,8 @@ TEST(FoldDealer, FreeAirDoesNotChangeTheDeal) {
   FoldDealer with_air(1, 8, 80);
   FoldDealer without(1, 8, 80);
   for (int stroke = 1; stroke <= 8; ++stroke) {
-    for (int i = 0; i < 30; ++i) with_air.next(row(0, stroke, false));
-    for (int i = 0; i < 10; ++i) EXPECT_EQ(with_air.next(row(0, stroke)), without.next(row(0, stroke)));
+    for (int i = 0; i < 30; ++i) with_air.next(0, stroke, false);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(with_air.next(0, stroke, true), without.next(0, stroke, true));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/training/acceptance.h"
 #include "models/training/trend_dictionary.h"
 #include "tests/support/random_points.h"
 
@@ -52,12 +51,13 @@ TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
     const double u = std::max(0.0, motion.position_m) / kDepth_m;
     return 2.0 * u + u * u + branch.update(sample, motion).values[0];
   });
-  const TrendRegression regression(rows, kFolds, Weighting::jnd, JndLine{}, -100.0);
+  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = -100.0};
+  const TrendRegression regression(rows, kFolds, problem);
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
   EXPECT_GE(x.minCoeff(), 0.0);
   // Of up to 4.5 N; the penalty takes what a part's own error of a tenth leaves uncertain.
   EXPECT_LT(rms_of(rows, x), 0.02);
-  EXPECT_LT(regression.left_out(regression.all_columns()).rms(), 0.2);
+  EXPECT_LT(regression.cross_validate(regression.all_columns()).errors.rms(), 0.2);
 }
 
 // On the way in the force is 3 N at the greatest depth, and one sample in four of the way
@@ -68,33 +68,48 @@ TEST(TrendRegression, AForceThatWasNotMeasuredIsNoForceToFollow) {
     const bool left = motion.velocity_m_per_s < 0.0 && ++sample_number % 4 == 0;
     return left ? 0.0 : 3.0 * std::max(0.0, motion.position_m) / kDepth_m;
   });
-  const TrendRegression regression(rows, kFolds, Weighting::jnd, JndLine{}, 0.01);
+  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 0.01};
+  const TrendRegression regression(rows, kFolds, problem);
   const Trend trend = fitted_trend({}, rows, regression.solve(regression.all_columns()), true).trend;
   const double at[] = {kDepth_m};
   // Within a JND: what no feature explains is scaled down (weighting.h).
   EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), 3.0, 0.25);
 }
 
-TEST(Acceptance, TakesTheLessSimpleForTwoStandardErrorsAlone) {
-  const std::vector<double> simple{10.0, 12.0, 11.0, 13.0, 9.0};
-  EXPECT_TRUE(is_worth_it({9.0, 11.0, 10.0, 12.0, 8.0}, simple)) << "the same gain in every fold";
-  EXPECT_FALSE(is_worth_it({1.0, 14.0, 12.0, 14.0, 10.0}, simple)) << "one fold's gain";
-  EXPECT_FALSE(is_worth_it(simple, simple));
-  EXPECT_TRUE(is_as_good(simple, simple));
-  EXPECT_TRUE(is_as_good({10.0, 12.0, 12.0, 13.0, 9.0}, simple));
-  EXPECT_FALSE(is_as_good({11.0, 13.0, 12.0, 14.0, 10.0}, simple));
+// A soft layer over a hard plate: the force grows thirty-fold over the last tenth of the depth.
+TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
+  const auto layer = [](double u) { return 0.3 * u + 9.0 * std::pow(std::max(0.0, u - 0.9) / 0.1, 2); };
+  const TrendRows rows = rows_of(FeatureList{}, [&](const ToolSample&, const MotionEstimate& motion) {
+    return layer(std::max(0.0, motion.position_m) / kDepth_m);
+  });
+  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 1e-3};
+  const TrendRegression regression(rows, kFolds, problem);
+  const Trend trend = fitted_trend({}, rows, regression.solve(regression.all_columns()), true).trend;
+  for (const double u : {0.2, 0.5, 0.85, 0.92, 0.95, 0.98}) {
+    const double at[] = {u * kDepth_m};
+    // The JND of the force that was asked for.
+    EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), layer(u), 0.065 + 0.0633 * layer(u)) << u;
+  }
 }
 
-TEST(Acceptance, EveryBlockHasOneVoiceWhereCandidatesDifferInKind) {
-  // Trend and corrected trend on two presses of a foam slab whose force begins below 0: by the
-  // sum, 610 with a standard error of 421, it could not be told.
-  const std::vector<double> trend{470.0, 102.0, 51.6, 3.57, 5.50};
-  const std::vector<double> corrected{18.7, 3.07, 0.59, 0.40, 0.37};
-  EXPECT_FALSE(is_worth_it(corrected, trend));
-  EXPECT_TRUE(is_certainly_worse(trend, corrected));
-  EXPECT_FALSE(is_certainly_worse(corrected, trend));
-  EXPECT_FALSE(is_certainly_worse(trend, trend));
-  EXPECT_FALSE(is_certainly_worse({9.0, 1.0, 1.0, 1.0, 1.0}, {1.0, 1.3, 1.2, 1.2, 1.1})) << "one block's gain";
+// What is left out has no influence on the weights that predict it, not even on the robust ones.
+TEST(TrendRegression, AFoldThatIsLeftOutHasNoInfluence) {
+  const auto rows_with = [](double other_N) {
+    return rows_of(FeatureList{}, [&](const ToolSample& sample, const MotionEstimate& motion) {
+      const bool first_fold = static_cast<int>(sample.time_s) % kFolds == 0;
+      return (first_fold ? other_N : 3.0) * std::max(0.0, motion.position_m) / kDepth_m;
+    });
+  };
+  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 1e-3};
+  const TrendRows one = rows_with(3.0);
+  const TrendRows other = rows_with(30.0);
+  const TrendRegression first(one, kFolds, problem);
+  const TrendRegression second(other, kFolds, problem);
+  if (first.smoothness() == second.smoothness()) {
+    const CrossValidated a = first.cross_validate(first.all_columns());
+    const CrossValidated b = second.cross_validate(second.all_columns());
+    EXPECT_TRUE(a.solutions.col(0).isApprox(b.solutions.col(0), 1e-9));
+  }
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ Step step_at(int i) {
 
 TEST(TrendRows, ColumnsAreTheTrendsTerms) {
   TrendRows rows({kDepth_m, kThinning_m_per_s, {0.17, 1.27}, {}});
-  const std::vector<DriveCurve> elastic = spline_basis(kDepth_m);
-  ASSERT_EQ(rows.columns(), kSplineTerms + 2 * kViscosityCoefficients + 2 * kBranchTerms);
+  const std::vector<ElasticSpline> elastic = spline_basis();
+  ASSERT_EQ(rows.columns(), kElasticTerms + 2 * kViscosityCoefficients + 2 * kBranchTerms);
   FeatureFilter first(branch_basis(0.17, kDepth_m));
   FeatureFilter second(branch_basis(1.27, kDepth_m));
   rows.begin_recording();
@@ -45,8 +45,8 @@ TEST(TrendRows, ColumnsAreTheTrendsTerms) {
     const double* row = rows.row(contact - 1);
     const double u = motion.position_m / kDepth_m;
     const double v = motion.velocity_m_per_s;
-    for (std::size_t k = 0; k < kSplineTerms; ++k) ASSERT_EQ(row[k], elastic[k].at(motion.position_m));
-    row += kSplineTerms;
+    for (std::size_t k = 0; k < kElasticTerms; ++k) ASSERT_EQ(row[k], elastic[k].at(std::min(u, 1.0)));
+    row += kElasticTerms;
     const double basis[] = {(1 - u) * (1 - u), 2 * u * (1 - u), u * u};
     for (std::size_t k = 0; k < kViscosityCoefficients; ++k) {
       ASSERT_NEAR(row[k], v * basis[k], 1e-15);
@@ -77,7 +77,7 @@ TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
 
 // The B-splines sum to 1 and are nowhere negative, so their integrals rise and sum to u.
 TEST(TrendRows, SplinesRiseAndSumToAStraightLine) {
-  const std::vector<double> ones(kSplineTerms, 1.0);
+  const std::vector<double> ones(kElasticTerms, 1.0);
   const DriveCurve straight = combined_spline(ones.data(), kDepth_m);
   const std::vector<DriveCurve> basis = spline_basis(kDepth_m);
   for (int i = 1; i <= 240; ++i) {
@@ -106,7 +106,7 @@ TEST(TrendRows, ALadderIsItsBranches) {
 
 TEST(TrendRows, WithoutVelocityOrTimesOnlyTheElasticColumnsAreLeft) {
   TrendRows rows({kDepth_m, 0.0, {}, {}});
-  EXPECT_EQ(rows.columns(), kSplineTerms);
+  EXPECT_EQ(rows.columns(), kElasticTerms);
   EXPECT_EQ(rows.viscous_columns(), 0u);
 }
 

@@ -1,4 +1,4 @@
-#include "models/solve/lapack.h"
+#include "models/linear/lapack.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,0 +1,56 @@
+#include "models/training/selection.h"
+
+#include <cmath>
+#include <numeric>
+
+namespace palpate {
+namespace {
+
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+// The scores of the folds that have samples.
+std::vector<double> scores_of(const FoldErrors& errors) {
+  std::vector<double> scores;
+  for (std::size_t k = 0; k < errors.counts.size(); ++k) {
+    if (errors.counts[k] == 0.0) continue;
+    scores.push_back(std::log(errors.squares[k] / errors.counts[k] + kUnnoticed_jnd * kUnnoticed_jnd));
+  }
+  return scores;
+}
+
+constexpr double kStandardErrors = 2.0;
+
+// Whether the mean of `one` does not exceed that of `best` significantly.
+bool is_adequate(const std::vector<double>& one, const std::vector<double>& best) {
+  const auto count = static_cast<double>(one.size());
+  const double mean = (sum_of(one) - sum_of(best)) / count;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - mean, 2);
+  return mean <= kStandardErrors * (count > 1.0 ? std::sqrt(squares / (count - 1.0) / count) : 0.0);
+}
+
+}  // namespace
+
+double FoldErrors::rms() const {
+  const double count = sum_of(counts);
+  return count > 0.0 ? std::sqrt(sum_of(squares) / count) : 0.0;
+}
+
+std::size_t best_score(std::span<const FoldErrors> candidates) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    if (sum_of(scores_of(candidates[i])) < sum_of(scores_of(candidates[best]))) best = i;
+  }
+  return best;
+}
+
+std::size_t simplest_adequate(std::span<const FoldErrors> candidates) {
+  const std::size_t best = best_score(candidates);
+  const std::vector<double> scores = scores_of(candidates[best]);
+  for (std::size_t i = 0; i < best; ++i) {
+    if (is_adequate(scores_of(candidates[i]), scores)) return i;
+  }
+  return best;
+}
+
+}  // namespace palpate

@@ -1,0 +1,45 @@
+#include "models/training/selection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+// Mean squared errors, in JND^2, of 100 samples in each fold.
+FoldErrors errors_of(std::vector<double> means) {
+  FoldErrors errors(means.size());
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    for (int i = 0; i < 100; ++i) errors.add(k, std::sqrt(means[k]));
+  }
+  return errors;
+}
+
+std::size_t selected(std::vector<FoldErrors> candidates) { return simplest_adequate(candidates); }
+
+TEST(Selection, ASignificantGainInEveryFoldIsTaken) {
+  EXPECT_EQ(selected({errors_of({10, 12, 11, 13, 9}), errors_of({9, 11, 10, 12, 8})}), 1u);
+}
+
+TEST(Selection, AGainInOneFoldAloneIsNot) {
+  EXPECT_EQ(selected({errors_of({10, 12, 11, 13, 9}), errors_of({1, 12, 11, 13, 9})}), 0u);
+}
+
+TEST(Selection, AFoldThatIsHardForEveryCandidateDoesNotOutvoteTheOthers) {
+  EXPECT_EQ(selected({errors_of({470, 102, 51.6, 3.57, 5.5}), errors_of({18.7, 3.07, 0.59, 0.4, 0.37})}), 1u);
+}
+
+TEST(Selection, ErrorsThatAHandCannotNoticeDoNotCount) {
+  EXPECT_EQ(selected({errors_of({1e-3, 2e-3, 1e-3, 1e-3}), errors_of({1e-5, 1e-3, 1e-4, 1e-5})}), 0u)
+      << "within two standard errors";
+  EXPECT_EQ(best_score(std::vector{errors_of({4.0, 1e-3}), errors_of({1.0, 2e-3})}), 1u);
+}
+
+TEST(Selection, TheRootMeanSquareIsOverAllSamples) {
+  EXPECT_NEAR(errors_of({4.0, 1.0}).rms(), std::sqrt(2.5), 1e-12);
+  EXPECT_EQ(FoldErrors(3).rms(), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate
