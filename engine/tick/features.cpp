@@ -9,8 +9,9 @@
 namespace palpate {
 namespace {
 
-constexpr int kSurfaceSteps = 6;
-constexpr double kSurfaceForce_N = 1e-5;
+// So fine that one step more or less does not show in the ninth decimal of a force.
+constexpr double kSurfaceForce_N = 1e-11;
+constexpr int kSurfaceSteps = 40;
 // Nearer than this, below an atom, the surface has come back.
 constexpr double kNoLag_m = 1e-12;
 

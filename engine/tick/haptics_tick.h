@@ -92,7 +92,7 @@ class HapticsTick {
   // What `step` gave last.
   const TickSnapshot& snapshot() const noexcept { return snapshot_; }
 
-  const MotionEstimate& motion() const noexcept { return motion_.estimate(); }
+  MotionEstimate motion() const noexcept { return motion_.estimate(); }
 
   std::size_t model_count() const noexcept { return models_.size(); }
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }

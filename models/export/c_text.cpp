@@ -22,15 +22,6 @@ std::string literal(double value, bool single) {
 
 }  // namespace
 
-TickOperations& TickOperations::operator+=(const TickOperations& more) {
-  arithmetic += more.arithmetic;
-  divisions += more.divisions;
-  roots += more.roots;
-  exponentials += more.exponentials;
-  logarithms += more.logarithms;
-  return *this;
-}
-
 std::string CText::number(double value) const { return literal(value, single_); }
 
 void CText::rows(const std::string& declaration, const Eigen::MatrixXd& values, bool single) {

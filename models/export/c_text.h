@@ -9,24 +9,12 @@
 
 namespace palpate {
 
-// What one tick does in contact, counted as written: the upper bound of a path.
-struct TickOperations {
-  std::size_t arithmetic = 0;  // additions, multiplications, comparisons
-  std::size_t divisions = 0;
-  std::size_t roots = 0;
-  std::size_t exponentials = 0;
-  std::size_t logarithms = 0;  // of the file's own: 30 operations each
-
-  TickOperations& operator+=(const TickOperations& more);
-};
-
 // Collects the text of the file, and counts what it needs.
 class CText {
  public:
   explicit CText(bool single_precision) : single_(single_precision) {}
 
   void add(std::string_view text) { text_ += text; }
-  void count(const TickOperations& more) { operations_ += more; }
 
   // The shortest decimal that reads back as the same number, as a literal of `real`.
   std::string number(double value) const;
@@ -40,7 +28,6 @@ class CText {
   bool single() const { return single_; }
   const std::string& text() const { return text_; }
   std::size_t table_bytes() const { return table_bytes_; }
-  const TickOperations& operations() const { return operations_; }
 
  private:
   void rows(const std::string& declaration, const Eigen::MatrixXd& values, bool single);
@@ -48,7 +35,6 @@ class CText {
   bool single_;
   std::string text_;
   std::size_t table_bytes_ = 0;
-  TickOperations operations_;
 };
 
 }  // namespace palpate

@@ -24,12 +24,7 @@ std::string tail_text(const RbfFunction& function) {
 
 void emit_rbf(CText& out, const RbfFunction& function) {
   const auto n = static_cast<std::size_t>(function.centre_count());
-  const auto d = static_cast<std::size_t>(function.dimension());
   const std::string kernel = kernel_facts(function.kernel).c_text;
-  const bool logarithm = kernel.find("logarithm") != std::string::npos;
-  out.count({.arithmetic = n * (3 * d + 4) + 2 * static_cast<std::size_t>(function.tail.size()),
-             .roots = logarithm ? 0 : n,
-             .logarithms = logarithm ? n : 0});
   Eigen::MatrixXd rows(function.dimension() + 1, function.centre_count());
   rows << function.centres, function.weights.transpose();
   out.add("\n/* ---- correction: radial basis functions; a row: the centre, then its weight ---- */\n\n");
@@ -77,7 +72,6 @@ void emit_grid(CText& out, const VoxelGrid& grid) {
   std::string begins;
   std::string strides;
   std::size_t stride = grid.node_count();
-  std::size_t longest = 0;
   for (const std::vector<double>& axis : grid.nodes) {
     const std::string comma = sizes.empty() ? "" : ", ";
     stride /= axis.size();
@@ -85,9 +79,7 @@ void emit_grid(CText& out, const VoxelGrid& grid) {
     sizes += comma + std::to_string(axis.size());
     strides += comma + std::to_string(stride);
     nodes.insert(nodes.end(), axis.begin(), axis.end());
-    longest = std::max(longest, axis.size());
   }
-  out.count({.arithmetic = d * (8 + longest) + corners * (d + 3), .divisions = d});
   out.add("\n/* ---- correction: a grid, the last axis fastest ---- */\n\n#define CORNERS " + std::to_string(corners) +
           "\nstatic const int axis_begin[FEATURES] = {" + begins + "};\nstatic const int axis_size[FEATURES] = {" +
           sizes + "};\nstatic const int axis_stride[FEATURES] = {" + strides + "};\n");
@@ -146,8 +138,6 @@ Status write_correction(CText& out, const CorrectionPtr& correction) {
 
 void write_trust(CText& out, const DomainCover& cover) {
   const auto n = static_cast<std::size_t>(cover.points.cols());
-  out.count(
-      {.arithmetic = n * (3 * static_cast<std::size_t>(cover.points.rows()) + 1) + 5, .divisions = 1, .roots = 1});
   // Compared in single precision, as the library does; its processors add a square
   // with one rounding, which a sum in double precision and then one gives as well.
   out.add("\n/* ---- trust: the distance to the nearest of the data ---- */\n\n#define COVER_POINTS " +

@@ -4,16 +4,13 @@
 
 #include "models/export/correction_c.h"
 #include "models/export/feature_c.h"
-#include "models/export/motion_c.h"
+#include "models/export/motion_filter_c.h"
 
 namespace palpate {
 namespace {
 
-// Of kMotionC on a quantised sample, estimated from its source.
-constexpr TickOperations kMotionOperations{
-    .arithmetic = 1500, .divisions = 60, .roots = 3, .exponentials = 20, .logarithms = 6};
-// Filters, features and the last sample.
-constexpr std::size_t kMotionNumbers = 3 * 13 + 8;
+// The motion filter, the depth and the last sample.
+constexpr std::size_t kMotionNumbers = 3 + 9 + 8;
 
 // Text that may stand in a C comment.
 std::string in_comment(const std::string& text) {
@@ -41,7 +38,7 @@ std::string head(const ModelData& data, const ExportRequest& request) {
   std::string features;
   for (const FeatureSpec& spec : data.features) features += (features.empty() ? "" : ", ") + feature_name(spec);
   return "/* Force model " + in_comment(data.name) +
-         ", written by palpate export. C99; needs sqrt and exp.\n"
+         ", written by palpate export. C99; needs sqrt and exp, and log for a thin-plate kernel.\n"
          " * Features: " +
          features +
          "\n"
@@ -71,7 +68,7 @@ std::string head(const ModelData& data, const ExportRequest& request) {
          " * A recording of such positions, without measured velocity or acceleration, gives the\n"
          " * forces of palpate replay.\n"
          " */\n"
-         "#include <stdint.h>\n\n"
+         "\n"
          "#ifndef PALPATE_ENCODER_STEP_M\n#define PALPATE_ENCODER_STEP_M " +
          exact.number(request.sensor.encoder_step_m) +
          "\n#endif\n#ifndef PALPATE_POSITION_NOISE_M\n#define PALPATE_POSITION_NOISE_M " +
@@ -79,30 +76,30 @@ std::string head(const ModelData& data, const ExportRequest& request) {
 }
 
 constexpr const char* kDoubleC = R"C(typedef double real;
-typedef uint64_t Bits;
 extern double sqrt(double x);
 extern double exp(double x);
+extern double log(double x);
 #define SQRT sqrt
 #define EXP exp
-#define MANTISSA_BITS 52
-#define MANTISSA_MASK UINT64_C(0x000fffffffffffff)
-#define EXPONENT_OF_ONE UINT64_C(0x3ff0000000000000)
-#define EXPONENT_BIAS 1023
-#define NOISE_FLOOR_M2 R(1e-18) /* (1 nm)^2 */
+#define LOG log
 )C";
 
-// The floor of the noise keeps a variance positive whose digits are few.
 constexpr const char* kFloatC = R"C(typedef float real;
-typedef uint32_t Bits;
 extern float sqrtf(float x);
 extern float expf(float x);
+extern float logf(float x);
 #define SQRT sqrtf
 #define EXP expf
-#define MANTISSA_BITS 23
-#define MANTISSA_MASK UINT32_C(0x007fffff)
-#define EXPONENT_OF_ONE UINT32_C(0x3f800000)
-#define EXPONENT_BIAS 127
-#define NOISE_FLOOR_M2 R(1e-14) /* (0.1 um)^2 */
+#define LOG logf
+)C";
+
+constexpr const char* kMotionStateC = R"C(
+static MotionState motion;
+static real last_time_s;
+
+static real clamped(real x, real low, real high) { return x < low ? low : (high < x ? high : x); }
+static real absolute(real x) { return x < R(0.0) ? -x : x; }
+static int finite_number(real x) { return x - x == R(0.0); }
 )C";
 
 constexpr const char* kTickC = R"C(
@@ -125,34 +122,33 @@ static real model_force(void) {
 }
 
 static real force_of(real step_s, real position_m) {
-  if (started) {
-    update_motion(step_s, position_m);
-  } else {
-    start_motion(position_m);
+  const int first = !motion.started;
+  const real motion_step_s = advance_motion(&motion, MOTION_STATES, step_s, position_m);
+  if (motion_step_s > R(0.0)) {
+    measure_position(&motion, MOTION_STATES, motion_step_s, R(PALPATE_ENCODER_STEP_M), R(PALPATE_POSITION_NOISE_M));
   }
-  update_features(step_s, !started);
-  last_position_m = position_m;
-  started = 1;
+  update_features(step_s, first);
   is_out_of_domain = 0;
   return position_m > SURFACE_POSITION_M ? model_force() : R(0.0);
 }
 
 void palpate_reset(void) {
-  started = 0;
+  static const MotionState nothing = {{R(0.0)}, {{R(0.0)}}, R(0.0), R(0.0), R(0.0), 0};
+  motion = nothing;
   is_out_of_domain = 0;
 }
 
 int palpate_out_of_domain(void) { return is_out_of_domain; }
 
 real palpate_force_after(real step_s, real position_m) {
-  if (!finite_number(step_s) || !finite_number(position_m) || (started && !(step_s > R(0.0)))) return R(0.0);
+  if (!finite_number(step_s) || !finite_number(position_m) || (motion.started && !(step_s > R(0.0)))) return R(0.0);
   last_time_s += step_s;
   return force_of(step_s, position_m);
 }
 
 real palpate_force(real time_s, real position_m) {
   const real step_s = time_s - last_time_s;
-  if (!finite_number(time_s) || !finite_number(position_m) || (started && !(step_s > R(0.0)))) return R(0.0);
+  if (!finite_number(time_s) || !finite_number(position_m) || (motion.started && !(step_s > R(0.0)))) return R(0.0);
   last_time_s = time_s;
   return force_of(step_s, position_m);
 }
@@ -187,13 +183,14 @@ Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request) 
   CText out(request.single_precision);
   out.add(head(data, request));
   out.add(request.single_precision ? kFloatC : kDoubleC);
-  out.add("#define R(x) ((real)(x))\n#define FEATURES " + std::to_string(data.features.size()) +
-          "\n#define SURFACE_POSITION_M " + out.number(surface_position_m(data.features)) +
+  out.add("#define R(x) ((real)(x))\n#define MOTION_STATES 3\n#define FEATURES " +
+          std::to_string(data.features.size()) + "\n#define SURFACE_POSITION_M " +
+          out.number(surface_position_m(data.features)) +
           "\n\nreal palpate_force(real time_s, real position_m);\n"
           "real palpate_force_after(real step_s, real position_m);\n"
           "void palpate_reset(void);\nint palpate_out_of_domain(void);\n");
-  out.add(kMotionC);
-  out.count(kMotionOperations);
+  out.add(kMotionFilterC);
+  out.add(kMotionStateC);
   write_features(out, data.features);
   write_trend(out, data.trend, data.features);
   if (Status status = write_correction(out, data.correction); !status) return status.error();
@@ -202,7 +199,7 @@ Result<ExportedC> export_c(const ModelData& data, const ExportRequest& request) 
   out.add(kTickC);
   const std::size_t numbers = kMotionNumbers + 3 * data.features.size();
   const std::size_t size = request.single_precision ? sizeof(float) : sizeof(double);
-  return ExportedC{out.text(), out.table_bytes(), numbers * size, out.operations()};
+  return ExportedC{out.text(), out.table_bytes(), numbers * size};
 }
 
 }  // namespace palpate

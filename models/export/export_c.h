@@ -1,5 +1,5 @@
-// A fitted model as one self-contained C99 file: no allocation, no library but sqrt and
-// exp, for a microcontroller or an engine that takes no dependency.
+// A fitted model as one self-contained C99 file: no allocation, no library but sqrt,
+// exp and log, for a microcontroller or an engine that takes no dependency.
 //
 //   double palpate_force(double time_s, double position_m);   N, 0 out of contact
 //   double palpate_force_after(double step_s, double position_m);
@@ -32,7 +32,6 @@ struct ExportedC {
   std::string text;
   std::size_t table_bytes = 0;  // of constants in the compiled program
   std::size_t state_bytes = 0;  // of variables
-  TickOperations operations;
 };
 
 // `data` must pass validate_model. Errors: a kind of correction that has no C text yet.

@@ -51,11 +51,11 @@ static real surface_above(real step_s) {
   if (low_N >= R(0.0) || !(high_m - low_m > R(1e-12))) return depth_m;
   high_N = held(step_s, high_m);
   if (!(high_N > R(0.0))) return high_m;
-  for (k = 0; k < 6; ++k) {
+  for (k = 0; k < 40; ++k) {
     real middle_N;
     middle_m = low_m - low_N * (high_m - low_m) / (high_N - low_N);
     middle_N = held(step_s, middle_m);
-    if (absolute(middle_N) < R(1e-5)) break;
+    if (absolute(middle_N) < (sizeof(real) == sizeof(double) ? R(1e-11) : R(1e-5))) break;
     if (middle_N > R(0.0)) {
       high_m = middle_m;
       high_N = middle_N;
@@ -114,11 +114,10 @@ std::string emit_depth(CText&, const FeatureSpec&, std::size_t index) {
 }
 
 std::string emit_velocity(CText&, const FeatureSpec&, std::size_t index) {
-  return "  value" + index_text(index) + " = depth_m > R(0.0) ? velocity_estimate_m_per_s : R(0.0);\n";
+  return "  value" + index_text(index) + " = depth_m > R(0.0) ? motion.mean[1] : R(0.0);\n";
 }
 
 std::string emit_lowpass(CText& out, const FeatureSpec& spec, std::size_t index) {
-  out.count({.arithmetic = 8, .divisions = 2, .exponentials = 1});
   const std::string target = "value" + index_text(index);
   return "  " + target + " = first ? R(0.0) : filtered(" + target + ", depth_m - last_depth_m, step_s, " +
          out.number(spec.relaxation_time_s) + ", R(1.0));\n";
@@ -132,7 +131,6 @@ constexpr const char* kSurfaceHalfwayC =
 // the state in functions of `name`.
 std::string emit_branch(CText& out, const std::string& target, const std::string& name, const DriveCurve& drive,
                         double time_s, double slowing) {
-  out.count({.arithmetic = drive.has_knots ? std::size_t{60} : std::size_t{26}, .divisions = 3, .exponentials = 1});
   const std::string curve = write_drive(out, name, drive, "s");
   const std::string clock = slowing == 0.0 ? ""
                                            : "EXP(" + out.number(slowing) + " * smaller(R(1.0), " + kSurfaceHalfwayC +
@@ -197,11 +195,9 @@ std::string emit_bristles(CText& out, const FeatureSpec& spec, std::size_t index
     const std::string curve =
         write_drive(out, "bristle_" + std::to_string(index) + "_" + std::to_string(p), spec.parts[p].drive, "depth_m");
     if (spec.kind == FeatureKind::stops) {
-      out.count({.arithmetic = 27, .divisions = 2});
       text += "  " + part + " = first || !(depth_m > R(0.0)) ? R(0.0) : clamped(" + part +
               " + depth_m - last_depth_m, -" + threshold + ", " + threshold + ");\n";
     } else {
-      out.count({.arithmetic = 36, .divisions = 5, .roots = 2});
       const double r_m = spec.parts[p].threshold_m;
       const std::string creep = "step_s * " + out.number(1.0 / (spec.parts[p].relaxation_time_s * r_m * r_m));
       text += "  " + part + " = first ? R(0.0) : crept(crept(" + part + ", " + creep + ") + depth_m - last_depth_m, " +
@@ -254,7 +250,7 @@ void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(
       "\n/* `first`: nothing came before, and every filter is at rest. */\n"
       "static void update_features(real step_s, int first) {\n  (void)step_s;\n  (void)first;\n"
-      "  real s;\n  depth_m = larger(R(0.0), position_estimate_m - SURFACE_POSITION_M);\n  s = " +
+      "  real s;\n  depth_m = larger(R(0.0), motion.estimate_m - SURFACE_POSITION_M);\n  s = " +
       std::string(lags ? "first ? depth_m : surface_above(step_s)" : "depth_m") + ";\n  (void)s;\n" + body +
       "  last_depth_m = depth_m;\n  surface_m = s;\n}\n");
 }
@@ -288,7 +284,6 @@ void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>&
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (is_force(features[i].kind)) text += "  force_N += value" + index_text(i) + ";\n";
   }
-  out.count({.arithmetic = 46, .divisions = 3});
   out.add(text + "  return force_N;\n}\n");
 }
 

@@ -27,7 +27,6 @@ std::string source_of_sensor(const ExportArguments& arguments, const ModelData& 
 
 void print_summary(const ExportArguments& arguments, const ModelData& data, const ExportRequest& request,
                    const ExportedC& file) {
-  const TickOperations& counted = file.operations;
   std::printf("%s: %s in %s precision, %zu bytes of C\n", arguments.out.c_str(), data.name.c_str(),
               arguments.single_precision ? "single" : "double", file.text.size());
   std::printf(
@@ -36,10 +35,6 @@ void print_summary(const ExportArguments& arguments, const ModelData& data, cons
       1e6 * request.sensor.encoder_step_m, 1e6 * request.sensor.position_noise_m,
       source_of_sensor(arguments, data).c_str());
   std::printf("tables %zu bytes, state %zu bytes\n", file.table_bytes, file.state_bytes);
-  std::printf(
-      "a tick in contact, at most: %zu additions and multiplications, %zu divisions, %zu square roots, "
-      "%zu exponentials, %zu logarithms\n",
-      counted.arithmetic, counted.divisions, counted.roots, counted.exponentials, counted.logarithms);
 }
 
 Status run_export(const ExportArguments& arguments) {

@@ -39,7 +39,7 @@ struct KernelFacts {
 inline constexpr std::array<KernelFacts, kKernelKinds.size()> kKernels = {{
     {"cubic", 1, 1.0, "squared * SQRT(squared)"},
     {"linear", 0, -1.0, "SQRT(squared)"},
-    {"thin-plate", 1, 1.0, "R(0.5) * squared * logarithm(squared)"},
+    {"thin-plate", 1, 1.0, "R(0.5) * squared * LOG(squared)"},
     {"quintic", 2, -1.0, "squared * squared * SQRT(squared)"},
 }};
 

@@ -8,7 +8,10 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <random>
+#include <vector>
 
+#include "engine/tick/haptics_tick.h"
 #include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
 #include "tests/support/compiled_model.h"
@@ -53,6 +56,77 @@ TEST(ExportC, InDoublePrecisionItGivesReplaysForcesToANanonewton) {
       });
       EXPECT_LT(worst_N, 1e-9) << data.name;
       EXPECT_GT(largest_N, 0.5) << data.name;
+    }
+  }
+}
+
+// A tool that presses, holds and leaves, sampled as badly as can be: uneven steps of 1 us to a
+// second, repeated readings, pauses of up to a day, single readings far off.
+std::vector<ToolSample> hard_samples(double encoder_step_m, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::vector<ToolSample> samples;
+  double t = 0.0;
+  double phase = 0.0;
+  double typical_s = 1e-3;
+  for (int i = 0; i < 6000; ++i) {
+    if (share(engine) < 0.003) typical_s = std::pow(10.0, -6.0 * share(engine));
+    const double step_s =
+        share(engine) < 0.001 ? std::pow(10.0, 4.9 * share(engine)) : typical_s * (0.2 + share(engine));
+    t += step_s;
+    if (share(engine) < 0.8) phase += 6.0 * std::min(step_s, 0.05);
+    double position_m = 2.5e-3 - 3e-3 * std::cos(phase);
+    if (encoder_step_m > 0.0) position_m = std::round(position_m / encoder_step_m) * encoder_step_m;
+    if (share(engine) < 0.002) position_m += share(engine) < 0.5 ? 0.4 : -1.0;
+    samples.push_back({t, position_m, 0.0, 0.0});
+  }
+  return samples;
+}
+
+// Of each list of features one.
+std::vector<ModelData> models_by_features() {
+  std::vector<ModelData> some;
+  for (ModelData& data : test::example_models()) {
+    const auto same = [&](const ModelData& other) { return other.features == data.features; };
+    if (std::none_of(some.begin(), some.end(), same)) some.push_back(std::move(data));
+  }
+  return some;
+}
+
+TEST(ExportC, GivesTheLibrarysForcesWhateverTheSteps) {
+  for (const double encoder_step_m : {0.0, 1e-6, 30e-6}) {
+    for (const ModelData& data : models_by_features()) {
+      const SensorSpec sensor{encoder_step_m, 0.0};
+      const CompiledModel<double> compiled(data, {false, {encoder_step_m, 0.0}});
+      ASSERT_NE(compiled.force, nullptr);
+      for (const std::uint64_t seed : {1U, 2U}) {
+        HapticsTick tick(sensor, {std::make_shared<FittedModel>(data)});
+        compiled.reset();
+        for (const ToolSample& sample : hard_samples(encoder_step_m, seed)) {
+          const double force_N = tick.step(sample).force_N[0];
+          ASSERT_TRUE(std::isfinite(force_N));
+          ASSERT_NEAR(compiled.force(sample.time_s, sample.position_m), force_N, 1e-9)
+              << data.name << " at " << sample.time_s << " s, seed " << seed << ", encoder " << encoder_step_m;
+        }
+      }
+    }
+  }
+}
+
+TEST(ExportC, ALongPauseAndAGlitchAreForgottenAtOnce) {
+  for (const ModelData& data : models_by_features()) {
+    const CompiledModel<double> compiled(data, {false, {30e-6, 0.0}});
+    ASSERT_NE(compiled.force, nullptr);
+    double t = 0.0;
+    double held_N = 0.0;
+    for (int i = 0; i < 200000; ++i) held_N = compiled.force(t += 0.01, 4.2e-3);
+    compiled.reset();
+    for (int i = 0; i < 1000; ++i) compiled.force(t += 1e-3, 4.2e-3);
+    compiled.force(t += 3600.0, 4.2e-3);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(compiled.force(t += 1e-3, 4.2e-3), held_N, 2e-3) << data.name;
+    for (const double glitch_m : {0.3, 1.0, -0.5}) {
+      compiled.force(t += 1e-3, glitch_m);
+      EXPECT_NEAR(compiled.force(t += 1e-3, 4.2e-3), held_N, 2e-3) << data.name << ", after " << glitch_m << " m";
     }
   }
 }
@@ -133,10 +207,6 @@ TEST(ExportC, TheSameModelGivesTheSameBytesAndCountsItsTables) {
     ASSERT_TRUE(once.ok() && again.ok() && single.ok());
     EXPECT_EQ(once->text, again->text);
     EXPECT_GT(once->table_bytes, single->table_bytes);
-    const bool rbf = rbf_of(data.correction) != nullptr;
-    if (!rbf) continue;
-    EXPECT_GE(once->operations.roots + once->operations.logarithms,
-              4U + static_cast<std::size_t>(data.correction->size()));
   }
 }
 
