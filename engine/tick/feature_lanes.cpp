@@ -31,26 +31,33 @@ PALPATE_INLINE void step_of(V4& keep, V4& gain, const V4& time_s, double step_s,
   gain = time_s * (1.0 - keep) * per_step;
 }
 
-PALPATE_INLINE void prepare_groups(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {
+PALPATE_INLINE void prepare_groups(const BranchLanes::Group* group, std::size_t count, double step_s, double surface_m,
+                                   BranchLanes::Step* step) noexcept {
   const double per_step = 1.0 / step_s;
   for (std::size_t i = 0; i < count; ++i) {
-    step_of(group[i].keep, group[i].gain, group[i].relaxation_time_s * group[i].clock, step_s, per_step);
+    V4 time_s = group[i].relaxation_time_s;
+    if (group[i].slows) {
+      const V4 strain = surface_m / group[i].slowing_depth_m;
+      V4 clock = group[i].slowing * (strain > 1.0 ? V4{} + 1.0 : strain);
+      to_exponential(clock);
+      time_s *= clock;
+    }
+    step_of(step[i].keep, step[i].gain, time_s, step_s, per_step);
   }
 }
 
-using BranchStates = BranchLanes::States;
-
-PALPATE_INLINE double held_by_groups(const BranchLanes::Group* group, std::size_t count, double surface_m,
-                                     const BranchStates& from, BranchStates& to) noexcept {
+PALPATE_INLINE double advance_groups(const BranchLanes::Group* group, std::size_t count, const BranchLanes::Step* step,
+                                     double surface_m, const V4* from, V4* to) noexcept {
   V4 sum{};
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i, from += BranchLanes::kMemory, to += BranchLanes::kMemory) {
     V4 drive;
     curve_at(drive, group[i].drive, surface_m);
-    const V4& last = from.force_N[i];
-    const V4 kept = group[i].keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
-    to.force_N[i] = kept + group[i].gain * (drive - from.drive_N[i]);
-    to.drive_N[i] = drive;
-    sum += to.force_N[i];
+    const V4& last = from[0];
+    const V4 kept = step[i].keep * (((last < kNothing_N) & (last > -kNothing_N)) ? V4{} : last);
+    const V4 force = kept + step[i].gain * (drive - from[1]);
+    to[0] = force;
+    to[1] = drive;
+    sum += force;
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
@@ -62,11 +69,11 @@ PALPATE_INLINE void creep_on(V4& bend, const V4& creep_per_m2_s, double step_s) 
 }
 
 // `step_s`: 0 for no step.
-PALPATE_INLINE void bend_groups(BristleLanes::Group* group, std::size_t count, double last_depth_m, double depth_m,
-                                double step_s, V4* force_N) noexcept {
+PALPATE_INLINE void bend_groups(const BristleLanes::Group* group, std::size_t count, double last_depth_m,
+                                double depth_m, double step_s, V4* bend_m, V4* force_N) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     const V4& limit = depth_m > 0.0 ? group[i].limit_m : group[i].air_limit_m;
-    V4 bend = group[i].bend_m;
+    V4 bend = bend_m[i];
     if (step_s > 0.0) {
       if (group[i].creeps) creep_on(bend, group[i].creep_per_m2_s, step_s);
       bend = bend + depth_m - last_depth_m;
@@ -75,23 +82,24 @@ PALPATE_INLINE void bend_groups(BristleLanes::Group* group, std::size_t count, d
     bend = bend < -limit ? -limit : (limit < bend ? limit : bend);
     V4 force;
     curve_at(force, group[i].drive, depth_m);
-    group[i].bend_m = bend;
+    bend_m[i] = bend;
     force_N[i] = force * bend / group[i].threshold_m;
   }
 }
 
 // Plainly, and with four lanes to an instruction: the same bits.
-#define PALPATE_LANE_LOOPS(attribute, suffix)                                                                      \
-  attribute void prepare_##suffix(BranchLanes::Group* group, std::size_t count, double step_s) noexcept {          \
-    prepare_groups(group, count, step_s);                                                                          \
-  }                                                                                                                \
-  attribute double held_##suffix(const BranchLanes::Group* group, std::size_t count, double surface_m,             \
-                                 const BranchStates& from, BranchStates& to) noexcept {                            \
-    return held_by_groups(group, count, surface_m, from, to);                                                      \
-  }                                                                                                                \
-  attribute void bend_##suffix(BristleLanes::Group* group, std::size_t count, double last_depth_m, double depth_m, \
-                               double step_s, V4* force_N) noexcept {                                              \
-    bend_groups(group, count, last_depth_m, depth_m, step_s, force_N);                                             \
+#define PALPATE_LANE_LOOPS(attribute, suffix)                                                                          \
+  attribute void prepare_##suffix(const BranchLanes::Group* group, std::size_t count, double step_s, double surface_m, \
+                                  BranchLanes::Step* step) noexcept {                                                  \
+    prepare_groups(group, count, step_s, surface_m, step);                                                             \
+  }                                                                                                                    \
+  attribute double advance_##suffix(const BranchLanes::Group* group, std::size_t count, const BranchLanes::Step* step, \
+                                    double surface_m, const V4* from, V4* to) noexcept {                               \
+    return advance_groups(group, count, step, surface_m, from, to);                                                    \
+  }                                                                                                                    \
+  attribute void bend_##suffix(const BristleLanes::Group* group, std::size_t count, double last_depth_m,               \
+                               double depth_m, double step_s, V4* bend_m, V4* force_N) noexcept {                      \
+    bend_groups(group, count, last_depth_m, depth_m, step_s, bend_m, force_N);                                         \
   }
 
 PALPATE_LANE_LOOPS(, plain)
@@ -99,11 +107,11 @@ PALPATE_LANE_LOOPS(, plain)
 PALPATE_LANE_LOOPS([[gnu::target("avx2")]], wide)
 const bool kWide = has_wide_lanes();
 const auto kPrepare = kWide ? &prepare_wide : &prepare_plain;
-const auto kHeld = kWide ? &held_wide : &held_plain;
+const auto kAdvance = kWide ? &advance_wide : &advance_plain;
 const auto kBend = kWide ? &bend_wide : &bend_plain;
 #else
 constexpr auto kPrepare = &prepare_plain;
-constexpr auto kHeld = &held_plain;
+constexpr auto kAdvance = &advance_plain;
 constexpr auto kBend = &bend_plain;
 #endif
 #undef PALPATE_LANE_LOOPS
@@ -114,6 +122,13 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
   assert(count < kMaxLaneGroups * kLanes);
   if (count % kLanes == 0) groups.emplace_back();
   return groups.back();
+}
+
+// Of `count` lanes from `place` on, in rows `stride` apart.
+double sum_of(const V4* row, std::size_t stride, std::size_t place, std::size_t count) noexcept {
+  double sum = 0.0;
+  for (std::size_t i = place; i < place + count; ++i) sum += row[i / kLanes * stride][i % kLanes];
+  return sum;
 }
 
 }  // namespace
@@ -134,46 +149,29 @@ void CurveLanes::set(std::size_t lane, const DriveCurve& drive) noexcept {
   for (std::size_t k = 0; k < kDriveKnots; ++k) knot_N[k][lane] = drive.knot_N[k];
 }
 
-std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s) {
+std::size_t BranchLanes::add(const DriveCurve& drive, double relaxation_time_s, double slowing,
+                             double slowing_depth_m) {
   Group& group = group_of_next(groups_, count_);
-  group.drive.set(count_ % kLanes, drive);
-  group.relaxation_time_s[count_ % kLanes] = relaxation_time_s;
+  const std::size_t lane = count_ % kLanes;
+  group.drive.set(lane, drive);
+  group.relaxation_time_s[lane] = relaxation_time_s;
+  group.slowing[lane] = slowing;
+  group.slowing_depth_m[lane] = slowing_depth_m;
+  group.slows = group.slows || slowing != 0.0;
   return count_++;
 }
 
-void BranchLanes::prepare(double step_s) noexcept {
-  kPrepare(groups_.data(), groups_.size(), step_s);
-  held_at_m_ = std::numeric_limits<double>::quiet_NaN();
+void BranchLanes::prepare(double step_s, double surface_m, Step* step) const noexcept {
+  if (step_s > 0.0) return kPrepare(groups_.data(), groups_.size(), step_s, surface_m, step);
+  for (std::size_t i = 0; i < groups_.size(); ++i) step[i] = {V4{} + 1.0, V4{}};
 }
 
-double BranchLanes::held_N(double surface_m) noexcept {
-  held_at_m_ = surface_m;
-  return kHeld(groups_.data(), groups_.size(), surface_m, states_[now_], states_[1 - now_]);
+double BranchLanes::advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept {
+  return kAdvance(groups_.data(), groups_.size(), step, surface_m, from, to);
 }
 
-void BranchLanes::advance(double surface_m) noexcept {
-  if (!(held_at_m_ == surface_m)) held_N(surface_m);
-  now_ = 1 - now_;
-}
-
-void BranchLanes::stay(double surface_m, bool at_rest) noexcept {
-  held_N(surface_m);
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    states_[now_].drive_N[i] = states_[1 - now_].drive_N[i];
-    if (at_rest) states_[now_].force_N[i] = V4{};
-  }
-}
-
-double BranchLanes::force_N(std::size_t place, std::size_t count) const noexcept {
-  double sum = 0.0;
-  for (std::size_t i = place; i < place + count; ++i) sum += states_[now_].force_N[i / kLanes][i % kLanes];
-  return sum;
-}
-
-void BranchLanes::adopt(std::size_t place, const BranchLanes& from, std::size_t other) noexcept {
-  const States& old = from.states_[from.now_];
-  states_[now_].force_N[place / kLanes][place % kLanes] = old.force_N[other / kLanes][other % kLanes];
-  states_[now_].drive_N[place / kLanes][place % kLanes] = old.drive_N[other / kLanes][other % kLanes];
+double BranchLanes::force_N(const V4* memory, std::size_t place, std::size_t count) noexcept {
+  return sum_of(memory, kMemory, place, count);
 }
 
 std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, double creep_time_s) {
@@ -190,29 +188,12 @@ std::size_t BristleLanes::add(const DriveCurve& drive, double threshold_m, doubl
   return count_++;
 }
 
-void BristleLanes::advance(double last_depth_m, double depth_m, double step_s) noexcept {
-  kBend(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, force_N_);
+void BristleLanes::advance(double last_depth_m, double depth_m, double step_s, V4* bend_m, V4* force_N) const noexcept {
+  kBend(groups_.data(), groups_.size(), last_depth_m, depth_m, step_s, bend_m, force_N);
 }
 
-void BristleLanes::stay(double depth_m) noexcept {
-  kBend(groups_.data(), groups_.size(), depth_m, depth_m, 0.0, force_N_);
-}
-
-void BristleLanes::release() noexcept {
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    groups_[i].bend_m = V4{};
-    force_N_[i] = V4{};
-  }
-}
-
-double BristleLanes::force_N(std::size_t place, std::size_t count) const noexcept {
-  double sum = 0.0;
-  for (std::size_t i = place; i < place + count; ++i) sum += force_N_[i / kLanes][i % kLanes];
-  return sum;
-}
-
-void BristleLanes::adopt(std::size_t place, const BristleLanes& from, std::size_t other) noexcept {
-  groups_[place / kLanes].bend_m[place % kLanes] = from.groups_[other / kLanes].bend_m[other % kLanes];
+double BristleLanes::force_N(const V4* force_N, std::size_t place, std::size_t count) noexcept {
+  return sum_of(force_N, kMemory, place, count);
 }
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
 // The parts of relaxation spectra and of bristles, stop operators and those that creep
 // (features.h has the equations), four at a time. All branches of a filter stand in one row,
-// each feature's beside one another, and so do all bristles.
-// Thread guarantee: value types; constructors allocate, all else is wait-free; one thread at
-// a time.
+// each feature's beside one another, and so do all bristles. What they remember is the caller's:
+// kMemory rows of four for each group.
+// Thread guarantee: immutable after the last `add`, which allocates; all else is wait-free.
 #pragma once
 
 #include <array>
@@ -44,39 +44,32 @@ class BranchLanes {
   struct alignas(sizeof(V4)) Group {
     CurveLanes drive;
     V4 relaxation_time_s{1.0, 1.0, 1.0, 1.0};
-    V4 clock{1.0, 1.0, 1.0, 1.0};  // what a slowing makes of them
-    V4 keep{};
-    V4 gain{};
+    V4 slowing{};  // of these times, and the depth of its strain
+    V4 slowing_depth_m{1.0, 1.0, 1.0, 1.0};
+    bool slows = false;  // one of them
   };
-  // z, and g(s) at the same time.
-  struct alignas(sizeof(V4)) States {
-    V4 force_N[kMaxLaneGroups]{};
-    V4 drive_N[kMaxLaneGroups]{};
+  struct alignas(sizeof(V4)) Step {
+    V4 keep;
+    V4 gain;
   };
+  // What a group remembers: z, and g(s) at the same time.
+  static constexpr std::size_t kMemory = 2;
 
   // Returns the branch's place.
-  std::size_t add(const DriveCurve& drive, double relaxation_time_s);
-  bool empty() const noexcept { return count_ == 0; }
+  std::size_t add(const DriveCurve& drive, double relaxation_time_s, double slowing = 0.0,
+                  double slowing_depth_m = 1.0);
+  std::size_t groups() const noexcept { return groups_.size(); }
 
-  void set_clock(std::size_t place, double clock) noexcept { groups_[place / kLanes].clock[place % kLanes] = clock; }
-  // The steps of all branches, after their clocks.
-  void prepare(double step_s) noexcept;
-  // What the branches would hold together with the surface there.
-  double held_N(double surface_m) noexcept;
-  // Takes the step to there.
-  void advance(double surface_m) noexcept;
-  // No step: at rest, or as they are, with the surface there.
-  void stay(double surface_m, bool at_rest) noexcept;
+  // The steps of all groups with the surface there; of none, where `step_s` is 0, they stay as they are.
+  void prepare(double step_s, double surface_m, Step* step) const noexcept;
+  // What the branches hold together after the step, with the surface there; `to` may be `from`.
+  double advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept;
   // Of `count` branches from `place` on.
-  double force_N(std::size_t place, std::size_t count) const noexcept;
-  void adopt(std::size_t place, const BranchLanes& from, std::size_t other) noexcept;
+  static double force_N(const V4* memory, std::size_t place, std::size_t count) noexcept;
 
  private:
   std::vector<Group> groups_;
   std::size_t count_ = 0;
-  std::size_t now_ = 0;  // of the two
-  std::array<States, 2> states_{};
-  double held_at_m_ = std::numeric_limits<double>::quiet_NaN();  // of those that are not now
 };
 
 class BristleLanes {
@@ -88,27 +81,23 @@ class BristleLanes {
     V4 limit_m{1.0, 1.0, 1.0, 1.0};
     V4 air_limit_m{};     // the same out of contact
     V4 creep_per_m2_s{};  // 1 / (tau r^2); 0 of stops
-    V4 bend_m{};          // s, q
     bool creeps = false;  // one of them
   };
+  // What a group remembers: s, q.
+  static constexpr std::size_t kMemory = 1;
 
   // `creep_time_s`: tau, or 0 for a stop.
   std::size_t add(const DriveCurve& drive, double threshold_m, double creep_time_s);
-  bool empty() const noexcept { return count_ == 0; }
+  std::size_t groups() const noexcept { return groups_.size(); }
 
-  // The bristles follow the depth from the last one; out of contact a stop lets go.
-  void advance(double last_depth_m, double depth_m, double step_s) noexcept;
-  // They stay as they are, and their forces are those of the depth.
-  void stay(double depth_m) noexcept;
-  void release() noexcept;
-  double force_N(std::size_t place, std::size_t count) const noexcept;
-  // The bend alone: `stay` gives the forces.
-  void adopt(std::size_t place, const BristleLanes& from, std::size_t other) noexcept;
+  // The bristles follow the depth from the last one, for a `step_s` above 0; out of contact a
+  // stop lets go. `force_N`: what they hold then.
+  void advance(double last_depth_m, double depth_m, double step_s, V4* bend_m, V4* force_N) const noexcept;
+  static double force_N(const V4* force_N, std::size_t place, std::size_t count) noexcept;
 
  private:
   std::vector<Group> groups_;
   std::size_t count_ = 0;
-  alignas(sizeof(V4)) V4 force_N_[kMaxLaneGroups]{};
 };
 
 }  // namespace palpate

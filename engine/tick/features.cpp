@@ -27,6 +27,51 @@ double branch_time_s(const FeatureSpec& spec, std::size_t part) noexcept {
   return spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : spec.parts[part].relaxation_time_s;
 }
 
+// Where the surface is above the tool, by regula falsi with halving (Dowell & Jarratt 1971): with
+// the surface of before elastic response and branches hold nothing or push, since what pulls in
+// them decays. The last call of `held_N` is that of the surface that is returned.
+template <typename Held>
+double surface_above_m(const Held& held_N, double depth_m, double last_surface_m) noexcept {
+  double low_m = depth_m;
+  double high_m = last_surface_m;
+  double low_N = held_N(low_m);
+  if (low_N >= 0.0 || !(high_m - low_m > kNoLag_m)) return low_m;
+  double high_N = held_N(high_m);
+  if (!(high_N > 0.0)) return high_m;
+  double middle_m = high_m;
+  for (int step = 0; step < kSurfaceSteps; ++step) {
+    middle_m = low_m - low_N * (high_m - low_m) / (high_N - low_N);
+    const double middle_N = held_N(middle_m);
+    if (std::abs(middle_N) < kSurfaceForce_N) break;
+    if (middle_N > 0.0) {
+      high_m = middle_m;
+      high_N = middle_N;
+      low_N *= 0.5;
+    } else {
+      low_m = middle_m;
+      low_N = middle_N;
+      high_N *= 0.5;
+    }
+  }
+  return middle_m;
+}
+
+void copy_lane(V4* to, std::size_t place, const V4* from, std::size_t other, std::size_t stride) noexcept {
+  to[place / kLanes * stride][place % kLanes] = from[other / kLanes * stride][other % kLanes];
+}
+
+// The bends of those bristles that both have.
+void adopt_bends(const FeatureSpec& spec, std::size_t place, V4* bend_m, const FeatureSpec& old, std::size_t old_place,
+                 const V4* old_bend_m) noexcept {
+  for (std::size_t p = 0; p < spec.part_count; ++p) {
+    for (std::size_t q = 0; q < old.part_count; ++q) {
+      if (spec.parts[p].threshold_m != old.parts[q].threshold_m) continue;
+      if (spec.parts[p].relaxation_time_s != old.parts[q].relaxation_time_s) continue;
+      copy_lane(bend_m, place + p, old_bend_m, old_place + q, BristleLanes::kMemory);
+    }
+  }
+}
+
 }  // namespace
 
 double DriveCurve::at(double depth_m) const noexcept {
@@ -64,36 +109,35 @@ std::string feature_name(const FeatureSpec& spec) {
   return name.append(facts_of(spec.kind).unit);
 }
 
-FeatureFilter::FeatureFilter(const std::vector<FeatureSpec>& specs)
-    : surface_position_m_(surface_position_m(specs)), count_(std::min(specs.size(), kMaxFeatures)) {
+FeaturePlan::FeaturePlan(const std::vector<FeatureSpec>& specs)
+    : specs_(specs), surface_position_m_(palpate::surface_position_m(specs)) {
   assert(!specs.empty() && specs.size() <= kMaxFeatures);
-  std::copy_n(specs.begin(), count_, specs_.begin());
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
     if (spec.kind == FeatureKind::surface_lag) lag_ = i;
-    slows_ = slows_ || (is_branch(spec.kind) && spec.slowing != 0.0);
     for (std::size_t p = 0; p < lane_count(spec); ++p) {
-      const bool creeps = spec.kind == FeatureKind::creep;
-      const std::size_t place = is_branch(spec.kind) ? branches_.add(branch_drive(spec, p), branch_time_s(spec, p))
-                                                     : bristles_.add(spec.parts[p].drive, spec.parts[p].threshold_m,
-                                                                     creeps ? spec.parts[p].relaxation_time_s : 0.0);
+      const std::size_t place =
+          is_branch(spec.kind) ? branches_.add(branch_drive(spec, p), branch_time_s(spec, p), spec.slowing,
+                                               branch_drive(spec, 0).reference_depth_m)
+                               : bristles_.add(spec.parts[p].drive, spec.parts[p].threshold_m,
+                                               spec.kind == FeatureKind::creep ? spec.parts[p].relaxation_time_s : 0.0);
       if (p == 0) place_[i] = place;
     }
   }
 }
 
-const FeatureVector& FeatureFilter::update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
+void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept {
   const double depth_m = std::max(0.0, motion.position_m - surface_position_m_);
-  vector_.depth_m = std::max(0.0, sample.position_m - surface_position_m_);
-  vector_.in_contact = sample.position_m > surface_position_m_;
-  const double step_s = sample.time_s - time_s_;
-  const bool advance = started_ && step_s > 0.0;
-  if (advance) prepare_branches(depth_m, step_s);
-  const double surface_m = advance && lag_ < count_ ? surface_above_m(depth_m) : depth_m;
-  advance_parts(depth_m, surface_m, advance ? step_s : 0.0);
-  for (std::size_t i = 0; i < count_; ++i) {
+  if (!state.started) state = {};
+  state.vector.depth_m = std::max(0.0, sample.position_m - surface_position_m_);
+  state.vector.in_contact = sample.position_m > surface_position_m_;
+  const double step_s = state.started ? std::max(0.0, sample.time_s - state.time_s) : 0.0;
+  const double surface_m = advance_branches(state, depth_m, step_s);
+  V4 bristle_N[kMaxLaneGroups];
+  bristles_.advance(state.depth_m, depth_m, step_s, bends(state), bristle_N);
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
     const FeatureSpec& spec = specs_[i];
-    double& value = vector_.values[i];
+    double& value = state.vector.values[i];
     switch (spec.kind) {
       case FeatureKind::depth:
         value = depth_m;
@@ -102,127 +146,78 @@ const FeatureVector& FeatureFilter::update(const ToolSample& sample, const Motio
         value = depth_m > 0.0 ? motion.velocity_m_per_s : 0.0;
         break;
       case FeatureKind::lowpass_velocity:
-        if (advance) {
+        if (step_s > 0.0) {
           const double keep = std::exp(-step_s / spec.relaxation_time_s);
-          value = keep * value + (1.0 - keep) * (depth_m - depth_m_) / step_s;
+          value = keep * value + (1.0 - keep) * (depth_m - state.depth_m) / step_s;
           // A filter at rest decays to zero, not into denormals, which would
           // slow every later operation on it.
           if (std::abs(value) < 1e-30) value = 0.0;
-        } else if (!started_) {
-          value = 0.0;
         }
         break;
       case FeatureKind::maxwell_branch:
       case FeatureKind::maxwell_spectrum:
-        value = branches_.force_N(place_[i], lane_count(spec));
+        value = BranchLanes::force_N(state.memory, place_[i], lane_count(spec));
         break;
       case FeatureKind::surface_lag:
         value = surface_m - depth_m;
         break;
       case FeatureKind::stops:
       case FeatureKind::creep:
-        value = bristles_.force_N(place_[i], lane_count(spec));
         break;
     }
   }
-  started_ = true;
-  time_s_ = sample.time_s;
-  depth_m_ = depth_m;
-  surface_m_ = surface_m;
-  return vector_;
+  take_bristles(state, bristle_N);
+  state.started = true;
+  state.time_s = sample.time_s;
+  state.depth_m = depth_m;
+  state.surface_m = surface_m;
 }
 
-void FeatureFilter::prepare_branches(double depth_m, double step_s) noexcept {
-  if (branches_.empty()) return;
-  const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
-  for (std::size_t i = 0; slows_ && i < count_; ++i) {
-    const FeatureSpec& spec = specs_[i];
-    if (!is_branch(spec.kind)) continue;
-    const double clock = branch_clock(spec.slowing, halfway_m, branch_drive(spec, 0).reference_depth_m);
-    for (std::size_t p = 0; p < lane_count(spec); ++p) branches_.set_clock(place_[i] + p, clock);
+// Returns the surface.
+double FeaturePlan::advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept {
+  BranchLanes::Step step[kMaxLaneGroups];
+  branches_.prepare(step_s, surface_halfway(state.surface_m, state.depth_m, depth_m), step);
+  if (lag_ == kMaxFeatures || !(step_s > 0.0)) {
+    branches_.advance(step, depth_m, state.memory, state.memory);
+    return depth_m;
   }
-  branches_.prepare(step_s);
+  V4 trial[BranchLanes::kMemory * kMaxLaneGroups];
+  const auto held_N = [&](double surface_m) {
+    return specs_[lag_].drive.at(surface_m) + branches_.advance(step, surface_m, state.memory, trial);
+  };
+  const double surface_m = surface_above_m(held_N, depth_m, state.surface_m);
+  std::copy_n(trial, BranchLanes::kMemory * branches_.groups(), state.memory);
+  return surface_m;
 }
 
-// What elastic response and branches would hold with the surface there.
-double FeatureFilter::held_N(double surface_m) noexcept {
-  return specs_[lag_].drive.at(surface_m) + branches_.held_N(surface_m);
-}
-
-// Regula falsi with halving (Dowell & Jarratt 1971): the surface of before holds
-// nothing or pushes, since what pulls in it decays.
-double FeatureFilter::surface_above_m(double depth_m) noexcept {
-  double low_N = held_N(depth_m);
-  if (low_N >= 0.0) return depth_m;
-  double low_m = depth_m;
-  double high_m = surface_m_;
-  if (!(high_m - low_m > kNoLag_m)) return depth_m;
-  double high_N = held_N(high_m);
-  if (!(high_N > 0.0)) return high_m;
-  double middle_m = high_m;
-  for (int step = 0; step < kSurfaceSteps; ++step) {
-    middle_m = low_m - low_N * (high_m - low_m) / (high_N - low_N);
-    const double middle_N = held_N(middle_m);
-    if (std::abs(middle_N) < kSurfaceForce_N) break;
-    if (middle_N > 0.0) {
-      high_m = middle_m;
-      high_N = middle_N;
-      low_N *= 0.5;
-    } else {
-      low_m = middle_m;
-      low_N = middle_N;
-      high_N *= 0.5;
-    }
-  }
-  return middle_m;
-}
-
-// `step_s`: 0 for no step.
-void FeatureFilter::advance_parts(double depth_m, double surface_m, double step_s) noexcept {
-  if (!branches_.empty()) {
-    if (step_s > 0.0) {
-      branches_.advance(surface_m);
-    } else {
-      branches_.stay(surface_m, !started_);
-    }
-  }
-  if (bristles_.empty()) return;
-  if (!started_) bristles_.release();
-  if (step_s > 0.0) {
-    bristles_.advance(depth_m_, depth_m, step_s);
-  } else {
-    bristles_.stay(depth_m);
-  }
-}
-
-void FeatureFilter::adopt(const FeatureFilter& before) noexcept {
-  if (before.surface_position_m_ != surface_position_m_) return;
-  for (std::size_t i = 0; i < count_; ++i) {
-    for (std::size_t k = 0; k < before.count_; ++k) {
-      if (specs_[i].kind == before.specs_[k].kind) adopt_feature(i, before, k);
-    }
-  }
-}
-
-void FeatureFilter::adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept {
-  const FeatureSpec& spec = specs_[index];
-  const FeatureSpec& old = before.specs_[other];
-  if (is_bristle(spec.kind)) {
-    for (std::size_t p = 0; p < spec.part_count; ++p) {
-      for (std::size_t q = 0; q < old.part_count; ++q) {
-        if (spec.parts[p].threshold_m != old.parts[q].threshold_m) continue;
-        if (spec.parts[p].relaxation_time_s != old.parts[q].relaxation_time_s) continue;
-        bristles_.adopt(place_[index] + p, before.bristles_, before.place_[other] + q);
+void FeaturePlan::adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept {
+  if (plan.surface_position_m_ != surface_position_m_) return;
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
+    for (std::size_t k = 0; k < plan.specs_.size(); ++k) {
+      const FeatureSpec& spec = specs_[i];
+      const FeatureSpec& old = plan.specs_[k];
+      if (spec.kind == old.kind && is_bristle(spec.kind)) {
+        adopt_bends(spec, place_[i], bends(state), old, plan.place_[k], plan.bends(before));
+      } else if (spec == old) {
+        state.vector.values[i] = before.vector.values[k];
+        if (i == lag_) state.surface_m = before.surface_m;
+        for (std::size_t p = 0; p < lane_count(spec); ++p) {
+          for (std::size_t row = 0; row < BranchLanes::kMemory; ++row) {
+            copy_lane(state.memory + row, place_[i] + p, before.memory + row, plan.place_[k] + p, BranchLanes::kMemory);
+          }
+        }
       }
     }
-    bristles_.stay(depth_m_);
-    vector_.values[index] = bristles_.force_N(place_[index], spec.part_count);
-  } else if (spec == old) {
-    vector_.values[index] = before.vector_.values[other];
-    if (index == lag_) surface_m_ = before.surface_m_;
-    for (std::size_t p = 0; is_branch(spec.kind) && p < lane_count(spec); ++p) {
-      branches_.adopt(place_[index] + p, before.branches_, before.place_[other] + p);
-    }
+  }
+  V4 bristle_N[kMaxLaneGroups];
+  bristles_.advance(state.depth_m, state.depth_m, 0.0, bends(state), bristle_N);
+  take_bristles(state, bristle_N);
+}
+
+void FeaturePlan::take_bristles(FeatureState& state, const V4* bristle_N) const noexcept {
+  for (std::size_t i = 0; i < specs_.size(); ++i) {
+    if (!is_bristle(specs_[i].kind)) continue;
+    state.vector.values[i] = BristleLanes::force_N(bristle_N, place_[i], specs_[i].part_count);
   }
 }
 

@@ -69,6 +69,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "engine/tick/feature_lanes.h"
@@ -171,50 +172,73 @@ struct FeatureVector {
   bool in_contact = false;
 };
 
-// The filters behind one scene's features; one instance per stream of samples.
-class FeatureFilter {
+// All that the filters behind one scene's features remember of a stream. Trivially copyable.
+struct alignas(sizeof(V4)) FeatureState {
+  FeatureVector vector;
+  double depth_m = 0.0;    // at the last sample
+  double surface_m = 0.0;  // s, at least the depth; it without a surface_lag
+  double time_s = 0.0;
+  bool started = false;
+  // Of the branches, then of the bristles: features have at most 16 groups of parts.
+  V4 memory[BranchLanes::kMemory * kMaxLaneGroups]{};
+};
+static_assert(std::is_trivially_copyable_v<FeatureState>);
+
+// What does not change: the features, their parts in lanes, and where the surface lies.
+// Thread guarantee: immutable; constructing allocates, all else is wait-free.
+class FeaturePlan {
  public:
   // `specs`: 1 to 8 features; relaxation times > 0.
-  explicit FeatureFilter(const std::vector<FeatureSpec>& specs);
+  explicit FeaturePlan(const std::vector<FeatureSpec>& specs);
 
-  std::size_t count() const noexcept { return count_; }
-  const FeatureSpec& spec(std::size_t index) const noexcept { return specs_[index]; }
-  void reset() noexcept { started_ = false; }
-  // Of the last sample; minus infinity before the first.
-  double time_s() const noexcept { return started_ ? time_s_ : -std::numeric_limits<double>::infinity(); }
+  const std::vector<FeatureSpec>& specs() const noexcept { return specs_; }
 
   // `sample` and its motion estimate; times increase. The contact state is
   // that of the raw position at this surface.
-  const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept;
-  // After an `update`: takes over the memory that `before`, fed with the same motion, has
-  // of the same features, so that a change of models loses none. A stop's bend depends on
-  // its threshold alone; all else, and where the surface lies, must be equal. Wait-free.
-  void adopt(const FeatureFilter& before) noexcept;
-  // What `update` gave last.
-  const FeatureVector& vector() const noexcept { return vector_; }
-  // s, at least the depth; it without a surface_lag.
-  double surface_m() const noexcept { return surface_m_; }
+  void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
+  // After an `update`: takes over the memory that `before`, fed with the same motion, has of
+  // the same features of `plan`, so that a change of models loses none. A stop's bend depends
+  // on its threshold alone; all else, and where the surface lies, must be equal.
+  void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
-  void prepare_branches(double depth_m, double step_s) noexcept;
-  double held_N(double surface_m) noexcept;
-  double surface_above_m(double depth_m) noexcept;
-  void advance_parts(double depth_m, double surface_m, double step_s) noexcept;
-  void adopt_feature(std::size_t index, const FeatureFilter& before, std::size_t other) noexcept;
+  double advance_branches(FeatureState& state, double depth_m, double step_s) const noexcept;
+  void take_bristles(FeatureState& state, const V4* bristle_N) const noexcept;
+  V4* bends(FeatureState& state) const noexcept { return state.memory + BranchLanes::kMemory * branches_.groups(); }
+  const V4* bends(const FeatureState& state) const noexcept {
+    return state.memory + BranchLanes::kMemory * branches_.groups();
+  }
 
-  std::array<FeatureSpec, kMaxFeatures> specs_{};
+  std::vector<FeatureSpec> specs_;
   std::array<std::size_t, kMaxFeatures> place_{};  // of its first part in the lanes
   BranchLanes branches_;
   BristleLanes bristles_;
-  bool slows_ = false;              // some branch has a slowing
   std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
   double surface_position_m_ = 0.0;
-  double depth_m_ = 0.0;  // at the last sample
-  double surface_m_ = 0.0;
-  std::size_t count_ = 0;
-  FeatureVector vector_;
-  double time_s_ = 0.0;
-  bool started_ = false;
+};
+
+// Both for one stream of samples.
+class FeatureFilter {
+ public:
+  explicit FeatureFilter(const std::vector<FeatureSpec>& specs) : plan_(specs) {}
+
+  const FeaturePlan& plan() const noexcept { return plan_; }
+  const FeatureState& state() const noexcept { return state_; }
+  void reset() noexcept { state_.started = false; }
+  // Of the last sample; minus infinity before the first.
+  double time_s() const noexcept { return state_.started ? state_.time_s : -std::numeric_limits<double>::infinity(); }
+  const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
+    plan_.update(state_, sample, motion);
+    return state_.vector;
+  }
+  void adopt(const FeatureFilter& before) noexcept { plan_.adopt(state_, before.plan_, before.state_); }
+  // What `update` gave last.
+  const FeatureVector& vector() const noexcept { return state_.vector; }
+  double surface_m() const noexcept { return state_.surface_m; }
+
+ private:
+  FeaturePlan plan_;
+  FeatureState state_;
 };
 
 }  // namespace palpate

@@ -20,14 +20,6 @@ bool finite(const ToolSample& sample) noexcept {
          std::isfinite(sample.acceleration_m_per_s2);
 }
 
-bool same_features(const FeatureFilter& filter, const std::vector<FeatureSpec>& specs) {
-  if (filter.count() != specs.size()) return false;
-  for (std::size_t i = 0; i < specs.size(); ++i) {
-    if (!(filter.spec(i) == specs[i])) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models)
@@ -35,11 +27,10 @@ HapticsTick::HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<c
   assert(models_.size() <= kMaxModels);
   for (const auto& model : models_) {
     std::size_t index = 0;
-    while (index < filters_.size() && !same_features(filters_[index], model->features())) ++index;
+    while (index < filters_.size() && filters_[index].plan().specs() != model->features()) ++index;
     if (index == filters_.size()) filters_.emplace_back(model->features());
     filter_of_.push_back(index);
   }
-  rehearsed_ = filters_;
   snapshot_.model_count = static_cast<std::uint32_t>(models_.size());
 }
 
@@ -57,13 +48,13 @@ void HapticsTick::rehearse() noexcept {
   next.time_s += kRehearsedStep_s;
   MotionEstimator motion = motion_;
   const MotionEstimate estimate = motion.update(next);
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    rehearsed_[i] = filters_[i];
-    rehearsed_[i].update(next, estimate);
-  }
   double sum_N = 0.0;
-  for (std::size_t i = 0; i < models_.size(); ++i) {
-    sum_N += models_[i]->evaluate(rehearsed_[filter_of_[i]].vector().values.data()).force_N;
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    FeatureState state = filters_[i].state();
+    filters_[i].plan().update(state, next, estimate);
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+      if (filter_of_[k] == i) sum_N += models_[k]->evaluate(state.vector.values.data()).force_N;
+    }
   }
   rehearsed_N_ = sum_N;
 }

@@ -108,9 +108,8 @@ class HapticsTick {
   std::vector<FeatureFilter> filters_;
   std::vector<std::size_t> filter_of_;  // per model
   std::array<std::uint64_t, kMaxModels> cycles_{};
-  ToolSample sample_;                     // the last one
-  std::vector<FeatureFilter> rehearsed_;  // copies to rehearse with
-  double rehearsed_N_ = 0.0;              // so that no rehearsal is optimised away
+  ToolSample sample_;         // the last one
+  double rehearsed_N_ = 0.0;  // so that no rehearsal is optimised away
   TickSnapshot snapshot_;
   bool started_ = false;
   bool timed_ = false;
