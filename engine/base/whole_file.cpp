@@ -5,21 +5,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include "engine/base/csv_scanner.h"
 
 namespace palpate {
-
-std::optional<std::string> read_whole_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  // An empty file has nothing to copy, which a stream takes for a failure.
-  if (file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (!file.is_open() || file.bad() || !text) return std::nullopt;
-  return text.str();
-}
 
 Result<int> open_plain_file(const std::string& path, const std::string& expected, const std::string& or_else) {
   const auto wrong = [&](const std::string& found, const std::string& advice) {
@@ -38,7 +27,8 @@ Result<int> open_plain_file(const std::string& path, const std::string& expected
   return Error{path + ": the file cannot be opened (" + std::strerror(errno) + "); check the path"};
 }
 
-Result<std::string> read_plain_file(const std::string& path, const std::string& expected, const std::string& or_else) {
+Result<std::string> read_plain_file(const std::string& path, const std::string& expected, const std::string& or_else,
+                                    std::size_t most_bytes) {
   const Result<int> descriptor = open_plain_file(path, expected, or_else);
   if (!descriptor) return descriptor.error();
   DescriptorSource source(*descriptor);
@@ -48,8 +38,17 @@ Result<std::string> read_plain_file(const std::string& path, const std::string& 
     const Result<std::size_t> count = source.read(chunk.data(), chunk.size());
     if (!count) return Error{path + ": " + count.error().message};
     if (*count == 0) return text;
+    if (text.size() + *count > most_bytes)
+      return Error{path + ": found more than " + std::to_string(most_bytes) + " bytes, expected " + expected +
+                   "; name another file"};
     text.append(chunk, 0, *count);
   }
+}
+
+std::optional<std::string> read_whole_file(const std::string& path) {
+  Result<std::string> text = read_plain_file(path, "a small file");
+  if (!text) return std::nullopt;
+  return std::move(*text);
 }
 
 }  // namespace palpate

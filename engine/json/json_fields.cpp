@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/base/csv_scanner.h"
 #include "engine/json/json_position.h"
@@ -30,6 +31,22 @@ std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
     if (c == '"') inside_text = true;
     if ((c == '{' || c == '[') && ++depth > nesting) return i;
     if (c == '}' || c == ']') --depth;
+  }
+  return std::nullopt;
+}
+
+// Where an object has a name for the second time, if one does. `text` is valid JSON.
+std::optional<std::size_t> repeated_name_at(std::string_view text) {
+  std::vector<std::set<std::string_view>> open;  // names of each object or list
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '{' || text[i] == '[') open.emplace_back();
+    if (text[i] == '}' || text[i] == ']') open.pop_back();
+    if (text[i] != '"') continue;
+    const std::size_t begin = i++;
+    while (text[i] != '"') i += text[i] == '\\' ? 2 : 1;
+    const std::size_t next = text.find_first_not_of(" \t\r\n", i + 1);
+    const bool is_name = next != std::string_view::npos && text[next] == ':';
+    if (is_name && !open.back().insert(text.substr(begin, i - begin)).second) return begin;
   }
   return std::nullopt;
 }
@@ -103,9 +120,18 @@ Result<Json> parse_json(std::string_view text, const std::string& path, int nest
     return Error{position_prefix(path, position_of_offset(text, *offset)) + "found more than " +
                  std::to_string(nesting) + " lists inside each other, expected fewer" + advice.damaged};
   }
+  // The parser takes a NUL for the end of the text.
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    return Error{position_prefix(path, position_of_offset(text, nul)) + "found a NUL byte, expected text" +
+                 advice.damaged};
+  }
   SyntaxCheck syntax(text, path, advice);
   if (!Json::sax_parse(text, &syntax)) {
     return syntax.error().value_or(Error{path + ": found text that is not JSON" + advice.damaged});
+  }
+  if (const auto offset = repeated_name_at(text)) {
+    return Error{position_prefix(path, position_of_offset(text, *offset)) +
+                 "found a name for the second time in one object, expected it once" + advice.damaged};
   }
   return Json::parse(text);
 }

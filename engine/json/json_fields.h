@@ -25,7 +25,8 @@ struct JsonAdvice {
 };
 
 // The document in `text`, with lists and objects at most `nesting` deep. Errors:
-// not JSON, deeper, a number beyond the range of a double; with path:line:column.
+// not JSON, deeper, a NUL byte, a name twice in one object, a number beyond the range of a double; with
+// path:line:column.
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& path, int nesting,
                                   const JsonAdvice& advice);
 

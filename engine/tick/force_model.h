@@ -26,7 +26,8 @@ class ForceModel {
   virtual ~ForceModel() = default;
 
   // `features`: as many values as `features()` names, SI units, finite. Returns a
-  // force in [0, 1.2 x the largest training force]; contact is assumed.
+  // force of at most 1.2 x the largest training force, below 0 only where the material pulled in
+  // training, and never beyond its strongest pull; contact is assumed.
   virtual ForceEstimate evaluate(const double* features) const noexcept = 0;
 
   virtual const std::vector<FeatureSpec>& features() const noexcept = 0;

@@ -6,6 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/text.h"
+#include "engine/recording/recording_rules.h"
+
 namespace palpate {
 namespace {
 
@@ -30,6 +33,10 @@ class Check {
   }
   void not_negative(const std::string& field, double value) {
     that(value >= 0.0 && std::isfinite(value), field, std::to_string(value), "0 or more");
+  }
+  // Forces of recordings: none beyond that is read (engine/recording/recording_rules.h).
+  void recorded_force(const std::string& field, double value_N) {
+    that(std::abs(value_N) <= kMaximumForce_N, field, general(value_N, 4) + " N", "at most 1e6 N");
   }
   void finite(const std::string& field, bool good) { that(good, field, "a non-finite number", "finite numbers"); }
   void per_feature(const std::string& field, const Eigen::VectorXd& values, Eigen::Index count) {
@@ -144,6 +151,10 @@ Status validate_model(const ModelData& data) {
   }
   check.not_negative("correction_limit_N", data.correction_limit_N);
   check.not_negative("largest_force_N", data.largest_force_N);
+  for (const auto& [name, value_N] :
+       {std::pair{"correction_limit_N", data.correction_limit_N}, std::pair{"largest_force_N", data.largest_force_N},
+        std::pair{"lowest_force_N", data.lowest_force_N}})
+    check.recorded_force(name, value_N);
   check.not_negative("jnd.offset_N", data.jnd.offset_N);
   check.not_negative("jnd.weber_fraction", data.jnd.weber_fraction);
   check.that(data.lowest_force_N <= 0.0 && std::isfinite(data.lowest_force_N), "lowest_force_N",

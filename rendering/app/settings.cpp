@@ -1,10 +1,10 @@
 #include "rendering/app/settings.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/atomic_file.h"
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
@@ -22,9 +22,9 @@ T field(const Json& json, const char* name, T otherwise, T low, T high) {
 
 Result<Settings> read_settings(const std::string& path) {
   Settings settings;
-  std::ifstream file(path);
-  if (!file) return settings;
-  const Json json = Json::parse(file, nullptr, false);
+  const auto text = read_whole_file(path);
+  if (!text) return settings;
+  const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_object()) return Error{path + ": found no JSON object, expected the window's settings; they begin anew"};
   if (json.value("theme", Json()) == "dark") settings.theme = Theme::dark;
   const auto blocks = field<std::size_t>(json, "blocks", settings.block_count, 1, 4);

@@ -2,16 +2,18 @@
 
 #include <epoxy/gl.h>
 
-#include <fstream>
 #include <glm/gtc/type_ptr.hpp>
-#include <iterator>
 #include <utility>
 #include <vector>
+
+#include "engine/base/whole_file.h"
 
 namespace palpate {
 namespace {
 
 using Id = Result<unsigned>;
+
+constexpr const char* kElsewhere = ", and set PALPATE_ASSETS to the assets folder";
 
 std::string shader_log(unsigned shader) {
   int length = 0;
@@ -19,12 +21,6 @@ std::string shader_log(unsigned shader) {
   std::string text(static_cast<std::size_t>(length > 0 ? length : 1), '\0');
   glGetShaderInfoLog(shader, static_cast<GLsizei>(text.size()), nullptr, text.data());
   return text.c_str();
-}
-
-Result<std::string> read_shader(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{path + ": cannot be read, expected a shader; set PALPATE_ASSETS to the assets folder"};
-  return std::string{std::istreambuf_iterator<char>(file), {}};
 }
 
 Id compile(const std::string& path, const std::string& text, unsigned kind) {
@@ -46,14 +42,14 @@ Result<Shader> Shader::load(const std::string& folder, const std::string& vertex
                             const std::vector<std::string>& parts) {
   std::string before;
   for (const std::string& part : parts) {
-    const auto text = read_shader(folder + "/" + part + ".glsl");
+    const auto text = read_plain_file(folder + "/" + part + ".glsl", "a shader", kElsewhere);
     if (!text) return text.error();
     before += *text;
   }
   Shader shader(glCreateProgram());
   for (const auto& [name, kind] :
        {std::pair{vertex + ".vert", GL_VERTEX_SHADER}, std::pair{fragment + ".frag", GL_FRAGMENT_SHADER}}) {
-    const auto text = read_shader(folder + "/" + name);
+    const auto text = read_plain_file(folder + "/" + name, "a shader", kElsewhere);
     if (!text) return text.error();
     const Id part = compile(folder + "/" + name, before + *text, static_cast<unsigned>(kind));
     if (!part) return part.error();

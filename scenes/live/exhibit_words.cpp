@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "engine/base/atomic_file.h"
@@ -71,7 +70,7 @@ Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder) 
 
 ExhibitTally read_tally(const std::string& path) {
   ExhibitTally tally;
-  std::ifstream file(path);
+  std::istringstream file(read_whole_file(path).value_or(""));
   if (!(file >> tally.answers >> tally.as_expected) || tally.as_expected > tally.answers) return {};
   return tally;
 }

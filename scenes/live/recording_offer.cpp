@@ -1,8 +1,11 @@
 #include "scenes/live/recording_offer.h"
 
 #include <filesystem>
-#include <fstream>
+#include <memory>
+#include <string_view>
 
+#include "engine/base/csv_scanner.h"
+#include "engine/base/whole_file.h"
 #include "engine/import/import_words.h"
 #include "engine/recording/recording.h"
 #include "scenes/scene/user_folders.h"
@@ -13,13 +16,15 @@ namespace {
 // Whether its header asks to be read as a recording, so that what is wrong with it is
 // said of that.
 bool has_our_columns(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  while (std::getline(file, line)) {
-    if (line.empty() || line.front() != '#') break;
+  const auto descriptor = open_plain_file(path, "a recording");
+  if (!descriptor) return false;
+  LineScanner lines(std::make_unique<DescriptorSource>(*descriptor), path);
+  CsvLine line;
+  while (lines.next(line)) {
+    if (line.text.empty() || line.text.front() != '#') break;
   }
-  return line.find("time_s") != std::string::npos && line.find("position_m") != std::string::npos &&
-         line.find("force_N") != std::string::npos;
+  const auto has = [&](const char* name) { return line.text.find(name) != std::string_view::npos; };
+  return has("time_s") && has("position_m") && has("force_N");
 }
 
 }  // namespace

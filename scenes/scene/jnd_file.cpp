@@ -39,8 +39,8 @@ Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path) {
 }
 
 Result<JndLine> read_jnd_file(const std::string& path) {
-  const std::optional<std::string> text = read_whole_file(path);
-  if (!text) return Error{"cannot read the JND file " + path + "; does it exist?"};
+  const Result<std::string> text = read_plain_file(path, "a JND file", ", or make one with palpate study analyse");
+  if (!text) return text.error();
   return parse_jnd_file(*text, path);
 }
 

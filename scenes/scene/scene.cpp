@@ -63,8 +63,8 @@ Result<Scene> load_scene(const std::string& name, const std::string& in_folder) 
     return Error{"unknown scene \"" + name + "\"; known scenes: " + joined(*names)};
   }
   const std::string path = *folder + "/" + name + ".json";
-  const std::optional<std::string> text = read_whole_file(path);
-  if (!text) return Error{"cannot read the scene " + path};
+  const Result<std::string> text = read_plain_file(path, "a scene");
+  if (!text) return text.error();
   return parse_scene(*text, path);
 }
 

@@ -1,6 +1,7 @@
 #include "engine/base/whole_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
 
@@ -14,6 +15,23 @@ TEST(WholeFile, ReadsEveryByteOrNothing) {
   EXPECT_EQ(read_whole_file(folder.with_file("empty", "")), "");
   EXPECT_FALSE(read_whole_file(folder.file("none")).has_value());
   EXPECT_FALSE(read_whole_file(folder.path()).has_value());
+}
+
+TEST(WholeFile, WaitsForNoPipeAndReadsNoDeviceToTheEndOfMemory) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  for (const std::string& path : {folder.file("pipe"), std::string("/dev/zero")}) {
+    EXPECT_FALSE(read_whole_file(path).has_value());
+    const std::string message = read_plain_file(path, "a scene").error().message;
+    EXPECT_NE(message.find("found a pipe or a device, expected a scene"), std::string::npos) << message;
+  }
+}
+
+TEST(WholeFile, RefusesAFileBeyondItsLimit) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.with_file("bytes", "12345");
+  EXPECT_TRUE(read_plain_file(path, "a scene", "", 5).ok());
+  EXPECT_FALSE(read_plain_file(path, "a scene", "", 4).ok());
 }
 
 }  // namespace

@@ -45,6 +45,15 @@ TEST(JsonFields, SaysWhereAndWhyATextIsNoJson) {
             "x.json:1:5: found more than 4 lists inside each other, expected fewer; copy it again");
 }
 
+TEST(JsonFields, RefusesWhatAParserWouldPassOver) {
+  const std::string twice = fault_of("{\"a\": {\"b\": 1},\n \"b\": [\"b\", \"b\"],\n \"a\": 2}");
+  EXPECT_EQ(twice.rfind("x.json:3:2: ", 0), 0u) << twice;
+  EXPECT_NE(twice.find("second time"), std::string::npos) << twice;
+  EXPECT_EQ(fault_of("[{\"a\": \"b\"}, {\"a\": \"\\\":\"}]"), "none");
+  const std::string nul = fault_of(std::string("{\"a\": 1}\0\0", 10));
+  EXPECT_EQ(nul.rfind("x.json:1:9: found a NUL byte", 0), 0u) << nul;
+}
+
 TEST(JsonFields, CollectsAllErrorsEachOnce) {
   const std::string text = "{\"a\": 1,\n \"b\": \"x\",\n \"c\": {\"d\": 1, \"f\": 2}, \"g\": 3}";
   const Result<Json> document = parse_json(text, kPath, 4, kAdvice);

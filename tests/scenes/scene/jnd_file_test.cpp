@@ -27,7 +27,8 @@ TEST(JndFile, RefusesWithPlaceFoundAndExpected) {
             "jnd.json:3:36: weber_fraction: found \"6 %\", expected a number from 0 up to 1" + advice);
   const std::string broken = complaint(start);
   EXPECT_EQ(broken.substr(0, 14), "jnd.json:3:1: ") << broken;
-  EXPECT_EQ(read_jnd_file("/none/jnd.json").error().message, "cannot read the JND file /none/jnd.json; does it exist?");
+  const std::string none = read_jnd_file("/none/jnd.json").error().message;
+  EXPECT_NE(none.find("/none/jnd.json: found no such file"), std::string::npos) << none;
 }
 
 }  // namespace

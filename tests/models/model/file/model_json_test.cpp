@@ -153,6 +153,8 @@ TEST(ModelReader, RefusesWrongNumbersAndSizes) {
            "m.json:23:21: corrects_trend: found 1, expected true or false; fit the model again"},
           {"\"largest_force_N\": 2.5", "\"largest_force_N\": -2.5",
            "m.json:25:22: largest_force_N: found -2.5, expected a number, 0 or more; fit the model again"},
+          {"\"largest_force_N\": 2.5", "\"largest_force_N\": 1.7e308",
+           "m.json: largest_force_N: found 1.7e+308 N, expected at most 1e6 N; fit the model again"},
           {"\"inner_radius\": 0.3", "\"inner_radius\": 3",
            "m.json: domain radii: found 3.000000 and 0.909091, expected 0 <= inner < outer; fit the model "
            "again"},
