@@ -173,8 +173,14 @@ Status AtomicFile::take_name() {
   return {};
 }
 
+// Why nothing can be written any more: what the disk refused, else that all is done.
+Status AtomicFile::closed() const {
+  if (error_number_ != 0) return failure(error_number_);
+  return Error{"cannot write " + path_ + ": it is closed already"};
+}
+
 Status AtomicFile::publish() {
-  if (descriptor_ < 0) return Error{"cannot write " + path_ + ": it is closed already"};
+  if (descriptor_ < 0) return closed();
   flush();
   if (const Status taken = take_name(); !taken || published_) return taken;
   published_ = true;
@@ -183,7 +189,7 @@ Status AtomicFile::publish() {
 }
 
 Status AtomicFile::commit() {
-  if (descriptor_ < 0) return Error{"cannot write " + path_ + ": it is closed already"};
+  if (descriptor_ < 0) return closed();
   flush();
   if (error_number_ == 0 && fsync(descriptor_) != 0) error_number_ = errno;
   if (const Status taken = take_name(); !taken) return taken;

@@ -39,7 +39,7 @@ class AtomicFile {
 
   // Errors: anything the disk refused since `create`, e.g. no space left; a
   // file of that name made by someone else meanwhile, unless `overwrite`. Then
-  // nothing is left under the final name but what was there before.
+  // nothing is left under the final name but what was there before, or was published.
   Status commit();
 
  private:
@@ -49,6 +49,7 @@ class AtomicFile {
   std::string temporary_path_;  // empty: the file has no name
   Status take_name();
   Status failure(int error_number) const;
+  Status closed() const;
   void flush();
   void close_descriptor() noexcept;
   std::string buffer_;

@@ -93,7 +93,9 @@ void RecordingWriter::flush() {
 Status RecordingWriter::publish() {
   if (rules_.rows() < kRateRows) return {};
   flush();
-  return file_.publish();
+  Status published = file_.publish();
+  if (published) published_rows_ = rules_.rows();
+  return published;
 }
 
 Status RecordingWriter::commit() {

@@ -34,8 +34,11 @@ class RecordingWriter {
   // as `commit`.
   Status publish();
 
+  // Rows that are under the final name whatever happens.
+  std::uint64_t published_rows() const noexcept { return published_rows_; }
+
   // Errors: as AtomicFile::commit; fewer than 10 rows, or a rate outside the
-  // reader's range. Then no file is left.
+  // reader's range. Then no file is left but what was published.
   Status commit();
 
  private:
@@ -47,6 +50,7 @@ class RecordingWriter {
   RowRules rules_;
   std::string path_;
   std::string piece_;
+  std::uint64_t published_rows_ = 0;
 };
 
 }  // namespace palpate

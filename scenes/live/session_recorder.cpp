@@ -147,7 +147,12 @@ void SessionRecorder::write(const RecordedSample& sample) {
 Notice SessionRecorder::finish() {
   const std::uint64_t dropped = loop_.dropped_samples() - dropped_before_;
   const Status status = writer_->commit();
-  if (!status) return {"the recording was lost: " + status.error().message, true};
+  if (!status && writer_->published_rows() == 0) return {"the recording was lost: " + status.error().message, true};
+  if (!status) {
+    return {"the recording ended early: " + status.error().message + "; " + request_.path + " has its first " +
+                std::to_string(writer_->published_rows()) + " rows; make room, and record the rest into another file",
+            true};
+  }
   char length[64];
   std::snprintf(length, sizeof length, " (%.1f s)", time_.last_s() - time_.gaps_s());
   return {"recorded " + std::to_string(writer_->rows()) + " rows" + length + " into " + request_.path +

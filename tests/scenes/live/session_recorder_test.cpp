@@ -5,9 +5,11 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <thread>
 
 #include "devices/virtual/hand_device.h"
 #include "devices/virtual/replay_device.h"
@@ -221,6 +223,30 @@ TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
   EXPECT_EQ(notice.text, "the recording was lost: cannot write " + folder.file("a.csv") + ": File too large");
   EXPECT_TRUE(folder.entries().empty());
   ASSERT_TRUE(rig.start(folder.file("b.csv"), ReferenceKind::truth).ok()) << "and the next one is free to begin";
+}
+
+TEST(SessionRecorder, KeepsWhatWasOnTheDiskWhenItFillsUp) {
+  const TemporaryFolder folder;
+  PathDevice device(test::strokes);
+  Rig rig(device);
+  Notice notice;
+  {
+    const SmallFiles small;
+    ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
+    rig.run(1500);
+    const auto on_disk = [&] { return !folder.entries().empty(); };
+    for (int i = 0; i < 200 && !on_disk(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(on_disk());
+    rig.run(30000);
+    rig.recorder.wait();
+    notice = rig.recorder.read_outcome().value_or(Notice{"no outcome", false});
+  }
+  EXPECT_TRUE(notice.problem);
+  EXPECT_NE(notice.text.find("File too large"), std::string::npos) << notice.text;
+  const auto kept = read_recording(folder.file("a.csv"));
+  ASSERT_TRUE(kept.ok()) << kept.error().message;
+  EXPECT_NE(notice.text.find("first " + std::to_string(kept->rows.size()) + " rows"), std::string::npos)
+      << notice.text << ", has " << kept->rows.size();
 }
 
 // The loop's own thread beside the recorder's; for the thread sanitizer.
