@@ -12,7 +12,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libopenblas-dev liblapacke-dev lib
 # For the tests and benchmarks: of the window a display in memory (xauth: for
 # xvfb-run), of devices an emulated one and an emulated board with its compiler, of numbers
 # a German locale.
-test_packages=(libgtest-dev libbenchmark-dev python3 python3-numpy locales xvfb xauth xkb-data x11-xkb-utils libumockdev-dev umockdev
+test_packages=(libgtest-dev libbenchmark-dev python3 python3-numpy python3-matplotlib locales xvfb xauth xkb-data
+  x11-xkb-utils libumockdev-dev umockdev
   gcc-avr avr-libc simavr libsimavr-dev)
 # What makes the empty roots of .ci/run; its steps ask for what they need in there.
 ci_packages=(mmdebstrap debian-archive-keyring lintian git)

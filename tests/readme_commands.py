@@ -4,7 +4,8 @@ Fenced `sh` blocks are run line by line in a scratch folder that has what the te
 for granted: build/, a table of a rig, recordings, models, answers of subjects. Lines that
 would take minutes, or need a person, are listed below with the reason. Commands between
 backticks within a sentence have placeholders for names: of these the verb and the options
-are held against --help, scripts must be there. The `cpp` block of the front page is compiled."""
+are held against --help, scripts must be there. The `cpp` block of the front page is compiled; `python` blocks
+run in the scratch folder."""
 import csv
 import os
 import pathlib
@@ -145,6 +146,18 @@ def compile_snippet(readme, source, folder, compiler):
         print("compiles: the block of %s" % readme)
 
 
+def run_python(readme, source, folder, build, environment):
+    """The blocks of one README one after the other, in one process."""
+    blocks = fenced(readme.read_text(), "python")
+    if not blocks:
+        return
+    (folder / "blocks.py").write_text("".join(blocks))
+    must([sys.executable, "blocks.py"], folder, env={
+        **environment, "PYTHONPATH": str(source / "models" / "library" / "python"),
+        "PALPATE_LIBRARY": str(build / "models" / "library" / "libpalpate_fit.so")})
+    print("ran: the Python of %s" % readme)
+
+
 def main(source, build, compiler):
     source, build = pathlib.Path(source), pathlib.Path(build)
     listed = must(["find", ".", "-name", "README.md", "-not", "-path", "./build*"], source).split()
@@ -158,6 +171,7 @@ def main(source, build, compiler):
             run_blocks(readme, folder, build, environment)
             check_inline(readme, source, build, helps)
             compile_snippet(readme, source, folder, compiler)
+            run_python(readme, source, folder, build, environment)
 
 
 if __name__ == "__main__":

@@ -35,12 +35,6 @@ double air_deviation_N(const RecordingRow* rows, std::size_t count, double surfa
   return std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));
 }
 
-// Beyond it a measured force is contact.
-double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m) {
-  const double noise_N = std::max(identify_force_noise_N(rows, count), air_deviation_N(rows, count, surface_m));
-  return certain_force_N(noise_N);
-}
-
 double common_surface_m(const ForceModels& models) {
   double outermost_m = std::numeric_limits<double>::infinity();
   for (const auto& model : models) {
@@ -75,6 +69,11 @@ void run(HapticsTick& tick, const ContactRule& contact, const RecordingRow* rows
 }
 
 }  // namespace
+
+double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m) {
+  const double noise_N = std::max(identify_force_noise_N(rows, count), air_deviation_N(rows, count, surface_m));
+  return certain_force_N(noise_N);
+}
 
 Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m) {

@@ -39,6 +39,9 @@ struct ReplaySummary {
   std::uint64_t contact_samples = 0;
 };
 
+// A measured force beyond it is contact; from the first rows of a recording. `surface_m`: of the model.
+double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
+
 // `surface_offset_m` is subtracted from every position before the tick; the
 // visitor still gets the row as recorded. Errors: more than kMaxModels models.
 Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,

@@ -68,6 +68,7 @@ struct CheckedFile {
   Recording recording;  // what was checked, without its faults
   bool whole = true;    // false: the file is longer than kMostCheckedRows
   RecordingCheck check;
+  std::vector<bool> left_out{};  // MotionSource::Input
 };
 
 // Errors: those of RecordingReader.

@@ -86,6 +86,7 @@ std::vector<MotionSource::Input> training_inputs(std::vector<CheckedFile> files)
     if (file.whole && !file.check.motion.empty()) {
       input.motion = std::make_shared<const std::vector<MotionEstimate>>(std::move(file.check.motion));
     }
+    input.left_out = std::move(file.left_out);
     inputs.push_back(std::move(input));
   }
   return inputs;

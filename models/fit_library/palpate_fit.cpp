@@ -1,41 +1,41 @@
 // The C interface of models/library/palpate/palpate_fit.h.
 #include "models/library/palpate/palpate_fit.h"
 
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/import/import_table.h"
 #include "engine/recording/recording.h"
+#include "engine/recording/recording_rules.h"
 #include "models/check/check_recording.h"
-#include "models/fit/fit.h"
+#include "models/fit_library/fit_recordings.h"
 #include "models/library/error_text.h"
+#include "models/library/handles.h"
 #include "models/model/file/model_io.h"
+#include "models/training/fold_dealer.h"
+#include "models/training/training_extent.h"
 
 struct palpate_recording {
-  std::vector<palpate_row> rows;
+  palpate::Recording recording;
+  std::vector<bool> left_out{};
 };
+
+// A row of the interface is a row of a recording.
+static_assert(sizeof(palpate_row) == sizeof(palpate::RecordingRow) &&
+              offsetof(palpate_row, acceleration_m_per_s2) == offsetof(palpate::RecordingRow, acceleration_m_per_s2));
 
 namespace palpate::library {
 namespace {
 
-// What `palpate fit` takes when nothing is said: the features of Hoever & Harders (2009)
-// as a candidate beside those that the recordings support.
-TrainingRequest default_training() {
-  TrainingRequest request;
-  request.scene = "silicone_block";
-  request.features.resize(4);
-  request.features[1].kind = FeatureKind::velocity;
-  request.features[2].kind = FeatureKind::lowpass_velocity;
-  request.features[2].relaxation_time_s = 0.17;
-  request.features[3].kind = FeatureKind::lowpass_velocity;
-  request.features[3].relaxation_time_s = 1.27;
-  request.choice = FeatureChoice::automatic;
-  return request;
-}
-
-CheckRequest default_check() { return {JndLine{}, {0.17, 1.27}}; }
+// The features of Hoever & Harders (2009) as a candidate beside those that the recordings support.
+constexpr const char* kSceneFeatures = "depth,velocity,lowpass_velocity:0.17,lowpass_velocity:1.27";
 
 Status import_to(const std::string& table, const std::string& recording, bool overwrite) {
   const auto imported = import_table(table, {});
@@ -60,50 +60,129 @@ std::string findings_of(const RecordingCheck& check) {
   return text;
 }
 
-Result<MethodRequest> method_request(const palpate_fit_options& options) {
-  MethodRequest request;
-  request.method = options.method == nullptr ? nullptr : find_method(options.method);
-  if (request.method == nullptr) {
-    return Error{"method: found \"" + std::string(options.method == nullptr ? "" : options.method) +
-                 "\", expected one of " + method_names()};
-  }
-  if (options.centres < 1 || options.centres > 100000) {
-    return Error{"centres: found " + std::to_string(options.centres) + ", expected 1 to 100000"};
-  }
-  request.centres = options.centres;
-  request.seed = options.seed;
+void set(std::string& option, const char* text) {
+  if (text != nullptr) option = text;
+}
+
+FitOptions options_of(const palpate_fit_options& given) {
+  FitOptions options;
+  set(options.method, given.method);
+  set(options.candidates, given.candidates);
+  set(options.kernel, given.kernel);
+  set(options.weighting, given.weighting);
+  set(options.reduction, given.reduction);
+  set(options.recipe, given.recipe);
+  set(options.features, given.features);
+  set(options.relaxation, given.relaxation);
+  set(options.surface, given.surface);
+  set(options.grid, given.grid);
+  options.centres = given.centres;
+  options.seed = given.seed;
+  return options;
+}
+
+Result<TrainingRequest> scene_of(const palpate_fit_options& given) {
+  TrainingRequest scene;
+  scene.scene = given.scene == nullptr ? "silicone_block" : given.scene;
+  scene.jnd = {given.jnd_offset_N, given.jnd_weber_fraction};
+  if (!(scene.jnd.offset_N > 0.0 && scene.jnd.weber_fraction >= 0.0) || !std::isfinite(scene.jnd.at(1.0)))
+    return Error{"jnd_offset_N, jnd_weber_fraction: found " + std::to_string(scene.jnd.offset_N) + " and " +
+                 std::to_string(scene.jnd.weber_fraction) + ", expected more than 0 N, and 0 or more"};
+  auto features = parse_scene_features(given.scene_features == nullptr ? kSceneFeatures : given.scene_features);
+  if (!features) return Error{"scene_features: " + features.error().message};
+  scene.features = std::move(*features);
+  scene.choice = FeatureChoice::automatic;
+  return scene;
+}
+
+palpate_fit_options or_default(const palpate_fit_options* options) {
+  palpate_fit_options chosen;
+  palpate_fit_options_default(&chosen);
+  return options == nullptr ? chosen : *options;
+}
+
+CheckRequest check_of(const TrainingRequest& scene) {
+  CheckRequest request{scene.jnd, {}};
+  for (const FeatureSpec& feature : scene.features)
+    if (feature.kind == FeatureKind::lowpass_velocity) request.relaxation_times_s.push_back(feature.relaxation_time_s);
   return request;
 }
 
-// `begin` to `end`: the part of the whole that this step is.
-FitControl control_of(const palpate_fit_options& options, double begin, double end) {
-  FitControl control;
-  if (options.progress == nullptr) return control;
-  control.progress = [=](double fraction) {
-    return options.progress(begin + (end - begin) * fraction, options.context) != 0;
-  };
-  return control;
-}
-
-Status fit_to(const std::vector<std::string>& recordings, const palpate_fit_options& options,
-              const std::string& model) {
-  const auto method = method_request(options);
-  if (!method) return method.error();
-  auto checked = check_recording_files(recordings, default_check());
+// `check`: the checked recordings for a request.
+template <typename Check>
+Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check& check) {
+  const auto began = std::chrono::steady_clock::now();
+  const FitOptions options = options_of(given);
+  if (Status status = check_fit_options(options); !status) return status.error();
+  const auto scene = scene_of(given);
+  if (!scene) return scene.error();
+  Result<std::vector<CheckedFile>> checked = check(check_of(*scene));
   if (!checked) return checked.error();
-  if (Status status = refuse_unusable(*checked); !status) return status;
-  MotionSource source(training_inputs(std::move(*checked)));
-  const auto prepared = prepare_training(source, default_training(), control_of(options, 0.0, 0.3));
-  if (!prepared) return prepared.error();
-  const auto fit = fit_method(*prepared, *method, control_of(options, 0.3, 1.0));
-  if (!fit) return fit.error();
-  return save_model(model, fit->data, options.overwrite != 0);
+  if (Status status = refuse_unusable(*checked); !status) return status.error();
+  std::function<bool(double)> progress;
+  if (given.progress != nullptr)
+    progress = [&given](double fraction) { return given.progress(fraction, given.context) != 0; };
+  return fit_recordings(std::move(*checked), *scene, options, began, progress);
 }
 
-int reported(const Place& place, const Status& status) {
-  if (status) return 0;
-  place.fail(status.error().message);
-  return -1;
+Result<RecordingsFit> fit_files(const std::vector<std::string>& paths, const palpate_fit_options& options) {
+  return fit_checked(options, [&](const CheckRequest& request) { return check_recording_files(paths, request); });
+}
+
+Result<RecordingsFit> fit_memory(const std::vector<const palpate_recording*>& recordings,
+                                 const palpate_fit_options& options) {
+  return fit_checked(options, [&](const CheckRequest& request) -> Result<std::vector<CheckedFile>> {
+    std::vector<CheckedFile> checked;
+    for (const palpate_recording* one : recordings)
+      checked.push_back(
+          {one->recording.name, one->recording, true, check_recording(one->recording, request), one->left_out});
+    return checked;
+  });
+}
+
+Result<Recording> recording_of(std::string name, std::size_t n, const double* time_s, const double* position_m,
+                               const double* force_N, const double* velocity_m_per_s,
+                               const double* acceleration_m_per_s2) {
+  Recording recording{std::move(name), {velocity_m_per_s != nullptr, acceleration_m_per_s2 != nullptr}, {}};
+  recording.rows.reserve(n);
+  RowRules rules;
+  std::optional<RowFault> fault;
+  for (std::size_t i = 0; i < n && !fault; ++i) {
+    RecordingRow row{time_s[i], position_m[i], force_N[i]};
+    if (velocity_m_per_s != nullptr) row.velocity_m_per_s = velocity_m_per_s[i];
+    if (acceleration_m_per_s2 != nullptr) row.acceleration_m_per_s2 = acceleration_m_per_s2[i];
+    fault = rules.check(row);
+    recording.rows.push_back(row);
+  }
+  if (!fault) fault = rules.finish();
+  if (!fault) return recording;
+  const bool of_row = fault->place == RowFault::Place::kThisRow;
+  return Error{recording.name + (of_row ? ": row " + std::to_string(recording.rows.size() - 1) : std::string()) + ": " +
+               fault->text};
+}
+
+// The folds of samples that come recording by recording.
+int deal(std::size_t n, const double* depth_m, const int* recording, int* fold) {
+  const auto recording_of = [&](std::size_t i) { return recording == nullptr ? 0 : recording[i]; };
+  std::vector<MotionRow> rows(n);
+  TrainingExtent extent;
+  std::size_t recordings = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    MotionRow& row = rows[i];
+    row.sample.position_m = depth_m[i];
+    row.recording = recording_of(i);
+    row.first = i == 0 || recording_of(i - 1) != row.recording;
+    recordings += row.first ? 1 : 0;
+    row.stroke = static_cast<int>(extent.strokes);
+    if (!row.first)
+      (depth_m[i] > depth_m[i - 1] ? extent.way_in_m : extent.way_out_m) += std::abs(depth_m[i] - depth_m[i - 1]);
+    if (!(depth_m[i] > 0.0)) continue;
+    if (row.first || !(depth_m[i - 1] > 0.0)) row.stroke = static_cast<int>(++extent.strokes);
+    ++extent.contact_samples;
+  }
+  FoldDealer dealer(recordings, extent.strokes, extent.contact_samples, extent.turns_round());
+  for (std::size_t i = 0; i < n; ++i) fold[i] = dealer.next(rows[i]);
+  return dealer.folds();
 }
 
 }  // namespace
@@ -115,34 +194,55 @@ using palpate::library::Place;
 palpate_recording* palpate_recording_load(const char* path, char* error, size_t error_size) {
   return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](Place place) -> palpate_recording* {
     if (path == nullptr) return place.fail("found no path, expected that of a recording");
-    const auto recording = palpate::read_recording(path);
+    auto recording = palpate::read_recording(path);
     if (!recording) return place.fail(recording.error().message);
-    auto handle = std::make_unique<palpate_recording>();
-    handle->rows.reserve(recording->rows.size());
-    for (const palpate::RecordingRow& row : recording->rows) {
-      handle->rows.push_back(
-          {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2});
-    }
-    return handle.release();
+    return new palpate_recording{std::move(*recording)};
+  });
+}
+
+palpate_recording* palpate_recording_new(const char* name, size_t n, const double* time_s, const double* position_m,
+                                         const double* force_N, const double* velocity_m_per_s,
+                                         const double* acceleration_m_per_s2, const unsigned char* left_out,
+                                         char* error, size_t error_size) {
+  return guarded<palpate_recording*>(nullptr, {error, error_size}, [&](Place place) -> palpate_recording* {
+    if (name == nullptr || time_s == nullptr || position_m == nullptr || force_N == nullptr)
+      return place.fail("found no name, time, position or force, expected all of them");
+    auto recording =
+        palpate::library::recording_of(name, n, time_s, position_m, force_N, velocity_m_per_s, acceleration_m_per_s2);
+    if (!recording) return place.fail(recording.error().message);
+    std::vector<bool> left(left_out, left_out == nullptr ? nullptr : left_out + n);
+    return new palpate_recording{std::move(*recording), std::move(left)};
   });
 }
 
 void palpate_recording_free(palpate_recording* recording) { delete recording; }
 
+const char* palpate_recording_name(const palpate_recording* recording) {
+  return recording == nullptr ? "" : recording->recording.name.c_str();
+}
+
+int palpate_recording_has_velocity(const palpate_recording* recording) {
+  return recording != nullptr && recording->recording.columns.velocity ? 1 : 0;
+}
+
+int palpate_recording_has_acceleration(const palpate_recording* recording) {
+  return recording != nullptr && recording->recording.columns.acceleration ? 1 : 0;
+}
+
 size_t palpate_recording_row_count(const palpate_recording* recording) {
-  return recording == nullptr ? 0 : recording->rows.size();
+  return recording == nullptr ? 0 : recording->recording.rows.size();
 }
 
 const palpate_row* palpate_recording_rows(const palpate_recording* recording) {
-  return recording == nullptr ? nullptr : recording->rows.data();
+  return recording == nullptr ? nullptr : reinterpret_cast<const palpate_row*>(recording->recording.rows.data());
 }
 
 int palpate_import(const char* table, const char* recording, int overwrite, char* error, size_t error_size) {
   return guarded<int>(-1, {error, error_size}, [&](Place place) {
     if (table == nullptr || recording == nullptr) {
-      return palpate::library::reported(place, palpate::Error{"found no path, expected a table and a recording"});
+      return place.report(palpate::Error{"found no path, expected a table and a recording"});
     }
-    return palpate::library::reported(place, palpate::library::import_to(table, recording, overwrite != 0));
+    return place.report(palpate::library::import_to(table, recording, overwrite != 0));
   });
 }
 
@@ -150,10 +250,11 @@ int palpate_check(const char* recording, palpate_check_result* result, char* fin
                   char* error, size_t error_size) {
   return guarded<int>(-1, {error, error_size}, [&](Place place) {
     if (recording == nullptr || result == nullptr) {
-      return palpate::library::reported(place, palpate::Error{"found no path or no result, expected both"});
+      return place.report(palpate::Error{"found no path or no result, expected both"});
     }
-    const auto file = palpate::check_recording_file(recording, palpate::library::default_check());
-    if (!file) return palpate::library::reported(place, file.error());
+    const auto file = palpate::check_recording_file(
+        recording, palpate::library::check_of(*palpate::library::scene_of(palpate::library::or_default(nullptr))));
+    if (!file) return place.report(file.error());
     *result = palpate::library::result_of(file->check);
     Place{findings, findings_size}.fail(palpate::library::findings_of(file->check));
     return 0;
@@ -161,7 +262,29 @@ int palpate_check(const char* recording, palpate_check_result* result, char* fin
 }
 
 void palpate_fit_options_default(palpate_fit_options* options) {
-  if (options != nullptr) *options = {"greedy", 100, 1, 0, nullptr, nullptr};
+  if (options == nullptr) return;
+  const palpate::JndLine jnd;
+  *options = {};
+  options->centres = palpate::FitOptions{}.centres;
+  options->seed = palpate::FitOptions{}.seed;
+  options->jnd_offset_N = jnd.offset_N;
+  options->jnd_weber_fraction = jnd.weber_fraction;
+}
+
+palpate_model* palpate_fit_recordings(const palpate_recording* const* recordings, size_t recording_count,
+                                      const palpate_fit_options* options, char* error, size_t error_size) {
+  return guarded<palpate_model*>(nullptr, {error, error_size}, [&](Place place) -> palpate_model* {
+    std::vector<const palpate_recording*> some;
+    for (size_t i = 0; recordings != nullptr && i < recording_count; ++i) {
+      if (recordings[i] != nullptr) some.push_back(recordings[i]);
+    }
+    if (some.empty() || some.size() != recording_count) return place.fail("found no recording, expected one or more");
+    const palpate_fit_options chosen = palpate::library::or_default(options);
+    auto fitted = palpate::library::fit_memory(some, chosen);
+    if (!fitted) return place.fail(fitted.error().message);
+    const std::string report = palpate::fit_json(*fitted, palpate::library::options_of(chosen)).dump();
+    return new palpate_model(std::make_shared<const palpate::FittedModel>(std::move(fitted->fit.data)), report);
+  });
 }
 
 int palpate_fit(const char* const* recordings, size_t recording_count, const palpate_fit_options* options,
@@ -171,13 +294,16 @@ int palpate_fit(const char* const* recordings, size_t recording_count, const pal
     for (size_t i = 0; recordings != nullptr && i < recording_count; ++i) {
       if (recordings[i] != nullptr) paths.emplace_back(recordings[i]);
     }
-    if (paths.empty() || paths.size() != recording_count || model == nullptr) {
-      return palpate::library::reported(place,
-                                        palpate::Error{"found no path, expected recordings and a model to write"});
-    }
-    palpate_fit_options chosen;
-    palpate_fit_options_default(&chosen);
-    if (options != nullptr) chosen = *options;
-    return palpate::library::reported(place, palpate::library::fit_to(paths, chosen, model));
+    if (paths.empty() || paths.size() != recording_count || model == nullptr)
+      return place.report(palpate::Error{"found no path, expected recordings and a model to write"});
+    const palpate_fit_options chosen = palpate::library::or_default(options);
+    const auto fitted = palpate::library::fit_files(paths, chosen);
+    if (!fitted) return place.report(fitted.error());
+    return place.report(palpate::save_model(model, fitted->fit.data, chosen.overwrite != 0));
   });
+}
+
+int palpate_folds(size_t n, const double* depth_m, const int* recording, int* fold) {
+  if (depth_m == nullptr || fold == nullptr) return -1;
+  return guarded<int>(-1, {}, [&](Place) { return palpate::library::deal(n, depth_m, recording, fold); });
 }

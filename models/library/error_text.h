@@ -8,12 +8,21 @@
 #include <new>
 #include <string_view>
 
+#include "engine/base/result.h"
+
 namespace palpate::library {
 
 // The caller's buffer for one error; may be none.
 struct Place {
   char* text = nullptr;
   std::size_t size = 0;
+
+  // 0, or -1 and the error's text, for functions that return a status.
+  int report(const Status& status) const noexcept {
+    if (status) return 0;
+    fail(status.error().message);
+    return -1;
+  }
 
   // Writes as much of `message` as fits, in whole UTF-8 characters, and its end.
   // Returns null, for functions that return handles.

@@ -2,23 +2,25 @@
 // haptics tick with that one model, and a force limiter. No exception leaves a function.
 #include "models/library/palpate/palpate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include "engine/base/atomic_file.h"
 #include "engine/base/result.h"
 #include "engine/live/force_limiter.h"
 #include "engine/tick/haptics_tick.h"
+#include "engine/tick/replay.h"
 #include "engine/tick/sensor_identification.h"
+#include "models/export/export_c.h"
 #include "models/library/error_text.h"
+#include "models/library/handles.h"
 #include "models/model/file/model_io.h"
-
-struct palpate_model {
-  std::shared_ptr<const palpate::FittedModel> model;
-};
 
 struct palpate_stream {
   palpate_stream(const palpate::SensorSpec& spec, std::shared_ptr<const palpate::ForceModel> model)
@@ -77,6 +79,33 @@ Result<SensorSpec> sensor_of_recording(const std::string& path) {
   return identify_sensor(*reader);
 }
 
+palpate_sensor sensor_from(const SensorSpec& spec) {
+  return {spec.encoder_step_m,         spec.position_noise_m,
+          spec.velocity_noise_m_per_s, spec.acceleration_noise_m_per_s2,
+          spec.has_velocity ? 1 : 0,   spec.has_acceleration ? 1 : 0};
+}
+
+// Of the first samples, as many as identification looks at.
+SensorSpec sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
+                             const double* acceleration_m_per_s2) {
+  std::vector<RecordingRow> rows(std::min(n, kSensorIdentificationRows));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].time_s = time_s[i];
+    rows[i].position_m = position_m[i];
+    if (velocity_m_per_s != nullptr) rows[i].velocity_m_per_s = velocity_m_per_s[i];
+    if (acceleration_m_per_s2 != nullptr) rows[i].acceleration_m_per_s2 = acceleration_m_per_s2[i];
+  }
+  return identify_sensor(rows.data(), rows.size(), {velocity_m_per_s != nullptr, acceleration_m_per_s2 != nullptr});
+}
+
+Status export_to(const FittedModel& model, double encoder_step_m, bool single_precision, const std::string& path,
+                 bool overwrite) {
+  if (Status status = check_at_least_zero("encoder_step_m", encoder_step_m); !status) return status;
+  const auto file = export_c(model.data(), {single_precision, sensor_with_step(model.data(), encoder_step_m)});
+  if (!file) return file.error();
+  return write_file_atomically(path, file->text, overwrite);
+}
+
 Result<ForceLimits> force_limits(const palpate_limits& limits) {
   for (const auto& [name, value] :
        {std::pair{"largest_N", limits.largest_N}, std::pair{"fastest_N_per_s", limits.fastest_N_per_s},
@@ -115,7 +144,7 @@ palpate_model* palpate_model_load(const char* path, char* error, size_t error_si
     if (path == nullptr) return place.fail("found no path, expected that of a model file");
     auto model = palpate::load_model(path);
     if (!model) return place.fail(model.error().message);
-    return new palpate_model{std::move(*model)};
+    return new palpate_model(std::move(*model));
   });
 }
 
@@ -123,6 +152,53 @@ void palpate_model_free(palpate_model* model) { delete model; }
 
 const char* palpate_model_name(const palpate_model* model) {
   return model == nullptr ? "" : model->model->name().c_str();
+}
+
+const char* palpate_model_report(const palpate_model* model) { return model == nullptr ? "" : model->report.c_str(); }
+
+int palpate_model_save(const palpate_model* model, const char* path, int overwrite, char* error, size_t error_size) {
+  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+    if (model == nullptr || path == nullptr)
+      return place.report(palpate::Error{"found no model or no path, expected both"});
+    return place.report(palpate::save_model(path, model->model->data(), overwrite != 0));
+  });
+}
+
+int palpate_model_export_c(const palpate_model* model, double encoder_step_m, int single_precision, const char* path,
+                           int overwrite, char* error, size_t error_size) {
+  return guarded<int>(-1, {error, error_size}, [&](Place place) {
+    if (model == nullptr || path == nullptr)
+      return place.report(palpate::Error{"found no model or no path, expected both"});
+    return place.report(
+        palpate::library::export_to(*model->model, encoder_step_m, single_precision != 0, path, overwrite != 0));
+  });
+}
+
+size_t palpate_model_feature_count(const palpate_model* model) {
+  return model == nullptr ? 0 : model->feature_names.size();
+}
+
+const char* palpate_model_feature_name(const palpate_model* model, size_t index) {
+  return index < palpate_model_feature_count(model) ? model->feature_names[index].c_str() : "";
+}
+
+int palpate_model_evaluate(const palpate_model* model, size_t n, const double* features, double* force_N,
+                           double* bound_N, double* trend_N, unsigned char* outside) {
+  if (model == nullptr || features == nullptr) return -1;
+  const palpate::FittedModel& fitted = *model->model;
+  const palpate::TrendInputs inputs(fitted.features());
+  for (size_t i = 0; i < n; ++i, features += fitted.features().size()) {
+    const palpate::ForceEstimate estimate = fitted.evaluate(features);
+    if (force_N != nullptr) force_N[i] = estimate.force_N;
+    if (bound_N != nullptr) bound_N[i] = estimate.predicted_error_N;
+    if (trend_N != nullptr) trend_N[i] = fitted.data().trend.at(features, inputs);
+    if (outside != nullptr) outside[i] = estimate.out_of_domain ? 1 : 0;
+  }
+  return 0;
+}
+
+double palpate_jnd_N(const palpate_model* model, double force_N) {
+  return (model == nullptr ? palpate::JndLine{} : model->model->data().jnd).at(force_N);
 }
 
 palpate_stream* palpate_stream_new(const palpate_model* model, double encoder_step_m, char* error, size_t error_size) {
@@ -157,9 +233,28 @@ int palpate_sensor_of_recording(const char* path, palpate_sensor* sensor, char* 
       place.fail(spec.error().message);
       return -1;
     }
-    *sensor = {spec->encoder_step_m,         spec->position_noise_m,
-               spec->velocity_noise_m_per_s, spec->acceleration_noise_m_per_s2,
-               spec->has_velocity ? 1 : 0,   spec->has_acceleration ? 1 : 0};
+    *sensor = palpate::library::sensor_from(*spec);
+    return 0;
+  });
+}
+
+int palpate_sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
+                              const double* acceleration_m_per_s2, palpate_sensor* sensor) {
+  if (time_s == nullptr || position_m == nullptr || sensor == nullptr) return -1;
+  return guarded<int>(-1, {}, [&](Place) {
+    *sensor = palpate::library::sensor_from(
+        palpate::library::sensor_of_samples(n, time_s, position_m, velocity_m_per_s, acceleration_m_per_s2));
+    return 0;
+  });
+}
+
+int palpate_in_contact(size_t n, const double* position_m, const double* force_N, unsigned char* in_contact) {
+  if (position_m == nullptr || force_N == nullptr || in_contact == nullptr) return -1;
+  return guarded<int>(-1, {}, [&](Place) {
+    std::vector<palpate::RecordingRow> rows(std::min(n, palpate::kSensorIdentificationRows));
+    for (size_t i = 0; i < rows.size(); ++i) rows[i] = {0.0, position_m[i], force_N[i]};
+    const double least_N = palpate::least_contact_N(rows.data(), rows.size(), 0.0);
+    for (size_t i = 0; i < n; ++i) in_contact[i] = position_m[i] > 0.0 || std::abs(force_N[i]) > least_N ? 1 : 0;
     return 0;
   });
 }
@@ -182,6 +277,27 @@ double palpate_stream_force_with_motion(palpate_stream* stream, double time_s, d
   if (stream == nullptr) return 0.0;
   return palpate::library::step(*stream, {time_s, position_m, stream->sensor.has_velocity ? velocity_m_per_s : 0.0,
                                           stream->sensor.has_acceleration ? acceleration_m_per_s2 : 0.0});
+}
+
+int palpate_stream_forces(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
+                          double* force_N, double* bound_N) {
+  return palpate_stream_forces_with_motion(stream, n, time_s, position_m, nullptr, nullptr, force_N, bound_N, nullptr);
+}
+
+int palpate_stream_forces_with_motion(palpate_stream* stream, size_t n, const double* time_s, const double* position_m,
+                                      const double* velocity_m_per_s, const double* acceleration_m_per_s2,
+                                      double* force_N, double* bound_N, double* features) {
+  if (stream == nullptr || time_s == nullptr || position_m == nullptr) return -1;
+  const size_t width = stream->tick.model(0).features().size();
+  for (size_t i = 0; i < n; ++i) {
+    const double force = palpate_stream_force_with_motion(
+        stream, time_s[i], position_m[i], velocity_m_per_s != nullptr ? velocity_m_per_s[i] : 0.0,
+        acceleration_m_per_s2 != nullptr ? acceleration_m_per_s2[i] : 0.0);
+    if (force_N != nullptr) force_N[i] = force;
+    if (bound_N != nullptr) bound_N[i] = stream->predicted_error_N;
+    if (features != nullptr) std::copy_n(stream->tick.features_of(0).values.data(), width, features + i * width);
+  }
+  return 0;
 }
 
 int palpate_stream_out_of_domain(const palpate_stream* stream) {

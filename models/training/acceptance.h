@@ -14,6 +14,17 @@
 
 namespace palpate {
 
+// Whether the blocks of `one` sum to no more than those of the best by one standard error of their
+// paired differences.
+inline bool is_as_good(const std::vector<double>& one, const std::vector<double>& best) {
+  const auto count = static_cast<double>(one.size());
+  const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
+  if (count < 2.0) return sum <= 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) squares += std::pow(one[k] - best[k] - sum / count, 2);
+  return sum <= std::sqrt(squares * count / (count - 1.0));
+}
+
 // Whether `one` is worse than the best, block by block. Differences below a tenth of a mean
 // block are noise.
 inline bool is_certainly_worse(const std::vector<double>& one, const std::vector<double>& best) {

@@ -154,8 +154,9 @@ Status MotionSource::read(const Input& input, const Thinning& thinning, OneRecor
       row.force_N = recorded.force_N;
       row.motion = known != nullptr ? *known++ : estimator->update(row.sample);
       row.first = one.recorded == 0;
-      row.run_up = thinning.is_run_up(one.recorded);
-      if (!row.run_up || one.recorded % thinning.sparse == 0) one.rows.push_back(row);
+      const bool between = thinning.is_run_up(one.recorded);
+      row.run_up = between || (one.recorded < input.left_out.size() && input.left_out[one.recorded]);
+      if (!between || one.recorded % thinning.sparse == 0) one.rows.push_back(row);
       ++one.recorded;
     }
     // What turns out to be too long comes again, thinned.

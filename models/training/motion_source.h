@@ -59,6 +59,8 @@ class MotionSource {
     std::shared_ptr<const Recording> loaded;
     // Of every row of `loaded`, when it is known already.
     std::shared_ptr<const std::vector<MotionEstimate>> motion{};
+    // Whether each row of `loaded` is a run-up, for validation by data that were left out; empty: none.
+    std::vector<bool> left_out{};
   };
 
   // `most_rows`: how many stay in memory, about.

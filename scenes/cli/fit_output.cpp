@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/base/text.h"
-#include "scenes/cli/output.h"
 
 namespace palpate::cli {
 namespace {
@@ -51,27 +50,10 @@ void print_surfaces(const Provenance& provenance) {
   }
 }
 
-nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
-  std::vector<RecordingSurface> surfaces = provenance.surfaces;
-  if (surfaces.empty()) {
-    for (const std::string& name : provenance.recordings) surfaces.push_back({name, 0.0, 0.0, 0.0});
-  }
-  auto list = nlohmann::ordered_json::array();
-  for (const RecordingSurface& surface : surfaces) {
-    list.push_back({{"name", surface.name},
-                    {"surface_offset_m", surface.offset_m},
-                    {"standard_error_m", surface.standard_error_m},  // not finite: null
-                    {"told", std::isfinite(surface.standard_error_m)},
-                    {"force_zero_N", surface.force_zero_N},
-                    {"force_lag_s", surface.lag_s}});
-  }
-  return list;
-}
-
 }  // namespace
 
-void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
-               const std::string& out) {
+void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std::string& out) {
+  const auto& [prepared, fit, seconds] = fitted;
   print_gains(prepared.gains);
   const Provenance& provenance = fit.data.provenance;
   std::cout << "model               " << fit.data.name << "\n"
@@ -89,24 +71,6 @@ void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double se
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";
   std::cout << "written             " << out << "\n";
-}
-
-void print_fit_json(const MethodFit& fit, const std::string& kernel, const std::string& weighting, double seconds) {
-  nlohmann::ordered_json features = nlohmann::ordered_json::array();
-  for (const FeatureSpec& spec : fit.data.features) features.push_back(feature_name(spec));
-  const Provenance& provenance = fit.data.provenance;
-  print_json({{"method", fit.data.method},
-              {"centres", fit.data.correction->size()},
-              {"kernel", kernel},
-              {"weighting", weighting},
-              {"samples", provenance.samples},
-              {"samples_after_reduction", provenance.samples_after_reduction},
-              {"fit_seconds", seconds},
-              {"training_within_jnd", provenance.training_within_jnd},
-              {"name", fit.data.name},
-              {"features", features},
-              {"recordings", surfaces_json(provenance)},
-              {"notes", fit.report.notes}});
 }
 
 }  // namespace palpate::cli

@@ -4,14 +4,11 @@
 
 #include <string>
 
-#include "models/fit/fit.h"
+#include "models/fit_library/fit_recordings.h"
 
 namespace palpate::cli {
 
 // `sensor`: behind the share within the JND in training; `out`: the file that was written.
-void print_fit(const MethodFit& fit, const PreparedTraining& prepared, double seconds, const std::string& sensor,
-               const std::string& out);
-// One JSON object, as the contract has it.
-void print_fit_json(const MethodFit& fit, const std::string& kernel, const std::string& weighting, double seconds);
+void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std::string& out);
 
 }  // namespace palpate::cli

@@ -34,8 +34,9 @@ def model_and_forces(palpate, folder):
 
 
 def installed(build, folder):
-    """The package of developers, moved after it was installed."""
-    run("cmake", "--install", build, "--component", "dev", "--prefix", folder / "first")
+    """The packages of developers, moved after it was installed."""
+    for component in ("lib", "dev"):
+        run("cmake", "--install", build, "--component", component, "--prefix", folder / "first")
     os.rename(folder / "first", folder / "root")
     return folder / "root"
 

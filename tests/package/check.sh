@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check.sh FOLDER: are the two packages in FOLDER (cmake --build build --target package)
+# check.sh FOLDER: are the packages in FOLDER (cmake --build build --target package)
 # good for somebody who has nothing but Debian 12? Lintian without errors; installed into
 # an empty Debian 12 root, with what they say they depend on and nothing else, the programs
 # run and the consumer project gives replay's forces. Without mmdebstrap or root the
@@ -8,7 +8,8 @@
 set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 packages=$(cd "$1" && pwd)
-debs=("$packages"/palpate_*.deb "$packages"/libpalpate-dev_*.deb)
+debs=("$packages"/palpate_*.deb "$packages"/libpalpate2_*.deb "$packages"/libpalpate-dev_*.deb
+  "$packages"/python3-palpate_*.deb)
 for deb in "${debs[@]}"; do
   [ -f "$deb" ] || { echo "error: found no $deb; make the packages first: cmake --build build --target package" >&2; exit 1; }
 done
@@ -27,7 +28,7 @@ fi
 # What runs in the root: the consumer and its check, and use.sh.
 mkdir -p "$scratch/palpate-check/tests"
 cp -r "$source_folder/tests/consumer" "$scratch/palpate-check/tests/"
-cp "$source_folder/tests/package/use.sh" "${debs[@]}" "$scratch/palpate-check/"
+cp "$source_folder/tests/package/use.sh" "$source_folder/tests/models/library/python_test.py" "${debs[@]}" "$scratch/palpate-check/"
 
 if [ "$(id -u)" -eq 0 ] && command -v mmdebstrap >/dev/null && [ -f /usr/share/keyrings/debian-archive-keyring.gpg ]; then
   say "an empty Debian 12 root"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # use.sh FOLDER ROOT: what a user of the packages does, in a root where they are installed
-# (ROOT empty) or with them unpacked below ROOT. FOLDER has tests/consumer. For check.sh.
+# (ROOT empty) or with them unpacked below ROOT. FOLDER has tests/consumer and python_test.py. For check.sh.
 set -euo pipefail
 folder=$1
 root=$2
@@ -31,6 +31,14 @@ step "a model as C"
 palpate fit --recording train.csv --method random --out model.json >/dev/null
 palpate export model.json --c model.c
 cc -std=c99 -Wall -Wextra -Werror -c model.c
+
+step "Python"
+export PYTHONPATH=$root/usr/lib/python3/dist-packages
+if python3 -c 'import numpy' 2>/dev/null; then
+  PALPATE=$root/usr/bin/palpate python3 python_test.py
+else
+  step "skipped: numpy is not there"
+fi
 
 step "the consumer project"
 python3 tests/consumer/check.py "$root/usr/bin/palpate" "$root/usr" "$folder" c++ "" system

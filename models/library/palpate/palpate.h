@@ -36,7 +36,7 @@ extern "C" {
 #endif
 
 /* Raised when a function or a struct of this header changes its meaning or its layout. */
-#define PALPATE_ABI_VERSION 1
+#define PALPATE_ABI_VERSION 2
 
 /* Of the library that is linked; a program compares it with PALPATE_ABI_VERSION. */
 PALPATE_API int palpate_abi_version(void);
@@ -53,6 +53,30 @@ PALPATE_API palpate_model* palpate_model_load(const char* path, char* error, siz
 PALPATE_API void palpate_model_free(palpate_model*);
 /* E.g. "greedy-100"; valid until the model is freed. */
 PALPATE_API const char* palpate_model_name(const palpate_model*);
+/* Of a model that this process fitted: what `palpate fit --json` prints; else empty. Valid
+ * until the model is freed. */
+PALPATE_API const char* palpate_model_report(const palpate_model*);
+/* Writes the model file, whole or not at all. Returns 0, or -1: see error. */
+PALPATE_API int palpate_model_save(const palpate_model*, const char* path, int overwrite, char* error,
+                                   size_t error_size);
+/* The model as one self-contained C99 file: `palpate export`. `encoder_step_m`: as
+ * palpate_stream_new. Returns 0, or -1: see error. */
+PALPATE_API int palpate_model_export_c(const palpate_model*, double encoder_step_m, int single_precision,
+                                       const char* path, int overwrite, char* error, size_t error_size);
+
+/* The features that the force depends on, 1 to 8, and their names, e.g. "depth_m"; valid until
+ * the model is freed, empty beyond the last. */
+PALPATE_API size_t palpate_model_feature_count(const palpate_model*);
+PALPATE_API const char* palpate_model_feature_name(const palpate_model*, size_t index);
+/* The model at `n` feature vectors, one after the other, in contact. force_N: trend + correction,
+ * within the model's limits; bound_N: 95 of 100 errors stay below it, NaN where the model does
+ * not know; trend_N: of the trend alone; outside: 1 out of the domain. Each may be NULL.
+ * Returns 0, or -1 for a NULL model or NULL features. Any thread. */
+PALPATE_API int palpate_model_evaluate(const palpate_model*, size_t n, const double* features, double* force_N,
+                                       double* bound_N, double* trend_N, unsigned char* outside);
+/* The just noticeable difference at a force, by the model's line; NULL model: that of Hoever and
+ * Harders (2009), 0.065 N + 0.0633 |force_N|. */
+PALPATE_API double palpate_jnd_N(const palpate_model*, double force_N);
 
 /* ---- streams ---- */
 
@@ -81,19 +105,41 @@ PALPATE_API palpate_stream* palpate_stream_new_with_sensor(const palpate_model*,
  * their noise. Slow side.
  * Returns 0, or -1: the file is no recording. */
 PALPATE_API int palpate_sensor_of_recording(const char* path, palpate_sensor*, char* error, size_t error_size);
+/* The same of `n` samples in memory; velocity and acceleration may be NULL. Returns 0, or -1 for NULL. */
+PALPATE_API int palpate_sensor_of_samples(size_t n, const double* time_s, const double* position_m,
+                                          const double* velocity_m_per_s, const double* acceleration_m_per_s2,
+                                          palpate_sensor*);
+
+/* The samples that error figures are over, as replay counts them: a position above 0, or a measured
+ * force beyond both the JND at 0 N and five times its noise. in_contact: receives 1 or 0 for each.
+ * Returns 0, or -1 for NULL. */
+PALPATE_API int palpate_in_contact(size_t n, const double* position_m, const double* force_N,
+                                   unsigned char* in_contact);
 
 PALPATE_API void palpate_stream_free(palpate_stream*);
 /* Forgets motion and filters; the next sample begins a new contact. Wait-free. */
 PALPATE_API void palpate_stream_reset(palpate_stream*);
 
-/* The next sample; returns the force in N, between 0 and 1.2 times the largest force that
- * the model was fitted to. A value that is not finite, or a time that is not later than the
+/* The next sample; returns the force in N: at most 1.2 times the largest force that the model was
+ * fitted to, and below 0 only where that material pulled, never beyond its strongest pull. A value that is not finite, or a time that is not later than the
  * last one: 0 N, and the state is kept. Wait-free: no allocation, lock, system call. */
 PALPATE_API double palpate_stream_force(palpate_stream*, double time_s, double position_m);
 /* The same with measured velocity and acceleration; a channel that the sensor does not
  * have is ignored, whatever is in it. */
 PALPATE_API double palpate_stream_force_with_motion(palpate_stream*, double time_s, double position_m,
                                                     double velocity_m_per_s, double acceleration_m_per_s2);
+
+/* The next `n` samples: forces and errors as palpate_stream_force and
+ * palpate_stream_predicted_error give them one by one. bound_N may be NULL. Wait-free.
+ * Returns 0, or -1 for NULL. */
+PALPATE_API int palpate_stream_forces(palpate_stream*, size_t n, const double* time_s, const double* position_m,
+                                      double* force_N, double* bound_N);
+/* The same with what the sensor measures beside the position (NULL: nothing), and with the feature
+ * vectors, one after the other. Each of the results may be NULL. */
+PALPATE_API int palpate_stream_forces_with_motion(palpate_stream*, size_t n, const double* time_s,
+                                                  const double* position_m, const double* velocity_m_per_s,
+                                                  const double* acceleration_m_per_s2, double* force_N,
+                                                  double* bound_N, double* features);
 
 /* Of the last sample that was taken: 1 when its motion is unlike the recordings, so that
  * the force is the model's safe trend; 0 otherwise, and out of contact. Wait-free. */

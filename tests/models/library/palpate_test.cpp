@@ -9,6 +9,8 @@
 #include <functional>
 #include <memory>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "engine/live/force_limiter.h"
 #include "engine/tick/replay.h"
@@ -251,23 +253,70 @@ TEST_F(LibraryC, ACProgramGivesReplaysForces) {
   EXPECT_EQ(rows, recording.rows.size());
 }
 
-TEST_F(LibraryC, PythonReplaysARecordingBitForBit) {
-  if (!test::rt_guard_works()) GTEST_SKIP() << "a sanitizer owns malloc, and with it what Python may load";
-  const std::string recording = save(with_channels(test::example_recording(3000, 1000.0, 30e-6)));
-  std::vector<std::string> arguments = {"replay", "--recording", recording, "--out", folder_.file("forces.csv")};
-  std::vector<std::string> command = {
-      "/usr/bin/env",         "python3", PALPATE_SOURCE_DIR "/tests/models/library/replay_by_ctypes.py",
-      PALPATE_SHARED_LIBRARY, recording, folder_.file("forces.csv")};
-  const std::vector<ModelData> models = test::example_models();
-  for (std::size_t i = 0; i < models.size() && i < 16; ++i) {
-    const std::string path = save(models[i]);
-    arguments.insert(arguments.end(), {"--model", path});
-    command.push_back(path);
+// In pieces, so that a batch goes on where the last one ended.
+TEST_F(LibraryC, ABatchGivesWhatSamplesGiveOneByOne) {
+  const Recording recording = with_channels(test::example_recording(1500, 1000.0, 30e-6));
+  std::vector<double> time_s, position_m, velocity_m_per_s, acceleration_m_per_s2;
+  for (const RecordingRow& row : recording.rows) {
+    time_s.push_back(row.time_s);
+    position_m.push_back(row.position_m);
+    velocity_m_per_s.push_back(row.velocity_m_per_s);
+    acceleration_m_per_s2.push_back(row.acceleration_m_per_s2);
   }
-  ASSERT_EQ(test::run_palpate(arguments).exit_code, 0);
-  const auto run = test::run_program(command);
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(run.out, std::to_string(3000 * std::min<std::size_t>(models.size(), 16)) + "\n");
+  time_s[700] = time_s[699];
+  position_m[800] = NAN;
+  const std::size_t n = time_s.size();
+  palpate_sensor sensor;
+  ASSERT_EQ(palpate_sensor_of_samples(n, time_s.data(), position_m.data(), velocity_m_per_s.data(),
+                                      acceleration_m_per_s2.data(), &sensor),
+            0);
+  for (const ModelData& data : test::example_models()) {
+    const ModelHandle model = load(save(data));
+    const StreamPtr one = stream(model, sensor);
+    const StreamPtr batch = stream(model, sensor);
+    const std::size_t width = palpate_model_feature_count(model.get());
+    ASSERT_EQ(width, data.features.size());
+    std::vector<double> force_N(n), bound_N(n), features(n * width);
+    test::RtGuard guard;
+    for (const auto& [begin, count] : {std::pair<std::size_t, std::size_t>{0, 100}, {100, n - 100}}) {
+      ASSERT_EQ(palpate_stream_forces_with_motion(batch.get(), count, &time_s[begin], &position_m[begin],
+                                                  &velocity_m_per_s[begin], &acceleration_m_per_s2[begin],
+                                                  &force_N[begin], &bound_N[begin], &features[begin * width]),
+                0);
+    }
+    if (test::rt_guard_works()) EXPECT_EQ(guard.stop().total(), 0) << data.name;
+    for (std::size_t i = 0; i < n; ++i) {
+      ASSERT_EQ(force_N[i], palpate_stream_force_with_motion(one.get(), time_s[i], position_m[i], velocity_m_per_s[i],
+                                                             acceleration_m_per_s2[i]))
+          << data.name << " row " << i;
+      const double expected_N = palpate_stream_predicted_error(one.get());
+      ASSERT_TRUE(bound_N[i] == expected_N || (std::isnan(bound_N[i]) && std::isnan(expected_N)));
+    }
+    // The model at a sample's features is the force of the sample.
+    double at_N = 0.0;
+    double trend_N = 0.0;
+    ASSERT_EQ(palpate_model_evaluate(model.get(), 1, &features[(n - 500) * width], &at_N, nullptr, &trend_N, nullptr),
+              0);
+    EXPECT_EQ(at_N, force_N[n - 500]) << data.name;
+    EXPECT_TRUE(std::isfinite(trend_N));
+  }
+  EXPECT_EQ(palpate_stream_forces(nullptr, n, time_s.data(), position_m.data(), position_m.data(), nullptr), -1);
+}
+
+TEST_F(LibraryC, AModelIsSavedAndExportedAsTheProgramDoes) {
+  const ModelData data = test::example_models().front();
+  const std::string path = save(data);
+  const ModelHandle model = load(path);
+  const std::string copy = folder_.file("copy.json");
+  ASSERT_EQ(palpate_model_save(model.get(), copy.c_str(), 0, error_, sizeof error_), 0) << error_;
+  EXPECT_EQ(test::read_text(copy), test::read_text(path));
+  EXPECT_EQ(palpate_model_save(model.get(), copy.c_str(), 0, error_, sizeof error_), -1) << "it exists";
+  EXPECT_NE(std::string(error_).find("copy.json"), std::string::npos);
+  ASSERT_EQ(palpate_model_export_c(model.get(), 0.0, 1, folder_.file("a.c").c_str(), 0, error_, sizeof error_), 0);
+  ASSERT_EQ(test::run_palpate({"export", path, "--float", "--c", folder_.file("b.c")}).exit_code, 0);
+  EXPECT_EQ(test::read_text(folder_.file("a.c")), test::read_text(folder_.file("b.c")));
+  EXPECT_EQ(palpate_jnd_N(nullptr, -2.0), JndLine{}.at(2.0));
+  EXPECT_EQ(palpate_jnd_N(model.get(), 2.0), data.jnd.at(2.0));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/example_model.h"
 #include "tests/support/temporary_folder.h"
 
@@ -52,6 +54,18 @@ TEST(MotionSource, TakesMotionThatIsKnown) {
   MotionSource estimated_twice({in_memory(recording), in_memory(recording)});
   for (MotionSource* source : {&twice, &estimated_twice}) source->correct({{1e-3, 0.5}, {0.0, 0.0}});
   for (int pass = 0; pass < 2; ++pass) expect_same(rows_of(estimated_twice), rows_of(twice));
+}
+
+TEST(MotionSource, RowsThatAreLeftOutAreARunUpOfTheOthers) {
+  const Recording recording = test::example_recording(3000, 1000.0, 30e-6);
+  MotionSource whole({in_memory(recording)});
+  Input input = in_memory(recording);
+  input.left_out.assign(recording.rows.size(), false);
+  std::fill(input.left_out.begin() + 1000, input.left_out.begin() + 2000, true);
+  MotionSource source({input});
+  const auto rows = rows_of(source);
+  expect_same(rows_of(whole), rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i].run_up, i >= 1000 && i < 2000) << i;
 }
 
 // Of a recording that is too long the rows are those of the source, in order, from the beginning

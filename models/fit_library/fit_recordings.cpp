@@ -1,0 +1,73 @@
+#include "models/fit_library/fit_recordings.h"
+
+#include <cmath>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+// Of the progress: what it takes to prepare the training.
+constexpr double kPrepared = 0.3;
+
+FitControl part_of(const std::function<bool(double)>& progress, double begin, double end) {
+  FitControl control;
+  if (progress) control.progress = [=](double fraction) { return progress(begin + (end - begin) * fraction); };
+  return control;
+}
+
+nlohmann::ordered_json surfaces_json(const Provenance& provenance) {
+  std::vector<RecordingSurface> surfaces = provenance.surfaces;
+  if (surfaces.empty()) {
+    for (const std::string& name : provenance.recordings) surfaces.push_back({name, 0.0, 0.0, 0.0});
+  }
+  auto list = nlohmann::ordered_json::array();
+  for (const RecordingSurface& surface : surfaces) {
+    list.push_back({{"name", surface.name},
+                    {"surface_offset_m", surface.offset_m},
+                    {"standard_error_m", surface.standard_error_m},  // not finite: null
+                    {"told", std::isfinite(surface.standard_error_m)},
+                    {"force_zero_N", surface.force_zero_N},
+                    {"force_lag_s", surface.lag_s}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
+                                     const FitOptions& options, std::chrono::steady_clock::time_point began,
+                                     const std::function<bool(double)>& progress) {
+  if (Status status = check_fit_options(options); !status) return status.error();
+  MotionSource source(training_inputs(std::move(recordings)));
+  const TrainingRequest training = training_request(options, scene);
+  auto prepared = prepare_training(source, training, part_of(progress, 0.0, kPrepared));
+  if (!prepared) return prepared.error();
+  MethodRequest method = method_request(options);
+  // The number of features is not known before; the last size of the grid serves all that have none.
+  if (training.choice == FeatureChoice::automatic && !method.grid.empty())
+    method.grid.resize(prepared->common.features.size(), method.grid.back());
+  auto fit = fit_method(*prepared, method, part_of(progress, kPrepared, 1.0));
+  if (!fit) return fit.error();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return RecordingsFit{std::move(*prepared), std::move(*fit), seconds};
+}
+
+nlohmann::ordered_json fit_json(const RecordingsFit& fitted, const FitOptions& options) {
+  const ModelData& data = fitted.fit.data;
+  nlohmann::ordered_json features = nlohmann::ordered_json::array();
+  for (const FeatureSpec& spec : data.features) features.push_back(feature_name(spec));
+  return {{"method", data.method},
+          {"centres", data.correction->size()},
+          {"kernel", options.kernel},
+          {"weighting", options.weighting},
+          {"samples", data.provenance.samples},
+          {"samples_after_reduction", data.provenance.samples_after_reduction},
+          {"fit_seconds", fitted.seconds},
+          {"training_within_jnd", data.provenance.training_within_jnd},
+          {"name", data.name},
+          {"features", features},
+          {"recordings", surfaces_json(data.provenance)},
+          {"notes", fitted.fit.report.notes}};
+}
+
+}  // namespace palpate
