@@ -248,8 +248,7 @@ TEST(ModelReader, RefusesTextThatIsNotJson) {
             "m.json:6:13: syntax error while parsing object separator - unexpected end of input; expected "
             "':'; the file is damaged: copy it again or fit the model again");
   EXPECT_EQ(complaint(std::string("\0\0\0\0", 4)),
-            "m.json:1:1: syntax error while parsing value - unexpected end of input; expected '[', '{', "
-            "or a literal; the file is damaged: copy it again or fit the model again");
+            "m.json:1:1: found a NUL byte, expected text; the file is damaged: copy it again or fit the model again");
   EXPECT_EQ(complaint("[1, 2]"),
             "m.json:1:1: found no \"format\", expected \"palpate-model\"; name a file that palpate fit "
             "wrote");
