@@ -14,9 +14,8 @@ namespace {
 // Strokes for warming up: in and out of contact, a second of each.
 constexpr int kWarmUpSamples = 500;
 constexpr double kWarmUpStep_s = 1e-3;
-constexpr double kTick_s = 1e-3;
 // A force that is written in a tick is there in the next one, and held for one.
-constexpr double kInTick_s = 1.5 * kTick_s;
+constexpr double kInTick_s = 1.5 * kHapticTick_s;
 
 ToolSample warm_up_sample(int index) noexcept {
   const double time_s = kWarmUpStep_s * index;
@@ -276,7 +275,7 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
   if (!passivity_on_) return commanded_N;
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
-  const double hold_s = std::max(kTick_s, snapshot_.device.interval_s);
+  const double hold_s = std::max(kHapticTick_s, snapshot_.device.interval_s);
   const PassivityController::Loop loop{std::max(0.0, stability_.late_s() - 0.5 * hold_s),
                                        std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
                                        hold_s};

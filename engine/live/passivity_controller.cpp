@@ -6,7 +6,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kWrittenEvery_s = 1e-3;
 constexpr double kPlay_steps = 1.01;  // rounding must not make a step more than one
 
 // What was taken is given back over some of this time when the model is exchanged.
@@ -59,7 +58,7 @@ double PassivityController::arrived_N(const Tool& tool, double lag_s, double wri
 
 double PassivityController::apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N,
                                   double step_s) noexcept {
-  const double felt_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kWrittenEvery_s);
+  const double felt_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kHapticTick_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
     return less(commanded_N, 0.0);

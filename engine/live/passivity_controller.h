@@ -26,6 +26,8 @@
 
 namespace palpate {
 
+inline constexpr double kHapticTick_s = 1e-3;
+
 class PassivityController {
  public:
   // `encoder_step_m`: 0 without an encoder.
