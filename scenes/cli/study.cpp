@@ -1,24 +1,16 @@
-// palpate study: the force-discrimination study without a window. Runs it in a terminal,
-// analyses the files of real subjects, simulates subjects.
-#include <poll.h>
-#include <unistd.h>
-
-#include <cctype>
+// palpate study: the force-discrimination study behind the window's screen: analyses the files of subjects,
+// simulates subjects.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "devices/bridge/bridge_target.h"
 #include "engine/base/atomic_file.h"
-#include "engine/base/signals.h"
 #include "scenes/cli/progress.h"
 #include "scenes/cli/verbs.h"
 #include "scenes/scene/scene.h"
-#include "scenes/scene/user_folders.h"
 #include "scenes/study/discrimination.h"
-#include "scenes/study/live_study.h"
 #include "scenes/study/prepare_strokes.h"
 #include "scenes/study/simulated_subject.h"
 #include "scenes/study/study_figure.h"
@@ -29,12 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct StudyOptions {
-  int resamples = 999;  // of the subjects, for the interval of all together
   bool with_published = false;
   std::string out = ".";
   bool force = false;
   std::vector<std::string> files;  // analyse
-  bool rehearsals = false;         // also answers that nobody could feel
   int subjects = 12;               // simulate
   std::uint64_t seed = 1;
   SubjectTraits traits{{0.05, 0.113}, 0.0, 0.01};  // 13.3 % at 2.5 N, as the paper's
@@ -42,36 +32,15 @@ struct StudyOptions {
   std::string recording;  // to discriminate; empty: virtual
   std::string strokes_scene = "silicone_block";
   std::vector<std::string> models;
-  std::string device = "auto";  // run
-  std::string subject;
-  bool bridge_remote = false;
 };
 
 constexpr std::uint64_t kPopulationStream = 51;
-constexpr int kPause_ms = 10;
-
-// What may be typed now, by StudyState; Enter ends a line.
-constexpr const char* kChoices[] = {" [y: I have read this and agree]",
-                                    " [Enter: go on]",
-                                    "",
-                                    " [1 or 2]",
-                                    " [r: try again]",
-                                    " [Enter: go on]",
-                                    "",
-                                    ""};
-
 void print_analysis(const StudyAnalysis& analysis) {
-  std::printf("%-13s %8s %12s %22s\n", "reference [N]", "subjects", "mean JND [%]", "all answers [%], 95 %");
-  for (const PooledJnd& pooled : analysis.pooled) {
-    const double percent = 100.0 / pooled.rendered_N;
-    std::printf("%-13.4g %8zu %7.1f ±%4.1f %9.1f (%.1f to %.1f)\n", pooled.reference_N, pooled.subjects,
-                percent * pooled.mean_N, percent * pooled.standard_error_N, percent * pooled.jnd_N.value,
-                percent * pooled.jnd_N.low, percent * pooled.jnd_N.high);
-  }
-  if (analysis.subjects.size() > 1) {
-    std::printf(
-        "all answers: one function for everybody; at the larger forces above the mean, because a subject's few "
-        "answers\ndo not tell a miss from a lapse, and each miss taken for a lapse makes that subject's JND smaller\n");
+  std::printf("%-13s %8s %12s\n", "reference [N]", "subjects", "mean JND [%]");
+  for (const MeanJnd& mean : analysis.means) {
+    const double percent = 100.0 / mean.rendered_N;
+    std::printf("%-13.4g %8zu %7.1f ±%4.1f\n", mean.reference_N, mean.subjects, percent * mean.jnd_N,
+                percent * mean.standard_error_N);
   }
   for (const SubjectJnd& subject : analysis.subjects) {
     if (subject.unusable == 0) continue;
@@ -110,12 +79,7 @@ Status write_analysis(const StudyAnalysis& analysis, const StudyOptions& options
 }
 
 Status analyse(const std::vector<StudyData>& files, const StudyOptions& options) {
-  Result<StudyAnalysis> analysis = Error{""};
-  {
-    ProgressLine line("analysing");
-    analysis = analyse_study(files, options.resamples, options.with_published,
-                             [&](double share) { return line.update(share); });
-  }
+  const auto analysis = analyse_study(files, options.with_published);
   if (!analysis) return analysis.error();
   return write_analysis(*analysis, options);
 }
@@ -150,16 +114,8 @@ Status run_analyse(const StudyOptions& options) {
   for (const std::string& path : options.files) {
     Result<StudyData> data = read_study(path);
     if (!data) return data.error();
-    const std::size_t left_out = options.rehearsals ? 0 : remove_rehearsals(*data);
-    if (left_out > 0) {
-      std::fprintf(stderr, "%s: %zu answers left out, given without a force device (--rehearsals takes them)\n",
-                   path.c_str(), left_out);
-      if (data->records.empty()) continue;
-    }
     files.push_back(std::move(*data));
   }
-  if (files.empty())
-    return Error{"all answers are rehearsals, given without a force device; pass --rehearsals to take them"};
   return analyse_files(files, options);
 }
 
@@ -172,88 +128,6 @@ Result<StudyHeader> study_header(const StudyOptions& options) {
   if (!strokes) return strokes.error();
   header.strokes = *strokes;
   return header;
-}
-
-void obey(LiveStudy& study, const std::string& line) {
-  StudySession& session = study.session();
-  switch (line.empty() ? '\n' : std::tolower(static_cast<unsigned char>(line.front()))) {
-    case 'y':
-      return session.accept_consent(local_time_text("%Y-%m-%d %H:%M"));
-    case '\n':
-      return session.proceed();
-    case '1':
-    case '2':
-      return session.answer(line.front() == '2');
-    case 'r':
-      return session.retry();
-    case 'z':
-      return study.start_zeroing();
-    case 'q':
-      return session.abort();
-    default:
-      return;
-  }
-}
-
-// A line of standard input, where there is one; false: there will be none.
-bool read_line(std::string& typed, bool& whole) {
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  whole = false;
-  if (poll(&input, 1, kPause_ms) <= 0) return true;
-  char letter = '\0';
-  if (::read(STDIN_FILENO, &letter, 1) != 1) return false;
-  whole = letter == '\n';
-  if (!whole && typed.size() < 80) typed += letter;
-  return true;
-}
-
-// What there is to say, each time that it changes.
-std::string words_of(LiveStudy& study) {
-  const StudyView view = study.session().view();
-  std::string words;
-  if (view.trials > 0 && view.state == StudyState::answering) {
-    words = std::string(view.training ? "training " : "") + std::to_string(view.answered + 1) + " of " +
-            std::to_string(view.trials) + ": ";
-  }
-  words += view.message + kChoices[static_cast<std::size_t>(view.state)];
-  if (const std::string device = study.device_words(); !device.empty()) words += "\n" + device;
-  if (study.newest().device.zeroing == Zeroing::needed) words += " [z: zero here]";
-  return words;
-}
-
-void converse(LiveStudy& study) {
-  std::string said, typed;
-  const auto over = [&] {
-    return study.session().state() == StudyState::done || study.session().state() == StudyState::aborted;
-  };
-  for (bool input = true; !over();) {
-    study.update();
-    if (const std::string words = words_of(study); words != said) std::printf("%s\n", (said = words).c_str());
-    std::fflush(stdout);
-    bool whole = false;
-    input = read_line(typed, whole);
-    if (whole) obey(study, typed);
-    if (whole) typed.clear();
-    if (!input || stop_requested() != 0) study.session().abort();
-  }
-  std::printf("%s\n", study.session().view().message.c_str());
-}
-
-Status run_study_session(const StudyOptions& options) {
-  const StopListener listener;
-  Result<StudyHeader> header = study_header(options);
-  if (!header) return header.error();
-  LiveStudyRequest request;
-  request.device = options.bridge_remote ? with_remote_bridge(options.device) : options.device;
-  request.header = *header;
-  request.header.subject = options.subject;
-  request.path = options.out + (options.discriminates ? "/discriminate-" : "/study-") + options.subject + ".csv";
-  const auto study = LiveStudy::open(request);
-  if (!study) return study.error();
-  if (!(*study)->device_pushes()) std::printf("%s\n", kRehearsal);
-  converse(**study);
-  std::printf("%s\n", request.path.c_str());
-  return {};
 }
 
 Status run_simulate(const StudyOptions& options) {
@@ -282,9 +156,6 @@ Status run_simulate(const StudyOptions& options) {
 }
 
 void add_output_options(CLI::App* verb, StudyOptions& options) {
-  verb->add_option("--resamples", options.resamples, "Of the subjects, for the interval of all together")
-      ->check(CLI::Range(50, 100000))
-      ->capture_default_str();
   verb->add_flag("--pang", options.with_published,
                  "The line goes below Pang, Tan & Durlach's point (1991) too: 9 % at 2.5 N");
   verb->add_option("--out", options.out, "Folder for results.csv and, for a JND, jnd.json and figure 3 (a) and (b)")
@@ -297,7 +168,6 @@ void add_analyse(CLI::App& study, Verbs& verbs) {
   CLI::App* verb = study.add_subcommand(
       "analyse", "From the files of the subjects to the JND line, its file and figure, or to who told strokes apart");
   verb->add_option("files", options->files, "Study files, one per subject (CSV)")->required();
-  verb->add_flag("--rehearsals", options->rehearsals, "Also answers that were given without a force device");
   add_output_options(verb, *options);
   verbs.emplace_back(verb, [options] { return run_analyse(*options); });
 }
@@ -318,19 +188,6 @@ void add_stroke_options(CLI::App* verb, const std::shared_ptr<StudyOptions>& opt
                    "To tell from the recorded force, or two to tell apart [the scene's first]")
       ->type_name("FILE_OR_METHOD")
       ->needs(discriminate);
-}
-
-void add_run(CLI::App& study, Verbs& verbs) {
-  auto options = std::make_shared<StudyOptions>();
-  CLI::App* verb = study.add_subcommand("run", "One subject at a device, in this terminal; takes up where it ended");
-  verb->add_option("--device", options->device, "As palpate-demo takes it; palpate devices lists them")
-      ->capture_default_str()
-      ->type_name("NAME");
-  verb->add_option("--subject", options->subject, "The code that stands for the person, such as S01")->required();
-  add_stroke_options(verb, options);
-  verb->add_option("--out", options->out, "Folder for study-CODE.csv or discriminate-CODE.csv")->capture_default_str();
-  verb->add_flag("--bridge-remote", options->bridge_remote, "bridge:tcp: may name another computer");
-  verbs.emplace_back(verb, [options] { return run_study_session(*options); });
 }
 
 void add_simulate(CLI::App& study, Verbs& verbs) {
@@ -359,11 +216,11 @@ void add_simulate(CLI::App& study, Verbs& verbs) {
 }  // namespace
 
 void add_study(CLI::App& app, Verbs& verbs) {
-  CLI::App* study = app.add_subcommand("study", "The force-discrimination study: run, analyse, simulate");
+  CLI::App* study =
+      app.add_subcommand("study", "The force-discrimination study (palpate-demo --scene jnd_study): analyse, simulate");
   study->require_subcommand(1);
   verbs.emplace_back(study, [] { return Status(); });
   Verbs parts;
-  add_run(*study, parts);
   add_analyse(*study, parts);
   add_simulate(*study, parts);
   verbs.back().second = [parts] {

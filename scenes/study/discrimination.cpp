@@ -10,7 +10,9 @@
 namespace palpate {
 namespace {
 
-bool is_usable(const StudyRecord& record, const JndLine& jnd) { return record.worst_N <= 0.5 * jnd.at(0.0); }
+bool is_usable(const StudyRecord& record, const JndLine& jnd) {
+  return record.rendered && record.worst_N <= 0.5 * jnd.at(0.0);
+}
 
 std::string row_of(const Discrimination& result, const StrokePair& strokes) {
   const ShareInterval interval = wilson_interval(result.correct, result.trials);
@@ -74,7 +76,7 @@ double Discrimination::share() const noexcept {
 ShareInterval wilson_interval(std::size_t correct, std::size_t trials) noexcept {
   if (trials == 0) return {};
   const double n = static_cast<double>(trials), share = static_cast<double>(correct) / n;
-  const double z = normal_quantile(0.5 + 0.5 * kIntervalLevel), z2 = z * z / n;
+  const double z = normal_quantile(0.975), z2 = z * z / n;
   const double middle = (share + 0.5 * z2) / (1.0 + z2);
   const double half = std::sqrt(share * (1.0 - share) * z2 + 0.25 * z2 * z2) / (1.0 + z2);
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};

@@ -20,8 +20,6 @@ constexpr double kConverged = 1e-9;  // of the log likelihood
 // the log likelihood: a likelihood ratio of 1.1, next to nothing.
 constexpr double kNoticeablyWorse = 0.1;
 constexpr double kLeastProbability = 1e-12;
-constexpr int kBisections = 24;  // of the range of ln(slope): to 1e-6
-constexpr Eigen::Index kNone = -1;
 
 // The slopes and, last, the order bias; no memory of their own.
 constexpr int kMostCoefficients = static_cast<int>(kMostReferences) + 1;
@@ -63,9 +61,8 @@ double log_likelihood(const std::vector<AnswerCell>& cells, const Coefficients& 
 }
 
 // The step of Fisher scoring: information^-1 x gradient. What would leave its range
-// stays, and so does the coefficient `held`.
-Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse,
-                          Eigen::Index held) {
+// stays.
+Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficients& coefficients, double lapse) {
   const Eigen::Index last = coefficients.size() - 1;
   Coefficients gradient = Coefficients::Zero(last + 1);
   // A little more than nothing, so that it can be solved without answers too.
@@ -88,7 +85,7 @@ Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficien
   for (Eigen::Index i = 0; i <= last; ++i) {
     const bool leaves = (coefficients[i] >= most(i, last) && gradient[i] > 0.0) ||
                         (coefficients[i] <= least(i, last) && gradient[i] < 0.0);
-    if (!leaves && i != held) continue;
+    if (!leaves) continue;
     information.row(i).setZero();
     information.col(i).setZero();
     information(i, i) = 1.0;
@@ -97,13 +94,11 @@ Coefficients scoring_step(const std::vector<AnswerCell>& cells, const Coefficien
   return information.ldlt().solve(gradient);
 }
 
-// Climbs from `coefficients` for one lapse rate, all but `held`; halves a step that does
-// not climb.
-double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients,
-             Eigen::Index held = kNone) {
+// Climbs from `coefficients` for one lapse rate; halves a step that does not climb.
+double climb(const std::vector<AnswerCell>& cells, double lapse, Coefficients& coefficients) {
   double best = log_likelihood(cells, coefficients, lapse);
   for (int i = 0; i < kMostIterations; ++i) {
-    Coefficients step = scoring_step(cells, coefficients, lapse, held);
+    Coefficients step = scoring_step(cells, coefficients, lapse);
     double reached = best;
     for (int halved = 0; halved < 20; ++halved, step *= 0.5) {
       const Coefficients tried = clamped(coefficients + step);
@@ -130,34 +125,6 @@ bool bounds_slope(const std::vector<AnswerCell>& cells, std::size_t reference, c
     at_steepest += log_likelihood(cell, kSteepestSlope * cell.difference + bias, fitted.lapse);
   }
   return at_fit > at_flattest + kNoticeablyWorse && at_fit > at_steepest + kNoticeablyWorse;
-}
-
-// The largest likelihood with one slope given.
-double likelihood_given(const std::vector<AnswerCell>& cells, const PsychometricFit& fit, std::size_t reference,
-                        double slope) {
-  const auto last = static_cast<Eigen::Index>(fit.functions.size());
-  const auto held = static_cast<Eigen::Index>(reference);
-  Coefficients coefficients(last + 1);
-  for (std::size_t i = 0; i < fit.functions.size(); ++i)
-    coefficients[static_cast<Eigen::Index>(i)] = fit.functions[i].slope;
-  coefficients[last] = fit.functions.front().order_bias;
-  coefficients[held] = slope;
-  double best = climb(cells, 0.0, coefficients, held);
-  for (int i = 1; i <= kLapseSteps; ++i) best = std::max(best, climb(cells, kLapseStep * i, coefficients, held));
-  return best;
-}
-
-// The slope between the fitted one and `end` up to which the likelihood is no less than
-// `least`.
-double slope_limit(const std::vector<AnswerCell>& cells, const PsychometricFit& fit, std::size_t reference, double end,
-                   double least_likelihood) {
-  if (likelihood_given(cells, fit, reference, end) >= least_likelihood) return end;
-  double inside = fit.functions[reference].slope, outside = end;
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = std::sqrt(inside * outside);
-    (likelihood_given(cells, fit, reference, middle) >= least_likelihood ? inside : outside) = middle;
-  }
-  return inside;
 }
 
 }  // namespace
@@ -209,44 +176,11 @@ PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size
     best_lapse = lapse;
   }
   PsychometricFit fit;
-  fit.log_likelihood = most_likely;
   for (std::size_t i = 0; i < references; ++i) {
     fit.functions.push_back({best[static_cast<Eigen::Index>(i)], best[last], best_lapse});
     fit.determined.push_back(bounds_slope(cells, i, fit.functions.back()));
   }
   return fit;
-}
-
-Estimate bias_corrected_interval(double value, std::vector<double> replicates) {
-  std::sort(replicates.begin(), replicates.end());
-  const double count = static_cast<double>(replicates.size());
-  const double below =
-      static_cast<double>(std::lower_bound(replicates.begin(), replicates.end(), value) - replicates.begin());
-  const double bias = normal_quantile(std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
-  const auto percentile = [&](double share) {
-    const double corrected = normal_cdf(2.0 * bias + normal_quantile(share));
-    const double place = std::clamp(corrected * (count + 1.0) - 1.0, 0.0, count - 1.0);
-    const auto lower = static_cast<std::size_t>(place);
-    const std::size_t upper = std::min(lower + 1, replicates.size() - 1);
-    return replicates[lower] + (place - static_cast<double>(lower)) * (replicates[upper] - replicates[lower]);
-  };
-  const double low = percentile(0.5 * (1.0 - kIntervalLevel)), high = percentile(0.5 * (1.0 + kIntervalLevel));
-  return {value, low, high, true};
-}
-
-std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit) {
-  // The JND is this many standard deviations, whatever the fit.
-  const double deviations = normal_quantile(kJndCriterion);
-  const double quantile = normal_quantile(0.5 * (1.0 + kIntervalLevel));
-  const double least_likelihood = fit.log_likelihood - 0.5 * quantile * quantile;
-  std::vector<Estimate> estimates;
-  for (std::size_t r = 0; r < fit.functions.size(); ++r) {
-    const double flattest = slope_limit(cells, fit, r, kFlattestSlope, least_likelihood);
-    const double steepest = slope_limit(cells, fit, r, kSteepestSlope, least_likelihood);
-    estimates.push_back(
-        {deviations / fit.functions[r].slope, deviations / steepest, deviations / flattest, fit.determined[r]});
-  }
-  return estimates;
 }
 
 }  // namespace palpate

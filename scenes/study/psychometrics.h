@@ -20,13 +20,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/base/random_stream.h"
-
 namespace palpate {
 
 inline constexpr double kJndCriterion = 0.75;
-// Of all intervals.
-inline constexpr double kIntervalLevel = 0.95;
 
 // Phi and its inverse; `probability` above 0 and below 1.
 double normal_cdf(double z) noexcept;
@@ -61,33 +57,10 @@ struct PsychometricFit {
   // Whether the answers bound the slope on both sides: not when they are all right, or
   // mere guesses. The slope is then an end of its range, 0.25 .. 40, or anywhere near.
   std::vector<bool> determined;
-  double log_likelihood = 0.0;
 };
 
 // Maximum likelihood for `references` reference forces (1 .. kMostReferences) together;
 // the lapse rate to 0.01, at most 0.06.
 PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
-
-// A value and the interval that holds the truth at the stated rate.
-struct Estimate {
-  double value = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-  bool determined = true;
-};
-
-// The relative JND at each reference force with the interval of all slopes that explain
-// the answers nearly as well as the best, by the likelihood ratio (profile likelihood;
-// D. J. Venzon & S. H. Moolgavkar 1988, Applied Statistics 37(1), 87-94):
-//   2 (log L(best) - max log L(slope)) <= Phi^-1((1 + kIntervalLevel) / 2)^2,
-// the maximum over all other parameters. An end of the range of slopes is in it when the
-// answers do not exclude it. (The parametric bootstrap held the truth in 91 % and not
-// 95 % of the cases at 2.5 N, 600 simulated subjects: where the best slope is that end,
-// each resample has it again, and the interval is a point.)
-std::vector<Estimate> profile_jnds(const std::vector<AnswerCell>& cells, const PsychometricFit& fit);
-
-// Bias-corrected percentiles of `replicates` (at least one, any order) around
-// `value`.
-Estimate bias_corrected_interval(double value, std::vector<double> replicates);
 
 }  // namespace palpate

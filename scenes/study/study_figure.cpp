@@ -48,7 +48,7 @@ Panel make_panel(const StudyAnalysis& analysis, bool relative, double largest_N)
   Series subjects{"single subjects", kSubjectColour, Mark::hollow, {}};
   for (const SubjectJnd& subject : analysis.subjects) {
     for (const ReferenceJnd& one : subject.references) {
-      if (one.jnd_N.determined) subjects.rows.push_back({one.rendered_N, shown(one.rendered_N, one.jnd_N.value)});
+      if (one.determined) subjects.rows.push_back({one.rendered_N, shown(one.rendered_N, one.jnd_N)});
     }
   }
   Series mean{"mean of subjects, standard error", kInkColour, Mark::bars, {}};

@@ -52,10 +52,6 @@ Status check_subjects(const std::vector<StudyData>& files) {
   return {};
 }
 
-std::size_t remove_rehearsals(StudyData& data) {
-  return std::erase_if(data.records, [](const StudyRecord& record) { return !record.rendered; });
-}
-
 Result<std::unique_ptr<StudyFile>> StudyFile::open(const std::string& path, const StudyHeader& header) {
   std::unique_ptr<StudyFile> file(new StudyFile(path, header));
   file->descriptor_ = ::open(path.c_str(), kAppending);

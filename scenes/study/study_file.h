@@ -47,9 +47,6 @@ std::string study_row(const StudyRecord& record, const StudyHeader& header);
 // Errors: no file; two of one subject.
 Status check_subjects(const std::vector<StudyData>& files);
 
-// Takes out the answers that nobody could feel; returns how many.
-std::size_t remove_rehearsals(StudyData& data);
-
 class StudyFile final : public StudyStore {
  public:
   // Takes up `path`, or makes it once there is consent. Errors: another session has

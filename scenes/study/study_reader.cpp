@@ -194,8 +194,8 @@ std::string study_row(const StudyRecord& record, const StudyHeader& header) {
 Result<StudyData> parse_study(std::string_view text, const std::string& path) { return StudyReader(text, path).read(); }
 
 Result<StudyData> read_study(const std::string& path) {
-  const std::optional<std::string> text = read_whole_file(path);
-  if (!text) return Error{"cannot read the study file " + path + "; does it exist?"};
+  const Result<std::string> text = read_plain_file(path, "a study file");
+  if (!text) return text.error();
   return parse_study(*text, path);
 }
 

@@ -8,6 +8,10 @@
 namespace palpate {
 namespace {
 
+// From the force that a trial should have at any tick: half the JND at no force. A trial in which the device
+// dropped out is presented again.
+const double kMostAway_N = 0.5 * JndLine{}.at(0.0);
+
 double to_tenth_mN(double force_N) noexcept { return std::round(force_N * 1e4) / 1e4; }
 
 Error unexpected_answer(const StudyRecord& record) {
@@ -95,9 +99,9 @@ void StudySession::present_next() {
 void StudySession::update() {
   if (state_ != StudyState::presenting) return;
   const PresentationState& seen = presenter_.newest();
-  if (seen.presentation == presentation_ && seen.phase == PresentationPhase::finished) {
-    state_ = StudyState::answering;
-  }
+  if (seen.presentation != presentation_ || seen.phase != PresentationPhase::finished) return;
+  dropped_out_ = header_.rendered && seen.worst_N > kMostAway_N;
+  state_ = dropped_out_ ? StudyState::ready : StudyState::answering;
 }
 
 void StudySession::answer(bool second) {
@@ -191,6 +195,8 @@ std::string StudySession::message(const StudyView& view) const {
     case StudyState::consent:
       return problem_.empty() ? study_consent_text(header_.strokes != nullptr) : problem_;
     case StudyState::ready:
+      if (dropped_out_)
+        return "The device was not ready for a moment. The same pushes come again; go on when you are ready.";
       if (!view.training) return "Now the study itself. Go on when you are ready.";
       return view.has_reminder
                  ? "First a few trials to learn the task. Which of the two pushes was like the "

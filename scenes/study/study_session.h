@@ -4,6 +4,7 @@
 //   consent -> ready -> presenting -> answering -> presenting ... -> rest -> ... -> done
 //                                         |  ^
 //                                      unsaved (the disk refused the answer)
+//   presenting -> ready (the device did not render what it should; the trial comes again)
 //   any of them -> aborted
 //
 // How to drive it: the haptics thread calls `next_force_N` once per ms and renders what it
@@ -102,7 +103,8 @@ class StudySession final : public ForceSource {
   StudyRecord record_;  // the answer at hand
   std::uint64_t presentation_ = 0;
   std::uint64_t rest_from_ = 0;
-  std::string problem_;  // why the disk refused
+  bool dropped_out_ = false;  // the device, in the last presentation
+  std::string problem_;       // why the disk refused
 };
 
 }  // namespace palpate

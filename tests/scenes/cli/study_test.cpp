@@ -1,8 +1,6 @@
 // palpate study as a user runs it, from the first trial to a scene judged by the result.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "scenes/scene/jnd_file.h"
@@ -16,23 +14,11 @@ namespace {
 
 using test::run_palpate;
 
-// A gnuplot that only makes the files it is told to, so that the tests need none.
-std::string path_with_fake_gnuplot(const test::TemporaryFolder& folder) {
-  std::filesystem::create_directory(folder.file("bin"));
-  const std::string fake = folder.with_file(
-      "bin/gnuplot",
-      "#!/bin/sh\nsed -n \"s/^set output '\\(.*\\)'/\\1/p\" \"$2\" | while read -r f; do echo drawn >\"$f\"; done\n");
-  std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
-  return "PATH=" + folder.file("bin") + ":" + std::getenv("PATH");
-}
-
 TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
   const test::TemporaryFolder folder;
-  const std::string path = path_with_fake_gnuplot(folder);
   const std::string out = folder.file("study");
-  const std::vector<std::string> simulate = {"study", "simulate",    "--subjects", "3",     "--seed",
-                                             "2",     "--resamples", "50",         "--out", out};
-  const auto run = run_palpate(simulate, {path});
+  const std::vector<std::string> simulate = {"study", "simulate", "--subjects", "3", "--seed", "2", "--out", out};
+  const auto run = run_palpate(simulate);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_NE(run.out.find("conservative "), std::string::npos) << run.out;
@@ -41,14 +27,13 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   }
   EXPECT_EQ(read_study(out + "/S02.csv")->records.size(), 328u);
-  const auto again = run_palpate(simulate, {path});
+  const auto again = run_palpate(simulate);
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_EQ(again.err, "error: " + out + "/S01.csv exists; pass --force to replace it\n");
 
   // The same files again: the same result.
-  const auto analysed = run_palpate({"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv",
-                                     "--resamples", "50", "--out", folder.file("again")},
-                                    {path});
+  const auto analysed = run_palpate(
+      {"study", "analyse", out + "/S01.csv", out + "/S02.csv", out + "/S03.csv", "--out", folder.file("again")});
   ASSERT_EQ(analysed.exit_code, 0) << analysed.err;
   EXPECT_EQ(analysed.out, run.out);
   EXPECT_EQ(test::read_text(folder.file("again/jnd.json")), test::read_text(out + "/jnd.json"));
@@ -67,8 +52,7 @@ TEST(Study, RunsFromTheFirstTrialToASceneJudgedByIt) {
 TEST(Study, SaysWhatToDoWithoutGnuplot) {
   const test::TemporaryFolder folder;
   const std::string out = folder.file("study");
-  const auto run = run_palpate({"study", "simulate", "--subjects", "3", "--resamples", "50", "--out", out},
-                               {"PATH=" + folder.path()});
+  const auto run = run_palpate({"study", "simulate", "--subjects", "3", "--out", out}, {"PATH=" + folder.path()});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_EQ(
       run.err,
@@ -111,32 +95,6 @@ TEST(Study, StrokesOfTheSceneNeedNoFile) {
   EXPECT_NE(run.out.find("Predicted below the JND"), std::string::npos) << run.out;
 }
 
-TEST(Study, RunsInATerminalThroughADeviceOfTheBridge) {
-  const test::TemporaryFolder folder;
-  const std::string said = folder.file("said"), answers = folder.file("study-S07.csv");
-  const std::string device =
-      "bridge:exec:python3 " + std::string(PALPATE_SOURCE_DIR) + "/assets/examples/bridge/bridge.py";
-  const auto wait = [&](const std::string& words) {
-    return "until grep -q '" + words + "' " + said + "; do sleep 0.1; done; ";
-  };
-  const std::string types = wait("Do you agree") + "echo y; " + wait("learn the task") + "echo; " +
-                            wait("training 1 of") + "echo 1; " + wait("training 2 of") + "echo q";
-  const std::string program =
-      std::string(PALPATE_BINARY) + " study run --subject S07 --device '" + device + "' --out " + folder.path();
-  const auto run = test::run_program({"sh", "-c", ": > " + said + "; (" + types + ") | " + program + " > " + said});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
-  const std::string words = test::read_text(said);
-  EXPECT_EQ(words.find("rehearsal"), std::string::npos) << words;
-  EXPECT_NE(words.find("The session was ended; all answers are stored."), std::string::npos) << words;
-  const auto data = read_study(answers);
-  ASSERT_TRUE(data.ok()) << data.error().message;
-  ASSERT_EQ(data->records.size(), 1u);
-  EXPECT_EQ(data->records[0].device, "bridge");
-  EXPECT_TRUE(data->records[0].rendered);
-  EXPECT_FALSE(data->records[0].answered_second);
-  EXPECT_GT(data->records[0].first_rendered_N, 0.0) << "less than asked for where a busy machine makes it late";
-}
-
 TEST(Study, RefusesWrongUsage) {
   EXPECT_EQ(run_palpate({"study"}).exit_code, 2);
   EXPECT_EQ(run_palpate({"study", "simulate"}).exit_code, 2);
@@ -146,7 +104,7 @@ TEST(Study, RefusesWrongUsage) {
       << "needs --discriminate";
   const auto missing = run_palpate({"study", "analyse", "/none/S01.csv", "--out", "/none/out"});
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_EQ(missing.err, "error: cannot read the study file /none/S01.csv; does it exist?\n");
+  EXPECT_NE(missing.err.find("/none/S01.csv: found no such file"), std::string::npos) << missing.err;
 }
 
 }  // namespace

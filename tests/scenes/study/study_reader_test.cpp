@@ -73,7 +73,7 @@ TEST(StudyReader, RefusesWithPlaceFoundAndExpected) {
   EXPECT_EQ(
       complaint_after("first,20", "first,20,1"),
       "S01.csv:8:1: found \"study,1,2.5,3.5,0,2.4,3.5,1,first,20,1,paddle,true\", expected a row of twelve fields");
-  EXPECT_EQ(read_study("/none/S01.csv").error().message, "cannot read the study file /none/S01.csv; does it exist?");
+  EXPECT_EQ(read_study("/none/S01.csv").error().message.rfind("/none/S01.csv: found no such file", 0), 0u);
 }
 
 TEST(StudyReader, EveryTruncationIsReadOrRefused) {
@@ -113,20 +113,17 @@ TEST(StudyReader, RefusesWhatIsNotAPairOfStrokes) {
   }
 }
 
-TEST(StudyReader, RowsSayOnWhatTheyWereGivenAndRehearsalsAreTakenOut) {
+TEST(StudyReader, RowsSayOnWhatTheyWereGiven) {
   const std::string text =
       "# palpate-study 1\n# subject S01\n# procedure constant\n"
       "# timing_ms lead_in 400 ramp 100 hold 900 pause 500\n# consent accepted, text 8c1f2a9d\n" +
       study_columns({}) +
       "\nstudy,1,2.5,3.5,0,2.4,3.5,0,first,20,paddle,true\n"
       "study,2,2.5,3.5,0,2.4,3.5,0,first,20,mouse,false\n";
-  auto data = parse_study(text, "s.csv");
+  const auto data = parse_study(text, "s.csv");
   ASSERT_TRUE(data.ok()) << data.error().message;
   EXPECT_EQ(data->records[0].device, "paddle");
   EXPECT_FALSE(data->records[1].rendered);
-  EXPECT_EQ(remove_rehearsals(*data), 1u);
-  ASSERT_EQ(data->records.size(), 1u);
-  EXPECT_EQ(data->records[0].device, "paddle");
 }
 
 }  // namespace

@@ -21,6 +21,25 @@ std::unique_ptr<StudySession> begun(const StudyHeader& with, std::unique_ptr<Stu
   return std::move(*session);
 }
 
+// 30 ms without force in the first push, most of which is rendered.
+TEST(StudySession, ATrialInWhichTheDeviceDropsOutComesAgain) {
+  const auto session = begun(header(), std::make_unique<MemoryStore>());
+  session->proceed();
+  const StudyTrial trial = session->trial();
+  double rendered_N = 0.0;
+  for (int tick = 0; session->state() == StudyState::presenting; ++tick) {
+    rendered_N = session->next_force_N(tick > 800 && tick <= 830 ? 0.0 : rendered_N);
+    session->update();
+  }
+  EXPECT_EQ(session->state(), StudyState::ready);
+  session->answer(true);
+  EXPECT_TRUE(session->store().records().empty()) << "there is nothing to answer";
+  session->proceed();
+  test::run_until_asked(*session);
+  EXPECT_EQ(session->state(), StudyState::answering);
+  EXPECT_EQ(session->trial(), trial);
+}
+
 // A disk that refuses while `full`.
 class FullStore final : public StudyStore {
  public:
@@ -88,8 +107,9 @@ TEST(StudySession, ShowsWhichForceIsPresentedAndCountsTheResponse) {
   const auto session = begun(header(), std::make_unique<MemoryStore>());
   session->proceed();
   std::vector<int> intervals;
+  double rendered_N = 0.0;
   for (int i = 0; session->state() == StudyState::presenting && i < 10000; ++i) {
-    session->next_force_N(0.0);
+    rendered_N = session->next_force_N(rendered_N);
     session->update();
     if (intervals.empty() || session->view().interval != intervals.back())
       intervals.push_back(session->view().interval);
@@ -215,8 +235,9 @@ TEST(StudySession, ShowsTheReferenceBeforeTheTwoAndTellsRightFromWrongInTheTrain
   const auto session = begun(test::discrimination_header(0.8), std::make_unique<MemoryStore>());
   session->proceed();
   std::vector<int> shown;
+  double rendered_N = 0.0;
   for (int i = 0; session->state() == StudyState::presenting && i < 10000; ++i) {
-    session->next_force_N(0.0);
+    rendered_N = session->next_force_N(rendered_N);
     session->update();
     const int now = session->view().reminder ? 9 : session->view().interval;
     if (shown.empty() || now != shown.back()) shown.push_back(now);
