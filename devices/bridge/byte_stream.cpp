@@ -183,10 +183,9 @@ Opened open_command(const BridgeTarget& target) {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     return failure(target.path, errno, "close other programs");
   }
-  const std::string command = "exec " + target.path;
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) run_child(ends[1], command.c_str(), parent);
+  if (child == 0) run_child(ends[1], target.path.c_str(), parent);
   ::close(ends[1]);
   if (child < 0) return close_with(ends[0], failure(target.path, errno, "close other programs"));
   fcntl(ends[0], F_SETFL, O_NONBLOCK);

@@ -129,7 +129,7 @@ void DemoApp::handle_keys() {
     input_.let_go();
     return;
   }
-  input_.run_held(commands_);
+  input_.run_held(commands_, session_->replay() != nullptr);
   for (const KeyPress& press : keys) {
     if (view_.exhibit) {
       handle_exhibit_key(press);
@@ -198,22 +198,28 @@ void DemoApp::switch_to(const std::string& scene, const std::string& recording, 
 }
 
 void DemoApp::reopen(const SessionRequest& request) {
-  SessionRequest wanted = request;
   toasts_.clear();
   // A device belongs to one session at a time.
   session_.reset();
-  auto session = LiveSession::open(wanted);
-  if (!session) {
+  // What was there before may have gone too: its device, its files.
+  SessionRequest without_device = request_;
+  without_device.device = "mouse";
+  SessionRequest plain;
+  plain.device = "mouse";
+  plain.data_folder = request_.data_folder;
+  plain.realtime = request_.realtime;
+  for (const SessionRequest& wanted : {request, request_, without_device, plain}) {
+    auto session = LiveSession::open(wanted);
+    if (session) {
+      request_ = wanted;
+      session_ = std::move(*session);
+      break;
+    }
     notify(session.error().message, true);
-    wanted = request_;
-    session = LiveSession::open(wanted);
+    outcome_ = session.error();
   }
-  if (!session) {  // not even what was there: the device has gone
-    wanted.device = "mouse";
-    session = LiveSession::open(wanted);
-  }
-  request_ = wanted;
-  session_ = std::move(*session);
+  if (session_ == nullptr) return close();
+  outcome_ = {};
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
   blocks_->camera().turn(view_.camera);
@@ -246,7 +252,7 @@ Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {
   auto languages = read_exhibit_words(*assets + "/exhibit");
   if (!languages) return languages.error();
   const auto folder = data_folder();
-  exhibit_.set_up(std::move(*languages), folder ? *folder + local_time_text("/exhibit-%Y%m%d.txt") : "", times);
+  exhibit_.set_up(std::move(*languages), folder ? *folder : "", times);
   return {};
 }
 

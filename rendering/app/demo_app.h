@@ -46,6 +46,8 @@ class DemoApp {
   void frame();
   bool closing() const noexcept;
   void close();
+  // Why it ended by itself: no session could be opened any more, and there is none.
+  const Status& outcome() const noexcept { return outcome_; }
   // Draws the present state once more and saves it.
   Status screenshot(const std::string& path, bool overwrite);
 
@@ -122,6 +124,7 @@ class DemoApp {
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
   bool leaving_ = false;  // an exhibit's only way out
+  Status outcome_;
 };
 
 }  // namespace palpate

@@ -70,8 +70,12 @@ void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& came
 void DemoFiles::update(const LiveSession& session) {
   if (is_there(arriving_)) {
     const Result<RecordingOffer> offered = arriving_.get();
-    view_.offered =
-        offered ? OfferedFile{offered->path, offered->words, {}} : OfferedFile{{}, {}, offered.error().message};
+    if (waiting_.empty()) {
+      view_.offered =
+          offered ? OfferedFile{offered->path, offered->words, {}} : OfferedFile{{}, {}, offered.error().message};
+    } else {
+      offer(std::exchange(waiting_, {}));
+    }
   }
   if (is_there(looking_)) view_.devices = looking_.get();
   if (is_there(drawing_)) {
@@ -102,12 +106,17 @@ void DemoFiles::open(const std::string& path, LiveSession& session) {
   }
 }
 
-// A large file takes a while to read, in which the picture goes on. The last one counts.
+// A large file takes a while to read, in which the picture goes on. The last one counts: a future that is
+// replaced waits for its thread, and so the next file waits for the one that is read.
 void DemoFiles::offer(const std::string& path) {
   const std::string into = folder();
   if (into.empty()) return;
-  arriving_ = std::async(std::launch::async, [path, into] { return offer_recording(path, into); });
   notify_("reading " + path, false);
+  if (arriving_.valid()) {
+    waiting_ = path;
+    return;
+  }
+  arriving_ = std::async(std::launch::async, [read = read_, path, into] { return read(path, into); });
 }
 
 void DemoFiles::record(LiveSession& session) {

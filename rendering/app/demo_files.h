@@ -24,8 +24,10 @@ class LiveSession;
 class DemoFiles {
  public:
   using Notify = std::function<void(std::string text, bool problem)>;
-  // `view` outlives this.
-  DemoFiles(ViewState& view, Notify notify) : view_(view), notify_(std::move(notify)) {}
+  using Read = std::function<Result<RecordingOffer>(const std::string& path, const std::string& folder)>;
+  // `view` outlives this. `read`: any thread, blocks.
+  DemoFiles(ViewState& view, Notify notify, Read read = offer_recording)
+      : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
 
   // Of this file; empty: nothing is remembered.
   void use_settings(const std::string& file);
@@ -50,8 +52,10 @@ class DemoFiles {
 
   ViewState& view_;
   Notify notify_;
+  Read read_;
   std::string settings_file_;
   std::future<Result<RecordingOffer>> arriving_;    // a file that is read
+  std::string waiting_;                             // to be read after it, in its place; empty: none
   std::future<std::vector<DeviceChoice>> looking_;  // for devices
   std::future<Notice> drawing_;                     // a figure of the curves
   std::string recording_;                           // the file that is being recorded; empty: none

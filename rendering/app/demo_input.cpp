@@ -72,9 +72,9 @@ void DemoInput::let_go() {
   down_.clear();
 }
 
-void DemoInput::run_held(const std::vector<WindowCommand>& commands) const {
+void DemoInput::run_held(const std::vector<WindowCommand>& commands, bool replays) const {
   for (const WindowCommand& command : commands) {
-    if (command.when != WindowCommand::When::held) continue;
+    if (command.when != WindowCommand::When::held || (command.replay && !replays)) continue;
     for (std::size_t i = 0; i < command.keys.size(); ++i) {
       if (std::find(down_.begin(), down_.end(), command.keys[i]) != down_.end()) command.run(i);
     }

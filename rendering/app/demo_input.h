@@ -29,7 +29,7 @@ class DemoInput {
   std::vector<KeyPress> take_keys();
   void let_go();
   // Those that are held; `replays`: those of a replay too.
-  void run_held(const std::vector<WindowCommand>& commands) const;
+  void run_held(const std::vector<WindowCommand>& commands, bool replays) const;
   static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, bool replays);
 
   // Inside a frame: its end forgets the wheel.

@@ -145,6 +145,7 @@ Status run_demo(Arguments& arguments) {
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);
+  if (!(*app)->outcome()) return (*app)->outcome();
   if (!arguments.screenshot.empty()) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/live/pacer.h"
+#include "scenes/scene/user_folders.h"
 
 namespace palpate {
 namespace {
@@ -46,11 +47,15 @@ std::optional<ExhibitRound> first_round(const LiveSession& session) {
 
 }  // namespace
 
-void Exhibit::set_up(std::vector<ExhibitWords> languages, const std::string& tally_path, const ExhibitTimes& times) {
+void Exhibit::set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times) {
   languages_ = std::move(languages);
-  tally_path_ = tally_path;
+  tally_folder_ = tally_folder;
   times_ = times;
-  if (!tally_path.empty()) tally_ = read_tally(tally_path);
+  tally_ = read_tally(tally_path());
+}
+
+std::string Exhibit::tally_path() const {
+  return tally_folder_.empty() ? "" : tally_folder_ + local_time_text("/exhibit-%Y%m%d.txt");
 }
 
 const ExhibitRound* Exhibit::pair() const noexcept {
@@ -119,10 +124,12 @@ void Exhibit::note_result() {
     return;
   }
   if (std::exchange(noted_, true)) return;
+  // A program that runs for days begins a new tally with each; one that cannot be kept is no reason to stop.
+  const std::string path = tally_path();
+  if (!path.empty()) tally_ = read_tally(path);
   ++tally_.answers;
   if (game_.round().right()) ++tally_.as_expected;
-  // A tally that cannot be kept is no reason to stop.
-  if (!tally_path_.empty()) (void)write_tally(tally_path_, tally_);
+  if (!path.empty()) (void)write_tally(path, tally_);
 }
 
 void Exhibit::begin(const LiveSession& session) {

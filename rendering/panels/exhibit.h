@@ -40,8 +40,8 @@ struct ExhibitTimes {
 class Exhibit {
  public:
   explicit Exhibit(std::uint64_t seed) : game_(seed) {}
-  // `languages`: at least one. `tally_path`: empty: not kept.
-  void set_up(std::vector<ExhibitWords> languages, const std::string& tally_path, const ExhibitTimes& times);
+  // `languages`: at least one. `tally_folder`: a file for each day; empty: not kept.
+  void set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times);
 
   // Once a frame: visitors come and go. Whether the last one has just left.
   bool update(LiveSession& session, ViewState& view);
@@ -68,6 +68,7 @@ class Exhibit {
   void read_ticks(const LiveSession& session);
   void note_device(const LiveSession& session);
   void note_result();
+  std::string tally_path() const;  // of today; empty: not kept
   void leave_reveal() { game_.go_on(); }
   void begin(const LiveSession& session);
   // The pair on the screen; null: nothing to compare yet.
@@ -99,7 +100,7 @@ class Exhibit {
   ExhibitTrace trace_;                 // likewise
   std::vector<ExhibitWords> languages_{1};
   std::size_t language_ = 0;
-  std::string tally_path_;
+  std::string tally_folder_;
   ExhibitTally tally_;
   std::map<std::string, ImVec2> buttons_;
   std::vector<std::string> said_;

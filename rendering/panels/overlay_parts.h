@@ -51,7 +51,8 @@ void begin_in_the_middle();
 void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area);
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands);
 void draw_file_picker(ViewState& view, const OverlayActions& actions);
-void draw_device_list(ViewState& view, const OverlayActions& actions);
+// `in_use`: the device that the session has, which nothing else can open.
+void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
 // What to do with a recording: fit it, replay it.
 void draw_offered_recording(ViewState& view, const OverlayActions& actions);

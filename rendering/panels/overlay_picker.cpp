@@ -85,21 +85,24 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
 }
 
 // What can hold the tool, and why it cannot.
-void draw_device_list(ViewState& view, const OverlayActions& actions) {
+void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
   if (!view.device_list) return;
   begin_in_the_middle();
   ImGui::Begin("Device", &view.device_list, kDialog);
   if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
   for (const DeviceChoice& device : view.devices) {
-    const bool usable = device.problem.empty();
-    if (ImGui::Selectable((device.name + "###" + device.name).c_str(), false,
+    const bool own = device.name == in_use;
+    const bool usable = own || device.problem.empty();
+    if (ImGui::Selectable((device.name + "###" + device.name).c_str(), own,
                           usable ? 0 : ImGuiSelectableFlags_Disabled)) {
       actions.use_device(device.name);
       view.device_list = false;
     }
     ImGui::SameLine(8.0F * ImGui::GetFontSize());
     ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());
-    ImGui::TextDisabled("%s", usable ? device.summary.c_str() : device.problem.c_str());
+    ImGui::TextDisabled("%s", own      ? "in use here"
+                              : usable ? device.summary.c_str()
+                                       : device.problem.c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::End();

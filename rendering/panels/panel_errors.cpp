@@ -172,7 +172,7 @@ void draw_error_bins(const ModelsView& models, const UiStyle& style, float heigh
         std::clamp((plot.y_px(models.jnd.offset_N) - plot.top()) / (plot.bottom() - plot.top()) - 0.25F, 0.0F, 0.9F),
         ink(style.colours().quiet));
   }
-  tip("Error against force since the last reset (C), in steps of 0.5 N.\nDots: mean + standard deviation. "
+  tip("Error against force since the last reset (C), in steps of two JND.\nDots: mean + standard deviation. "
       "Triangles: the largest.\nBlack line: the just noticeable difference.");
 }
 

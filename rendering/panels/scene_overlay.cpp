@@ -261,7 +261,7 @@ void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState
   draw_device_words(session, view.offered.any(), style, area);
   draw_toasts(toasts, style, area);
   draw_file_picker(view, actions);
-  draw_device_list(view, actions);
+  draw_device_list(view, session.device_name(), actions);
   draw_scene_list(session, view, actions);
   draw_offered_recording(view, actions);
   draw_help(view, style, *actions.commands);

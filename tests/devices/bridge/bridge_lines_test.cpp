@@ -212,7 +212,9 @@ TEST(BridgeLines, WhatCannotBeOpenedSaysWhyAndWhatToDo) {
             "bridge:exec:echo Traceback: the program ended with exit code 0, after \"Traceback \"; run it by itself to "
             "see why");
   EXPECT_EQ(complaint("exec:exit 3"),
-            "bridge:exec:exit 3: the program ended with exit code 127; run it by itself to see why");
+            "bridge:exec:exit 3: the program ended with exit code 3; run it by itself to see why");
+  EXPECT_EQ(complaint("exec:cd / && exit 4"),
+            "bridge:exec:cd / && exit 4: the program ended with exit code 4; run it by itself to see why");
   EXPECT_EQ(complaint("unix:/nowhere/at/all"),
             "/nowhere/at/all: No such file or directory; start the device's program first");
   EXPECT_EQ(complaint("/dev/null"), "/dev/null: is no serial line; name a tty");
