@@ -14,9 +14,6 @@ constexpr double kFeelable_N = 0.1;
 constexpr double kLearning_s = 0.15;
 constexpr double kSoftest_N_per_m = 100.0;
 constexpr double kStiffest_N_per_m = 20e3;
-// It never aims deeper than this, however soft the block feels: a block that
-// does not answer is not pressed through.
-constexpr double kDeepest_m = 0.012;
 
 }  // namespace
 
@@ -27,7 +24,7 @@ void LearningHand::learn(double force_N, double step_s) noexcept {
 }
 
 double LearningHand::held_depth_m(double force_N) const noexcept {
-  return std::min(force_N / stiffness_N_per_m_, kDeepest_m);
+  return std::min(force_N / stiffness_N_per_m_, settings().deepest_m);
 }
 
 SensorSpec SimulatedDevice::sensor() const noexcept {

@@ -9,6 +9,10 @@ namespace {
 constexpr double kStart_m = -0.006;
 // Unhurried, from wherever the tool was.
 constexpr double kReturn_s = 0.8;
+// Of an unhurried press; a slower hand stays nearer to the block and trembles less.
+constexpr double kUsual_m_per_s = 0.05;
+// The peak of a minimum-jerk segment over its mean speed.
+constexpr double kPeakOverMean = 1.875;
 constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace
@@ -18,10 +22,11 @@ HandMotion::HandMotion(const HandSettings& settings, std::uint64_t seed) : setti
   deck_ = {slow_press, slow_press, slow_press, taps,  taps,       taps,       poke,       poke,
            poke,       poke,       poke,       steps, modulation, modulation, modulation, rest};
   dealt_ = deck_.size();
+  const double slowness = std::min(1.0, settings.fastest_m_per_s / kUsual_m_per_s);
   for (Tremor& tremor : tremor_) {
     tremor.rate_rad_per_s = 2.0 * kPi * any(8.0, 12.0);
     const double phase_rad = any(-kPi, kPi);
-    const double amplitude_m = settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
+    const double amplitude_m = slowness * settings.tremor_rms_m * std::sqrt(2.0 / static_cast<double>(tremor_.size()));
     tremor.along = amplitude_m * std::cos(phase_rad);
     tremor.across = amplitude_m * std::sin(phase_rad);
   }
@@ -84,6 +89,8 @@ void HandMotion::advance_aim(double dt_s) {
 
 void HandMotion::go(Segment segment) {
   if (segment_count_ == kMostSegments) return;
+  segment.duration_s =
+      std::max(segment.duration_s, kPeakOverMean * std::abs(segment.target_m - planned_m_) / settings_.fastest_m_per_s);
   segments_[segment_count_++] = segment;
   planned_m_ = segment.target_m;
 }
@@ -114,14 +121,18 @@ void HandMotion::plan() {
       plan_modulation();
       break;
     case Gesture::rest:
-      go({any(-0.010, -0.003), any(0.5, 1.0)});
+      go({air(-0.010, -0.003), any(0.5, 1.0)});
       break;
   }
 }
 
+double HandMotion::air(double from_m, double to_m) {
+  return any(from_m, to_m) * std::min(1.0, settings_.fastest_m_per_s / kUsual_m_per_s);
+}
+
 // Back into the air, then a short pause.
 void HandMotion::leave(double fastest_s, double slowest_s) {
-  const double air_m = any(-0.006, -0.001);
+  const double air_m = air(-0.006, -0.001);
   go({air_m, any(fastest_s, slowest_s)});
   go({air_m, any(0.03, 0.15)});
 }
@@ -140,7 +151,7 @@ void HandMotion::plan_taps() {
   const std::uint64_t count = 5 + random_.index(6);
   for (std::uint64_t i = 0; i < count; ++i) {
     press({any(0.2, 0.85) * settings_.strongest_press_N, any(0.1, 0.18)});
-    go({any(-0.003, -0.001), any(0.08, 0.18)});
+    go({air(-0.003, -0.001), any(0.08, 0.18)});
   }
 }
 

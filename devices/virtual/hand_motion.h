@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "engine/base/random_stream.h"
 
@@ -28,6 +29,9 @@ struct HandSettings {
   double damping_Ns_per_m = 14.0;    // 0.7 of critical in the air
   double tremor_rms_m = 5e-5;        // of the aim
   double strongest_press_N = 6.0;    // gestures aim at most for this
+  // What a block is known to: a hand that aims at nothing deeper, nor moves faster.
+  double deepest_m = 0.012;
+  double fastest_m_per_s = std::numeric_limits<double>::infinity();
 };
 
 class HandMotion {
@@ -51,6 +55,9 @@ class HandMotion {
  protected:
   // The depth at which the block holds `force_N` when pressed for a moment.
   virtual double held_depth_m(double force_N) const noexcept = 0;
+
+ protected:
+  const HandSettings& settings() const noexcept { return settings_; }
 
  private:
   enum class Gesture { slow_press, taps, poke, steps, modulation, rest };
@@ -79,6 +86,8 @@ class HandMotion {
   void go(Segment segment);
   void press(Press press) { go({aim_for(press.force_N), press.duration_s}); }
   void leave(double fastest_s, double slowest_s);
+  // A height over the block: lower for a slow hand, which would be on its way all the time.
+  double air(double from_m, double to_m);
   void start_tremor(double dt_s);
   double aim_for(double force_N) const noexcept {
     return held_depth_m(force_N) + force_N / settings_.stiffness_N_per_m;

@@ -12,7 +12,6 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/panels/panel_views.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/user_folders.h"
 #include "scenes/worker/slot_plan.h"
@@ -40,8 +39,8 @@ Result<std::unique_ptr<DemoApp>> DemoApp::create(const DemoRequest& request) {
 }
 
 Status DemoApp::set_up(const DemoRequest& request) {
-  view_.exhibit = request.exhibit;
-  view_.theme = request.exhibit ? Theme::dark : Theme::light;
+  view_.exhibit.on = request.exhibit;
+  view_.settings.theme = request.exhibit ? Theme::dark : Theme::light;
   // Without a display nothing else needs to start.
   if (Status status = Window::find_display(); !status) return status;
   SessionRequest wanted = request.session;
@@ -50,8 +49,9 @@ Status DemoApp::set_up(const DemoRequest& request) {
     if (wanted.models.empty()) wanted.models = {"greedy", "paper:greedy-10"};
   }
   if (const auto folder = data_folder()) wanted.data_folder = *folder;
-  files_.use_settings(view_.exhibit ? "" : request.settings_file);
-  if (!view_.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty()) wanted.line_up = view_.line_up;
+  files_.use_settings(view_.exhibit.on ? "" : request.settings_file);
+  if (!view_.settings.line_up.empty() && wanted.models.empty() && !wanted.line_up.empty())
+    wanted.line_up = view_.settings.line_up;
   request_ = wanted;
   first_device_ = wanted.device.rfind("replay:", 0) == 0 ? "auto" : wanted.device;
   auto session = LiveSession::open(wanted);
@@ -60,23 +60,24 @@ Status DemoApp::set_up(const DemoRequest& request) {
   yield_to_haptics(session_->loop().scheduling());
   // After the haptics thread: the driver's threads take over this one's priority.
   WindowRequest asked = request.window;
-  asked.empty = palette(view_.theme).background;
+  asked.empty = palette(view_.settings.theme).background;
   auto window = Window::open(asked);
   if (!window) return window.error();
   window_ = std::move(*window);
   auto blocks = BlockView::create(session_->scene());
   if (!blocks) return blocks.error();
   blocks_ = std::move(*blocks);
-  blocks_->camera().turn(view_.camera);
-  if (view_.exhibit) {
+  blocks_->camera().turn(view_.settings.camera);
+  if (view_.exhibit.on) {
     if (Status status = set_up_exhibit(request.exhibit_times); !status) return status;
   }
   commands_ = make_commands();
   listen();
   if (find_font().empty()) notify("no font found; install fonts-dejavu-core", true);
-  if (!request.recording.empty()) files_.offer(request.recording);
+  for (const std::string& recording : request.recordings) files_.offer(recording);
   view_.time.zero_s = steady_now_s();
   frame_began_s_ = last_frame_s_ = second_began_s_ = steady_now_s();
+  look();
   return {};
 }
 
@@ -103,7 +104,7 @@ DemoApp::~DemoApp() {
 }
 
 bool DemoApp::closing() const noexcept {
-  return view_.exhibit ? leaving_ : glfwWindowShouldClose(window_->handle()) != 0;
+  return view_.exhibit.on ? leaving_ : glfwWindowShouldClose(window_->handle()) != 0;
 }
 
 void DemoApp::close() {
@@ -112,12 +113,12 @@ void DemoApp::close() {
 }
 
 void DemoApp::drop_files(const std::vector<std::string>& paths) {
-  if (view_.exhibit) return;
+  if (view_.exhibit.on) return;
   for (const std::string& path : paths) files_.open(path, *session_);
 }
 
 void DemoApp::handle_key_event(int key, int action, int modifiers) {
-  if (view_.exhibit && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
+  if (view_.exhibit.on && action == GLFW_RELEASE && key == GLFW_KEY_DOWN) Exhibit::let_go(*session_);
   input_.add_key(key, action, modifiers);
 }
 
@@ -131,14 +132,15 @@ void DemoApp::handle_keys() {
   }
   input_.run_held(commands_, session_->replay() != nullptr);
   for (const KeyPress& press : keys) {
-    if (view_.exhibit) {
+    if (press.key == GLFW_KEY_ENTER && view_.dialogs.offer.any()) start_offer();
+    if (view_.exhibit.on) {
       handle_exhibit_key(press);
     } else {
       DemoInput::run(press, commands_, session_->replay() != nullptr);
     }
   }
   // The next visitor finds it as new.
-  if (view_.exhibit && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
+  if (view_.exhibit.on && exhibit_.update(*session_, view_)) blocks_->camera().go_home();
 }
 
 void DemoApp::handle_exhibit_key(const KeyPress& press) {
@@ -158,17 +160,22 @@ void DemoApp::frame() {
   session_->update();
   read_notices(now_s);
   files_.update(*session_);
+  look();
   blocks_->camera().advance(static_cast<float>(now_s - frame_began_s_));
   frame_s_ = std::min(now_s - frame_began_s_, 0.1);
   frame_began_s_ = now_s;
   draw();
   handle_keys();
-  input_.handle_mouse(*session_, *blocks_, overlay_, view_, scene_area());
+  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, scene_area()))
+    notify("the mouse has left the picture: the probe is lifted", false);
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));
   window_->show_frame();
   count_frame(steady_now_s());
 }
+
+// Once a frame: everything that is drawn is drawn from this.
+void DemoApp::look() { shown_ = window_view(*session_, view_); }
 
 void DemoApp::read_notices(double now_s) {
   for (const Notice& notice : session_->read_notices()) {
@@ -179,7 +186,7 @@ void DemoApp::read_notices(double now_s) {
 }
 
 void DemoApp::notify(std::string text, bool problem) {
-  if (view_.exhibit) {  // not for visitors
+  if (view_.exhibit.on) {  // not for visitors
     DemoFiles::write_to_log(text);
     return;
   }
@@ -187,14 +194,38 @@ void DemoApp::notify(std::string text, bool problem) {
   toasts_.push_back({std::move(text), problem, steady_now_s() + (problem ? kProblemToast_s : kToast_s)});
 }
 
-// Another material: its own models, fitted to it.
-void DemoApp::switch_to(const std::string& scene, const std::string& recording, const std::string& device) {
+// Another material: its own models, fitted to it; what was opened stays.
+void DemoApp::use_material(const std::string& scene, const std::vector<std::string>& recordings,
+                           const std::string& device) {
   next_ = request_;
   next_->scene = scene;
-  next_->recording = recording;
+  next_->recordings = recordings;
   next_->device = device;
   next_->models.clear();
+  next_->kept = session_->models().plans();
+  next_->refits = true;
+  std::erase_if(next_->kept, [](const SlotPlan& plan) { return plan.origin != ModelOrigin::file; });
   if (next_->line_up.empty()) next_->line_up = line_ups().front().name;
+}
+
+// The same material and the same models: none is fitted again.
+void DemoApp::use_device(const std::string& device) {
+  next_ = request_;
+  next_->recordings = session_->scene().recordings;
+  next_->device = device;
+  next_->kept = session_->models().plans();
+  next_->refits = next_->kept.empty();
+  next_->line_up = session_->line_up();
+}
+
+void DemoApp::start_offer() {
+  const Offer offer = std::exchange(view_.dialogs.offer, {});
+  const std::string test = offer.test().empty() ? "" : "replay:" + offer.test();
+  if (!offer.training().empty()) {
+    use_material(request_.scene, offer.training(), test.empty() ? first_device_ : test);
+  } else if (!test.empty()) {
+    use_device(test);
+  }
 }
 
 void DemoApp::reopen(const SessionRequest& request) {
@@ -222,13 +253,13 @@ void DemoApp::reopen(const SessionRequest& request) {
   outcome_ = {};
   auto blocks = BlockView::create(session_->scene());
   if (blocks) blocks_ = std::move(*blocks);
-  blocks_->camera().turn(view_.camera);
+  blocks_->camera().turn(view_.settings.camera);
   blocks_framed_ = 0;
   panel_ = SidePanel{};  // no curve of the old one
   view_.time = CurveTime{};
   view_.feel = false;
-  view_.force_scale_N = view_.error_scale = 1.0;
   view_.time.zero_s = steady_now_s();
+  look();
 }
 
 void DemoApp::next_line_up() {
@@ -239,11 +270,14 @@ void DemoApp::next_line_up() {
   const std::vector<LineUp>& all = line_ups();
   const auto at =
       std::find_if(all.begin(), all.end(), [&](const LineUp& one) { return one.name == session_->line_up(); });
-  const LineUp& next = at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1);
-  session_->use_line_up(next.name);
-  request_.line_up = next.name;
+  use_line_up(at == all.end() || at + 1 == all.end() ? all.front() : *(at + 1));
+}
+
+void DemoApp::use_line_up(const LineUp& line_up) {
+  session_->use_line_up(line_up.name);
+  request_.line_up = line_up.name;
   request_.models.clear();
-  notify(std::string(next.name) + ": " + next.help, false);
+  notify(std::string(line_up.name) + ": " + line_up.help, false);
 }
 
 Status DemoApp::set_up_exhibit(const ExhibitTimes& times) {

@@ -30,8 +30,8 @@ struct DemoRequest {
   WindowRequest window;
   bool exhibit = false;  // a game for visitors in place of the panel
   ExhibitTimes exhibit_times;
-  std::string settings_file;  // empty: nothing is remembered
-  std::string recording;      // offered to be fitted or replayed; empty: none
+  std::string settings_file;            // empty: nothing is remembered
+  std::vector<std::string> recordings;  // offered to be trained or tested on
 };
 
 class DemoApp {
@@ -53,6 +53,7 @@ class DemoApp {
 
   LiveSession& session() noexcept { return *session_; }
   ViewState& view() noexcept { return view_; }
+  const WindowView& shown() const noexcept { return shown_; }  // in the last frame
   const Exhibit& exhibit() const noexcept { return exhibit_; }
   const BlockView& blocks() const noexcept { return *blocks_; }
   const FrameFigures& frames() const noexcept { return frames_; }
@@ -61,8 +62,8 @@ class DemoApp {
 
   // What events do; GLFW's callbacks call them. A key counts even when it was
   // pressed and let go within a frame. `action`: of GLFW.
-  // A model file (.json) is loaded; all else is offered to be fitted or replayed, as a
-  // recording or as another program's table.
+  // Model files (.json) are loaded; all else is offered to be trained or tested on, as
+  // recordings or as other programs' tables.
   void drop_files(const std::vector<std::string>& paths);
   void handle_key_event(int key, int action, int modifiers);
   // All that can be asked for, a row each; an exhibit has buttons of its own.
@@ -87,12 +88,17 @@ class DemoApp {
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
   std::vector<BlockPose> true_poses() const;  // not deeper than they are
+  BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
   SceneArea scene_area() const;
   Status set_up_exhibit(const ExhibitTimes& times);
   void notify(std::string text, bool problem);
-  // Another session in place of this one: a scene, a recording.
-  void switch_to(const std::string& scene, const std::string& recording, const std::string& device);
+  void look();
+  // Another session in place of this one, after this frame.
+  void use_material(const std::string& scene, const std::vector<std::string>& recordings, const std::string& device);
+  void use_device(const std::string& device);  // for the same models
+  void start_offer();
+  void use_line_up(const LineUp& line_up);
   void reopen(const SessionRequest& request);
   void next_line_up();
   void next_reference();
@@ -108,6 +114,7 @@ class DemoApp {
   SceneOverlay overlay_;
   Exhibit exhibit_{1};
   ViewState view_;
+  WindowView shown_;
   DemoInput input_;
   DemoFiles files_{view_, [this](std::string text, bool problem) { notify(std::move(text), problem); }};
   SessionRequest request_;

@@ -8,7 +8,7 @@
 
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
-#include "rendering/panels/panel_views.h"
+#include "rendering/panels/window_view.h"
 
 namespace palpate {
 namespace {
@@ -31,6 +31,11 @@ WindowCommand toggle(std::vector<int> keys, const char* label, const char* help,
           .on = [&shown] { return shown; }};
 }
 
+WindowCommand in_bar(WindowCommand command) {
+  command.bar = true;
+  return command;
+}
+
 }  // namespace
 
 std::vector<WindowCommand> DemoApp::make_commands() {
@@ -49,16 +54,32 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .shown = "1 ... 9",
        .help = "make a model the active one; a click on its block or row too",
        .run = [this](std::size_t key) { select_listed(key); }},
-      toggle({GLFW_KEY_H, GLFW_KEY_SLASH}, "Help", "all keys", view_.help),
+      in_bar(
+          toggle({GLFW_KEY_M}, "Open", "open recordings, other programs' tables or models", view_.dialogs.file_list)),
+      in_bar(toggle({GLFW_KEY_O}, "Scene", "choose another material", view_.dialogs.scene_list)),
+      {.keys = {GLFW_KEY_U},
+       .label = "Device",
+       .help = "choose what holds the tool",
+       .run =
+           [this](std::size_t) {
+             turn(view_.dialogs.device_list);
+             if (view_.dialogs.device_list) files_.look_for_devices();
+           },
+       .bar = true,
+       .on = [this] { return view_.dialogs.device_list; }},
       {.keys = {GLFW_KEY_R},
        .label = "Record",
        .help = "record this session to a file that `palpate fit` reads",
        .run = [this](std::size_t) { files_.record(*session_); },
+       .bar = true,
        .on = [this] { return session_->recording().active; },
        .label_on = "Stop recording"},
+      in_bar(toggle({GLFW_KEY_W}, "View", "choose what is shown, and what is compared with what",
+                    view_.dialogs.view_list)),
+      toggle({GLFW_KEY_H, GLFW_KEY_SLASH}, "Help", "what the picture shows, and all keys", view_.dialogs.help),
       {.keys = {GLFW_KEY_SPACE},
        .label = "Freeze",
-       .help = "freeze the curves to look back, and go on",
+       .help = "freeze curves and picture to look back, and go on",
        .run = [this](std::size_t) { pause_or_run(); },
        .on = [this] { return view_.time.paused; },
        .label_on = "Go on"},
@@ -67,10 +88,9 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "forget the errors so far, and alarms that were seen",
        .run = [this](std::size_t) { session_->reset_figures(); }},
       {.keys = {GLFW_KEY_N},
-       .label = "Models",
        .help = "the next set of models: Ladder, 2009, Palpate",
        .run = [this](std::size_t) { next_line_up(); }},
-      toggle({GLFW_KEY_X}, "x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
+      toggle({GLFW_KEY_X}, "Arrows x 10", "arrows that show ten times the difference, and back", view_.exaggerated),
       {.keys = {GLFW_KEY_J},
        .label = "Feel",
        .help = "make the active model stiffer or more damped in the hand, and as it is again",
@@ -84,36 +104,22 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "one, two or four blocks side by side",
        .run = [this](std::size_t) { next_block_count(); }},
       {.keys = {GLFW_KEY_V},
-       .label = "View",
-       .help = "the difference in its band, or what a hand feels of it",
-       .run = [this](std::size_t) { turn(view_.difference); }},
+       .help = "the difference in its band, or its mean over 50 ms",
+       .run = [this](std::size_t) { turn(view_.settings.difference); }},
       {.keys = {GLFW_KEY_E},
-       .label = "Plot",
        .help = "the error against the time that a model takes, or against the force",
        .run = [this](std::size_t) { turn(view_.verdict); }},
       {.keys = {GLFW_KEY_F},
-       .label = "Reference",
        .help = "choose what the models are compared with",
        .run = [this](std::size_t) { next_reference(); }},
-      toggle({GLFW_KEY_O}, "Scene", "choose another material", view_.scene_list),
-      toggle({GLFW_KEY_M}, "Open", "open a recording, another program's table or a model", view_.file_list),
       {.keys = {GLFW_KEY_S},
        .label = "Save curves",
        .help = "save what the curves show, as a figure and as data",
-       .run = [this](std::size_t) { files_.save_curves(*session_, panel_.columns()); }},
+       .run = [this](std::size_t) { files_.save_curves(*session_, shown_, panel_.columns()); }},
       {.keys = {GLFW_KEY_K},
        .label = "Save model",
        .help = "save the active model to a file",
        .run = [this](std::size_t) { files_.save_model(*session_); }},
-      {.keys = {GLFW_KEY_U},
-       .label = "Device",
-       .help = "choose what holds the tool",
-       .run =
-           [this](std::size_t) {
-             turn(view_.device_list);
-             if (view_.device_list) files_.look_for_devices();
-           },
-       .on = [this] { return view_.device_list; }},
       {.shown = "a row, right button", .help = "renames a model, takes it out"},
       {.shown = "on the curves", .help = "drag zooms, the wheel goes back, double click goes on"},
       {.keys = {GLFW_KEY_LEFT, GLFW_KEY_RIGHT},
@@ -130,7 +136,7 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.keys = {GLFW_KEY_BACKSPACE},
        .label = "Back to the hand",
        .help = "press what was recorded, in place of the replay",
-       .run = [this](std::size_t) { switch_to(request_.scene, session_->scene().recording, first_device_); },
+       .run = [this](std::size_t) { use_device(first_device_); },
        .replay = true},
       {.keys = {GLFW_KEY_COMMA},
        .label = "<",
@@ -156,9 +162,11 @@ std::vector<WindowCommand> DemoApp::make_commands() {
            },
        .replay = true},
       {.keys = {GLFW_KEY_T},
-       .label = "Theme",
        .help = "light or dark",
-       .run = [this](std::size_t) { view_.theme = view_.theme == Theme::light ? Theme::dark : Theme::light; }},
+       .run =
+           [this](std::size_t) {
+             view_.settings.theme = view_.settings.theme == Theme::light ? Theme::dark : Theme::light;
+           }},
       toggle({GLFW_KEY_L}, "Loop", "all figures of the loop, and its faults", view_.details),
       {.keys = {GLFW_KEY_Z},
        .help = "the device's tool is at its rest position: zero it there",
@@ -179,20 +187,26 @@ std::vector<WindowCommand> DemoApp::make_commands() {
       {.keys = {GLFW_KEY_EQUAL, GLFW_KEY_KP_ADD},
        .shown = "+",
        .help = "larger text",
-       .run = [this](std::size_t) { view_.text_size = std::min(kLargestText, view_.text_size + kTextStep); }},
+       .run =
+           [this](std::size_t) {
+             view_.settings.text_size = std::min(kLargestText, view_.settings.text_size + kTextStep);
+           }},
       {.keys = {GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT},
        .shown = "-",
        .help = "smaller text",
-       .run = [this](std::size_t) { view_.text_size = std::max(kSmallestText, view_.text_size - kTextStep); }},
+       .run =
+           [this](std::size_t) {
+             view_.settings.text_size = std::max(kSmallestText, view_.settings.text_size - kTextStep);
+           }},
       {.keys = {GLFW_KEY_ESCAPE},
        .help = "closes lists, questions and this",
        .run = [this](std::size_t) { close_windows(); }},
-      {.shown = "drop a file", .help = "loads a model; of a recording or another program's table: fits or replays it"},
+      {.shown = "drop a file", .help = "loads a model; recordings and other programs' tables: trains or tests on them"},
       {.keys = {GLFW_KEY_Q}, .help = "ends the program", .run = [this](std::size_t) { close(); }, .control = true}};
 }
 
 void DemoApp::select_listed(std::size_t number) {
-  const std::vector<std::size_t> listed = models_view(*session_).listed();
+  const std::vector<std::size_t> listed = shown_.models.listed();
   if (number < listed.size()) session_->select(listed[number]);
 }
 
@@ -205,12 +219,18 @@ void DemoApp::pause_or_run() {
 }
 
 void DemoApp::next_block_count() {
-  view_.block_count = view_.block_count == 4 ? 1 : 2 * view_.block_count;
+  view_.settings.block_count = view_.settings.block_count == 4 ? 1 : 2 * view_.settings.block_count;
   // Fewer models than blocks were asked for: no block stays away without a word.
-  const std::size_t shown = shown_slots(*session_, view_.block_count).size();
-  if (shown >= view_.block_count) return;
-  notify(std::to_string(shown) + " of " + std::to_string(view_.block_count) + " blocks: no more models are ready",
-         false);
+  const std::vector<ModelView>& slots = shown_.models.slots;
+  const auto ready =
+      std::count_if(slots.begin(), slots.end(), [](const ModelView& slot) { return slot.state == SlotState::ready; });
+  const bool reference = !shown_.models.off_from.empty() && shown_.models.compared &&
+                         shown_.models.reference == kReferenceBlock && view_.settings.block_count > 1;
+  const std::size_t shown = static_cast<std::size_t>(ready) + (reference ? 1 : 0);
+  if (shown >= view_.settings.block_count) return;
+  notify(
+      std::to_string(shown) + " of " + std::to_string(view_.settings.block_count) + " blocks: no more models are ready",
+      false);
 }
 
 void DemoApp::scroll_curves(double by_s) {
@@ -224,8 +244,10 @@ void DemoApp::seek_replay(double by_s) {
 }
 
 void DemoApp::close_windows() {
-  view_.help = view_.file_list = view_.details = view_.scene_list = view_.device_list = false;
-  view_.offered = {};
+  const std::vector<DeviceChoice> devices = view_.dialogs.devices;
+  view_.dialogs = {};
+  view_.dialogs.devices = devices;
+  view_.details = false;
 }
 
 void DemoApp::next_dead_man() {

@@ -28,14 +28,19 @@ Hue hue_of(const Rgb& colour) {
   return parts.r << 16 | parts.g << 8 | parts.b;
 }
 
-CurveSource curve_source(const LiveSession& session, double zero_s) {
+// The active model last: it is drawn on top.
+CurveSource curve_source(const LiveSession& session, const WindowView& shown, double zero_s) {
   CurveSource source{
       session.scene().title, session.device_name(), session.reference_words(), session.jnd(), zero_s, {}};
-  const ModelsView models = models_view(session);
+  const ModelsView& models = shown.models;
+  const auto add = [&](std::size_t i) {
+    if (models.slots[i].state == SlotState::ready)
+      source.models.push_back({i, models.slots[i].name, hue_of(slot_colour(models, i, Theme::light))});
+  };
   for (std::size_t i = 0; i < models.slots.size(); ++i) {
-    if (models.slots[i]->state == SlotState::ready)
-      source.models.push_back({i, models.slots[i]->name, hue_of(slot_colour(models, i, Theme::light))});
+    if (i != models.selected) add(i);
   }
+  if (models.selected < models.slots.size()) add(models.selected);
   return source;
 }
 
@@ -56,28 +61,33 @@ void DemoFiles::use_settings(const std::string& file) {
     notify_(settings.error().message, true);
     return;
   }
-  static_cast<Settings&>(view_) = *settings;
+  view_.settings = *settings;
 }
 
 void DemoFiles::save_settings(const LiveSession& session, const CameraTurn& camera) {
   if (settings_file_.empty()) return;
-  if (!session.line_up().empty()) view_.line_up = session.line_up();
-  view_.camera = camera;
+  if (!session.line_up().empty()) view_.settings.line_up = session.line_up();
+  view_.settings.camera = camera;
   // Nobody is there to read of it any more.
-  (void)write_settings(settings_file_, view_);
+  (void)write_settings(settings_file_, view_.settings);
 }
 
 void DemoFiles::update(const LiveSession& session) {
   if (is_there(arriving_)) {
     const Result<RecordingOffer> offered = arriving_.get();
-    if (waiting_.empty()) {
-      view_.offered =
-          offered ? OfferedFile{offered->path, offered->words, {}} : OfferedFile{{}, {}, offered.error().message};
+    if (offered) {
+      view_.dialogs.offer.add({offered->path, offered->words});
+      remember(reading_);
     } else {
-      offer(std::exchange(waiting_, {}));
+      view_.dialogs.offer.problem = offered.error().message;
+    }
+    if (!waiting_.empty()) {
+      const std::string next = waiting_.front();
+      waiting_.erase(waiting_.begin());
+      offer(next);
     }
   }
-  if (is_there(looking_)) view_.devices = looking_.get();
+  if (is_there(looking_)) view_.dialogs.devices = looking_.get();
   if (is_there(drawing_)) {
     const Notice notice = drawing_.get();
     notify_(notice.text, notice.problem);
@@ -88,34 +98,41 @@ void DemoFiles::update(const LiveSession& session) {
     recording_ = status.path;
   } else if (!recording_.empty()) {
     std::error_code missing;
-    if (!view_.exhibit && std::filesystem::exists(recording_, missing)) view_.offered = {recording_, {}, {}};
+    if (!view_.exhibit.on && std::filesystem::exists(recording_, missing)) view_.dialogs.offer.add({recording_, {}});
     recording_.clear();
   }
 }
 
 void DemoFiles::open(const std::string& path, LiveSession& session) {
-  constexpr std::size_t kRecent = 5;
-  std::vector<std::string>& recent = view_.recent;
-  std::erase(recent, path);
-  recent.insert(recent.begin(), path);
-  if (recent.size() > kRecent) recent.pop_back();
-  if (is_offered(path)) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown)) {
+    notify_("there is no file " + path, true);
+  } else if (is_offered(path)) {
     offer(path);
-  } else {
-    session.load_file(path);
+  } else if (session.load_file(path)) {
+    remember(path);
   }
 }
 
-// A large file takes a while to read, in which the picture goes on. The last one counts: a future that is
-// replaced waits for its thread, and so the next file waits for the one that is read.
+void DemoFiles::remember(const std::string& path) {
+  constexpr std::size_t kRecent = 5;
+  std::vector<std::string>& recent = view_.settings.recent;
+  std::erase(recent, path);
+  recent.insert(recent.begin(), path);
+  if (recent.size() > kRecent) recent.pop_back();
+}
+
+// A large file takes a while to read, in which the picture goes on: a future that is replaced waits for its
+// thread, and so the next file waits for the one that is read.
 void DemoFiles::offer(const std::string& path) {
   const std::string into = folder();
   if (into.empty()) return;
-  notify_("reading " + path, false);
   if (arriving_.valid()) {
-    waiting_ = path;
+    waiting_.push_back(path);
     return;
   }
+  notify_("reading " + path, false);
+  reading_ = path;
   arriving_ = std::async(std::launch::async, [read = read_, path, into] { return read(path, into); });
 }
 
@@ -132,13 +149,13 @@ void DemoFiles::record(LiveSession& session) {
 }
 
 // What the curves show now, as data, and as a figure that is drawn beside the window.
-void DemoFiles::save_curves(const LiveSession& session, const CurveColumns& columns) {
+void DemoFiles::save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns) {
   const std::string into = folder();
   if (into.empty() || drawing_.valid()) return;
   const std::string path = into + local_time_text("/curves-%Y%m%d-%H%M%S");
   const double to_s = view_.time.end_s(steady_now_s());
   const double from_s = to_s - view_.time.shown_s;
-  const CurveSource source = curve_source(session, view_.time.zero_s);
+  const CurveSource source = curve_source(session, shown, view_.time.zero_s);
   const std::string table = curve_csv(session.comparison().history(), source, from_s, to_s);
   drawing_ = std::async(std::launch::async, [path, table, plot = curve_plot(columns, source, from_s, to_s)] {
     if (const Status status = write_file_atomically(path + ".csv", table, false); !status)
@@ -155,12 +172,12 @@ void DemoFiles::save_model(const LiveSession& session) {
   const std::size_t slot = session.models().selected();
   const std::string path = into + local_time_text("/model-%Y%m%d-%H%M%S.json");
   const Status status = session.save_model(slot, path);
-  notify_(status ? "saved " + session.models().view(slot).name + " to " + path : status.error().message, !status);
+  notify_(status ? "saved " + session.models().info(slot).name + " to " + path : status.error().message, !status);
 }
 
 void DemoFiles::look_for_devices() {
   if (looking_.valid()) return;
-  view_.devices.clear();
+  view_.dialogs.devices.clear();
   looking_ = std::async(std::launch::async, device_choices);
 }
 

@@ -12,7 +12,7 @@
 #include "engine/base/result.h"
 #include "rendering/app/settings.h"
 #include "rendering/panels/curve_files.h"
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 #include "scenes/live/live_session.h"
 #include "scenes/live/notices.h"
 #include "scenes/live/recording_offer.h"
@@ -35,18 +35,19 @@ class DemoFiles {
 
   // Once a frame: what has been read, found or recorded meanwhile.
   void update(const LiveSession& session);
-  // A model (.json) is loaded; all else is offered to be fitted or replayed, as a
+  // A model (.json) is loaded; all else is offered to be trained or tested on, as a
   // recording or as another program's table.
   void open(const std::string& path, LiveSession& session);
   void offer(const std::string& path);
   void record(LiveSession& session);
-  void save_curves(const LiveSession& session, const CurveColumns& columns);
+  void save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns);
   void save_model(const LiveSession& session);
   void look_for_devices();
   // For the host of an exhibit.
   static void write_to_log(const std::string& text);
 
  private:
+  void remember(const std::string& path);  // as opened of late
   // Where files go; empty, and told: nowhere.
   std::string folder();
 
@@ -55,7 +56,8 @@ class DemoFiles {
   Read read_;
   std::string settings_file_;
   std::future<Result<RecordingOffer>> arriving_;    // a file that is read
-  std::string waiting_;                             // to be read after it, in its place; empty: none
+  std::string reading_;                             // its path
+  std::vector<std::string> waiting_;                // to be read after it
   std::future<std::vector<DeviceChoice>> looking_;  // for devices
   std::future<Notice> drawing_;                     // a figure of the curves
   std::string recording_;                           // the file that is being recorded; empty: none

@@ -7,7 +7,7 @@
 #include "engine/live/pacer.h"
 #include "rendering/app/demo_app.h"
 #include "rendering/panels/panel_parts.h"
-#include "rendering/panels/panel_views.h"
+#include "rendering/panels/window_view.h"
 
 namespace palpate {
 namespace {
@@ -31,32 +31,30 @@ Viewport pixels_of(const SceneArea& area) {
 }  // namespace
 
 void DemoApp::draw() {
-  style_.update(window_->ui_size(), view_.exhibit ? kExhibitText : view_.text_size, view_.theme);
+  style_.update(window_->ui_size(), view_.exhibit.on ? kExhibitText : view_.settings.text_size, view_.settings.theme);
   ui_->begin_frame();
   input_.keep_wheel();
   // Clearing costs less than filling a rectangle, where the processor draws.
-  const Rgb& panel_colour = palette(view_.theme).panel;
+  const Rgb& panel_colour = palette(view_.settings.theme).panel;
   glClearColor(panel_colour.r, panel_colour.g, panel_colour.b, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   draw_blocks();
   const SceneArea area = scene_area();
   const WindowLayout layout = lay_out(ImGui::GetIO().DisplaySize);
-  const SceneArea& panel = layout.panel;
-  overlay_.draw(*session_, *blocks_, view_, style_, area, toasts_,
-                {&commands_, [this](const std::string& scene) { switch_to(scene, "", first_device_); },
-                 [this](const std::string& path) { switch_to(request_.scene, "", "replay:" + path); },
-                 [this](const std::string& path) { switch_to(request_.scene, path, first_device_); },
-                 [this](const std::string& path) { drop_files({path}); },
-                 [this](const std::string& device) {
-                   first_device_ = device;
-                   next_ = request_;
-                   next_->recording = session_->scene().recording;
-                   next_->device = device;
-                 }});
-  if (view_.exhibit) {
-    exhibit_.draw(*session_, *blocks_, style_, layout);
+  const OverlayActions actions{&commands_,
+                               [this](const std::string& scene) { use_material(scene, {}, first_device_); },
+                               [this](const std::string& path) { drop_files({path}); },
+                               [this](const std::string& device) {
+                                 first_device_ = device;
+                                 use_device(device);
+                               },
+                               [this](const std::string& name) { use_line_up(*find_line_up(name)); },
+                               [this] { start_offer(); }};
+  overlay_.draw(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
+  if (view_.exhibit.on) {
+    exhibit_.draw(*session_, shown_, *blocks_, style_, layout);
   } else {
-    panel_.draw(*session_, view_, style_, frames_, panel.at, panel.size);
+    panel_.draw(*session_, shown_, view_, style_, frames_, layout.panel);
   }
   ui_->end_frame();
   if (!blocks_->filters_edges()) return;
@@ -72,7 +70,7 @@ void DemoApp::draw_blocks() {
   // More models become ready: more blocks.
   if (poses.size() != blocks_framed_) blocks_->show(poses.size(), false);
   blocks_framed_ = poses.size();
-  blocks_->draw(poses, viewport, view_.theme, resolution_.scale());
+  blocks_->draw(poses, viewport, view_.settings.theme, resolution_.scale());
   frames_.picture_scale = resolution_.scale();
 }
 
@@ -82,7 +80,7 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   const auto deeper = [&](float depth_m) {
     return depth_m > 0.0F ? std::min(kDeeperDents * depth_m, std::max(depth_m, deepest_m)) : depth_m;
   };
-  if (view_.exhibit) return poses;
+  if (view_.exhibit.on) return poses;
   for (BlockPose& pose : poses) {
     pose.tool_m = deeper(pose.tool_m);
     pose.dent_m = deeper(pose.dent_m);
@@ -90,44 +88,56 @@ std::vector<BlockPose> DemoApp::block_poses() const {
   return poses;
 }
 
+// While the curves stand still, as it was at their right edge.
 std::vector<BlockPose> DemoApp::true_poses() const {
-  const LoopSnapshot& newest = session_->newest();
+  const HistoryPoint& now = shown_.models.now;
+  const bool frozen = view_.time.paused && shown_.models.any_now;
   BlockPose pose;
-  pose.tool_m = static_cast<float>(newest.tick.position_m);
-  const ModelsView models = models_view(*session_);
-  const double reference_N = session_->comparison().reference_N();
+  pose.tool_m = frozen ? now.position_m : static_cast<float>(session_->newest().tick.position_m);
+  pose.dent_m = std::max(0.0F, pose.tool_m);
   std::vector<BlockPose> poses;
-  for (const std::size_t slot : shown_slots(*session_, view_.block_count)) {
-    if (slot == kReferenceBlock) {
-      poses.push_back(reference_pose(pose));
-      continue;
-    }
-    const SlotView& model = *models.slots[slot];
-    pose.dent_m = static_cast<float>(model.dent_m);
-    pose.error_over_jnd = static_cast<float>(model.recent_peak_error_over_jnd);
-    const bool exaggerated = view_.exaggerated && !view_.exhibit && std::isfinite(reference_N);
-    const double shown_N = exaggerated ? reference_N + kExaggeration * (model.force_N - reference_N) : model.force_N;
-    pose.force_N = static_cast<float>(std::max(0.0, shown_N));
-    pose.arrow = view_.exhibit ? method_colour(model.method, view_.theme) : slot_colour(models, slot, view_.theme);
-    pose.chosen = slot == models.selected;
-    if (view_.blind) pose.arrow = palette(view_.theme).text;
-    pose.shows_error = !view_.blind;
-    poses.push_back(pose);
-  }
+  for (const std::size_t slot : shown_.stage)
+    poses.push_back(slot == kReferenceBlock ? reference_pose(pose) : model_pose(slot, pose));
   // Before the first model is ready: a block nobody has a model of yet.
   if (poses.empty()) {
-    pose.dent_m = std::max(0.0F, pose.tool_m);
     pose.shows_error = false;
     poses.push_back(pose);
   }
   return poses;
 }
 
+BlockPose DemoApp::model_pose(std::size_t slot, BlockPose pose) const {
+  const ModelsView& models = shown_.models;
+  const ModelView& model = models.slots[slot];
+  const bool frozen = view_.time.paused && models.any_now;
+  double force_N = model.force_N;
+  double reference_N = shown_.reference_N;
+  if (frozen) {
+    force_N = static_cast<double>(models.now.force_N[slot]);
+    reference_N = static_cast<double>(models.now.reference_N);
+    pose.error_over_jnd = std::abs(models.now.sustained_over_jnd[slot]);
+    if (std::isnan(pose.error_over_jnd)) pose.error_over_jnd = 0.0F;
+  } else {
+    pose.dent_m = static_cast<float>(model.dent_m);
+    pose.error_over_jnd = static_cast<float>(model.recent_error_over_jnd);
+  }
+  const bool exaggerated = view_.exaggerated && !view_.exhibit.on && std::isfinite(reference_N);
+  const double shown_N = exaggerated ? reference_N + kExaggeration * (force_N - reference_N) : force_N;
+  pose.force_N = std::isfinite(shown_N) ? static_cast<float>(std::max(0.0, shown_N)) : 0.0F;
+  pose.arrow = view_.exhibit.on ? method_colour(model.method, view_.settings.theme)
+                                : slot_colour(models, slot, view_.settings.theme);
+  pose.chosen = slot == models.selected;
+  if (view_.exhibit.blind) pose.arrow = palette(view_.settings.theme).text;
+  pose.shows_error = !view_.exhibit.blind;
+  return pose;
+}
+
 // What the others are compared with; it gives way as the active model does.
 BlockPose DemoApp::reference_pose(BlockPose pose) const {
-  const SlotView* active = models_view(*session_).active();
-  const double reference_N = session_->comparison().reference_N();
-  pose.dent_m = active != nullptr ? static_cast<float>(active->dent_m) : std::max(0.0F, pose.tool_m);
+  const ModelView* active = shown_.models.active();
+  const bool frozen = view_.time.paused && shown_.models.any_now;
+  const double reference_N = frozen ? static_cast<double>(shown_.models.now.reference_N) : shown_.reference_N;
+  if (active != nullptr && !frozen) pose.dent_m = static_cast<float>(active->dent_m);
   pose.force_N = std::isfinite(reference_N) ? static_cast<float>(reference_N) : 0.0F;
   pose.arrow = kReferenceColour;
   pose.chosen = pose.shows_error = false;

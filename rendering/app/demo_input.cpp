@@ -22,23 +22,28 @@ constexpr double kWheelStep_m = 0.0005;
 // pressed by millimetres, and a hand holds a mouse no finer than a few pixels.
 constexpr float kMouseGain = 0.33F;
 constexpr float kClick_px = 4.0F;
+// Of the way from the surface to the lower edge: there the press is full.
+constexpr float kReach = 0.8F;
 
-void move_tool_to_mouse(LiveSession& session, const BlockView& blocks, const SceneOverlay& overlay,
-                        const ViewState& view, const SceneArea& area) {
+// In all of the picture once it was over a block: a flick that leaves the block presses on. The lower edge is as
+// deep as there are data, wherever the block's surface is.
+void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks, const ViewState& view,
+                        const SceneArea& area) {
   ToolInput* tool = session.mouse();
-  if (tool == nullptr || view.tool_is_held) return;
+  if (tool == nullptr || view.exhibit.tool_is_held) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool aimed = tool->hand_is_exploring() && !view.exhibit.on;  // a visitor need not aim
+  const auto index = block_at(shown, blocks, area, mouse, aimed);
+  if (!index) return;
   const glm::vec2 size(area.size.x, area.size.y);
-  const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
-  const std::size_t count = std::max<std::size_t>(slots.size(), 1);
-  const auto over = overlay.slot_at(session, blocks, view, area, mouse);
-  if (!over && !slots.empty() && !view.exhibit) return;  // a visitor need not aim
-  const auto at = std::find(slots.begin(), slots.end(), over.value_or(0));
-  const auto index = static_cast<std::size_t>(at == slots.end() ? 0 : at - slots.begin());
-  const glm::vec2 surface = blocks.on_screen(index, count, {0.0F, 0.0F, 0.0F}, size);
-  const float below_px = mouse.y - area.at.y - surface.y;
-  const auto requested_m = static_cast<double>(kMouseGain * below_px * blocks.depth_per_pixel(index, count, size));
-  tool->set_target(limited_depth_m(session, requested_m), steady_now_s());
+  const std::size_t count = std::max<std::size_t>(shown.stage.size(), 1);
+  const float surface_px = blocks.on_screen(*index, count, {0.0F, 0.0F, 0.0F}, size).y;
+  const double below_px = static_cast<double>(mouse.y - area.at.y - surface_px);
+  const double room_px = std::max(1.0, static_cast<double>(kReach * (area.size.y - surface_px)));
+  double m_per_px = static_cast<double>(kMouseGain * blocks.depth_per_pixel(*index, count, size));
+  const double known_m = session.models().trained_depth_m();
+  if (std::isfinite(known_m)) m_per_px = std::max(m_per_px, known_m / room_px);
+  tool->set_target(limited_depth_m(session, m_per_px * below_px), steady_now_s());
 }
 
 }  // namespace
@@ -95,19 +100,27 @@ void DemoInput::run(const KeyPress& press, const std::vector<WindowCommand>& com
 
 void DemoInput::keep_wheel() { wheel_ = ImGui::GetIO().MouseWheel; }
 
-void DemoInput::handle_mouse(LiveSession& session, BlockView& blocks, const SceneOverlay& overlay,
-                             const ViewState& view, const SceneArea& area) {
+bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
+                             const SceneArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool over_scene = area.holds(io.MousePos) && !io.WantCaptureMouse;
+  const bool inside = area.holds(io.MousePos);
+  const bool over_scene = inside && !io.WantCaptureMouse;
+  const bool left = over_scene_ && !inside;
+  over_scene_ = over_scene || (over_scene_ && inside);
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right) && over_scene) orbiting_ = true;
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Right)) orbiting_ = false;
   if (orbiting_) {
     blocks.camera().orbit(-kOrbit_rad_per_px * io.MouseDelta.x, kOrbit_rad_per_px * io.MouseDelta.y);
-    return;
+    return false;
+  }
+  ToolInput* tool = session.mouse();
+  if (left && tool != nullptr && !tool->hand_is_exploring() && session.newest().tick.position_m > 0.0) {
+    tool->set_target(kRest_m, steady_now_s());
+    return true;
   }
   // A finger that leaves the screen lets go.
-  if (view.exhibit && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(session);
-  if (!over_scene) return;
+  if (view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) Exhibit::let_go(session);
+  if (!over_scene) return false;
   if (wheel_ != 0.0F) {
     if (io.KeyCtrl) {
       blocks.camera().zoom(std::pow(kZoom_per_step, wheel_));
@@ -115,13 +128,15 @@ void DemoInput::handle_mouse(LiveSession& session, BlockView& blocks, const Scen
       nudge_tool(session, -kWheelStep_m * static_cast<double>(wheel_));
     }
   }
-  if (!view.exhibit && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+  if (!view.exhibit.on && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
       io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px) {
-    if (const auto slot = overlay.slot_at(session, blocks, view, area, io.MousePos)) session.select(*slot);
+    const auto block = block_at(shown, blocks, area, io.MousePos, true);
+    if (block && *block < shown.stage.size()) session.select(shown.stage[*block]);
   }
-  const bool touched = view.exhibit && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
+  const bool touched = view.exhibit.on && ImGui::IsMouseClicked(ImGuiMouseButton_Left);  // twice at the same place
   if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F || touched)
-    move_tool_to_mouse(session, blocks, overlay, view, area);
+    move_tool_to_mouse(session, shown, blocks, view, area);
+  return false;
 }
 
 }  // namespace palpate

@@ -16,6 +16,9 @@ struct KeyPress {
   bool again = false;  // the keyboard repeats it
 };
 
+// Where the tool rests in the air while nobody presses.
+inline constexpr double kRest_m = -0.008;
+
 // As deep as there are data, and softly a little beyond.
 double limited_depth_m(const LiveSession& session, double requested_m);
 // So far in; a mouse only.
@@ -34,7 +37,8 @@ class DemoInput {
 
   // Inside a frame: its end forgets the wheel.
   void keep_wheel();
-  void handle_mouse(LiveSession& session, BlockView& blocks, const SceneOverlay& overlay, const ViewState& view,
+  // Whether the mouse has just left the picture, and the tool let go.
+  bool handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                     const SceneArea& area);
 
  private:
@@ -42,6 +46,7 @@ class DemoInput {
   std::vector<int> down_;  // keys that are held
   float wheel_ = 0.0F;
   bool orbiting_ = false;
+  bool over_scene_ = false;  // in the frame before
 };
 
 }  // namespace palpate

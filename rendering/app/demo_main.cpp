@@ -37,6 +37,7 @@ struct Arguments {
   bool bridge_remote = false;
   bool discriminates = false;
   std::string recording;  // to discriminate; empty: virtual
+  std::string test;       // to replay; empty: none
   std::vector<std::string> files;
 };
 
@@ -55,8 +56,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--model", session.models,
                  "Models: files, or methods (palpate fit --list-methods names them) [the scene's]")
       ->type_name("FILE_OR_METHOD");
-  app.add_option("files", arguments.files, "Models, or a recording or another program's table to fit or to replay")
+  app.add_option("files", arguments.files, "Models, or recordings or other programs' tables to train or to test on")
       ->type_name("FILE");
+  app.add_option("--train", session.recordings, "Recordings that models are fitted to, as one training set")
+      ->type_name("REC.csv");
+  app.add_option("--test", arguments.test, "Replay this recording; models are judged on it, and not fitted to it")
+      ->type_name("REC.csv")
+      ->excludes("--device");
   app.add_option_function<std::string>(
          "--discriminate",
          [&arguments](const std::string& recording) {
@@ -92,7 +98,7 @@ void sort_files(Arguments& arguments) {
   SessionRequest& session = arguments.demo.session;
   for (const std::string& file : arguments.files) {
     if (is_offered(file)) {
-      arguments.demo.recording = file;
+      arguments.demo.recordings.push_back(file);
     } else {
       session.models.push_back(file);
     }
@@ -142,6 +148,7 @@ Status run_demo(Arguments& arguments) {
   if (const auto folder = config_folder(); folder && arguments.screenshot.empty())
     arguments.demo.settings_file = *folder + "/window.json";
   sort_files(arguments);
+  if (!arguments.test.empty()) device = "replay:" + arguments.test;
   auto app = DemoApp::create(arguments.demo);
   if (!app) return app.error();
   run_frames(**app, arguments.seconds);
@@ -150,7 +157,8 @@ Status run_demo(Arguments& arguments) {
     if (Status status = (*app)->screenshot(arguments.screenshot, arguments.force); !status) return status;
   }
   if (arguments.stats.empty()) return {};
-  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->frames()), arguments.force);
+  return write_file_atomically(arguments.stats, stats_text((*app)->session(), (*app)->shown(), (*app)->frames()),
+                               arguments.force);
 }
 
 int run_program(int argc, char** argv) {

@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "rendering/panels/panel_errors.h"
-
 namespace palpate {
 namespace {
 
@@ -36,25 +34,25 @@ Json graphics_json(const FrameFigures& frames) {
 }
 
 // Figures over no sample are null: there is no number that would be true.
-Json model_json(const SlotView& slot) {
-  const bool has_errors = slot.errors.samples() > 0;
+Json model_json(const ModelView& slot) {
+  const bool has_errors = slot.errors.samples > 0;
   return {{"name", slot.name},
           {"method", slot.method},
           {"centres", slot.centres},
-          {"samples", slot.errors.samples()},
-          {"within_jnd", has_errors ? Json(slot.errors.within_jnd()) : Json(nullptr)},
-          {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N()) : Json(nullptr)},
-          {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd()) : Json(nullptr)},
-          {"p99_error_over_jnd", has_errors ? Json(slot.quantile.p99()) : Json(nullptr)},
+          {"samples", slot.errors.samples},
+          {"within_jnd", has_errors ? Json(slot.errors.within_jnd) : Json(nullptr)},
+          {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N) : Json(nullptr)},
+          {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd) : Json(nullptr)},
+          {"p99_error_over_jnd", has_errors ? Json(slot.errors.p99_error_over_jnd) : Json(nullptr)},
           {"tick_ns", slot.tick_ns > 0.0 ? Json(slot.tick_ns) : Json(nullptr)}};
 }
 
 }  // namespace
 
-std::string stats_text(const LiveSession& session, const FrameFigures& frames) {
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames) {
   Json models = Json::array();
-  for (std::size_t i = 0; i < session.models().size(); ++i) {
-    if (session.models().view(i).state == SlotState::ready) models.push_back(model_json(session.models().view(i)));
+  for (const ModelView& model : shown.models.slots) {
+    if (model.state == SlotState::ready) models.push_back(model_json(model));
   }
   Json faults = Json::array();
   for (const FaultEvent& fault : session.faults().events()) {
@@ -63,7 +61,7 @@ std::string stats_text(const LiveSession& session, const FrameFigures& frames) {
   const Json all = {{"haptics", haptics_json(session)},
                     {"graphics", graphics_json(frames)},
                     {"models", models},
-                    {"verdict", verdict_words(models_view(session))},
+                    {"verdict", shown.models.verdict.headline},
                     {"faults", faults},
                     {"scene", session.scene().name},
                     {"device", session.device_name()},

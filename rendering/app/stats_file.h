@@ -4,12 +4,12 @@
 
 #include <string>
 
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 #include "scenes/live/live_session.h"
 
 namespace palpate {
 
 // The keys are those of the contract: haptics, graphics, models, faults.
-std::string stats_text(const LiveSession& session, const FrameFigures& frames);
+std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
 
 }  // namespace palpate

@@ -14,14 +14,14 @@ namespace {
 
 using State = ExhibitGame::State;
 
-constexpr double kRest_m = -0.008;       // of the tool while nothing is to be pressed
+constexpr double kLifted_m = -0.008;     // the tool while nothing is to be pressed
 constexpr double kDeviceMoves_m = 5e-4;  // more than the noise of a handle that lies still
 
 std::vector<ExhibitModel> ready_models(const LiveSession& session) {
   std::vector<ExhibitModel> ready;
   for (std::size_t i = 0; i < session.models().size(); ++i) {
-    const SlotView& slot = session.models().view(i);
-    if (slot.state == SlotState::ready) ready.push_back({i, slot.method, slot.name.find("'09") != std::string::npos});
+    const ModelInfo& slot = session.models().info(i);
+    if (slot.state == SlotState::ready) ready.push_back({i, slot.method, slot.paper});
   }
   return ready;
 }
@@ -33,8 +33,16 @@ bool has_reference(const LiveSession& session) {
 }
 
 ExhibitTick tick_of(const HistoryPoint& point, const ExhibitRound& round) {
-  return {point.loop_time_s, static_cast<double>(round.first ? point.force_N[round.first->slot] : point.reference_N),
-          static_cast<double>(point.force_N[round.second.slot]), point.in_contact, point.out_of_domain};
+  const std::size_t second = round.second.slot;
+  ExhibitTick tick;
+  tick.loop_time_s = point.loop_time_s;
+  tick.first_N = static_cast<double>(round.first ? point.force_N[round.first->slot] : point.reference_N);
+  tick.second_N = static_cast<double>(point.force_N[second]);
+  tick.over_jnd = static_cast<double>(point.sustained_over_jnd[second]);
+  if (round.first) tick.over_jnd -= static_cast<double>(point.sustained_over_jnd[round.first->slot]);
+  tick.in_contact = point.in_contact;
+  tick.out_of_domain = point.out_of_domain;
+  return tick;
 }
 
 // Once the game is complete, which needs no other models to settle; nothing: too few yet.
@@ -73,14 +81,14 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   read_ticks(session);
   note_result();
   // So that nothing of the last round is still pressed, and nobody presses while reading.
-  view.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
-  if (view.tool_is_held) let_go(session);
+  view.exhibit.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
+  if (view.exhibit.tool_is_held) let_go(session);
   // A visitor who hesitates presses; the hand does not do it instead.
   if (game_.state() == State::press && session.mouse() != nullptr) session.mouse()->nudge(0.0, steady_now_s());
   const ExhibitRound* now = pair();
   const bool blind = game_.state() == State::press && game_.felt();
-  view.blind = blind;
-  view.block_count = game_.state() != State::attract && game_.felt() ? 1 : 2;
+  view.exhibit.blind = blind;
+  view.settings.block_count = game_.state() != State::attract && game_.felt() ? 1 : 2;
   if (now != nullptr) session.select(blind ? game_.rendered().slot : now->second.slot);
   return left;
 }
@@ -105,17 +113,17 @@ void Exhibit::read_ticks(const LiveSession& session) {
   for (; now != nullptr && next < history.size(); ++next) {
     const ExhibitTick tick = tick_of(history[next], *now);
     if (game_.state() != State::attract) {
-      game_.add(tick, session.jnd());
+      game_.add(tick);
       continue;
     }
     if (trace_.seconds() >= times_.press_s) trace_.clear();
-    trace_.add(tick, session.jnd().at(tick.first_N));
+    trace_.add(tick);
   }
   if (history.size() > 0) seen_s_ = history[history.size() - 1].loop_time_s;
 }
 
 void Exhibit::let_go(LiveSession& session) {
-  if (session.mouse() != nullptr) session.mouse()->set_target(kRest_m, steady_now_s());
+  if (session.mouse() != nullptr) session.mouse()->set_target(kLifted_m, steady_now_s());
 }
 
 void Exhibit::note_result() {

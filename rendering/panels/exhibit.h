@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "rendering/panels/layout.h"
-#include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/plot.h"
 #include "rendering/ui/ui_style.h"
@@ -52,7 +52,8 @@ class Exhibit {
   // The tool out of the block.
   static void let_go(LiveSession& session);
   // Beside the picture, and the names at its blocks.
-  void draw(const LiveSession& session, const BlockView& blocks, const UiStyle& style, const WindowLayout& layout);
+  void draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
+            const WindowLayout& layout);
 
   const ExhibitGame& game() const noexcept { return game_; }
   const ExhibitTrace& attract_trace() const noexcept { return trace_; }

@@ -48,11 +48,12 @@ void space(const UiStyle& style, float lines) { ImGui::Dummy({1.0F, lines * heig
 
 struct Exhibit::Canvas {
   const LiveSession& session;
+  const WindowView& shown;
   const UiStyle& style;
   SceneArea panel;
   float foot = 0.0F;  // its height
   std::string centres_of(const ExhibitModel& model) const {
-    return std::to_string(session.models().view(model.slot).centres);
+    return std::to_string(shown.models.slots[model.slot].centres);
   }
   Rgb colour_of(const ExhibitModel& model) const {
     return method_colour(model.method, style.theme());  // one at a time: no shades
@@ -76,6 +77,7 @@ std::string Exhibit::number(double value) const {
 std::string Exhibit::verdict() const {
   const ExhibitRound& round = game_.round();
   if (round.is_catch()) return words()("verdict_catch");
+  if (round.on_the_edge()) return words()("verdict_edge");
   return words()(round.noticed() ? "verdict_noticed" : "verdict_unnoticed", number(round.largest_over_jnd));
 }
 
@@ -92,12 +94,12 @@ void Exhibit::say_quietly(const Canvas& canvas, const std::string& text) {
   ImGui::PopStyleColor();
 }
 
-void Exhibit::draw(const LiveSession& session, const BlockView& blocks, const UiStyle& style,
+void Exhibit::draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
                    const WindowLayout& layout) {
   if (pointer_moved()) moved_s_ = session.newest().loop_time_s;
   buttons_.clear();
   said_.clear();
-  const Canvas canvas{session, style, layout.panel, 2.6F * height_of(style.fonts().body)};
+  const Canvas canvas{session, shown, style, layout.panel, 2.6F * height_of(style.fonts().body)};
   ImGui::SetNextWindowPos(layout.panel.at);
   ImGui::SetNextWindowSize(layout.panel.size);
   ImGui::Begin("visitor", nullptr, kVisitorWindow);
@@ -196,7 +198,8 @@ void Exhibit::draw_press(const Canvas& canvas) {
 
 void Exhibit::draw_reveal(const Canvas& canvas) {
   const ExhibitRound& round = game_.round();
-  say(words()(round.right() ? "right" : "wrong"));
+  const bool edge = round.on_the_edge() && !round.is_catch();
+  say(words()(edge ? "edge" : round.right() ? "right" : "wrong"));
   space(canvas.style, 0.2F);
   say(verdict());
   space(canvas.style, 0.4F);
@@ -274,11 +277,12 @@ void Exhibit::draw_difference(const Canvas& canvas, const ExhibitTrace& trace, d
       points.clear();
     };
     for (std::size_t i = 0; i < trace.columns().size(); ++i) {
-      const double felt = trace.felt(i);
-      if (std::isnan(felt)) {
+      const double over_jnd = trace.over_jnd(i);
+      if (std::isnan(over_jnd)) {
         flush();
       } else {
-        points.emplace_back(plot.x_px(static_cast<double>(i) / kPerSecond), plot.y_px(felt));
+        points.emplace_back(plot.x_px(static_cast<double>(i) / kPerSecond),
+                            plot.y_px(std::clamp(over_jnd, -kMost_jnd, kMost_jnd)));
       }
     }
     flush();
@@ -342,7 +346,7 @@ void Exhibit::draw_host(const Canvas& canvas) {
   ImGui::SetCursorScreenPos({canvas.panel.at.x + 0.4F * canvas.panel.size.x, canvas.panel.at.y + 2.0F});
   ImGui::PushFont(canvas.style.fonts().body);
   said_.push_back(words()("tally", std::to_string(tally_.answers), std::to_string(tally_.as_expected)));
-  ImGui::TextUnformatted((said_.back() + "\n" + health_words(health_view(canvas.session), 0.0).text).c_str());
+  ImGui::TextUnformatted((said_.back() + "\n" + health_words(canvas.shown.health, 0.0).text).c_str());
   ImGui::PopFont();
 }
 

@@ -41,41 +41,64 @@ ImVec2 label_place(const BlockView& blocks, std::size_t index, std::size_t count
   return {area.at.x + x, area.at.y + y};
 }
 
-std::string label_text(const LiveSession& session, std::size_t slot) {
-  if (slot == kReferenceBlock) {
-    if (session.comparison().reference() == ReferenceKind::truth) return "the true material";
-    return session.replay() != nullptr ? "as recorded" : "the real block";
-  }
-  return std::to_string(models_view(session).number_of(slot)) + "  " + session.models().view(slot).name;
+// Broken at blanks where it is wider than there is room, and behind a plate.
+float draw_wrapped(ImFont* font, const ImVec2& at, const std::string& text, ImU32 colour, float room) {
+  text_at(font, at, colour, text, room);
+  return at.y + text_size(font, text, room).y;
 }
 
 }  // namespace
 
-void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view, const UiStyle& style,
-                 const SceneArea& area, float lift) {
-  const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
+float draw_headline(const WindowView& shown, const UiStyle& style, const SceneArea& area) {
+  const Verdict& verdict = shown.models.verdict;
+  const float line = height_of(style.fonts().body);
+  const float head = height_of(style.fonts().heading);
+  const float top = area.at.y + 2.0F * line;
+  if (verdict.headline.empty()) return top;
+  const float indent = verdict.chosen ? 1.1F * head : 0.0F;
+  const ImVec2 at(area.at.x + 0.7F * line + indent, top);
+  const float room = area.size.x - indent - 1.4F * line;
+  if (verdict.chosen) {
+    const ModelView& model = shown.models.slots[*verdict.chosen];
+    const ImU32 colour = ink(slot_colour(shown.models, *verdict.chosen, style.theme()));
+    draw_mark(*ImGui::GetBackgroundDrawList(), {at.x - 0.6F * head, top + 0.55F * head}, 0.36F * head, model.paper,
+              colour, style);
+  }
+  const Rgb& ink_of = verdict.chosen ? style.colours().text : style.colours().quiet;
+  float y = draw_wrapped(style.fonts().heading, at, verdict.headline, ink(ink_of), room);
+  if (!verdict.detail.empty())
+    y = draw_wrapped(style.fonts().body, {at.x, y + 0.1F * line}, verdict.detail, ink(style.colours().quiet), room);
+  return y + 0.3F * line;
+}
+
+void draw_labels(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const SceneArea& area,
+                 float lift) {
+  const std::vector<std::size_t>& stage = shown.stage;
   ImFont* font = style.fonts().heading;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const std::string text = label_text(session, slots[i]);
+  for (std::size_t i = 0; i < stage.size(); ++i) {
+    const bool reference = stage[i] == kReferenceBlock;
+    const std::string text =
+        reference ? shown.reference_block
+                  : std::to_string(shown.models.number_of(stage[i])) + "  " + shown.models.slots[stage[i]].name;
     const ImVec2 size = text_size(font, text);
-    const ImVec2 at = label_place(blocks, i, slots.size(), area, size, lift);
-    const bool chosen = slots[i] == session.models().selected();
-    const Rgb colour =
-        slots[i] == kReferenceBlock ? kReferenceColour : slot_colour(models_view(session), slots[i], style.theme());
+    const ImVec2 at = label_place(blocks, i, stage.size(), area, size, lift);
+    const bool active = stage[i] == shown.models.selected;
+    const bool best = shown.models.verdict.chosen == stage[i];
+    const Rgb colour = reference ? kReferenceColour : slot_colour(shown.models, stage[i], style.theme());
     const float pad = 0.25F * height_of(font);
     draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, 0.5F * pad}, ink(style.colours().panel, 0.88F),
                colour);
-    if (slots.size() > 1 && chosen) {
+    if (stage.size() > 1 && active) {
       ImGui::GetBackgroundDrawList()->AddRect({at.x - 2.0F * pad, at.y - 0.5F * pad},
                                               {at.x + size.x + 2.0F * pad, at.y + size.y + 0.5F * pad}, ink(colour),
                                               6.0F, 0, 2.0F);
     }
-    text_at(font, at, ink(chosen ? style.colours().text : style.colours().quiet), text);
-    if (slots.size() < 2 || !chosen) continue;
-    const std::string active = "active model";
-    const ImVec2 below = text_size(style.fonts().body, active);
+    text_at(font, at, ink(active || best ? style.colours().text : style.colours().quiet), text);
+    if (!active && !best) continue;
+    const std::string mark = best && active ? "best, and active" : best ? "best" : stage.size() > 1 ? "active" : "";
+    const ImVec2 below = text_size(style.fonts().body, mark);
     text_at(style.fonts().body, {at.x + 0.5F * (size.x - below.x), at.y + size.y + 0.6F * pad},
-            ink(style.colours().text), active);
+            ink(style.colours().text), mark);
   }
 }
 
@@ -84,13 +107,13 @@ float big_number_height(const UiStyle& style, float lift) {
 }
 
 // The big number, in words, and the scale that its colour is from.
-void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift) {
+void draw_big_number(const WindowView& shown_view, const UiStyle& style, const SceneArea& area, float lift) {
   const Palette& p = style.colours();
   ImFont* big = style.fonts().big;
   ImFont* body = style.fonts().body;
   const float line = height_of(body);
   const ImVec2 corner(area.at.x + 1.1F * line, area.at.y + area.size.y - lift);
-  const BigNumber shown = big_number(models_view(session), session.jnd());
+  const BigNumber shown = big_number(shown_view.models, shown_view.reference_block == "the true material");
   ImVec2 size = text_size(big, "0.00");
   size.x = std::max(size.x, text_size(big, shown.number).x);
   const float y = area.at.y + area.size.y - big_number_height(style, lift);
@@ -100,7 +123,7 @@ void draw_big_number(const LiveSession& session, const UiStyle& style, const Sce
     ImGui::SetTooltip(
         "99 %% of the samples in contact are off by at most this, in just noticeable differences (JND):\n"
         "the active row of the table, over %s",
-        counted_words(models_view(session)).c_str());
+        shown_view.models.counted.c_str());
   text_at(body, {beside, y + 0.30F * size.y}, ink(p.text), shown.what);
   text_at(body, {beside, y + 0.30F * size.y + 1.15F * line}, ink(p.quiet), shown.below);
   const float width = 11.0F * line;

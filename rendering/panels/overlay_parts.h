@@ -30,14 +30,16 @@ inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::str
 void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
                 std::optional<Rgb> stripe = std::nullopt);
 
+// The verdict, large, below the title; its lower edge.
+float draw_headline(const WindowView& shown, const UiStyle& style, const SceneArea& area);
 // Over the blocks, and above what lies at the lower edge, so high.
-void draw_labels(const LiveSession& session, const BlockView& blocks, const ViewState& view, const UiStyle& style,
-                 const SceneArea& area, float lift);
+void draw_labels(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const SceneArea& area,
+                 float lift);
 // From the lower edge up to the big number's top, which stands so far above that edge.
 float big_number_height(const UiStyle& style, float lift);
 // The error of the active model as one number, in words, and the scale that its
 // colour is from; so far above the lower edge.
-void draw_big_number(const LiveSession& session, const UiStyle& style, const SceneArea& area, float lift);
+void draw_big_number(const WindowView& shown, const UiStyle& style, const SceneArea& area, float lift);
 
 // What can be opened in a folder: its folders ("name/"), then its files.
 std::vector<std::string> pickable_files(const std::string& folder);
@@ -47,17 +49,19 @@ inline constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_A
 // The next window: in the middle, and never larger than the whole.
 void begin_in_the_middle();
 
-// Windows in the middle. `offered`: something else is asked there.
-void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area);
+// Windows in the middle.
+void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area);
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands);
 void draw_file_picker(ViewState& view, const OverlayActions& actions);
 // `in_use`: the device that the session has, which nothing else can open.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
-// What to do with a recording: fit it, replay it.
-void draw_offered_recording(ViewState& view, const OverlayActions& actions);
-// Notices at the top.
-void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area);
-void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area);
+// How things are shown and compared: every choice with its state.
+void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions);
+// What to do with recordings: which to train on, which to test on.
+void draw_offer(ViewState& view, const OverlayActions& actions);
+// Notices, from `top_px` down.
+void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area, float top_px);
+void draw_data_warning(const ModelsView& models, const UiStyle& style, const SceneArea& area, float top_px);
 
 }  // namespace palpate::overlay

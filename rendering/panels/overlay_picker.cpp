@@ -49,8 +49,8 @@ std::vector<std::string> pickable_files(const std::string& folder) {
 }
 
 void draw_file_picker(ViewState& view, const OverlayActions& actions) {
-  FilePicker& picker = view.picker;
-  if (!view.file_list) {
+  FilePicker& picker = view.dialogs.picker;
+  if (!view.dialogs.file_list) {
     picker.folder.clear();
     return;
   }
@@ -60,13 +60,13 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float width = std::min(0.85F * all.x, 44.0F * ImGui::GetFontSize());
   begin_in_the_middle();
-  ImGui::Begin("Open a file", &view.file_list, kDialog);
+  ImGui::Begin("Open a file", &view.dialogs.file_list, kDialog);
   bool done = false;
   ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
   ImGui::SetNextItemWidth(width);
   if (ImGui::InputText("##path", picker.path.data(), picker.path.size(), ImGuiInputTextFlags_EnterReturnsTrue))
     done = pick(picker, picker.path.data(), actions);
-  for (const std::string& file : std::vector<std::string>(view.recent))
+  for (const std::string& file : std::vector<std::string>(view.settings.recent))
     if (ImGui::Selectable(("opened of late: " + fs::path(file).filename().string() + "###" + file).c_str()))
       done = pick(picker, file, actions);
   ImGui::TextUnformatted(fitting(picker.folder, width).c_str());
@@ -81,28 +81,26 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   ImGui::End();
   if (!chosen.empty())
     done = pick(picker, chosen.back() == '/' ? chosen.substr(0, chosen.size() - 1) : chosen, actions);
-  if (done) view.file_list = false;
+  if (done) view.dialogs.file_list = false;
 }
 
 // What can hold the tool, and why it cannot.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions) {
-  if (!view.device_list) return;
+  if (!view.dialogs.device_list) return;
   begin_in_the_middle();
-  ImGui::Begin("Device", &view.device_list, kDialog);
-  if (view.devices.empty()) ImGui::TextDisabled("looking for devices ...");
-  for (const DeviceChoice& device : view.devices) {
+  ImGui::Begin("Device", &view.dialogs.device_list, kDialog);
+  if (view.dialogs.devices.empty()) ImGui::TextDisabled("looking for devices ...");
+  for (const DeviceChoice& device : view.dialogs.devices) {
     const bool own = device.name == in_use;
     const bool usable = own || device.problem.empty();
     if (ImGui::Selectable((device.name + "###" + device.name).c_str(), own,
                           usable ? 0 : ImGuiSelectableFlags_Disabled)) {
       actions.use_device(device.name);
-      view.device_list = false;
+      view.dialogs.device_list = false;
     }
     ImGui::SameLine(8.0F * ImGui::GetFontSize());
     ImGui::PushTextWrapPos(40.0F * ImGui::GetFontSize());
-    ImGui::TextDisabled("%s", own      ? "in use here"
-                              : usable ? device.summary.c_str()
-                                       : device.problem.c_str());
+    ImGui::TextDisabled("%s", own ? "in use here" : usable ? device.summary.c_str() : device.problem.c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::End();

@@ -1,13 +1,28 @@
 // Windows and notices over the picture: the keys, model files, what the device wants.
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 
 #include "rendering/panels/overlay_parts.h"
 #include "rendering/panels/panel_parts.h"
 #include "scenes/scene/assets.h"
 #include "scenes/scene/scene.h"
+#include "scenes/worker/slot_plan.h"
 
 namespace palpate::overlay {
+namespace {
+
+constexpr const char* kPictureHelp[] = {
+    "The probe presses the same block with several models at once; the sentence at the top says which one to take.",
+    "JND: the smallest difference of force that a hand can feel, 0.065 N and 6 % of the force. Grey band: one JND to "
+    "either side of the reference. A curve inside it cannot be told from the reference by a hand.",
+    "Green: the reference, the true or the recorded force. Other colours: one for each method; hollow marks: the "
+    "recipe of 2009. On a dent: its error, from light (0) to green (1 JND); magenta is above.",
+    "Centres: the points that a radial basis function model is made of. More are closer, and slower."};
+
+}  // namespace
 
 void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
                 std::optional<Rgb> stripe) {
@@ -23,8 +38,8 @@ void begin_in_the_middle() {
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, {all.x - margin, all.y - margin});
 }
 
-void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area) {
-  float y = area.at.y + 2.2F * height_of(style.fonts().heading);
+void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area, float top_px) {
+  float y = top_px;
   ImFont* font = style.fonts().body;
   const float pad = 0.6F * height_of(font);
   const float wrap = 0.86F * area.size.x;
@@ -39,20 +54,20 @@ void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const S
   }
 }
 
-void draw_data_warning(const LiveSession& session, const UiStyle& style, const SceneArea& area) {
-  const std::string text = data_warning(models_view(session));
+void draw_data_warning(const ModelsView& models, const UiStyle& style, const SceneArea& area, float top_px) {
+  const std::string text = data_warning(models);
   if (text.empty()) return;
   const float wrap = 0.8F * area.size.x;
   const ImVec2 size = text_size(style.fonts().body, text, wrap);
   const float pad = 0.4F * height_of(style.fonts().body);
-  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), area.at.y + 3.6F * height_of(style.fonts().heading));
+  const ImVec2 at(area.at.x + 0.5F * (area.size.x - size.x), top_px + pad);
   draw_plate(*ImGui::GetBackgroundDrawList(), at, size, {2.0F * pad, pad}, ink(style.colours().raised));
   text_at(style.fonts().body, at, ink(style.colours().text), text, wrap);
 }
 
 // What the device wants of whoever holds it, large and in the middle.
-void draw_device_words(LiveSession& session, bool offered, const UiStyle& style, const SceneArea& area) {
-  std::string words = offered ? std::string() : empty_scene_words(session);
+void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area) {
+  std::string words = empty_scene_words(session);
   if (words.empty()) words = session.device_words();
   if (words.empty()) return;
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -68,7 +83,7 @@ void draw_device_words(LiveSession& session, bool offered, const UiStyle& style,
 }
 
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands) {
-  if (!view.help) return;
+  if (!view.dialogs.help) return;
   float keys = 0.0F;
   float text = 0.0F;
   for (const WindowCommand& command : commands) {
@@ -76,11 +91,15 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
     text = std::max(text, ImGui::CalcTextSize(command.help.c_str()).x);
   }
   begin_in_the_middle();
-  ImGui::SetNextWindowFocus();
-  ImGui::Begin("Keys", &view.help, kDialog);
+  ImGui::Begin("Help", &view.dialogs.help, kDialog);
+  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+  ImGui::PushTextWrapPos(0.9F * ImGui::GetIO().DisplaySize.x);
+  for (const char* sentence : kPictureHelp) ImGui::TextWrapped("%s", sentence);
+  ImGui::PopTextWrapPos();
+  ImGui::Separator();
   // Beside each other where they are too many below each other.
   const ImVec2 all = ImGui::GetIO().DisplaySize;
-  const float high = (static_cast<float>(commands.size()) + 3.0F) * ImGui::GetTextLineHeightWithSpacing();
+  const float high = (static_cast<float>(commands.size()) + 11.0F) * ImGui::GetTextLineHeightWithSpacing();
   const std::size_t columns = high > all.y ? 2 : 1;
   const float room =
       (all.x - 4.0F * ImGui::GetFontSize()) / static_cast<float>(columns) - keys - 2.0F * ImGui::GetFontSize();
@@ -104,16 +123,16 @@ void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCo
 }
 
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions) {
-  if (!view.scene_list) return;
+  if (!view.dialogs.scene_list) return;
   begin_in_the_middle();
-  ImGui::Begin("Scenes", &view.scene_list, kDialog);
+  ImGui::Begin("Scenes", &view.dialogs.scene_list, kDialog);
   const auto names = scene_names();
   for (const std::string& name : names ? *names : std::vector<std::string>{}) {
     const auto scene = load_scene(name);
     // A study is no scene to press.
     if (!scene || name == "jnd_study") continue;
     if (ImGui::Selectable((scene->title + "###" + name).c_str(), name == session.scene().name)) {
-      view.scene_list = false;
+      view.dialogs.scene_list = false;
       actions.use_scene(name);
     }
     tip(scene->description.c_str());
@@ -121,36 +140,132 @@ void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayA
   ImGui::End();
 }
 
-void draw_offered_recording(ViewState& view, const OverlayActions& actions) {
-  if (!view.offered.any()) return;
-  const OfferedFile offered = view.offered;
+namespace {
+
+// A choice of several; the number of the one that was chosen now.
+template <typename Names>
+std::optional<std::size_t> choose(const char* title, const Names& names, std::size_t now) {
+  std::optional<std::size_t> chosen;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(title);
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    ImGui::SameLine(i == 0 ? 8.0F * ImGui::GetFontSize() : 0.0F);
+    ImGui::PushID(title);
+    if (ImGui::RadioButton(names[i], i == now)) chosen = i;
+    ImGui::PopID();
+  }
+  return chosen;
+}
+
+}  // namespace
+
+void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions) {
+  if (!view.dialogs.view_list) return;
+  begin_in_the_middle();
+  ImGui::Begin("View", &view.dialogs.view_list, kDialog);
+  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+  const std::size_t blocks = view.settings.block_count;
+  if (const auto to = choose("Blocks (B)", std::array{"1", "2", "4"}, blocks == 4 ? 2 : blocks - 1))
+    view.settings.block_count = std::size_t{1} << *to;
+  std::vector<const char*> line_up_names;
+  std::size_t line_up = static_cast<std::size_t>(-1);
+  for (const LineUp& one : line_ups()) {
+    if (session.line_up() == one.name) line_up = line_up_names.size();
+    line_up_names.push_back(one.name);
+  }
+  if (session.scene().has_material()) {
+    if (const auto to = choose("Models (N)", line_up_names, line_up)) actions.use_line_up(line_ups()[*to].name);
+  }
+  std::vector<const char*> reference_names;
+  std::vector<ReferenceKind> kinds;
+  std::size_t reference = static_cast<std::size_t>(-1);
+  for (const ReferenceKind kind : kReferenceKinds) {
+    if (!session.has_reference(kind)) continue;
+    if (kind == session.comparison().reference()) reference = kinds.size();
+    kinds.push_back(kind);
+    reference_names.push_back(kind == ReferenceKind::measured ? "measured force"
+                              : kind == ReferenceKind::truth  ? "true force"
+                                                              : "a model: all sites");
+  }
+  if (const auto to = choose("Compare with (F)", reference_names, reference)) session.use_reference(kinds[*to]);
+  if (const auto to =
+          choose("Curves (V)", std::array{"difference", "mean over 50 ms"}, view.settings.difference ? 0 : 1))
+    view.settings.difference = *to == 0;
+  if (const auto to = choose("Plot (E)", std::array{"error against time", "error against force"}, view.verdict ? 0 : 1))
+    view.verdict = *to == 0;
+  if (const auto to = choose("Theme (T)", std::array{"light", "dark"}, view.settings.theme == Theme::light ? 0 : 1))
+    view.settings.theme = *to == 0 ? Theme::light : Theme::dark;
+  if (session.renders_force()) {
+    const auto now = static_cast<std::size_t>(session.dead_man());
+    if (const auto to = choose("Push only while (D)", std::array{"always", "G is held", "the grip is held"}, now))
+      session.use_dead_man(static_cast<DeadMan>(*to));
+  }
+  ImGui::Checkbox("Arrows show ten times the difference (X)", &view.exaggerated);
+  ImGui::Checkbox("All figures of the loop, and its faults (L)", &view.details);
+  ImGui::SetNextItemWidth(10.0F * ImGui::GetFontSize());
+  ImGui::SliderFloat("text size (+, -)", &view.settings.text_size, kSmallestText, kLargestText, "%.1f");
+  ImGui::End();
+}
+
+namespace {
+
+void draw_role(Offer& offer, std::size_t index) {
+  using Role = OfferedRecording::Role;
+  OfferedRecording& one = offer.recordings[index];
+  ImGui::PushID(static_cast<int>(index));
+  if (ImGui::RadioButton("train", one.role == Role::train)) one.role = Role::train;
+  tip("Models are fitted to it; several are one training set");
+  ImGui::SameLine();
+  if (ImGui::RadioButton("test", one.role == Role::test)) offer.make_test(index);
+  tip("It is replayed, and the models are judged on it; none is fitted to it");
+  ImGui::SameLine();
+  if (ImGui::RadioButton("leave", one.role == Role::none)) one.role = Role::none;
+  ImGui::PopID();
+  ImGui::SameLine();
+  ImGui::TextUnformatted(std::filesystem::path(one.path).filename().c_str());
+  tip(one.path.c_str());
+  for (const std::string& line : one.words) ImGui::TextDisabled("%s", line.c_str());
+}
+
+// What Start will do.
+std::string offer_words(const Offer& offer) {
+  const std::size_t training = offer.training().size();
+  const bool test = !offer.test().empty();
+  if (training == 0 && !test) return "Choose a recording to train on, or one to test on.";
+  if (training == 0) return "Tests the models that are here on it. None is fitted again.";
+  const std::string fits =
+      "Fits models to " + std::to_string(training) + (training == 1 ? " recording" : " recordings");
+  return fits +
+         (test ? ", and tests them on the other." : "; you press the best one. Drop a second recording to test on.");
+}
+
+}  // namespace
+
+void draw_offer(ViewState& view, const OverlayActions& actions) {
+  Offer& offer = view.dialogs.offer;
+  if (!offer.any()) return;
   bool open = true;
   begin_in_the_middle();
-  ImGui::Begin(offered.problem.empty() ? "Recording" : "Not a recording", &open, kDialog);
+  ImGui::Begin(offer.problem.empty() ? "Recordings" : "Not a recording", &open, kDialog);
   ImGui::PushTextWrapPos(std::min(0.8F * ImGui::GetIO().DisplaySize.x, 42.0F * ImGui::GetFontSize()));
-  if (!offered.problem.empty()) {
-    ImGui::TextUnformatted(offered.problem.c_str());
+  if (!offer.problem.empty()) {
+    ImGui::TextUnformatted(offer.problem.c_str());
     ImGui::TextDisabled(
         "What it asks for is an option of `palpate import FILE --out REC.csv`; drop that recording here.");
-  } else {
-    ImGui::TextUnformatted(std::filesystem::path(offered.path).filename().c_str());
-    for (const std::string& line : offered.words) ImGui::TextDisabled("%s", line.c_str());
-    if (ImGui::Button("Fit it, and put it in my hand")) {
-      actions.fit(offered.path);
+  }
+  for (std::size_t i = 0; i < offer.recordings.size(); ++i) draw_role(offer, i);
+  if (!offer.recordings.empty()) {
+    ImGui::TextUnformatted(offer_words(offer).c_str());
+    const bool ready = !offer.training().empty() || !offer.test().empty();
+    const bool typing = ImGui::GetIO().WantTextInput;
+    if ((ImGui::Button("Start (Enter)") || (!typing && ImGui::IsKeyPressed(ImGuiKey_Enter))) && ready) {
+      actions.start_offer();
       open = false;
     }
-    tip("It becomes the material: all models are fitted to it in the background, and you press the best one");
-    ImGui::SameLine();
-    if (ImGui::Button("Replay it")) {
-      open = false;
-      actions.replay(offered.path);
-    }
-    tip("Moves the probe as it was recorded; the models are compared with the recorded force");
-    ImGui::TextDisabled("%s", offered.path.c_str());
   }
   ImGui::PopTextWrapPos();
   ImGui::End();
-  if (!open) view.offered = {};
+  if (!open) offer = {};
 }
 
 }  // namespace palpate::overlay

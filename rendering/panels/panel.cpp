@@ -1,7 +1,6 @@
 #include "rendering/panels/panel.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 #include "rendering/panels/panel_errors.h"
@@ -43,40 +42,38 @@ void draw_centres(LiveSession& session, const ModelsView& models, ViewState& vie
 
 }  // namespace
 
-void SidePanel::draw(LiveSession& session, ViewState& view, const UiStyle& style, const FrameFigures& frames,
-                     const ImVec2& at, const ImVec2& size) {
-  ImGui::SetNextWindowPos(at);
-  ImGui::SetNextWindowSize(size);
+void SidePanel::draw(LiveSession& session, const WindowView& shown, ViewState& view, const UiStyle& style,
+                     const FrameFigures& frames, const SceneArea& area) {
+  ImGui::SetNextWindowPos(area.at);
+  ImGui::SetNextWindowSize(area.size);
   ImGui::Begin("panel", nullptr, kPanelWindow);
-  const HealthView health = health_view(session);
-  const double until_s = view.time.end_s(std::numeric_limits<double>::infinity());
-  const ModelsView models = models_view(session, until_s);
+  const ModelsView& models = shown.models;
   const float line = ImGui::GetTextLineHeightWithSpacing();
   // What has a fixed size first; the plots share the rest.
-  const float health_room = health_height(health, view);
+  const float health_room = health_height(shown.health, view);
   const float rows = static_cast<float>(std::clamp<std::size_t>(models.listed().size(), 2, 8)) + 1.0F;
   const float table = rows * (ImGui::GetTextLineHeight() + 2.0F * ImGui::GetStyle().CellPadding.y + 1.0F) +
                       0.28F * ImGui::GetFontSize() + 3.0F;
   const float titles = line * 3.4F;
-  const SlotView* active = models.active();
+  const ModelView* active = models.active();
   const bool has_centres = active != nullptr && active->takes_centres;
   const float centres = has_centres ? ImGui::GetFrameHeightWithSpacing() : 0.0F;
   const float rest = std::max(6.0F * line, ImGui::GetContentRegionAvail().y - health_room - table - centres - titles);
   const bool bins = !view.details || rest > 14.0F * line;
-  curves_.draw(force_view(session, until_s), view, style, rest * (bins ? 0.29F : 0.48F), rest * (bins ? 0.33F : 0.52F));
-  draw_model_table(session, models, view.table, style, table);
+  curves_.draw(shown, view, style, rest * (bins ? 0.36F : 0.52F), rest * (bins ? 0.30F : 0.48F));
+  draw_model_table(session, models, view, style, table);
   if (centres > 0.0F) draw_centres(session, models, view);
   if (bins) {
-    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME" : "ERROR AGAINST FORCE");
+    section_title(style, view.verdict ? "ERROR / JND AGAINST TIME OF A TICK" : "ERROR AGAINST FORCE");
     ImGui::SameLine();
-    quiet_words(counted_words(models));
+    quiet_words(models.counted);
     if (view.verdict) {
-      draw_verdict(models, style, rest * 0.37F);
+      draw_verdict(models, style, rest * 0.33F);
     } else {
-      draw_error_bins(models, style, rest * 0.37F);
+      draw_error_bins(models, style, rest * 0.33F);
     }
   }
-  draw_health(health, view, style, frames);
+  draw_health(shown.health, view, style, frames);
   ImGui::End();
 }
 

@@ -12,11 +12,6 @@
 namespace palpate {
 namespace {
 
-// A fraction of a second of contact: fewer say nothing.
-constexpr std::uint64_t kFewestToJudge = 300;
-constexpr double kUnnoticeable = 0.99;
-// Shares that differ by less are called the same.
-constexpr double kSame = 0.005;
 // On decades: JND from 0.03 to 30, us from 0.1 to the budget of 1 ms and a little more.
 constexpr Range kErrors{-1.6, 1.5}, kTimes{-1.0, 3.3};
 constexpr double kBudget_us = 1000.0;
@@ -24,23 +19,10 @@ constexpr double kBudget_us = 1000.0;
 std::vector<std::size_t> judged(const ModelsView& models) {
   std::vector<std::size_t> list = models.listed();
   std::erase_if(list, [&](std::size_t slot) {
-    const SlotView& view = *models.slots[slot];
-    return view.state != SlotState::ready || view.errors.samples() < kFewestToJudge || slot == models.reference;
+    const ModelView& view = models.slots[slot];
+    return view.state != SlotState::ready || view.errors.samples == 0 || slot == models.reference;
   });
   return list;
-}
-
-// Never rounded up to what it is not.
-std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%g %%", std::floor(1000.0 * share) / 10.0);
-  return text;
-}
-
-std::string time_words(const SlotView& slot) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.2g us", 1e-3 * slot.tick_ns);
-  return text;
 }
 
 // Fewer say nothing about a spread.
@@ -53,8 +35,8 @@ struct Limits {
 
 Limits limits_of(const ModelsView& models) {
   Limits limits;
-  for (const SlotView* slot : models.slots) {
-    for (const ForceBin& bin : slot->errors.bins(models.jnd)) {
+  for (const ModelView& slot : models.slots) {
+    for (const ForceBin& bin : slot.errors.bins) {
       if (bin.count < kFewestSamples) continue;
       limits.force_N = std::max(limits.force_N, bin.force_to_N);
       limits.error_N = std::max(limits.error_N, bin.mean_abs_error_N + bin.std_abs_error_N);
@@ -67,11 +49,11 @@ Limits limits_of(const ModelsView& models) {
 
 void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index, const UiStyle& style) {
   const bool selected = index == models.selected;
-  const SlotView& slot = *models.slots[index];
+  const ModelView& slot = models.slots[index];
   const ImU32 colour = ink(slot_colour(models, index, style.theme()), selected ? 1.0F : 0.75F);
   const float size = style.scale();
   std::vector<ImVec2> spread;
-  for (const ForceBin& bin : slot.errors.bins(models.jnd)) {
+  for (const ForceBin& bin : slot.errors.bins) {
     if (bin.count < kFewestSamples) continue;
     const float x = plot.x_px(0.5 * (bin.force_from_N + bin.force_to_N));
     spread.emplace_back(x, plot.y_px(bin.mean_abs_error_N + bin.std_abs_error_N));
@@ -85,37 +67,12 @@ void draw_slot(const LivePlot& plot, const ModelsView& models, std::size_t index
 
 }  // namespace
 
-std::string verdict_words(const ModelsView& models) {
-  const std::vector<std::size_t> slots = judged(models);
-  if (!models.compared) return models.off_from;
-  if (slots.empty()) return "The verdict comes with the first samples in contact.";
-  const auto share = [&](std::size_t slot) { return models.slots[slot]->errors.within_jnd(); };
-  const auto time = [&](std::size_t slot) { return models.slots[slot]->tick_ns; };
-  const std::size_t best = *std::min_element(slots.begin(), slots.end(), [&](std::size_t a, std::size_t b) {
-    const bool good_a = share(a) >= kUnnoticeable, good_b = share(b) >= kUnnoticeable;
-    if (good_a != good_b) return good_a;
-    return good_a ? time(a) < time(b) : share(a) > share(b);
-  });
-  const SlotView& winner = *models.slots[best];
-  std::string words = winner.name + ": " + percent(share(best)) + " unnoticeable at " + time_words(winner) + " a tick";
-  if (share(best) < kUnnoticeable) words = "None is unnoticeable. " + words;
-  std::size_t same = best;
-  std::size_t worst = best;
-  for (const std::size_t slot : slots) {
-    if (std::abs(share(slot) - share(best)) < kSame && time(slot) > time(same)) same = slot;
-    if (share(slot) < std::min(share(worst), share(best) - kSame)) worst = slot;
-  }
-  if (same != best) words += "; " + models.slots[same]->name + " the same at " + time_words(*models.slots[same]);
-  if (worst != best) words += "; " + models.slots[worst]->name + " " + percent(share(worst));
-  return words;
-}
-
 void draw_verdict(const ModelsView& models, const UiStyle& style, float height) {
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float size = style.scale();
   const Palette& p = style.colours();
   {
-    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height - 2.0F * line},
+    const LivePlot plot(style, {ImGui::GetContentRegionAvail().x, height},
                         {kTimes, kErrors, "us a tick", "", true, 0.6F, true});
     plot.list().AddRectFilled({plot.left(), plot.y_px(0.0)}, {plot.right(), plot.bottom()}, ink(p.band, 0.45F));
     plot.level(0.0, ink(p.text), 1.5F * size);
@@ -125,28 +82,26 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
     const float wide = ImGui::CalcTextSize("1 ms ").x;
     plot.list().AddText({budget_px - wide, plot.bottom() - line}, ink(p.quiet), "1 ms");
     for (const std::size_t slot : judged(models)) {
-      const SlotView& view = *models.slots[slot];
-      const double error = std::clamp(std::log10(std::max(view.quantile.p99(), 1e-9)), kErrors.from, kErrors.to);
+      const ModelView& view = models.slots[slot];
+      const double error =
+          std::clamp(std::log10(std::max(view.errors.p99_error_over_jnd, 1e-9)), kErrors.from, kErrors.to);
       const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns, 0.1))), plot.y_px(error));
       const ImU32 colour = ink(slot_colour(models, slot, style.theme()));
       // Where it is now: what is felt of it at the right edge of the curves.
-      const double now = models.now != nullptr ? std::abs(models.now->difference_over_jnd(slot, models.jnd)) : 0.0;
+      const double now = models.any_now ? std::abs(models.now.difference_over_jnd(slot, models.jnd)) : 0.0;
       if (now > 0.0) {
         const float y = plot.y_px(std::clamp(std::log10(now), kErrors.from, kErrors.to));
         plot.list().AddLine(at, {at.x, y}, ink(slot_colour(models, slot, style.theme()), 0.5F), 1.2F * size);
         plot.list().AddLine({at.x - 4.0F * size, y}, {at.x + 4.0F * size, y}, colour, 1.5F * size);
       }
-      draw_mark(at, (slot == models.selected ? 6.5F : 5.0F) * size, view.paper, colour, style);
-      if (slot != models.selected) continue;
+      draw_mark(plot.list(), at, (slot == models.selected ? 6.5F : 5.0F) * size, view.paper, colour, style);
+      if (models.verdict.chosen != slot) continue;
       plot.list().AddText({at.x + 9.0F * size, at.y - 0.6F * ImGui::GetFontSize()}, ink(p.text), view.name.c_str());
     }
   }
   tip("Every model: what a whole tick of it costs, and the error that 99 % of the samples do not exceed.\n"
       "Left and low is better. Filled: this program's fits; hollow: the 2009 recipe. The dash is where it is now.\n"
       "Both are columns of the table. E shows the error against the force instead.");
-  ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextUnformatted(verdict_words(models).c_str());
-  ImGui::PopTextWrapPos();
 }
 
 void draw_error_bins(const ModelsView& models, const UiStyle& style, float height) {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "rendering/panels/panel_views.h"
 #include "rendering/panels/view_state.h"
+#include "rendering/panels/window_view.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {

@@ -15,30 +15,30 @@ using Slot = std::size_t;
 
 // Of the tick that the curves end with; NaN: none.
 double force_now_N(const ModelsView& models, Slot slot) {
-  return models.now != nullptr ? static_cast<double>(models.now->force_N[slot]) : std::nan("");
+  return models.any_now ? static_cast<double>(models.now.force_N[slot]) : std::nan("");
 }
 
 double error_now_N(const ModelsView& models, Slot slot) {
-  const bool any = models.now != nullptr && !std::isnan(models.now->difference_over_jnd(slot, models.jnd));
+  const bool any = models.any_now && !std::isnan(models.now.difference_over_jnd(slot, models.jnd));
   if (!any) return std::nan("");
-  return models.now->in_contact ? force_now_N(models, slot) - static_cast<double>(models.now->reference_N) : 0.0;
+  return models.now.in_contact ? force_now_N(models, slot) - static_cast<double>(models.now.reference_N) : 0.0;
 }
 
 // Over the samples so far; NaN: there are none.
 double p99_over_jnd(const ModelsView& models, Slot slot) {
-  return models.slots[slot]->errors.samples() > 0 ? models.slots[slot]->quantile.p99() : std::nan("");
+  return models.slots[slot].errors.samples > 0 ? models.slots[slot].errors.p99_error_over_jnd : std::nan("");
 }
 
 double percent_within(const ModelsView& models, Slot slot) {
-  const ErrorFigures& errors = models.slots[slot]->errors;
-  return errors.samples() > 0 ? 100.0 * errors.within_jnd() : std::nan("");
+  const ErrorSummary& errors = models.slots[slot].errors;
+  return errors.samples > 0 ? 100.0 * errors.within_jnd : std::nan("");
 }
 
 double tick_ns(const ModelsView& models, Slot slot) {
-  return models.slots[slot]->tick_ns > 0.0 ? models.slots[slot]->tick_ns : std::nan("");
+  return models.slots[slot].tick_ns > 0.0 ? models.slots[slot].tick_ns : std::nan("");
 }
 
-double centres(const ModelsView& models, Slot slot) { return models.slots[slot]->centres; }
+double centres(const ModelsView& models, Slot slot) { return models.slots[slot].centres; }
 
 std::string format(const char* pattern, double value) {
   char text[32];
@@ -66,14 +66,14 @@ constexpr Column kTable[kColumns] = {
     {"mN off", "Model minus reference there, millinewtons", "+1234", 1, error_now_N, signed_mN},
     {"99 %",
      "99 % of the samples in contact are off by at most so many just noticeable differences (JND).\n"
-     "Above 1 a hand could tell. The big number and the plot below are this one.",
+     "Above 1 a hand could feel it. The big number and the plot below are this one.",
      "12.34", 5, p99_over_jnd, jnd_text},
     {"% in JND",
-     "Share of the samples in contact whose error a hand cannot tell, since the last reset.\n"
+     "Share of the samples in contact whose error a hand cannot feel, since the last reset.\n"
      "The same samples for all models: those inside the data of each.",
      "100.00", 0, percent_within, two_decimals},
-    {"ns", "Time of a whole tick of this model alone, nanoseconds, measured when it became ready", "12,345", 3, tick_ns,
-     whole},
+    {"ns", "Time of a whole tick of this model alone, nanoseconds: the fastest of several measurements", "12,345", 3,
+     tick_ns, whole},
     {"centres", "Centres of the radial basis functions; nodes of a grid", "33,275", 2, centres, whole}};
 
 // By the size of it, whatever its sign; what is not there comes first.
@@ -87,7 +87,7 @@ std::vector<std::size_t> sorted_slots(const ModelsView& models, const TableState
   if (sort.column < 0) return order;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (!sort.rising) std::swap(a, b);
-    if (sort.column == kName) return models.slots[a]->name < models.slots[b]->name;
+    if (sort.column == kName) return models.slots[a].name < models.slots[b].name;
     return sort_value(models, a, sort.column) < sort_value(models, b, sort.column);
   });
   return order;
@@ -139,21 +139,21 @@ void draw_menu(LiveSession& session, const ModelsView& models, Slot slot, TableS
   if (!ImGui::BeginPopupContextItem()) return;
   if (ImGui::IsWindowAppearing()) {
     table.name.fill('\0');
-    models.slots[slot]->name.copy(table.name.data(), table.name.size() - 1);
+    models.slots[slot].name.copy(table.name.data(), table.name.size() - 1);
   }
   ImGui::TextUnformatted("Name, then Enter:");
   if (ImGui::InputText("##name", table.name.data(), table.name.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
     session.rename(slot, table.name.data());
     ImGui::CloseCurrentPopup();
   }
-  if (models.slots[slot]->foreign && ImGui::Selectable("It is a model of this material: compare it"))
+  if (models.slots[slot].foreign && ImGui::Selectable("It is a model of this material: compare it"))
     session.claim(slot);
   if (ImGui::Selectable("Take it out of the comparison")) session.remove(slot);
   ImGui::EndPopup();
 }
 
-void draw_name(LiveSession& session, const ModelsView& models, Slot index, TableState& table, const UiStyle& style) {
-  const SlotView& slot = *models.slots[index];
+void draw_name(LiveSession& session, const ModelsView& models, Slot index, ViewState& view, const UiStyle& style) {
+  const ModelView& slot = models.slots[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float line = ImGui::GetTextLineHeight();
   const ImU32 colour = ink(slot_colour(models, index, style.theme()), slot.state == SlotState::ready ? 1.0F : 0.35F);
@@ -165,16 +165,17 @@ void draw_name(LiveSession& session, const ModelsView& models, Slot index, Table
   const bool usable = slot.state == SlotState::ready;
   const auto flags = ImGuiSelectableFlags_SpanAllColumns | (usable ? 0 : ImGuiSelectableFlags_Disabled);
   if (ImGui::Selectable(label.c_str(), index == models.selected, flags)) session.select(index);
-  draw_menu(session, models, index, table);
+  if (ImGui::IsItemHovered()) view.pointed = index;
+  draw_menu(session, models, index, view.table);
   tip(name_tip(models, index).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 middle(at.x + 0.62F * line, at.y + 0.5F * line);
   if (index == models.selected) list.AddCircle(middle, 0.52F * line, ink(style.colours().text), 0, 1.5F);
-  draw_mark(middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
+  draw_mark(list, middle, (index == models.selected ? 0.40F : 0.27F) * line, slot.paper, colour, style);
 }
 
 // Over the columns of the figures that are not there yet.
-void draw_waiting(const SlotView& slot) {
+void draw_waiting(const ModelView& slot) {
   ImGui::TableNextColumn();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::PushClipRect(at, {at.x + 12.0F * ImGui::GetFontSize(), at.y + 2.0F * ImGui::GetFontSize()}, false);
@@ -204,23 +205,13 @@ float column_width(int column) {
 
 }  // namespace
 
-std::string counted_words(const ModelsView& models) {
-  const SlotView* active = models.active();
-  if (!models.compared || active == nullptr) return models.compared ? "" : models.off_from;
-  if (active->foreign) return "no truth to compare " + active->name + " with";
-  std::string words = grouped(active->errors.samples()) + " samples in contact since " + models.since;
-  if (active->samples_out_of_domain > 0)
-    words += ", " + grouped(active->samples_out_of_domain) + " outside the data left out";
-  return words;
-}
-
-std::string waiting_words(const SlotView& slot) {
+std::string waiting_words(const ModelInfo& slot) {
   if (slot.state == SlotState::waiting) return "waits";
   return slot.state == SlotState::fitting ? format("fits %.0f %%", 100.0 * slot.progress) : "failed";
 }
 
 std::string name_tip(const ModelsView& models, std::size_t slot) {
-  const std::string& name = models.slots[slot]->name;
+  const std::string& name = models.slots[slot].name;
   if (slot == models.selected) return name + " is the active model";
   return "Click, or press " + std::to_string(models.number_of(slot)) + ", to make " + name + " the active model";
 }
@@ -242,8 +233,9 @@ std::vector<int> shown_columns(float room, float (*width)(int)) {
   return columns;
 }
 
-void draw_model_table(LiveSession& session, const ModelsView& models, TableState& table, const UiStyle& style,
+void draw_model_table(LiveSession& session, const ModelsView& models, ViewState& view, const UiStyle& style,
                       float height) {
+  view.pointed = kReferenceBlock;
   const auto flags = ImGuiTableFlags_Hideable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                      ImGuiTableFlags_NoSavedSettings;
   const std::vector<int> shown =
@@ -257,16 +249,16 @@ void draw_model_table(LiveSession& session, const ModelsView& models, TableState
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const int column : shown) {
-    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, table);
+    if (ImGui::TableSetColumnIndex(column)) draw_heading(column, view.table);
   }
-  for (const std::size_t index : sorted_slots(models, table)) {
+  for (const std::size_t index : sorted_slots(models, view.table)) {
     ImGui::TableNextRow();
     ImGui::TableSetColumnIndex(kName);
-    draw_name(session, models, index, table, style);
-    if (models.slots[index]->state == SlotState::ready) {
+    draw_name(session, models, index, view, style);
+    if (models.slots[index].state == SlotState::ready) {
       draw_figures(models, index, style);
     } else {
-      draw_waiting(*models.slots[index]);
+      draw_waiting(models.slots[index]);
     }
   }
   ImGui::EndTable();

@@ -27,7 +27,9 @@ std::string grouped(std::uint64_t count) {
 
 std::string jnd_text(double error_over_jnd) {
   char text[32];
-  std::snprintf(text, sizeof text, error_over_jnd < 9.995 ? "%.2f" : "%.0f", error_over_jnd);
+  // Two digits: a quantile of a stream has no more (error_quantile.h).
+  const char* format = error_over_jnd < 0.995 ? "%.2f" : error_over_jnd < 9.95 ? "%.1f" : "%.0f";
+  std::snprintf(text, sizeof text, format, error_over_jnd);
   return text;
 }
 
@@ -42,18 +44,17 @@ void section_title(const UiStyle& style, const char* title) {
 }
 
 Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme) {
-  const std::string& method = models.slots[slot]->method;
+  const std::string& method = models.slots[slot].method;
   const Rgb hue = method_colour(method, theme);
   std::size_t which = 0;
   for (const std::size_t i : models.listed()) {
     if (i == slot) break;
-    if (method_colour(models.slots[i]->method, theme) == hue) ++which;
+    if (method_colour(models.slots[i].method, theme) == hue) ++which;
   }
   return method_colour(method, theme, which);
 }
 
-void draw_mark(const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
+void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style) {
   list.AddCircleFilled(middle, radius, colour);
   if (paper) list.AddCircleFilled(middle, 0.5F * radius, ink(style.colours().panel));
 }

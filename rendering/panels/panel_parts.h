@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "rendering/panels/panel_views.h"
+#include "rendering/panels/window_view.h"
 #include "rendering/ui/ui_style.h"
 
 namespace palpate {
@@ -12,7 +12,7 @@ namespace palpate {
 // The colour of a model: of its method, another shade for each further one of it.
 Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme);
 // The mark of a model: filled, or hollow for the recipe of 2009.
-void draw_mark(const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style);
+void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style);
 
 // The beginning of `text` that fits into `room` pixels, ending in "..." where it is cut.
 std::string fitting(const std::string& text, float room);

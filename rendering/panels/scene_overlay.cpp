@@ -16,24 +16,6 @@ namespace {
 
 using namespace overlay;
 
-void draw_block_buttons(const LiveSession& session, ViewState& view) {
-  ImGui::SameLine(0.0F, 2.0F * ImGui::GetFontSize());
-  for (const std::size_t count : {1U, 2U, 4U}) {
-    ImGui::SameLine();
-    const bool on = view.block_count == count;
-    if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
-    if (ImGui::Button(std::to_string(count).c_str())) view.block_count = count;
-    if (on) ImGui::PopStyleColor();
-    tip("Blocks side by side, each with its own model under the same probe (B)");
-  }
-  ImGui::SameLine();
-  if (view.feel) {
-    ImGui::TextColored(paint(kAboveJndColour), "%s", scale_words(session.scale()).c_str());
-  } else {
-    ImGui::TextDisabled("blocks, dents x 2");
-  }
-}
-
 // How the active model is felt; the title says so.
 void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.4F * height_of(style.fonts().heading)});
@@ -53,23 +35,26 @@ void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area
   if (moved) session.use_scale({static_cast<double>(stiffness), static_cast<double>(damping)});
 }
 
-void draw_title(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
+// What is pressed, and how the picture differs from it.
+void draw_title(const LiveSession& session, const WindowView& shown, const ViewState& view, const SceneArea& area) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
   ImGui::Begin("title", nullptr, kFloating);
-  ImGui::PushFont(style.fonts().heading);
   ImGui::TextUnformatted(session.scene().title.c_str());
-  ImGui::PopFont();
   tip(session.scene().description.c_str());
-  draw_block_buttons(session, view);
-  if (view.exaggerated) {
+  if (!view.feel) {
     ImGui::SameLine(0.0F, ImGui::GetFontSize());
-    ImGui::TextColored(paint(kAboveJndColour), "arrows: difference x 10");
+    ImGui::TextDisabled("dents x 2");
+  }
+  if (view.feel || view.exaggerated) {
+    ImGui::SameLine(0.0F, ImGui::GetFontSize());
+    ImGui::TextColored(paint(kAboveJndColour), "%s",
+                       view.feel ? scale_words(session.scale()).c_str() : "arrows: difference x 10");
   }
   ImGui::End();
 }
 
 // Until it was done: half a newton felt by whoever moves the mouse.
-void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area) {
+void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area, float top_px) {
   constexpr double kPressed_N = 0.5;
   if (session.mouse() == nullptr) return;
   const bool alone = session.mouse()->hand_is_exploring();
@@ -78,24 +63,29 @@ void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style
   const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."
                                  : "Move down over the block to press: no button, only the way of the mouse.";
   const float line = height_of(style.fonts().body);
-  text_at(style.fonts().body,
-          {area.at.x + 0.9F * line, area.at.y + 2.6F * height_of(style.fonts().heading) - 0.6F * line},
-          ink(style.colours().quiet), hint, area.size.x - 1.8F * line);
+  text_at(style.fonts().body, {area.at.x + 0.9F * line, top_px}, ink(style.colours().quiet), hint,
+          area.size.x - 1.8F * line);
 }
 
-// In as many rows as it takes. Returns how high it is.
+// Five, and a menu of all else. Returns how high they are.
 float draw_buttons(const SceneArea& area, const std::vector<WindowCommand>& commands) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + area.size.y - 2.0F}, ImGuiCond_Always, {0.0F, 1.0F});
   ImGui::Begin("buttons", nullptr, kFloating);
-  bool first = true;
   for (const WindowCommand& command : commands) {
-    if (command.label.empty() || command.replay) continue;
-    const float width = ImGui::CalcTextSize(shown_label(command).c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-    constexpr float kGap = 4.0F;
-    const bool fits = ImGui::GetItemRectMax().x + kGap + width < area.at.x + area.size.x - kGap;
-    if (!first && fits) ImGui::SameLine(0.0F, kGap);
-    first = false;
+    if (!command.bar) continue;
     if (command_button(command)) command.run(0);
+    ImGui::SameLine(0.0F, 4.0F);
+  }
+  if (ImGui::Button("Menu")) ImGui::OpenPopup("menu");
+  tip("All else that can be done, with its keys");
+  if (ImGui::BeginPopup("menu")) {
+    for (const WindowCommand& command : commands) {
+      if (command.label.empty() || command.replay || command.bar) continue;
+      const bool on = command.on && command.on();
+      if (ImGui::MenuItem(shown_label(command).c_str(), shown_keys(command).c_str(), on)) command.run(0);
+      tip(command.help.c_str());
+    }
+    ImGui::EndPopup();
   }
   const float height = ImGui::GetWindowSize().y;
   ImGui::End();
@@ -132,10 +122,10 @@ void draw_replay_bar(LiveSession& session, const SceneArea& area, float lift,
   tip("Its speed");
   ImGui::SameLine();
   ImGui::Text("%.2f x", replay.speed());
-  if (session.surface().found_m() != 0.0) {
-    bool moved = session.surface().moved();
+  if (session.replay_test().found_m() != 0.0) {
+    bool moved = session.replay_test().moved();
     const std::string label =
-        "surface " + fixed(1e3 * session.surface().found_m(), 2) + " mm from the models'; moved there";
+        "surface " + fixed(1e3 * session.replay_test().found_m(), 2) + " mm from the models'; moved there";
     if (ImGui::Checkbox(label.c_str(), &moved)) session.move_surface(moved);
     tip("Where the forces of the models fit the recording best; off: positions as recorded");
   }
@@ -161,7 +151,8 @@ std::string scale_words(const ForceScale& scale) {
 
 std::string data_warning(const ModelsView& models) {
   if (!models.out_of_domain()) return {};
-  return "Nothing like this was recorded: here " + models.active()->name + " only follows the trend";
+  return "Nothing like this was recorded: here " + models.active()->name +
+         " only follows the trend, and nothing counts";
 }
 
 std::string recording_words(const RecordingStatus& recording) {
@@ -174,28 +165,34 @@ std::string recording_words(const RecordingStatus& recording) {
   return "recording " + name + length;
 }
 
-BigNumber big_number(const ModelsView& models, const JndLine& jnd) {
-  const SlotView* active = models.active();
+BigNumber big_number(const ModelsView& models, bool has_truth) {
+  const ModelView* active = models.active();
   if (active == nullptr) {
     const auto fitting = std::find_if(models.slots.begin(), models.slots.end(),
-                                      [](const SlotView* slot) { return slot->state == SlotState::fitting; });
+                                      [](const ModelView& slot) { return slot.state == SlotState::fitting; });
     if (fitting == models.slots.end()) return {};
-    return {fixed(100.0 * (*fitting)->progress, 0) + " %", "of the first model, " + (*fitting)->name + ":",
-            "until then the true material answers alone", 0.0};
+    return {fixed(100.0 * fitting->progress, 0) + " %", "of the first model, " + fitting->name,
+            has_truth ? "until then the true material answers alone" : "until then nothing answers", 0.0};
   }
+  BigNumber big;
   const std::string& name = active->name;
-  if (active->foreign) return {"–", "of what a hand can notice:", counted_words(models), 0.0};
-  if (!models.compared) {
-    const double guess = models.in_contact ? active->predicted_error_N / jnd.at(active->force_N) : std::nan("");
-    return {std::isnan(guess) ? "–" : jnd_text(guess),
-            "of what a hand can notice:", name + "'s own guess (95 %); " + models.off_from, guess};
+  if (active->foreign) {
+    big.below = models.counted;
+  } else if (!models.compared) {
+    const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
+    if (!std::isnan(guess)) big.number = jnd_text(guess);
+    big.below = name + "'s own guess of its error (95 %); " + models.off_from;
+    big.error_over_jnd = guess;
+  } else if (models.selected == models.reference) {
+    big.below = name + " is what the others are compared with";
+  } else if (active->errors.samples == 0) {
+    big.below = "the error of " + name + " from " + models.off_from + ", from the next touch on";
+  } else {
+    big.error_over_jnd = active->errors.p99_error_over_jnd;
+    big.number = jnd_text(big.error_over_jnd);
+    big.below = "99 % of the time the error of " + name + " is below this";
   }
-  if (models.selected == models.reference)
-    return {"–", "of what a hand can notice:", name + " is what the others are compared with", 0.0};
-  const std::string what = name + " off " + models.off_from;
-  if (active->errors.samples() == 0) return {"–", "of what a hand can notice:", what + ": from the next touch on", 0.0};
-  const double error = active->quantile.p99();
-  return {jnd_text(error), "of what a hand can notice:", what + ", 99 % of the time", error};
+  return big;
 }
 
 std::string empty_scene_words(const LiveSession& session) {
@@ -205,65 +202,53 @@ std::string empty_scene_words(const LiveSession& session) {
          "O chooses a scene with a material.";
 }
 
-std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count) {
-  const ReferenceKind kind = session.comparison().reference();
-  const bool reference = block_count > 1 && kind != ReferenceKind::direct && session.has_reference(kind);
-  const std::size_t room = reference ? block_count - 1 : block_count;
-  const ModelsView models = models_view(session);
-  std::vector<std::size_t> slots;
-  for (std::size_t i = 0; i < models.slots.size() && slots.size() < room; ++i) {
-    if (models.slots[i]->state == SlotState::ready) slots.push_back(i);
-  }
-  const bool missing =
-      models.active() != nullptr && std::find(slots.begin(), slots.end(), models.selected) == slots.end();
-  if (missing && !slots.empty()) slots.back() = models.selected;
-  if (reference) slots.push_back(kReferenceBlock);
-  return slots;
-}
-
-std::optional<std::size_t> SceneOverlay::slot_at(const LiveSession& session, const BlockView& blocks,
-                                                 const ViewState& view, const SceneArea& area,
-                                                 const ImVec2& point) const {
-  const std::vector<std::size_t> slots = shown_slots(session, view.block_count);
+std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
+                                    const ImVec2& point, bool aimed) {
+  const std::size_t count = std::max<std::size_t>(shown.stage.size(), 1);
+  const auto half_height = 0.5F * static_cast<float>(blocks.geometry().height_m);
+  const auto half_width = 0.5F * static_cast<float>(blocks.geometry().width_m);
+  const glm::vec2 size(area.size.x, area.size.y);
   float nearest_px = 1e9F;
   std::optional<std::size_t> found;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const glm::vec2 middle =
-        blocks.on_screen(i, slots.size(), {0.0F, -0.5F * static_cast<float>(blocks.geometry().height_m), 0.0F},
-                         {area.size.x, area.size.y});
-    const glm::vec2 side =
-        blocks.on_screen(i, slots.size(), {0.5F * static_cast<float>(blocks.geometry().width_m), 0.0F, 0.0F},
-                         {area.size.x, area.size.y});
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec2 middle = blocks.on_screen(i, count, {0.0F, -half_height, 0.0F}, size);
+    const glm::vec2 side = blocks.on_screen(i, count, {half_width, 0.0F, 0.0F}, size);
     const float away = std::hypot(area.at.x + middle.x - point.x, area.at.y + middle.y - point.y);
-    if (away > 1.25F * glm::length(side - middle) || away > nearest_px) continue;
+    if ((aimed && away > 1.25F * glm::length(side - middle)) || away > nearest_px) continue;
     nearest_px = away;
-    found = slots[i];
+    found = i;
   }
   return found;
 }
 
-void SceneOverlay::draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style,
-                        const SceneArea& area, const std::vector<Toast>& toasts, const OverlayActions& actions) {
+void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
+                        const UiStyle& style, const SceneArea& area, const std::vector<Toast>& toasts,
+                        const OverlayActions& actions) {
   const float line = height_of(style.fonts().body);
-  const float buttons = view.exhibit ? 0.0F : std::max(buttons_height_, 2.4F * line);
-  const float surface = session.surface().found_m() != 0.0 ? 1.7F * line : 0.0F;
+  const float buttons = view.exhibit.on ? 0.0F : std::max(buttons_height_, 2.4F * line);
+  const float surface = session.replay_test().found_m() != 0.0 ? 1.7F * line : 0.0F;
   const float bars = buttons + (session.replay() != nullptr ? 2.4F * line + surface : 0.0F);
-  // An exhibit has names of its own.
-  if (!view.exhibit) draw_labels(session, blocks, view, style, area, big_number_height(style, bars));
-  if (!view.exhibit && session.models().size() > 0) draw_big_number(session, style, area, bars);
-  if (!view.exhibit) draw_data_warning(session, style, area);
-  if (!view.exhibit) draw_title(session, view, style, area);
-  if (view.feel) draw_feel(session, style, area);
-  if (!view.exhibit && !view.feel) draw_hint(session, view, style, area);
+  float top_px = area.at.y + 2.0F * line;
+  // An exhibit has words of its own.
+  if (!view.exhibit.on) {
+    draw_labels(shown, blocks, style, area, big_number_height(style, bars));
+    if (!shown.models.slots.empty()) draw_big_number(shown, style, area, bars);
+    draw_title(session, shown, view, area);
+    top_px = draw_headline(shown, style, area);
+    draw_data_warning(shown.models, style, area, top_px);
+    if (view.feel) draw_feel(session, style, area);
+    if (!view.feel && data_warning(shown.models).empty()) draw_hint(session, view, style, area, top_px);
+  }
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
-  if (!view.exhibit) buttons_height_ = draw_buttons(area, *actions.commands);
-  draw_device_words(session, view.offered.any(), style, area);
-  draw_toasts(toasts, style, area);
+  if (!view.exhibit.on) buttons_height_ = draw_buttons(area, *actions.commands);
+  if (!view.dialogs.offer.any()) draw_device_words(session, style, area);
+  draw_toasts(toasts, style, area, top_px + 0.5F * line);
   draw_file_picker(view, actions);
   draw_device_list(view, session.device_name(), actions);
   draw_scene_list(session, view, actions);
-  draw_offered_recording(view, actions);
+  draw_view_list(session, view, actions);
+  draw_offer(view, actions);
   draw_help(view, style, *actions.commands);
 }
 

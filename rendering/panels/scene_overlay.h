@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "rendering/panels/layout.h"
-#include "rendering/panels/panel_views.h"
 #include "rendering/panels/view_state.h"
 #include "rendering/panels/window_command.h"
+#include "rendering/panels/window_view.h"
 #include "rendering/picture/block_view.h"
 #include "rendering/ui/ui_style.h"
 #include "scenes/live/live_session.h"
@@ -23,9 +23,8 @@ namespace palpate {
 // What the windows over the picture can ask of the program.
 struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // buttons and the list of keys
-  std::function<void(const std::string&)> use_scene;
-  std::function<void(const std::string&)> replay, fit;  // of a recording
-  std::function<void(const std::string&)> open, use_device;
+  std::function<void(const std::string&)> use_scene, open, use_device, use_line_up;
+  std::function<void()> start_offer;  // train and test as the offer says
 };
 
 // The overlay's sentences; empty when there is nothing to tell.
@@ -37,32 +36,29 @@ std::string recording_words(const RecordingStatus& recording);
 // fit is before there is one.
 struct BigNumber {
   std::string number = "–";
-  std::string what = "of what a hand can notice:";
+  std::string what = "times the smallest difference a hand can feel:";
   std::string below = "the error of the active model";
   double error_over_jnd = 0.0;  // above 1 in its own colour
 };
-BigNumber big_number(const ModelsView& models, const JndLine& jnd);
+BigNumber big_number(const ModelsView& models, bool has_truth);
 
 // What a scene without models and without a material says of itself; empty otherwise.
 std::string empty_scene_words(const LiveSession& session);
 
-// The slots that the blocks show: all there is room for, in order, the active one
-// always among them; of several the last is the reference's own (kReferenceBlock), where
-// that is no model.
-std::vector<std::size_t> shown_slots(const LiveSession& session, std::size_t block_count);
-
 class SceneOverlay {
  public:
   // Controls call `actions`.
-  void draw(LiveSession& session, const BlockView& blocks, ViewState& view, const UiStyle& style, const SceneArea& area,
-            const std::vector<Toast>& toasts, const OverlayActions& actions);
-
-  // The slot whose block or label is at `point`.
-  std::optional<std::size_t> slot_at(const LiveSession& session, const BlockView& blocks, const ViewState& view,
-                                     const SceneArea& area, const ImVec2& point) const;
+  void draw(LiveSession& session, const WindowView& shown, const BlockView& blocks, ViewState& view,
+            const UiStyle& style, const SceneArea& area, const std::vector<Toast>& toasts,
+            const OverlayActions& actions);
 
  private:
   float buttons_height_ = 0.0F;  // in the last frame
 };
+
+// The place on the stage of the block that is at `point`, or that is nearest to it; nothing: there is none
+// (`aimed`: nor one so near that it is meant).
+std::optional<std::size_t> block_at(const WindowView& shown, const BlockView& blocks, const SceneArea& area,
+                                    const ImVec2& point, bool aimed);
 
 }  // namespace palpate

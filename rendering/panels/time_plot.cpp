@@ -82,17 +82,12 @@ void draw_readings(const LivePlot& plot, const UiStyle& style, const CurveTime& 
   }
 }
 
-void draw_labels(const LivePlot& plot, const std::vector<CurveLabel>& labels) {
+void draw_label(const LivePlot& plot, const CurveLabel& label) {
   const float line = ImGui::GetTextLineHeight();
-  std::vector<float> wanted;
-  for (const CurveLabel& label : labels) wanted.push_back(label.y_px - 0.5F * line);
-  const std::vector<float> places =
-      spread_labels(wanted, 0.9F * line, plot.top() - 0.5F * line, plot.bottom() - 0.5F * line);
-  ImDrawList& list = plot.list();
-  list.PushClipRectFullScreen();
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    list.AddText({plot.right() + 0.3F * line, places[i]}, ink(labels[i].colour), labels[i].text.c_str());
-  list.PopClipRect();
+  const float width = ImGui::CalcTextSize(label.text.c_str()).x;
+  // Above the curve's end, or below it where there is no room.
+  const float y = label.y_px - 1.2F * line > plot.top() ? label.y_px - 1.2F * line : label.y_px + 0.2F * line;
+  plot.list().AddText({plot.right() - width - 0.3F * line, y}, ink(label.colour), label.text.c_str());
 }
 
 }  // namespace palpate

@@ -31,7 +31,7 @@ struct CurveLabel {
   Rgb colour{0.0F};
   float y_px = 0.0F;  // where its curve ends
 };
-// At the right of the frame, none over another.
-void draw_labels(const LivePlot& plot, const std::vector<CurveLabel>& labels);
+// Inside the frame, where the curve ends.
+void draw_label(const LivePlot& plot, const CurveLabel& label);
 
 }  // namespace palpate

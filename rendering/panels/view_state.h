@@ -55,12 +55,24 @@ struct TableState {
   std::array<char, 64> name{};
 };
 
-// A file that somebody gave.
-struct OfferedFile {
-  std::string path;                // of the recording to fit or to replay; empty: none
+// A recording that somebody gave, and what it is to be.
+struct OfferedRecording {
+  enum class Role : std::uint8_t { train, test, none };
+  std::string path;
   std::vector<std::string> words;  // how another program's table was understood
-  std::string problem;             // why there is none
-  bool any() const noexcept { return !path.empty() || !problem.empty(); }
+  Role role = Role::train;
+};
+
+// Recordings that wait for an answer: which to train on, which to test on.
+struct Offer {
+  std::vector<OfferedRecording> recordings;
+  std::string problem;  // why a file is none
+  bool any() const noexcept { return !recordings.empty() || !problem.empty(); }
+  // Of several the last one is the test, until somebody says otherwise.
+  void add(OfferedRecording recording);
+  std::vector<std::string> training() const;
+  std::string test() const;           // empty: none
+  void make_test(std::size_t index);  // and no other
 };
 
 // The file that is looked for.
@@ -74,35 +86,48 @@ struct FilePicker {
 struct Settings {
   Theme theme = Theme::light;
   std::size_t block_count = 4;      // 1, 2 or 4
-  bool difference = true;           // beside the force: the difference in its band; else what is felt of it
+  bool difference = true;           // below the force: of every tick, in the band; else its mean over 50 ms
   float text_size = 1.0F;           // times the usual
   std::string line_up;              // empty: the default
   std::vector<std::string> recent;  // files that were opened, the newest first
   CameraTurn camera;
 };
 
-struct ViewState : Settings {
-  bool exhibit = false;
+// Windows over the picture, and what is in them.
+struct Dialogs {
+  bool help = false;
+  bool file_list = false;   // files to open
+  bool scene_list = false;  // scenes to choose from
+  bool device_list = false;
+  bool view_list = false;  // how things are shown
+  Offer offer;
+  FilePicker picker;
+  std::vector<DeviceChoice> devices;  // empty: not looked for yet
+
+  bool any() const noexcept { return help || file_list || scene_list || device_list || view_list || offer.any(); }
+};
+
+// What an exhibit asks of the picture.
+struct ExhibitState {
+  bool on = false;
   bool blind = false;         // which model is active is a secret
   bool tool_is_held = false;  // out of the block, whatever the mouse does
-  TableState table;
-  bool feel = false;             // the force in the hand is scaled
-  bool exaggerated = false;      // arrows show ten times the difference
-  bool centres_together = true;  // the slider moves all models that have centres
-  int requested_centres = 0;     // of the slider, as long as it is held
-  bool scene_list = false;       // scenes to choose from
-  OfferedFile offered;
-  bool help = false;
-  bool details = false;    // of the loop, faults
-  bool file_list = false;  // files to open
-  FilePicker picker;
-  bool device_list = false;
-  std::vector<DeviceChoice> devices;  // empty: not looked for yet
-  bool has_pressed = false;           // the person at the mouse knows how
+};
+
+struct ViewState {
+  Settings settings;
+  Dialogs dialogs;
+  ExhibitState exhibit;
   CurveTime time;
-  bool verdict = true;         // speed against error; else the error against the force
-  double force_scale_N = 1.0;  // of the force plot, eases
-  double error_scale = 2.0;    // of the error plot
+  TableState table;
+  bool feel = false;                                   // the force in the hand is scaled
+  bool exaggerated = false;                            // arrows show ten times the difference
+  bool centres_together = true;                        // the slider moves all models that have centres
+  int requested_centres = 0;                           // of the slider, as long as it is held
+  bool details = false;                                // of the loop, faults
+  bool has_pressed = false;                            // the person at the mouse knows how
+  std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse: its curves are named
+  bool verdict = true;                                 // speed against error; else the error against the force
 };
 
 // How long frames take, and how many came in the last second.

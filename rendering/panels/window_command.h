@@ -19,11 +19,12 @@ struct WindowCommand {
   };
   std::vector<int> keys{};                 // GLFW's, any of them; none: `shown` says what does it
   std::string shown{};                     // in the list, in place of the keys' own names
-  std::string label{};                     // of its button; empty: none
+  std::string label{};                     // of its button or its row in the menu; empty: none
   std::string help{};                      // one line
   std::function<void(std::size_t)> run{};  // which of the keys; 0 for the button
   When when = When::pressed;
   bool control = false;        // together with Ctrl
+  bool bar = false;            // a button of its own; else, with a label, a row of the menu
   bool replay = false;         // only while a recording is replayed, with the button in its bar
   std::function<bool()> on{};  // whether it is in force, which its button shows
   std::string label_on{};      // then, where it is another

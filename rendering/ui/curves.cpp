@@ -16,7 +16,8 @@ float larger(float so_far, float value) noexcept { return value > so_far || std:
 const CurveColumn& empty_column() {
   static const CurveColumn empty = [] {
     CurveColumn column;
-    for (auto* values : {&column.low_over_jnd, &column.high_over_jnd, &column.error_over_jnd, &column.felt_over_jnd}) {
+    for (auto* values :
+         {&column.low_over_jnd, &column.high_over_jnd, &column.error_over_jnd, &column.sustained_over_jnd}) {
       values->fill(kNone);
     }
     column.tick.force_N.fill(kNone);
@@ -39,9 +40,7 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
     while (next < history.size() && history[next].loop_time_s <= taken_s_) ++next;
   } else {
     columns_.assign(count + 2, empty_column());
-    for (FeltError& felt : felt_) felt.reset();
-    // What is felt at the left edge began before it.
-    next = history.first_at(first * width_s - FeltError::kSpan_s);
+    next = history.first_at(first * width_s);
   }
   for (std::size_t i = 0; i < columns_.size(); ++i)
     columns_[i].time_s = (first + static_cast<double>(i) + 0.5) * width_s;
@@ -49,12 +48,7 @@ void CurveColumns::gather(const ForceHistory& history, const JndLine& jnd, std::
     const HistoryPoint& point = history[next];
     const double place = point.loop_time_s / width_s - first;
     if (place >= static_cast<double>(columns_.size())) break;
-    if (place < 0.0) {
-      CurveColumn before = empty_column();
-      add(point, jnd, before);
-    } else {
-      add(point, jnd, columns_[static_cast<std::size_t>(place)]);
-    }
+    if (place >= 0.0) add(point, jnd, columns_[static_cast<std::size_t>(place)]);
     taken_s_ = point.loop_time_s;
   }
   find_highest();
@@ -107,23 +101,23 @@ void CurveColumns::add_prediction(const HistoryPoint& point, const JndLine& jnd,
 void CurveColumns::add_model(const HistoryPoint& point, std::size_t slot, const JndLine& jnd, CurveColumn& column) {
   const double difference = point.difference_over_jnd(slot, jnd);
   if (std::isnan(difference)) return;
-  const auto felt = static_cast<float>(felt_[slot].add(point.time_s, difference));
+  const float sustained = std::abs(point.sustained_over_jnd[slot]);
   column.low_over_jnd[slot] = smaller(column.low_over_jnd[slot], static_cast<float>(difference));
   column.high_over_jnd[slot] = larger(column.high_over_jnd[slot], static_cast<float>(difference));
-  column.felt_over_jnd[slot] = larger(column.felt_over_jnd[slot], felt);
+  column.sustained_over_jnd[slot] = larger(column.sustained_over_jnd[slot], sustained);
   if (!point.in_contact) return;
   column.error_over_jnd[slot] = larger(column.error_over_jnd[slot], static_cast<float>(std::abs(difference)));
 }
 
 void CurveColumns::find_highest() {
-  highest_force_N_ = highest_felt_ = 0.0F;
+  highest_force_N_ = highest_sustained_ = 0.0F;
   for (const CurveColumn& column : columns_) {
     // A comparison with NaN is false.
     if (column.tick.reference_N + column.jnd_N > highest_force_N_)
       highest_force_N_ = column.tick.reference_N + column.jnd_N;
     for (std::size_t i = 0; i < slots_; ++i) {
       if (column.tick.force_N[i] > highest_force_N_) highest_force_N_ = column.tick.force_N[i];
-      if (column.felt_over_jnd[i] > highest_felt_) highest_felt_ = column.felt_over_jnd[i];
+      if (column.sustained_over_jnd[i] > highest_sustained_) highest_sustained_ = column.sustained_over_jnd[i];
     }
   }
 }

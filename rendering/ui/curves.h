@@ -9,7 +9,6 @@
 
 #include "engine/tick/haptics_tick.h"
 #include "engine/tick/jnd.h"
-#include "scenes/live/felt_error.h"
 #include "scenes/live/force_history.h"
 
 namespace palpate {
@@ -31,8 +30,8 @@ struct CurveColumn {
   // (model - reference) / JND, signed; 0 out of contact.
   std::array<float, kMaxModels> low_over_jnd{};
   std::array<float, kMaxModels> high_over_jnd{};
-  std::array<float, kMaxModels> error_over_jnd{};  // the largest of a single tick, in contact
-  std::array<float, kMaxModels> felt_over_jnd{};   // the largest that a hand feels, see FeltError
+  std::array<float, kMaxModels> error_over_jnd{};      // the largest of a single tick, in contact
+  std::array<float, kMaxModels> sustained_over_jnd{};  // the largest of HistoryPoint's
 };
 
 class CurveColumns {
@@ -51,7 +50,7 @@ class CurveColumns {
   const CurveColumn* last() const noexcept;
   // Over all columns and slots; 0 without.
   float highest_force_N() const noexcept { return highest_force_N_; }
-  float highest_felt_over_jnd() const noexcept { return highest_felt_; }
+  float highest_sustained_over_jnd() const noexcept { return highest_sustained_; }
 
  private:
   bool scroll(double width_s, double first, std::size_t slots, std::size_t count);
@@ -61,13 +60,12 @@ class CurveColumns {
   void find_highest();
 
   std::vector<CurveColumn> columns_;
-  std::array<FeltError, kMaxModels> felt_;
   std::size_t slots_ = 0;
   double width_s_ = 0.0;
   double first_ = 0.0;    // number of the first column: its border, in widths
   double taken_s_ = 0.0;  // loop time of the last tick that was taken
   float highest_force_N_ = 0.0F;
-  float highest_felt_ = 0.0F;
+  float highest_sustained_ = 0.0F;
 };
 
 }  // namespace palpate

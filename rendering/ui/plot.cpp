@@ -25,25 +25,6 @@ double round_up(double value) noexcept {
   return 10.0 * decade;
 }
 
-std::vector<float> spread_labels(const std::vector<float>& wanted, float gap, float low, float high) {
-  std::vector<std::size_t> order(wanted.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return wanted[a] < wanted[b]; });
-  std::vector<float> places(wanted.size());
-  float next = low;
-  for (const std::size_t i : order) {
-    places[i] = std::max(next, std::min(wanted[i], high));
-    next = places[i] + gap;
-  }
-  // What was pushed out below goes back up, and pushes the others.
-  float room = high;
-  for (std::size_t k = order.size(); k-- > 0;) {
-    places[order[k]] = std::min(places[order[k]], room);
-    room = places[order[k]] - gap;
-  }
-  return places;
-}
-
 LivePlot::LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes)
     : style_(style), list_(ImGui::GetWindowDrawList()), axes_(axes) {
   const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -21,10 +21,6 @@ double tick_step(double span, int most) noexcept;
 // The next such number of "1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten" at or above.
 double round_up(double value) noexcept;
 
-// Where labels of height `gap` go that want to stand at `wanted`: in the same order, none
-// over another, between `low` and `high` as long as there is room.
-std::vector<float> spread_labels(const std::vector<float>& wanted, float gap, float low, float high);
-
 struct PlotAxes {
   Range x, y;
   const char* x_unit = "";  // these end the last label

@@ -11,8 +11,15 @@ namespace {
 constexpr double kLongestStep_s = 0.1;
 // A tick takes several samples of a quick recording.
 constexpr double kBeginning_s = 0.05;
+// After so many times its time constant a first-order filter is within 1 % of its input.
+constexpr double kSettled_memories = 5.0;
 
 }  // namespace
+
+Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {
+  slots_.resize(kMaxModels);
+  for (Slot& slot : slots_) slot.evidence = ModelErrors(jnd);
+}
 
 void Comparison::use_reference(ReferenceKind kind) {
   if (kind != reference_) forget_errors("the reference changed");
@@ -21,113 +28,169 @@ void Comparison::use_reference(ReferenceKind kind) {
 
 void Comparison::forget_errors(std::string why) {
   since_ = std::move(why);
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    slots_.view(i).errors = {};
-    slots_.view(i).quantile = {};
-    slots_.view(i).samples_out_of_domain = 0;
+  contact_s_ = counted_s_ = outside_s_ = 0.0;
+  counted_ = 0;
+  for (Slot& slot : slots_) {
+    slot.errors = {};
+    slot.quantile = {};
+    slot.evidence = ModelErrors(jnd_);
+    slot.outside_s = 0.0;
   }
 }
 
-void Comparison::fit_slots() {
-  if (figures_.size() < slots_.size()) figures_.resize(slots_.size());
+void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_.features(slot)); }
+
+void Comparison::forget_slot(std::size_t slot) {
+  slots_[slot] = {};
+  slots_[slot].evidence = ModelErrors(jnd_);
+  history_.forget(slot);
 }
 
-void Comparison::begin_slot(std::size_t slot) {
-  fit_slots();
-  figures_[slot].dent = Dent(slots_.features(slot));
+std::size_t Comparison::mostly_outside() const noexcept {
+  const auto most = std::max_element(slots_.begin(), slots_.end(),
+                                     [](const Slot& a, const Slot& b) { return a.outside_s < b.outside_s; });
+  return static_cast<std::size_t>(most - slots_.begin());
+}
+
+ModelFigures Comparison::figures(std::size_t slot) const {
+  const Slot& one = slots_[slot];
+  ModelFigures figures = one.newest;
+  figures.errors.samples = one.errors.samples();
+  figures.errors.rms_error_N = one.errors.rms_error_N();
+  figures.errors.max_error_N = one.errors.max_error_N();
+  figures.errors.within_jnd = one.errors.within_jnd();
+  figures.errors.p99_error_over_jnd = one.quantile.p99();
+  figures.errors.max_error_over_jnd = one.errors.max_error_over_jnd();
+  figures.errors.bins = one.errors.bins(jnd_);
+  figures.dent_m = one.dent.depth_m();
+  figures.recent_error_over_jnd = one.dent.error_over_jnd();
+  return figures;
 }
 
 void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
-  fit_slots();
-  const PublishedSet* set = slots_.set_of(snapshot);
+  const PublishedSet* set = models_.set_of(snapshot);
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
-  if (snapshot.restarted || set == nullptr)
-    seen_out_of_contact_ = set != nullptr && snapshot.tick.time_s < begins_at_s_ + kBeginning_s;
-  if (set != nullptr && !snapshot.tick.in_contact) seen_out_of_contact_ = true;
+  const double time_s = snapshot.tick.time_s;
+  if (snapshot.restarted || set == nullptr) {
+    settled_ = set != nullptr && time_s < begins_at_s_ + kBeginning_s;
+    stream_began_s_ = last_time_s_ = time_s;
+    strokes_ = StrokeCounter(std::numeric_limits<double>::infinity());
+  }
+  if (set != nullptr &&
+      (!snapshot.tick.in_contact || time_s > stream_began_s_ + kSettled_memories * models_.longest_memory_s()))
+    settled_ = true;
   HistoryPoint point = point_of(snapshot, set);
   point.trouble = trouble_ = std::max(trouble_, trouble);
   // A recording that stands still says nothing new.
   const bool fresh = snapshot.samples > 0;
-  if (fresh && set != nullptr) count(point, snapshot, *set);
-  for (Figures& figures : figures_) figures.dent.step(snapshot.tick.depth_m, figures.felt_over_jnd, step_s);
+  if (fresh && set != nullptr) count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
+  for (Slot& slot : slots_) slot.dent.step(snapshot.tick.depth_m, std::abs(slot.sustained_over_jnd), step_s);
   if (!fresh) return;
+  last_time_s_ = time_s;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (!std::isnan(point.difference_over_jnd(i, jnd_)))
+      point.sustained_over_jnd[i] = static_cast<float>(slots_[i].sustained_over_jnd);
+  }
   history_.append(point);
   trouble_ = TickTrouble::none;
 }
 
-HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedSet* set) const {
+HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedSet* set) {
   HistoryPoint point;
   point.loop_time_s = snapshot.loop_time_s;
   point.time_s = snapshot.tick.time_s;
+  point.position_m = static_cast<float>(snapshot.tick.position_m);
   point.depth_m = static_cast<float>(snapshot.tick.depth_m);
   point.reference = static_cast<std::uint8_t>(reference_);
   point.reference_N = static_cast<float>(reference_in(snapshot, set));
   point.rendered_N = static_cast<float>(snapshot.rendered_N);
   point.in_contact = snapshot.tick.in_contact;
-  point.counts = seen_out_of_contact_ && snapshot.tick.in_contact &&
+  point.counts = settled_ && snapshot.tick.in_contact &&
                  (snapshot.tick.fault == TickFault::none || snapshot.tick.fault == TickFault::force_not_finite);
   point.out_of_domain = (snapshot.tick.out_of_domain_mask >> snapshot.selected & 1U) != 0;
   point.force_N.fill(std::nanf(""));
+  point.sustained_over_jnd.fill(std::nanf(""));
   point.predicted_error_N = std::nanf("");
   if (set == nullptr) return point;
   if (snapshot.selected < set->slots.size()) {
-    point.active = static_cast<std::uint8_t>(set->slots[snapshot.selected]);
+    point.active = static_cast<std::uint8_t>(std::min(set->slots[snapshot.selected], kMaxModels - 1));
     point.predicted_error_N = static_cast<float>(snapshot.tick.predicted_error_N[snapshot.selected]);
   }
   for (std::size_t i = 0; i < set->slots.size(); ++i) {
     const std::size_t slot = set->slots[i];
+    if (slot == PublishedSet::kRemoved) continue;
     point.force_N[slot] = static_cast<float>(snapshot.tick.force_N[i]);
-    if (slots_.view(slot).foreign) point.foreign |= static_cast<std::uint16_t>(1U << slot);
+    if (models_.info(slot).foreign) point.foreign |= static_cast<std::uint16_t>(1U << slot);
   }
   return point;
 }
 
-void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set) {
+void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set,
+                       double step_s) {
   // Where one model is out of domain, none is compared.
   bool outside = false;
-  for (std::size_t i = 0; i < set.slots.size(); ++i)
-    outside = outside || ((snapshot.tick.out_of_domain_mask >> i & 1U) != 0 && !slots_.view(set.slots[i]).foreign);
-  // Of a set before the newest: a model that joined is not in it.
-  const bool all_there = &set == slots_.newest_set();
+  for (std::size_t i = 0; i < set.slots.size(); ++i) {
+    const std::size_t slot = set.slots[i];
+    if (slot == PublishedSet::kRemoved || models_.info(slot).foreign) continue;
+    if ((snapshot.tick.out_of_domain_mask >> i & 1U) == 0) continue;
+    outside = true;
+    slots_[slot].outside_s += step_s;
+  }
   for (const std::size_t slot : set.slots) {
-    Figures& figures = figures_[slot];
+    if (slot == PublishedSet::kRemoved) continue;
     const double difference = point.difference_over_jnd(slot, jnd_);
-    figures.felt_over_jnd = figures.felt.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
-    if (!point.counts || !all_there || std::isnan(difference)) continue;
-    SlotView& view = slots_.view(slot);
-    if (outside) {
-      ++view.samples_out_of_domain;
-    } else {
-      view.errors.add(static_cast<double>(point.force_N[slot]), static_cast<double>(point.reference_N), false, jnd_);
-      view.quantile.add(std::abs(difference));
-    }
+    slots_[slot].sustained_over_jnd =
+        slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
+  }
+  if (strokes_.begins_block(point.time_s, point.in_contact)) block_pending_ = true;
+  if (strokes_.begins_stroke()) stroke_pending_ = true;
+  // Of a set before the newest: a model that joined is not in it.
+  if (&set != models_.newest_set() || std::isnan(point.reference_N) || !point.in_contact) return;
+  contact_s_ += step_s;
+  if (outside) outside_s_ += step_s;
+  if (outside || !point.counts) return;
+  counted_s_ += step_s;
+  count_errors(point, set);
+}
+
+void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set) {
+  const bool begins = std::exchange(block_pending_, false);
+  const bool begins_stroke = std::exchange(stroke_pending_, false);
+  ++counted_;
+  for (const std::size_t index : set.slots) {
+    if (index == PublishedSet::kRemoved) continue;
+    const double difference = point.difference_over_jnd(index, jnd_);
+    if (std::isnan(difference)) continue;
+    Slot& slot = slots_[index];
+    const auto model_N = static_cast<double>(point.force_N[index]);
+    const auto reference_N = static_cast<double>(point.reference_N);
+    slot.errors.add(model_N, reference_N, false, jnd_);
+    slot.quantile.add(std::abs(difference));
+    if (counted_ > kMostJudged) continue;
+    if (begins) slot.evidence.begin_block(begins_stroke);
+    slot.evidence.add(model_N, reference_N, false);
   }
 }
 
 void Comparison::show(const LoopSnapshot& newest) {
-  fit_slots();
-  const PublishedSet* set = slots_.set_of(newest);
+  const PublishedSet* set = models_.set_of(newest);
   reference_N_ = reference_in(newest, set);
-  for (std::size_t i = 0; i < figures_.size(); ++i) {
-    SlotView& view = slots_.view(i);
-    view.dent_m = figures_[i].dent.depth_m();
-    view.recent_peak_error_over_jnd = figures_[i].dent.error_over_jnd();
-  }
   if (set == nullptr) return;
   for (std::size_t i = 0; i < set->slots.size(); ++i) {
-    SlotView& view = slots_.view(set->slots[i]);
-    view.force_N = newest.tick.force_N[i];
-    view.predicted_error_N = newest.tick.predicted_error_N[i];
-    view.out_of_domain = (newest.tick.out_of_domain_mask >> i & 1U) != 0;
+    if (set->slots[i] == PublishedSet::kRemoved) continue;
+    ModelFigures& figures = slots_[set->slots[i]].newest;
+    figures.force_N = newest.tick.force_N[i];
+    figures.predicted_error_N = newest.tick.predicted_error_N[i];
+    figures.out_of_domain = (newest.tick.out_of_domain_mask >> i & 1U) != 0;
   }
 }
 
 double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet* set) const noexcept {
   if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
   if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
-  if (set == nullptr || !slots_.reference()) return kNoForce;
-  const auto place = set->place_of(*slots_.reference());
+  if (set == nullptr || !models_.reference()) return kNoForce;
+  const auto place = set->place_of(*models_.reference());
   return place ? snapshot.tick.force_N[*place] : kNoForce;
 }
 

@@ -27,32 +27,28 @@ void ExhibitTrace::clear() {
   largest_at_ = 0;
 }
 
-void ExhibitTrace::add(const ExhibitTick& tick, double jnd_N) {
+void ExhibitTrace::add(const ExhibitTick& tick) {
   if (began_s_ < 0.0 && !tick.in_contact) return;
   if (began_s_ < 0.0) began_s_ = tick.loop_time_s;
   seconds_ = tick.loop_time_s - began_s_;
   const auto at = static_cast<std::size_t>(seconds_ / kColumn_s);
   if (seconds_ >= kLongest_s) return;
   if (columns_.size() <= at) columns_.resize(at + 1);
-  if (tick.out_of_domain || !std::isfinite(tick.first_N) || !std::isfinite(tick.second_N)) return;
+  if (tick.out_of_domain || !std::isfinite(tick.first_N + tick.second_N + tick.over_jnd)) return;
   Column& column = columns_[at];
   const double share = 1.0 / ++column.ticks;
   column.first_N += share * (tick.first_N - column.first_N);
   column.second_N += share * (tick.second_N - column.second_N);
-  const double over_jnd = tick.in_contact ? (tick.second_N - tick.first_N) / jnd_N : 0.0;
-  column.over_jnd += share * (over_jnd - column.over_jnd);
-  // The column before is whole only now.
-  if (at > 0 && std::abs(felt(at - 1)) > largest_) {
-    largest_ = std::abs(felt(at - 1));
-    largest_at_ = at - 1;
+  if (std::abs(tick.over_jnd) > std::abs(column.over_jnd)) column.over_jnd = tick.over_jnd;
+  if (std::abs(tick.over_jnd) > largest_) {
+    largest_ = std::abs(tick.over_jnd);
+    largest_at_ = at;
   }
 }
 
-double ExhibitTrace::felt(std::size_t column) const noexcept {
+double ExhibitTrace::over_jnd(std::size_t column) const noexcept {
   const Column& now = columns_[column];
-  if (now.ticks == 0) return std::numeric_limits<double>::quiet_NaN();
-  if (column == 0 || columns_[column - 1].ticks == 0) return now.over_jnd;
-  return 0.5 * (columns_[column - 1].over_jnd + now.over_jnd);
+  return now.ticks == 0 ? std::numeric_limits<double>::quiet_NaN() : now.over_jnd;
 }
 
 std::vector<ExhibitRound> ExhibitGame::rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference,
@@ -131,10 +127,9 @@ void ExhibitGame::answer(bool different) {
   end_round();
 }
 
-void ExhibitGame::add(const ExhibitTick& tick, const JndLine& jnd) {
+void ExhibitGame::add(const ExhibitTick& tick) {
   if (state_ != State::press) return;
-  // Of two models neither is the reference.
-  trace_.add(tick, jnd.at(round().first ? 0.5 * (tick.first_N + tick.second_N) : tick.first_N));
+  trace_.add(tick);
   if (tick.in_contact) pressed_[chosen_ == 2 ? 1 : 0] = true;
   if (!felt_ && trace_.seconds() >= press_s_) end_round();
 }

@@ -29,6 +29,7 @@ inline constexpr std::array<ReferenceKind, 3> kReferenceKinds{ReferenceKind::mea
 struct HistoryPoint {
   double loop_time_s = 0.0;  // steady clock
   double time_s = 0.0;       // the device's: of a recording that is stepped, its own
+  float position_m = 0.0F;   // of the tool: negative in the air
   float depth_m = 0.0F;
   float reference_N = 0.0F;  // NaN: none
   float rendered_N = 0.0F;
@@ -40,10 +41,12 @@ struct HistoryPoint {
   std::uint8_t active = 0;     // its slot
   TickTrouble trouble = TickTrouble::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
-  std::uint16_t foreign = 0;                // bits by slot: models with nothing to compare with
-
-  // (model - reference) / JND: what curves and figures are made of. 0 in the air, NaN where
+  // (model - reference) / JND as its mean over 50 ms (sustained_error.h), signed; 0 in the air, NaN where
   // there is nothing to compare.
+  std::array<float, kMaxModels> sustained_over_jnd{};
+  std::uint16_t foreign = 0;  // bits by slot: models with nothing to compare with
+
+  // (model - reference) / JND in this tick alone. 0 in the air, NaN where there is nothing to compare.
   double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept {
     const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (foreign >> slot & 1U) != 0;
     if (none || (in_contact && !counts)) return std::numeric_limits<double>::quiet_NaN();
@@ -77,6 +80,10 @@ class ForceHistory {
   const HistoryPoint* last_until(double loop_time_s) const noexcept {
     const std::size_t next = first_at(std::nextafter(loop_time_s, std::numeric_limits<double>::infinity()));
     return next > 0 ? &(*this)[next - 1] : nullptr;
+  }
+  // The slot's model is gone.
+  void forget(std::size_t slot) noexcept {
+    for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = std::nanf("");
   }
   void append(const HistoryPoint& point) {
     if (size_ < points_.size()) {

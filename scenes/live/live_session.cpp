@@ -1,6 +1,8 @@
 #include "scenes/live/live_session.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -31,20 +33,34 @@ DeviceRequest with_calibrations(DeviceRequest request) {
   return request;
 }
 
-// A recording that is named or replayed is the material: nothing else is true of it.
-Status take_recording(const SessionRequest& request, Scene& scene) {
-  scene.recording = request.recording;
-  if (request.device.rfind(kReplay, 0) == 0) scene.recording = request.device.substr(kReplay.size());
-  if (scene.recording.empty()) return {};
-  const Result<Recording> recording = read_usable_recording(scene.recording);
-  if (!recording) return recording.error();
+std::string replayed_file(const std::string& device) {
+  return device.rfind(kReplay, 0) == 0 ? device.substr(kReplay.size()) : std::string();
+}
+
+// Recordings that are named, or the one that is replayed, are the material: nothing else is true of them.
+Status take_recordings(const SessionRequest& request, Scene& scene, HandSettings& hand) {
+  const std::string replayed = replayed_file(request.device);
+  scene.recordings = request.recordings;
+  if (scene.recordings.empty() && !replayed.empty() && request.refits) scene.recordings = {replayed};
+  if (scene.recordings.empty() && replayed.empty()) return {};
   scene.material.reset();
-  scene.title = recording->name;
-  scene.description = "The material of " + scene.recording + "; models are fitted to it.";
-  double largest_N = 0.0;
-  for (const RecordingRow& row : recording->rows) largest_N = std::max(largest_N, row.force_N);
-  constexpr double kPressed = 0.8;  // of the largest: a hand goes beyond what it aims at
-  if (largest_N > 0.0) scene.strongest_press_N = kPressed * largest_N;
+  scene.title.clear();
+  scene.description = "Models are fitted to";
+  std::vector<Recording> recordings;
+  for (const std::string& path : scene.recordings) {
+    Result<Recording> recording = read_usable_recording(path);
+    if (!recording) return recording.error();
+    scene.title += (scene.title.empty() ? "" : ", ") + recording->name;
+    scene.description += " " + path;
+    recordings.push_back(std::move(*recording));
+  }
+  if (recordings.empty()) scene.title = std::filesystem::path(replayed).stem().string();
+  const PressRange range = press_range(recordings);
+  if (range.strongest_N <= 0.0) return {};
+  constexpr double kInside = 0.8;  // of the largest: a hand goes beyond what it aims at
+  hand.strongest_press_N = scene.strongest_press_N = kInside * range.strongest_N;
+  hand.deepest_m = kInside * range.deepest_m;
+  hand.fastest_m_per_s = kInside * range.fastest_m_per_s;
   return {};
 }
 
@@ -63,6 +79,30 @@ void take_provenance(std::vector<SlotPlan>& plans, std::size_t files, Scene& sce
 
 }  // namespace
 
+// Speeds over 20 ms and more, beyond an encoder's steps; the fastest hundredth is left out as noise.
+PressRange press_range(const std::vector<Recording>& recordings) {
+  constexpr double kSpan_s = 0.02;
+  PressRange range;
+  std::vector<double> speeds;
+  for (const Recording& recording : recordings) {
+    std::size_t first = 0;
+    for (const RecordingRow& row : recording.rows) {
+      range.strongest_N = std::max(range.strongest_N, row.force_N);
+      range.deepest_m = std::max(range.deepest_m, row.position_m);
+      const RecordingRow& before = recording.rows[first];
+      if (row.time_s - before.time_s < kSpan_s) continue;
+      if (row.position_m > 0.0)
+        speeds.push_back(std::abs(row.position_m - before.position_m) / (row.time_s - before.time_s));
+      first = static_cast<std::size_t>(&row - recording.rows.data());
+    }
+  }
+  if (speeds.empty()) return range;
+  const auto fast = speeds.begin() + static_cast<std::ptrdiff_t>(99 * (speeds.size() - 1) / 100);
+  std::nth_element(speeds.begin(), fast, speeds.end());
+  range.fastest_m_per_s = *fast;
+  return range;
+}
+
 std::vector<DeviceChoice> device_choices() {
   std::vector<DeviceChoice> choices;
   for (DeviceDescription& device : list_devices(with_calibrations({}))) {
@@ -78,22 +118,27 @@ LiveSession::LiveSession(const SessionRequest& request, Scene scene, std::unique
       device_(std::move(device)),
       models_(scene_, request.seed, notices_),
       comparison_(models_, scene_.jnd),
-      surface_(device_->replay(), scene_.jnd),
+      test_(device_->replay(), scene_.jnd),
       buffer_(kSnapshotsAtOnce) {}
 
 Result<std::unique_ptr<LiveSession>> LiveSession::open(const SessionRequest& request) {
   Result<Scene> scene = load_scene(request.scene.empty() ? kDefaultScene : request.scene);
   if (!scene) return scene.error();
-  if (const Status status = take_recording(request, *scene); !status) return status.error();
-  const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
-  Result<std::vector<SlotPlan>> plans =
-      plan_slots(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
-  if (!plans) return plans.error();
-  if (request.scene.empty() && !request.models.empty() && scene->recording.empty())
-    take_provenance(*plans, request.models.size(), *scene);
   DeviceRequest device_request;
-  device_request.seed = request.seed + 1;  // other gestures than those of the training recording
   device_request.hand.strongest_press_N = scene->strongest_press_N;
+  if (const Status status = take_recordings(request, *scene, device_request.hand); !status) return status.error();
+  const LineUp* line_up = request.models.empty() && scene->has_material() ? find_line_up(request.line_up) : nullptr;
+  Result<std::vector<SlotPlan>> plans = std::vector<SlotPlan>();
+  if (request.refits)
+    plans = plan_slots(*scene, line_up != nullptr ? line_up->models : request.models, request.position_only);
+  if (!plans) return plans.error();
+  for (const SlotPlan& plan : request.kept) {
+    // What is not there can only be fitted to a material.
+    if (plans->size() < kMaxModels && (plan.loaded != nullptr || scene->has_material())) plans->push_back(plan);
+  }
+  if (request.scene.empty() && !request.models.empty() && scene->recordings.empty())
+    take_provenance(*plans, request.models.size(), *scene);
+  device_request.seed = request.seed + 1;  // other gestures than those of the training recording
   device_request.bus = request.bus;
   Result<std::unique_ptr<Device>> device = open_device(request.device, with_calibrations(device_request));
   if (!device) return device.error();
@@ -138,10 +183,11 @@ void LiveSession::update() {
   // Before models change, so that they know the motion up to now.
   read_snapshots();
   update_models();
-  if (surface_.update(models_)) comparison_.forget_errors("the surface was found");
+  if (test_.update(models_)) comparison_.forget_errors("the surface was found");
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
+  judge_.update(models_, comparison_, newest_.loop_time_s);
   check_faults();
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // it may have ended by itself
@@ -151,15 +197,17 @@ void LiveSession::update() {
 
 void LiveSession::update_models() {
   const std::vector<std::size_t> ready = models_.update();
+  for (const std::size_t slot : models_.read_freed()) comparison_.forget_slot(slot);
   if (ready.empty()) return;
   for (const std::size_t slot : ready) comparison_.begin_slot(slot);
-  const std::string& name = models_.view(ready.back()).name;
+  const std::string& name = models_.info(ready.back()).name;
   publish(name.substr(0, name.size() > 16 ? name.find('-') : name.size()) + " joined");
 }
 
 // All begin to be compared together: the same samples for each.
 void LiveSession::publish(std::string why) {
   comparison_.forget_errors(std::move(why));
+  judge_.forget();
   auto set = models_.make_set(device_->sensor(), truth_);
   history_.recall(set->tick);
   loop_->publish_models(std::move(set));
@@ -167,13 +215,12 @@ void LiveSession::publish(std::string why) {
 }
 
 void LiveSession::remove(std::size_t slot) {
-  models_.remove(slot);
-  publish(models_.view(slot).name + " was taken out");
+  if (models_.remove(slot)) publish(models_.info(slot).name + " was taken out");
 }
 
 void LiveSession::claim(std::size_t slot) {
   models_.claim(slot);
-  comparison_.forget_errors(models_.view(slot).name + " joined");
+  comparison_.forget_errors(models_.info(slot).name + " joined");
 }
 
 void LiveSession::use_line_up(const std::string& name) {
@@ -232,7 +279,60 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
 }
 
 void LiveSession::use_reference(ReferenceKind kind) {
-  if (has_reference(kind)) comparison_.use_reference(kind);
+  if (!has_reference(kind)) return;
+  comparison_.use_reference(kind);
+  judge_.forget();
+}
+
+bool LiveSession::replays_training() const noexcept {
+  const std::string replayed = replayed_file(request_.device);
+  return models_.fits() &&
+         std::find(scene_.recordings.begin(), scene_.recordings.end(), replayed) != scene_.recordings.end();
+}
+
+bool LiveSession::tests_recording() const noexcept {
+  return replay() != nullptr && comparison_.reference() == ReferenceKind::measured && test_.rounds() > 0;
+}
+
+ModelFigures LiveSession::figures(std::size_t slot) const {
+  ModelFigures figures = comparison_.figures(slot);
+  if (!tests_recording()) return figures;
+  const Evidence* tested = test_.errors(models_.model(slot).get());
+  figures.errors = tested != nullptr ? static_cast<const ErrorSummary&>(*tested) : ErrorSummary{};
+  return figures;
+}
+
+Verdict LiveSession::verdict() const {
+  std::vector<JudgedModel> tested;
+  std::vector<const JudgedModel*> judged;
+  if (tests_recording()) {
+    for (const std::size_t slot : models_.ready_slots()) {
+      const Evidence* errors = test_.errors(models_.model(slot).get());
+      if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).cost, *errors});
+    }
+    for (const JudgedModel& one : tested) judged.push_back(&one);
+  } else {
+    for (const JudgedModel& one : judge_.judged()) judged.push_back(&one);
+  }
+  if (judged.empty()) return {{}, {}, false, why_no_verdict(), {}};
+  const bool of_model = comparison_.reference() == ReferenceKind::direct;
+  Verdict verdict = judge(judged, models_, of_model ? models_.info(*models_.reference()).name : "");
+  if (of_model && verdict.detail.empty())
+    verdict.detail = "No true force is known here: test on a second recording (M).";
+  if (replay() != nullptr) verdict.detail += replays_training() ? " Tested on its own training." : "";
+  return verdict;
+}
+
+std::string LiveSession::why_no_verdict() const {
+  if (models_.size() == 0) return {};
+  if (!has_reference(comparison_.reference())) return reference_words();
+  if (replay() != nullptr && comparison_.reference() == ReferenceKind::measured)
+    return "Testing the models on " + replay()->recording().name + " ...";
+  if (comparison_.outside_s() > kJudged_s) {
+    const std::string& name = models_.info(comparison_.mostly_outside()).name;
+    return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
+  }
+  return models_.ready_slots().empty() ? "The models are being fitted ..." : "The verdict needs a second of contact.";
 }
 
 std::string LiveSession::reference_words(bool brief) const {
@@ -241,13 +341,13 @@ std::string LiveSession::reference_words(bool brief) const {
   if (comparison_.reference() == ReferenceKind::measured) {
     if (replay() == nullptr) return brief ? "the real block" : "measured force of the real block";
     return brief ? "the recording"
-                 : "as recorded in " + replay()->recording().name + (models_.fits() ? ", fitted to it" : "");
+                 : "as recorded in " + replay()->recording().name + (replays_training() ? ", fitted to it" : "");
   }
   if (!models_.reference()) return "no truth to compare with";
-  const std::string& model = models_.view(*models_.reference()).name;
+  const std::string& model = models_.info(*models_.reference()).name;
   if (brief) return model;
   if (scene_.material) return "direct interpolant";
-  return (scene_.recording.empty() ? "no truth to compare with: difference from " : "best model of the recording, ") +
+  return (scene_.recordings.empty() ? "no truth to compare with: difference from " : "best model of the recording, ") +
          model;
 }
 
@@ -272,7 +372,7 @@ std::string LiveSession::device_words() const {
 }
 
 void LiveSession::move_surface(bool moved) {
-  if (surface_.move(moved)) comparison_.forget_errors("the surface moved");
+  if (test_.move(moved)) comparison_.forget_errors("the surface moved");
 }
 
 bool LiveSession::renders_force() const noexcept { return device_->holder() == Holder::person; }
@@ -296,9 +396,9 @@ std::vector<std::string> LiveSession::recording_comments() const {
   return {"recorded live; scene " + scene_.name + ", device " + device_->name(),
           "force_N: " + reference_words() + ", not what the device rendered",
           "a stream that starts over (end of a replay, seek) begins 30 s later than the last one ended",
-          "position_m: " + (surface_.offset_m() == 0.0
+          "position_m: " + (test_.offset_m() == 0.0
                                 ? std::string("as the device gave it")
-                                : "moved to the models' surface by " + fixed(-1e3 * surface_.offset_m(), 3) + " mm")};
+                                : "moved to the models' surface by " + fixed(-1e3 * test_.offset_m(), 3) + " mm")};
 }
 
 Status LiveSession::start_recording(const std::string& path) {

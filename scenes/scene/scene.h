@@ -36,7 +36,7 @@ struct Scene {
   std::string title;
   std::string description;
   std::optional<std::string> material;  // virtual material; none: recordings only
-  std::string recording;                // in its place, of a session: the file that is the material
+  std::vector<std::string> recordings;  // in its place, of a session: the files that are the material
   std::vector<FeatureSpec> features;    // 1 to 8, the depth among them; low-passes for memory
   JndLine jnd;
   BlockGeometry block;
@@ -48,7 +48,7 @@ struct Scene {
   double strongest_press_N = 5.0;
 
   // Whether there is something to fit models to.
-  bool has_material() const { return material.has_value() || !recording.empty(); }
+  bool has_material() const { return material.has_value() || !recordings.empty(); }
 };
 
 // The features in words: "depth, velocity, relaxation 0.17 s".

@@ -25,7 +25,7 @@ constexpr int kNice = 10;
 constexpr double kRecorded = 0.3;
 constexpr double kPrepared = 0.7;
 
-// Reading a file is quicker than any fit; a model of position alone needs a
+// A model that is there is quicker than any fit; one of position alone needs a
 // preparation of its own.
 constexpr double kOwnPreparation_s = 1.0;
 // Which features are best is found out once for all that are not of the paper's recipe;
@@ -35,7 +35,7 @@ constexpr double kChoosesFeatures_s = 2.0;
 // How long a model takes to make, in words of order only. A method's base comes
 // before the method, which then starts from it.
 double expected_cost_s(const SlotPlan& plan) {
-  if (plan.origin == ModelOrigin::file) return 0.0;
+  if (plan.loaded != nullptr) return 0.0;
   MethodRequest request;
   request.method = plan.method;
   if (plan.centres > 0) request.centres = plan.centres;
@@ -45,7 +45,7 @@ double expected_cost_s(const SlotPlan& plan) {
 
 // Strokes into what it was trained on, the same for every model: half a second of contact
 // and more makes a median, and takes some milliseconds.
-double tick_ns(const std::shared_ptr<const FittedModel>& model) {
+Timing time_of_tick(const std::shared_ptr<const FittedModel>& model) {
   std::size_t feature = 0;
   const double depth_m = std::min(0.8 * deepest_in_domain_m(model->data(), feature), 0.01);
   SensorSpec sensor;
@@ -59,14 +59,14 @@ double tick_ns(const std::shared_ptr<const FittedModel>& model) {
     tool.velocity_m_per_s = 5.0 * depth_m * std::sin(phase);
     samples.push_back(tool);
   }
-  return time_models({model}, {{sensor, std::move(samples)}}).front().tick.median_ns;
+  return time_models({model}, {{sensor, std::move(samples)}}).front().tick;
 }
 
 }  // namespace
 
 FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model) {
-  const double time_ns = tick_ns(model);
-  return {job_id, plan, std::move(model), "", time_ns};
+  const Timing tick = time_of_tick(model);
+  return {job_id, plan, std::move(model), "", tick};
 }
 
 // Linux counts threads one by one.
@@ -124,7 +124,7 @@ void ModelWorker::work() {
     lock.unlock();
     const auto model = make(job.plan);
     FinishedModel made = model ? finished_model(job.job_id, job.plan, *model)
-                               : FinishedModel{job.job_id, job.plan, nullptr, model.error().message};
+                               : FinishedModel{job.job_id, job.plan, nullptr, model.error().message, {}};
     lock.lock();
     finished_.push_back(std::move(made));
   }
@@ -146,24 +146,32 @@ FitControl ModelWorker::control(double from, double to) {
   return result;
 }
 
-Status ModelWorker::prepare_recording() {
-  if (recording_ != nullptr) return {};
-  if (scene_.recording.empty() && !scene_.material)
+Status ModelWorker::prepare_recordings() {
+  if (!recordings_.empty()) return {};
+  if (!scene_.has_material())
     return Error{"the scene \"" + scene_.name + "\" has no virtual material to fit a model to"};
-  RigSettings settings;
-  settings.material = scene_.material.value_or("");
-  settings.seed = seed_;
-  Result<Recording> recording = scene_.recording.empty() ? record_sensors(settings, control(0.0, kRecorded).progress)
-                                                         : read_usable_recording(scene_.recording);
-  if (!recording) return recording.error();
-  recording_ = std::make_shared<const Recording>(std::move(*recording));
+  std::vector<MotionSource::Input> inputs;
+  for (const std::string& path : scene_.recordings) {
+    Result<Recording> recording = read_usable_recording(path);
+    if (!recording) return recording.error();
+    inputs.push_back({"", std::make_shared<const Recording>(std::move(*recording))});
+  }
+  if (inputs.empty()) {
+    RigSettings settings;
+    settings.material = *scene_.material;
+    settings.seed = seed_;
+    Result<Recording> recording = record_sensors(settings, control(0.0, kRecorded).progress);
+    if (!recording) return recording.error();
+    inputs.push_back({"", std::make_shared<const Recording>(std::move(*recording))});
+  }
+  recordings_ = std::move(inputs);
   return {};
 }
 
 Status ModelWorker::prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request) {
   if (prepared) return {};
-  if (Status status = prepare_recording(); !status) return status;
-  MotionSource source({{"", recording_}});
+  if (Status status = prepare_recordings(); !status) return status;
+  MotionSource source(recordings_);
   Result<PreparedTraining> made = prepare_training(source, request, control(kRecorded, kPrepared));
   if (!made) return made.error();
   prepared.emplace(std::move(*made));

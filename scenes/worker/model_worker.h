@@ -1,5 +1,5 @@
 // A thread that makes the models of a session ready, the quickest first: methods are fitted
-// to the recording that is the material, or to what `palpate synth` writes of the scene's with the same
+// to the recordings that are the material, or to what `palpate synth` writes of the scene's with the same
 // seed; the same bits as of `palpate fit`.
 // Asked for another number of centres than before (a slider), it chooses centres for the largest number
 // once; each number after that takes milliseconds (models/fit/nested_fit.h).
@@ -83,14 +83,14 @@ class ModelWorker {
   Result<ModelData> fit(const SlotPlan& plan);
   Result<MethodFit> fit_nested(const PreparedTraining& prepared, const MethodRequest& request, bool paper,
                                const FitControl& control);
-  Status prepare_recording();
+  Status prepare_recordings();
   Status prepare(std::optional<PreparedTraining>& prepared, const TrainingRequest& request);
   FitControl control(double from, double to);
 
   Scene scene_;
   std::uint64_t seed_;
   // The worker's own.
-  std::shared_ptr<const Recording> recording_;
+  std::vector<MotionSource::Input> recordings_;
   std::optional<PreparedTraining> prepared_;
   std::optional<PreparedTraining> prepared_as_paper_;
   std::map<const Method*, MethodFit> bases_;  // fitted already, for methods that start from one

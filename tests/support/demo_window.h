@@ -53,7 +53,7 @@ class DemoWindowTest : public ::testing::Test {
     auto app = DemoApp::create(request);
     ASSERT_TRUE(app.ok()) << app.error().message;
     app_ = std::move(*app);
-    app_->view().block_count = 1;
+    app_->view().settings.block_count = 1;
     ASSERT_TRUE(until([&] { return app_->session().models().all_settled(); }));
   }
 

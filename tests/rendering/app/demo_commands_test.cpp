@@ -41,13 +41,13 @@ TEST_F(DemoCommandsTest, AButtonDoesWhatItsKeyDoes) {
   ASSERT_NE(buttons, nullptr);
   GLFWwindow* window = app_->window().handle();
   glfwFocusWindow(window);
-  // The first button is Help: its middle, from the window's corner.
+  // The first button is Open: its middle, from the window's corner.
   const ImVec2 padding = ImGui::GetStyle().WindowPadding;
   glfwSetCursorPos(window, static_cast<double>(buttons->Pos.x + padding.x + 8.0F),
                    static_cast<double>(buttons->Pos.y + padding.y + 6.0F));
   frames(3);
   click();
-  EXPECT_TRUE(app_->view().help);
+  EXPECT_TRUE(app_->view().dialogs.file_list);
 }
 
 TEST_F(DemoCommandsTest, ARecordingGoesOnByOneSample) {
@@ -94,17 +94,17 @@ TEST_F(DemoCommandsTest, TheFilePickerListsFoldersAndWhatCanBeOpened) {
 TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
   open("hand");
   press(GLFW_KEY_T);
-  EXPECT_EQ(app_->view().theme, Theme::dark);
+  EXPECT_EQ(app_->view().settings.theme, Theme::dark);
   press(GLFW_KEY_B);
-  EXPECT_EQ(app_->view().block_count, 2u);
+  EXPECT_EQ(app_->view().settings.block_count, 2u);
   press(GLFW_KEY_SPACE);
   EXPECT_TRUE(app_->view().time.paused);
   press(GLFW_KEY_H);
   press(GLFW_KEY_L);
   press(GLFW_KEY_M);
-  EXPECT_TRUE(app_->view().help && app_->view().details && app_->view().file_list);
+  EXPECT_TRUE(app_->view().dialogs.help && app_->view().details && app_->view().dialogs.file_list);
   press(GLFW_KEY_ESCAPE);
-  EXPECT_FALSE(app_->view().help || app_->view().details || app_->view().file_list);
+  EXPECT_FALSE(app_->view().dialogs.help || app_->view().details || app_->view().dialogs.file_list);
   EXPECT_FALSE(app_->closing());
   press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
   EXPECT_TRUE(app_->closing());
@@ -117,7 +117,7 @@ TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
     glfwSetWindowSize(app_->window().handle(), width, height);
     frames(8);
-    for (const char* name : {"Keys", "Open a file", "buttons", "title"}) {
+    for (const char* name : {"Help", "Open a file", "buttons", "title"}) {
       const ImGuiWindow* window = ImGui::FindWindowByName(name);
       ASSERT_NE(window, nullptr) << name;
       EXPECT_GE(window->Pos.x, 0.0F) << name << " " << width;
@@ -183,10 +183,10 @@ TEST_F(DemoCommandsTest, FromAReplayBackToTheHandWithTheSameMaterial) {
   press(GLFW_KEY_BACKSPACE);
   EXPECT_EQ(app_->session().replay(), nullptr);
   EXPECT_EQ(app_->session().scene().title, "strokes");
-  EXPECT_EQ(app_->session().scene().recording, replayed);
+  EXPECT_EQ(app_->session().scene().recordings, std::vector<std::string>{replayed});
   EXPECT_LT(app_->session().comparison().history().size(), shown) << "curves of the old session are gone";
   for (std::size_t i = 0; i < app_->session().models().size(); ++i)
-    EXPECT_EQ(app_->session().models().view(i).errors.samples(), 0u);
+    EXPECT_EQ(app_->session().comparison().figures(i).errors.samples, 0u);
 }
 
 TEST_F(DemoCommandsTest, TheSameNoticeStandsThereOnce) {
@@ -224,7 +224,7 @@ TEST_F(DemoCommandsTest, SaysWhatThereIsNotForAKey) {
   EXPECT_TRUE(told("no device that pushes"));
   press(GLFW_KEY_B);
   press(GLFW_KEY_B);
-  EXPECT_EQ(app_->view().block_count, 4u);
+  EXPECT_EQ(app_->view().settings.block_count, 4u);
   EXPECT_TRUE(told("2 of 4 blocks"));
 }
 

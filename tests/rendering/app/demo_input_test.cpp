@@ -1,7 +1,6 @@
 // Mouse and wheel on the window.
 #include <cmath>
 
-#include "rendering/panels/panel_views.h"
 #include "tests/support/demo_window.h"
 
 namespace palpate {
@@ -17,8 +16,8 @@ TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
   ASSERT_TRUE(until([&] { return session.newest().tick.depth_m > 0.002; }));
   frames(60);  // at rest
   const double before_s = session.newest().loop_time_s;
-  const double soft_N = session.models().view(0).force_N;
-  const double firm_N = session.models().view(1).force_N;
+  const double soft_N = session.figures(0).force_N;
+  const double firm_N = session.figures(1).force_N;
   ASSERT_GT(firm_N, soft_N + session.jnd().at(soft_N)) << "a difference to fade over";
   press(GLFW_KEY_2);
   EXPECT_EQ(session.models().selected(), 1u);
@@ -73,9 +72,9 @@ TEST_F(DemoInputTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
 
 TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
   open("mouse");
-  EXPECT_FALSE(models_view(app_->session()).out_of_domain());
+  EXPECT_FALSE(app_->shown().models.out_of_domain());
   app_->session().mouse()->set_target(0.03, steady_now_s());  // example models know 6 mm
-  EXPECT_TRUE(until([&] { return models_view(app_->session()).out_of_domain(); }));
+  EXPECT_TRUE(until([&] { return app_->shown().models.out_of_domain(); }));
 }
 
 TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
@@ -94,6 +93,23 @@ TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   const double high_m = app_->session().newest().tick.position_m;
   glfwSetCursorPos(window, 384.0, 430.0);
   ASSERT_TRUE(until([&] { return app_->session().newest().tick.position_m > high_m + 0.001; }));
+}
+
+// A flick leaves the block: the probe goes on with the mouse, as deep as there are data at the lower edge, and
+// is lifted when the mouse leaves.
+TEST_F(DemoInputTest, TheProbeFollowsTheMouseInAllOfThePicture) {
+  open("mouse");
+  app_->view().settings.block_count = 4;
+  GLFWwindow* window = app_->window().handle();
+  glfwFocusWindow(window);
+  glfwSetCursorPos(window, 384.0, 300.0);
+  frames(5);
+  glfwSetCursorPos(window, 700.0, 640.0);
+  const double known_m = app_->session().models().trained_depth_m();
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m > 0.8 * known_m; }));
+  glfwSetCursorPos(window, 1000.0, 640.0);
+  EXPECT_TRUE(until([&] { return app_->session().newest().tick.position_m < 0.0; }));
+  EXPECT_TRUE(told("the probe is lifted"));
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ class ExhibitTest : public test::DemoWindowTest {
 TEST_F(ExhibitTest, IsPlayedWithAMouseAlone) {
   open_exhibit({});
   EXPECT_TRUE(says("Can you tell the computer from the block?"));
-  EXPECT_EQ(app_->view().block_count, 2u) << "the comparison, not an empty block";
+  EXPECT_EQ(app_->view().settings.block_count, 2u) << "the comparison, not an empty block";
   visit_with_mouse();
   click_on("Enter");
   EXPECT_EQ(state(), State::guess) << "once more";
@@ -289,7 +289,7 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
     ASSERT_EQ(state(), State::press) << "no guess before a hand has felt anything";
     EXPECT_TRUE(says("feel a difference"));
     EXPECT_TRUE(app_->view().blind);
-    EXPECT_EQ(app_->view().block_count, 1u);
+    EXPECT_EQ(app_->view().settings.block_count, 1u);
     stroke_device();
     press(GLFW_KEY_D);
     EXPECT_EQ(state(), State::press) << "both have to be pressed";
@@ -313,14 +313,14 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
 
 TEST_F(ExhibitTest, HasOneWayOut) {
   open_exhibit({});
-  EXPECT_EQ(app_->view().theme, Theme::dark);
+  EXPECT_EQ(app_->view().settings.theme, Theme::dark);
   press(GLFW_KEY_ESCAPE);
   press(GLFW_KEY_Q, GLFW_MOD_CONTROL);
   glfwSetWindowShouldClose(app_->window().handle(), GLFW_TRUE);
   frames(2);
   EXPECT_FALSE(app_->closing());
   press(GLFW_KEY_T);
-  EXPECT_EQ(app_->view().theme, Theme::dark) << "a visitor changes nothing";
+  EXPECT_EQ(app_->view().settings.theme, Theme::dark) << "a visitor changes nothing";
   press(GLFW_KEY_Q, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
   EXPECT_TRUE(app_->closing());
 }

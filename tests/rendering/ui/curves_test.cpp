@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes/live/sustained_error.h"
+
 namespace palpate {
 namespace {
 
@@ -14,14 +16,18 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // peak of 3 N, slot 1 not ready in the first half.
 ForceHistory example() {
   ForceHistory history;
+  SustainedError sustained;
   for (int i = 0; i < 1000; ++i) {
     HistoryPoint point;
     point.loop_time_s = point.time_s = 100.0 + 1e-3 * i;
     point.in_contact = true;
     point.reference_N = 1.0F;
     point.force_N.fill(kNone);
+    point.sustained_over_jnd.fill(kNone);
     point.force_N[0] = i == 333 ? 3.0F : 1.1F;
     if (i >= 500) point.force_N[1] = 0.9F;
+    point.sustained_over_jnd[0] =
+        static_cast<float>(sustained.add(point.time_s, point.difference_over_jnd(0, JndLine{})));
     history.append(point);
   }
   return history;
@@ -90,12 +96,12 @@ TEST(CurveColumns, ScrollingGivesWhatAFreshStartGives) {
     EXPECT_DOUBLE_EQ(a.time_s, b.time_s);
     if (!a.any || i == 0) continue;  // the first may have lost its beginning with the history
     EXPECT_EQ(a.tick.loop_time_s, b.tick.loop_time_s) << i;
-    EXPECT_NEAR(a.felt_over_jnd[0], b.felt_over_jnd[0], 1e-5F) << i;
+    EXPECT_NEAR(a.sustained_over_jnd[0], b.sustained_over_jnd[0], 1e-5F) << i;
   }
 }
 
 // One tick at 2 N off among ticks at 0.1 N off: a mark, and hardly anything to feel.
-TEST(CurveColumns, ASingleTickIsAMarkAndNotFelt) {
+TEST(CurveColumns, ASingleTickIsAMarkAndNotSustained) {
   const ForceHistory history = example();
   CurveColumns curves;
   const JndLine jnd;
@@ -105,7 +111,7 @@ TEST(CurveColumns, ASingleTickIsAMarkAndNotFelt) {
   const double lasting = 0.1 / jnd.at(1.0);
   EXPECT_NEAR(peak->error_over_jnd[0], 2.0 / jnd.at(1.0), 1e-4);
   // The peak is one of the 50 or 51 samples in 50 ms.
-  EXPECT_NEAR(peak->felt_over_jnd[0], lasting + 1.9 / jnd.at(1.0) / 50.0, 0.02 * lasting);
+  EXPECT_NEAR(peak->sustained_over_jnd[0], lasting + 1.9 / jnd.at(1.0) / 50.0, 0.02 * lasting);
   EXPECT_EQ(curves.at(99.0), nullptr);
   EXPECT_EQ(curves.at(102.0), nullptr);
 }

@@ -27,17 +27,5 @@ TEST(Plot, ScalesEndAtRoundNumbers) {
   EXPECT_DOUBLE_EQ(round_up(-3.0), 1.0);
 }
 
-TEST(Plot, LabelsKeepTheirOrderAndStandApart) {
-  const std::vector<float> places = spread_labels({50.0F, 51.0F, 49.0F, 99.0F}, 10.0F, 0.0F, 100.0F);
-  EXPECT_LE(places[2] + 10.0F, places[0]);
-  EXPECT_LE(places[0] + 10.0F, places[1]);
-  EXPECT_FLOAT_EQ(places[3], 99.0F) << "nothing is in its way";
-  // All at the lower edge: they go up as far as they must.
-  const std::vector<float> low = spread_labels({100.0F, 100.0F, 100.0F}, 10.0F, 0.0F, 100.0F);
-  EXPECT_FLOAT_EQ(low[0], 80.0F);
-  EXPECT_FLOAT_EQ(low[2], 100.0F);
-  EXPECT_TRUE(spread_labels({}, 10.0F, 0.0F, 100.0F).empty());
-}
-
 }  // namespace
 }  // namespace palpate

@@ -11,12 +11,11 @@ namespace {
 using State = ExhibitGame::State;
 const std::vector<ExhibitModel> kAll = {
     {0, "greedy", false}, {1, "greedy", true}, {2, "position", false}, {3, "direct", false}};
-const JndLine kJnd{0.1, 0.0};
 
-// A stroke of `seconds` at 2 N, the second force so much larger, in JNDs.
+// A stroke of `seconds` at 2 N, the second force so much larger, in JNDs of 0.1 N.
 void press(ExhibitGame& game, double from_s, double seconds, double over_jnd) {
   for (int i = 0; i < static_cast<int>(1e3 * seconds); ++i)
-    game.add({from_s + 1e-3 * i, 2.0, 2.0 + 0.1 * over_jnd, true, false}, kJnd);
+    game.add({from_s + 1e-3 * i, 2.0, 2.0 + 0.1 * over_jnd, over_jnd, true, false});
 }
 
 TEST(ExhibitGame, GoesFromObviousToImpossible) {
@@ -48,7 +47,7 @@ TEST(ExhibitGame, IsPlayedFromGuessToScore) {
     EXPECT_EQ(game.trace().seconds(), 0.0) << "nothing counts before the guess";
     game.guess(true);
     EXPECT_EQ(game.state(), State::press);
-    for (int i = 0; i < 5000; ++i) game.add({time_s += 1e-3, 0.0, 0.0, false, false}, kJnd);
+    for (int i = 0; i < 5000; ++i) game.add({time_s += 1e-3, 0.0, 0.0, 0.0, false, false});
     EXPECT_EQ(game.trace().seconds(), 0.0) << "time begins with the first contact";
     press(game, time_s, 2.1, over_jnd);
     time_s += 2.1;
@@ -105,17 +104,32 @@ TEST(ExhibitGame, AnAnswerNeedsBothToBePressed) {
   EXPECT_TRUE(game.round().right());
 }
 
-TEST(ExhibitTrace, CountsWhatLastsAndWhatWasTrainedFor) {
+// A hand that can feel 1 JND feels 0.9 in some trials, and not 1.2 in others.
+TEST(ExhibitGame, OnTheEdgeEitherAnswerIsRight) {
+  for (const double over_jnd : {0.85, 1.2}) {
+    for (const bool noticed : {false, true}) {
+      ExhibitGame game(1);
+      ASSERT_TRUE(game.begin(kAll, true, false, 2.0));
+      game.guess(noticed);
+      press(game, 1.0, 2.1, over_jnd);
+      ASSERT_EQ(game.state(), State::reveal);
+      EXPECT_TRUE(game.round().on_the_edge());
+      EXPECT_TRUE(game.round().right());
+    }
+  }
+}
+
+TEST(ExhibitTrace, KeepsTheLargestWithinWhatWasTrainedFor) {
   ExhibitTrace trace;
   for (int i = 0; i < 2000; ++i) {
-    const bool spike = i == 700;
     const bool away = i >= 1000 && i < 1100;
-    trace.add({5.0 + 1e-3 * i, 1.0, 1.05 + (spike ? 1.0 : 0.0) + (away ? 3.0 : 0.0), true, away}, 0.1);
+    trace.add({5.0 + 1e-3 * i, 1.0, 1.05, i == 700 ? -0.7 : away ? 3.0 : 0.5, true, away});
   }
-  EXPECT_NEAR(trace.largest_over_jnd(), 0.5 + 10.0 / 50.0, 0.01) << "one tick of 50 ms moves no hand";
+  EXPECT_NEAR(trace.largest_over_jnd(), 0.7, 1e-9);
   EXPECT_EQ(trace.largest_at(), 28u);
-  EXPECT_TRUE(std::isnan(trace.felt(41))) << "where nothing was recorded the curve has a gap";
-  EXPECT_NEAR(trace.felt(60), 0.5, 1e-9);
+  EXPECT_NEAR(trace.over_jnd(28), -0.7, 1e-9) << "with its sign";
+  EXPECT_TRUE(std::isnan(trace.over_jnd(41))) << "where nothing was recorded the curve has a gap";
+  EXPECT_NEAR(trace.over_jnd(60), 0.5, 1e-9);
   EXPECT_NEAR(trace.seconds(), 1.999, 1e-9);
   trace.clear();
   EXPECT_TRUE(trace.columns().empty());
@@ -124,7 +138,7 @@ TEST(ExhibitTrace, CountsWhatLastsAndWhatWasTrainedFor) {
 
 TEST(ExhibitTrace, KeepsTheFirstMinute) {
   ExhibitTrace trace;
-  for (int i = 0; i < 70000; ++i) trace.add({1e-3 * i, 1.0, 1.0 + (i > 61000 ? 1.0 : 0.0), true, false}, 0.1);
+  for (int i = 0; i < 70000; ++i) trace.add({1e-3 * i, 1.0, 1.0, i > 61000 ? 1.0 : 0.0, true, false});
   EXPECT_EQ(trace.columns().size(), 2400u);
   EXPECT_EQ(trace.largest_over_jnd(), 0.0);
 }

@@ -111,7 +111,7 @@ TEST(LiveSession, GivesTheForcesOfReplayBitForBit) {
       ASSERT_NE(tick, expected.end()) << "time " << newest.tick.time_s;
       ASSERT_EQ(newest.tick.force_N[0], tick->second.force_N[0]) << newest.tick.time_s;
       ASSERT_EQ(newest.tick.force_N[1], tick->second.force_N[1]) << newest.tick.time_s;
-      EXPECT_EQ(session->models().view(0).force_N, newest.tick.force_N[0]);
+      EXPECT_EQ(session->figures(0).force_N, newest.tick.force_N[0]);
       ++compared;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -127,18 +127,18 @@ TEST(LiveSession, ComparesWithTheForceInTheRecording) {
   EXPECT_FALSE(session->has_reference(ReferenceKind::truth));
   EXPECT_FALSE(session->has_reference(ReferenceKind::direct)) << "not read yet";
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  EXPECT_EQ(session->models().view(0).name, "first");
-  EXPECT_EQ(session->models().view(1).method, "direct");
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(1).errors.samples() > 300; }));
-  EXPECT_GT(session->models().view(0).errors.rms_error_N(), 0.0);
-  EXPECT_GT(session->models().view(0).tick_ns, 0.0);
+  EXPECT_EQ(session->models().info(0).name, "first");
+  EXPECT_EQ(session->models().info(1).method, "direct");
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(1).errors.samples > 300; }));
+  EXPECT_GT(session->figures(0).errors.rms_error_N, 0.0);
+  EXPECT_GT(session->models().info(0).tick_ns, 0.0);
   session->use_reference(ReferenceKind::truth);
   EXPECT_EQ(session->comparison().reference(), ReferenceKind::measured) << "there is none";
   session->use_reference(ReferenceKind::direct);
-  EXPECT_EQ(session->models().view(0).errors.samples(), 0u) << "figures begin anew";
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(1).errors.samples() > 100; }));
-  EXPECT_EQ(session->models().view(1).errors.max_error_N(), 0.0) << "its own reference";
-  EXPECT_GT(session->models().view(0).errors.max_error_N(), 0.0);
+  EXPECT_EQ(session->figures(0).errors.samples, 0u) << "figures begin anew";
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(1).errors.samples > 100; }));
+  EXPECT_EQ(session->figures(1).errors.max_error_N, 0.0) << "its own reference";
+  EXPECT_GT(session->figures(0).errors.max_error_N, 0.0);
   EXPECT_TRUE(session->newest().restarted || session->comparison().history().size() > 300);
 }
 
@@ -168,18 +168,18 @@ TEST(LiveSession, MovesTheSurfaceOfARecordingToThatOfTheModels) {
   SessionRequest request = files.request("replay:" + files.folder.file("shifted.csv"));
   request.models = {files.folder.file("fitted.json")};
   const Session session = must(LiveSession::open(request));
-  ASSERT_TRUE(frames_until(*session, [&] { return session->surface().found_m() != 0.0; }));
-  EXPECT_NEAR(session->surface().found_m(), 0.3e-3, 0.02e-3);
-  EXPECT_EQ(session->replay()->surface_offset_m(), session->surface().found_m());
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).errors.samples() > 300; }));
-  const double moved_N = session->models().view(0).errors.rms_error_N();
+  ASSERT_TRUE(frames_until(*session, [&] { return session->replay_test().found_m() != 0.0; }));
+  EXPECT_NEAR(session->replay_test().found_m(), 0.3e-3, 0.02e-3);
+  EXPECT_EQ(session->replay()->surface_offset_m(), session->replay_test().found_m());
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 300; }));
+  const double moved_N = session->figures(0).errors.rms_error_N;
 
   session->move_surface(false);
-  EXPECT_EQ(session->models().view(0).errors.samples(), 0u) << "figures begin anew";
+  EXPECT_EQ(session->comparison().figures(0).errors.samples, 0u) << "figures of ticks begin anew";
   EXPECT_EQ(session->replay()->surface_offset_m(), 0.0);
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).errors.samples() > 300; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 300; }));
   // 0.3 mm of 300 N/m are 90 mN.
-  EXPECT_GT(session->models().view(0).errors.rms_error_N(), 3.0 * moved_N);
+  EXPECT_GT(session->figures(0).errors.rms_error_N, 3.0 * moved_N);
 }
 
 TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
@@ -188,7 +188,7 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   request.models = {files.folder.file("a.json")};
   const Session session = must(LiveSession::open(request));
   session->select(0);
-  EXPECT_EQ(session->models().view(0).state, SlotState::waiting);
+  EXPECT_EQ(session->models().info(0).state, SlotState::waiting);
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->comparison().reference(), ReferenceKind::direct);
   EXPECT_EQ(session->reference_words(), "no truth to compare with");
@@ -198,7 +198,7 @@ TEST(LiveSession, LoadsAFileAndKeepsTheChoice) {
   session->load_file(files.folder.with_file("bad.json", "{\"format\": 3}"));
   ASSERT_EQ(session->models().size(), 3u);
   session->update();
-  EXPECT_EQ(session->models().view(2).name, "first-2") << "names are distinct";
+  EXPECT_EQ(session->models().info(2).name, "first-2") << "names are distinct";
   EXPECT_EQ(session->models().selected(), 0u);
   const std::vector<Notice> notices = session->read_notices();
   ASSERT_EQ(notices.size(), 3u);
@@ -225,6 +225,54 @@ TEST(LiveSession, RefusesMoreModelsThanTheLoopTakes) {
   const std::vector<Notice> notices = session->read_notices();
   ASSERT_EQ(notices.size(), 1u);
   EXPECT_TRUE(notices[0].problem);
+}
+
+TEST(LiveSession, ARemovedModelGivesItsPlaceBackAndTheLastOneStays) {
+  const Files files;
+  SessionRequest request = files.request("hand");
+  request.models.assign(kMaxModels, files.folder.file("a.json"));
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
+  session->remove(5);
+  EXPECT_TRUE(session->load_file(files.folder.file("b.json"))) << "in its place";
+  frames(*session, 0.1);
+  EXPECT_EQ(session->models().size(), kMaxModels);
+  EXPECT_EQ(session->models().info(5).name, "second");
+  const ForceHistory& history = session->comparison().history();
+  EXPECT_TRUE(std::isnan(history[0].force_N[5])) << "no curve of the model that was there";
+  for (std::size_t i = 1; i < kMaxModels; ++i) session->remove(i);
+  session->remove(0);
+  EXPECT_EQ(session->models().info(0).state, SlotState::ready) << "there must be one to press";
+  EXPECT_EQ(session->comparison().counted_since().find("first was taken"), std::string::npos)
+      << "a removal that was refused forgets nothing";
+}
+
+// The hand stays inside of what was recorded, so that what it presses counts.
+TEST(LiveSession, TheHandPressesNeitherDeeperNorFasterThanWasRecorded) {
+  const test::TemporaryFolder folder;
+  Recording slow = *test::rig_recording(test::train_settings("elastic"));
+  for (RecordingRow& row : slow.rows) {
+    row.time_s *= 5.0;
+    row.velocity_m_per_s /= 5.0;
+    row.acceleration_m_per_s2 /= 25.0;
+  }
+  const PressRange range = press_range({slow});
+  const std::string path = folder.file("slow.csv");
+  ASSERT_TRUE(write_recording(path, slow, {}, false).ok());
+  SessionRequest request;
+  request.scene = "elastic_block";
+  request.recordings = {path};
+  request.device = "hand";
+  request.models = {"trend"};
+  request.realtime = false;
+  const Session session = must(LiveSession::open(request));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().contact_s() > 3.0; }));
+  EXPECT_LT(session->comparison().outside_s(), 0.1 * session->comparison().contact_s());
+  const ForceHistory& history = session->comparison().history();
+  double deepest_m = 0.0;
+  for (std::size_t i = 0; i < history.size(); ++i)
+    deepest_m = std::max(deepest_m, static_cast<double>(history[i].position_m));
+  EXPECT_LT(deepest_m, 1.02 * range.deepest_m);
 }
 
 TEST(LiveSession, TakesTheMouse) {
@@ -265,18 +313,17 @@ TEST(LiveSession, FitsComparesAndRecordsWhatCanBeFitted) {
   request.realtime = false;
   const Session session = must(LiveSession::open(request));
   ASSERT_EQ(session->models().size(), 3u);
-  EXPECT_EQ(session->models().view(2).name, "direct") << "the reference, always";
+  EXPECT_EQ(session->models().info(2).name, "direct") << "the reference, always";
   EXPECT_EQ(session->reference_words(), "true force of the virtual material, elastic");
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).state == SlotState::ready; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().info(0).state == SlotState::ready; }));
   EXPECT_EQ(session->models().selected(), 0u) << "the first asked for";
-  EXPECT_EQ(session->models().view(0).name, "greedy-100");
-  EXPECT_EQ(session->models().view(0).centres, 100);
+  EXPECT_EQ(session->models().info(0).name, "greedy-100");
+  EXPECT_EQ(session->models().info(0).centres, 100);
   ASSERT_TRUE(session->start_recording(folder.file("live.csv")).ok());
-  ASSERT_TRUE(frames_until(*session, [&] {
-    return session->models().view(0).errors.samples() > 500 && session->recording().seconds > 2.0;
-  }));
-  EXPECT_GT(session->models().view(0).errors.within_jnd(), 0.9);
-  EXPECT_GT(session->models().view(1).errors.samples(), 500u);
+  ASSERT_TRUE(frames_until(
+      *session, [&] { return session->figures(0).errors.samples > 500 && session->recording().seconds > 2.0; }));
+  EXPECT_GT(session->figures(0).errors.within_jnd, 0.9);
+  EXPECT_GT(session->figures(1).errors.samples, 500u);
   session->stop_recording();
   ASSERT_TRUE(frames_until(*session, [&] { return !session->recording().saving && !session->recording().active; }));
   const std::vector<Notice> notices = session->read_notices();
@@ -297,12 +344,12 @@ TEST(LiveSession, ModelsAreFittedAnewWithOtherCentres) {
   request.realtime = false;
   const Session session = must(LiveSession::open(request));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  EXPECT_EQ(session->models().view(0).centres, 10);
+  EXPECT_EQ(session->models().info(0).centres, 10);
   for (const int centres : {12, 14, 20}) session->refit(0, centres);
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).centres == 20; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->models().info(0).centres == 20; }));
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
-  EXPECT_FALSE(session->models().view(0).refitting);
-  EXPECT_EQ(session->models().view(0).name, "random-20");
+  EXPECT_FALSE(session->models().info(0).refitting);
+  EXPECT_EQ(session->models().info(0).name, "random-20");
 }
 
 // Of another material than the scene's: everything is held against the recording's own.
@@ -312,7 +359,7 @@ TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   ASSERT_TRUE(write_recording(path, *test::rig_recording(test::train_settings("elastic")), {}, false).ok());
   SessionRequest request;
   request.scene = "silicone_block";
-  request.recording = path;
+  request.recordings = {path};
   request.device = "hand";
   request.models = {"greedy", "trend"};
   request.realtime = false;
@@ -323,17 +370,17 @@ TEST(LiveSession, ARecordingIsTheMaterialThatIsFittedAndPressed) {
   ASSERT_TRUE(frames_until(*session, [&] { return session->models().all_settled(); }));
   EXPECT_EQ(session->reference_words(), "best model of the recording, direct");
   EXPECT_EQ(session->models().selected(), 0u) << "the winner";
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).errors.samples() > 1000; }));
-  EXPECT_LT(session->models().view(0).quantile.p99(), 1.0);
+  ASSERT_TRUE(frames_until(*session, [&] { return session->figures(0).errors.samples > 1000; }));
+  EXPECT_LT(session->figures(0).errors.p99_error_over_jnd, 1.0);
 
-  request.recording.clear();
+  request.recordings.clear();
   request.device = "replay:" + path;
   const Session replayed = must(LiveSession::open(request));
   EXPECT_EQ(replayed->scene().title, "mine");
   EXPECT_EQ(replayed->reference_words(), "as recorded in mine, fitted to it");
   ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->models().all_settled(); }));
-  ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->models().view(0).errors.samples() > 1000; }));
-  EXPECT_LT(replayed->models().view(0).quantile.p99(), 1.0);
+  ASSERT_TRUE(frames_until(*replayed, [&] { return replayed->figures(0).errors.samples > 1000; }));
+  EXPECT_LT(replayed->figures(0).errors.p99_error_over_jnd, 1.0);
 }
 
 // A truth is of one material; a file says what it was fitted to.
@@ -354,30 +401,30 @@ TEST(LiveSession, AModelOfSomethingElseIsNotComparedWithTheTruth) {
   beside->load_file(files.folder.file("a.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
   const std::size_t loaded = beside->models().size() - 1;
-  EXPECT_TRUE(beside->models().view(loaded).foreign);
-  ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().view(0).errors.samples() > 100; }));
-  EXPECT_EQ(beside->models().view(loaded).errors.samples(), 0u);
+  EXPECT_TRUE(beside->models().info(loaded).foreign);
+  ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(0).errors.samples > 100; }));
+  EXPECT_EQ(beside->figures(loaded).errors.samples, 0u);
   beside->claim(loaded);
-  ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().view(loaded).errors.samples() > 100; }));
+  ASSERT_TRUE(frames_until(*beside, [&] { return beside->figures(loaded).errors.samples > 100; }));
 
   // What the window itself has fitted and saved is of this material.
   ASSERT_TRUE(beside->save_model(0, files.folder.file("own.json")).ok());
   beside->load_file(files.folder.file("own.json"));
   ASSERT_TRUE(frames_until(*beside, [&] { return beside->models().all_settled(); }));
-  EXPECT_FALSE(beside->models().view(beside->models().size() - 1).foreign);
+  EXPECT_FALSE(beside->models().info(beside->models().size() - 1).foreign);
 }
 
 // What is stepped through and what stands still is judged as what runs.
 TEST(LiveSession, APausedReplayCountsNothingAndASteppedOneAsItRan) {
   const Files files;
   const Session session = files.replaying();
-  ASSERT_TRUE(frames_until(*session, [&] { return session->models().view(0).errors.samples() > 300; }));
+  ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().figures(0).errors.samples > 300; }));
   session->replay()->pause(true);
   frames(*session, 0.1);
-  const std::uint64_t counted = session->models().view(0).errors.samples();
+  const std::uint64_t counted = session->comparison().figures(0).errors.samples;
   const std::size_t shown = session->comparison().history().size();
   frames(*session, 0.2);
-  EXPECT_EQ(session->models().view(0).errors.samples(), counted);
+  EXPECT_EQ(session->comparison().figures(0).errors.samples, counted);
   EXPECT_EQ(session->comparison().history().size(), shown);
   session->replay()->step(1);
   ASSERT_TRUE(frames_until(*session, [&] { return session->comparison().history().size() > shown; }));
@@ -399,7 +446,7 @@ TEST(LiveSession, LineUpsShareTheModelsThatBothHave) {
   EXPECT_EQ(session->models().size(), before + 3);
   std::size_t hidden = 0;
   for (std::size_t i = 0; i < session->models().size(); ++i)
-    hidden += session->models().view(i).state == SlotState::hidden ? 1 : 0;
+    hidden += session->models().info(i).state == SlotState::hidden ? 1 : 0;
   EXPECT_EQ(hidden, 2u) << "random and kdtree";
   session->use_line_up("no such");
   EXPECT_EQ(session->line_up(), "Ladder");

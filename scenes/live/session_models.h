@@ -14,8 +14,6 @@
 #include <vector>
 
 #include "engine/live/live_tick.h"
-#include "scenes/evaluation/error_figures.h"
-#include "scenes/live/error_quantile.h"
 #include "scenes/live/notices.h"
 #include "scenes/scene/scene.h"
 
@@ -29,38 +27,31 @@ enum class SlotState : std::uint8_t {
   hidden,  // of a line-up that is not shown, or removed: not evaluated, not listed
 };
 
-struct SlotView {
+// What a slot's model is and how far it has come; how well it does is Comparison's.
+struct ModelInfo {
   std::string name;    // distinct among the slots
   std::string method;  // a method's name; "position" for depth alone
   int centres = 0;     // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
-  double progress = 0.0;  // of the fit, 0..1
-  std::string problem;    // when failed
-  bool foreign = false;   // of another material than the one that is pressed: nothing to compare it with
-  double force_N = 0.0;   // in the newest tick; 0 until ready
-  bool out_of_domain = false;
-  // Of the force, 95 %; NaN: unknown.
-  double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
-  double tick_ns = 0.0;    // a whole tick of this model alone, measured when it became ready
+  double progress = 0.0;   // of the fit, 0..1
+  std::string problem;     // when failed
+  bool foreign = false;    // of another material than the one that is pressed: nothing to compare it with
+  double tick_ns = 0.0;    // a whole tick of this model alone, the fastest of several measurements
+  int cost = 0;            // what one evaluation takes, in distances (scenes/evaluation/ranking.h)
   bool refitting = false;  // with another number of centres; the old one is there until then
   bool takes_centres = false;
   bool paper = false;  // by the recipe of 2009
-  // Since the last reset, over samples in contact and inside the data of all models
-  // that are compared: the same samples for each.
-  ErrorFigures errors;
-  ErrorQuantile quantile;                   // of the same samples
-  std::uint64_t samples_out_of_domain = 0;  // left out for being outside the data of one
-  // For drawing (dent.h): the dent's depth, and the largest recent error that a hand feels (felt_error.h).
-  double dent_m = 0.0;
-  double recent_peak_error_over_jnd = 0.0;
 };
 
+class FittedModel;
 class ModelWorker;
 struct FinishedModel;
 struct SlotPlan;
 
-// Which slots' models a set in the loop holds: snapshots of it come after the next one was published.
+// Maps the models of a set in the loop to their slots: snapshots of it come after the next one was published.
 struct PublishedSet {
+  // In place of a slot whose model was removed.
+  static constexpr std::size_t kRemoved = static_cast<std::size_t>(-1);
   std::uint32_t id = 0;
   std::vector<std::size_t> slots;
 
@@ -68,14 +59,14 @@ struct PublishedSet {
   std::optional<std::size_t> place_of(std::size_t slot) const noexcept;
 };
 
-class ModelSlots {
+class SessionModels {
  public:
   // `scene` and `notices` outlive this. `seed`: of the training recording and the fits.
-  ModelSlots(const Scene& scene, std::uint64_t seed, Notices& notices);
-  ModelSlots(const ModelSlots&) = delete;
-  ModelSlots& operator=(const ModelSlots&) = delete;
+  SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices);
+  SessionModels(const SessionModels&) = delete;
+  SessionModels& operator=(const SessionModels&) = delete;
   // Interrupts fits.
-  ~ModelSlots();
+  ~SessionModels();
 
   // A slot for each plan. `claimed`: files among them are of this material, whoever asked
   // for both says so. Errors: no thread.
@@ -93,12 +84,15 @@ class ModelSlots {
   // Which model of the newest set is active.
   void write_selection(LoopControls& controls) const;
 
-  // Of all slots that are ready.
-  std::vector<std::shared_ptr<const ForceModel>> ready_models() const;
+  // The slots whose models are there and shown.
+  std::vector<std::size_t> ready_slots() const;
+  const std::shared_ptr<const FittedModel>& model(std::size_t slot) const noexcept;  // null until ready
+  // All plans that are not removed, each with its model where there is one: for another session that starts
+  // from these models and fits none of them again.
+  std::vector<SlotPlan> plans() const;
 
   std::size_t size() const noexcept;
-  const SlotView& view(std::size_t slot) const noexcept;
-  SlotView& view(std::size_t slot) noexcept;
+  const ModelInfo& info(std::size_t slot) const noexcept;
   const std::vector<FeatureSpec>& features(std::size_t slot) const noexcept;
 
   // The slot of the active model, as asked for; the force fades to it.
@@ -110,13 +104,15 @@ class ModelSlots {
   // Whether any is fitted here, to the material itself.
   bool fits() const noexcept;
   // It is a model of what is pressed, whatever its file says.
-  void claim(std::size_t slot) noexcept { view(slot).foreign = false; }
+  void claim(std::size_t slot) noexcept;
 
   // Shows the models of these plans and hides all others but those of files; what is not there yet is
   // fitted. What is active stays so if it is shown, else the first is.
   void use_plans(const std::vector<SlotPlan>& plans);
-  // Takes a model out for good.
-  void remove(std::size_t slot);
+  // Takes a model out for good; false, with a notice: it is the last one.
+  bool remove(std::size_t slot);
+  // The slots whose models are gone since the last call: what is known of them is of no model any more.
+  std::vector<std::size_t> read_freed();
   // A name that another one has gets a number.
   void rename(std::size_t slot, const std::string& name);
   // Fits a model anew with so many centres, in the background; ignored for one that takes none.
@@ -125,10 +121,12 @@ class ModelSlots {
   Status save(std::size_t slot, const std::string& path) const;
   // Greatest depth that all shown models were trained with, metres; infinite without any.
   double trained_depth_m() const noexcept;
+  // The longest memory of all shown models, s: filters that began that long ago have forgotten how.
+  double longest_memory_s() const noexcept;
 
-  // Reads a model file into a new slot at once, in some milliseconds, tens of them for a direct fit; trouble
-  // becomes a notice.
-  void load_file(const std::string& path);
+  // Reads a model file into a new slot at once, in some milliseconds, tens of them for a direct fit; false, and
+  // a notice: it cannot.
+  bool load_file(const std::string& path);
   // Whether nothing that is shown is still to come.
   bool all_settled() const noexcept;
 
@@ -141,7 +139,8 @@ class ModelSlots {
   bool join(std::size_t index, FinishedModel& finished);
   bool has_room(const std::string& what);
   void select_what_is_there();
-  std::vector<std::size_t> shown_slots() const;  // whose models are there
+  std::optional<std::size_t> slot_of_job(std::size_t job) const noexcept;
+  void free(std::size_t index);
   std::string distinct_name(const std::string& name, const Slot* but) const;
 
   const Scene& scene_;
@@ -152,7 +151,9 @@ class ModelSlots {
   std::optional<std::size_t> direct_;
   std::size_t selected_ = 0;
   bool user_chose_ = false;
+  std::size_t next_job_ = 0;
   std::vector<std::size_t> loaded_;  // since the last update, files
+  std::vector<std::size_t> freed_;   // see read_freed
 };
 
 }  // namespace palpate

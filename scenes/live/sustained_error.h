@@ -1,20 +1,19 @@
-// What a hand feels of a model's error: the mean of (model - reference) / JND over the last 50 ms; 0 out of
+// The error that a hand can notice: the mean of (model - reference) / JND over the last 50 ms; 0 out of
 // contact. A difference of a single millisecond moves no hand and no skin; one that lasts does.
 // Thread guarantee: value type; constant time and memory.
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace palpate {
 
-class FeltError {
+class SustainedError {
  public:
   static constexpr double kSpan_s = 0.05;
 
   // `difference_over_jnd`: signed, finite. `time_s` rises; a gap of more than the span
-  // begins anew. Returns |mean|, 0 or more.
+  // begins anew. Returns the mean, signed.
   double add(double time_s, double difference_over_jnd) noexcept {
     if (count_ > 0) {
       const Sample& last = samples_[(first_ + count_ - 1) % samples_.size()];
@@ -29,7 +28,7 @@ class FeltError {
     samples_[(first_ + count_) % samples_.size()] = {time_s, difference_over_jnd};
     ++count_;
     sum_ += difference_over_jnd;
-    return std::abs(sum_) / static_cast<double>(count_);
+    return sum_ / static_cast<double>(count_);
   }
   void reset() noexcept { count_ = 0; }
 

@@ -1,0 +1,138 @@
+#include "rendering/panels/window_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/text.h"
+#include "rendering/panels/panel_parts.h"
+#include "scenes/live/live_session.h"
+
+namespace palpate {
+namespace {
+
+// A hand that aims at the strongest press goes beyond it for a moment.
+constexpr double kUsualOverStrongest = 1.5;
+
+// All that there is room for; where that is too little, the active model and the verdict's come before others.
+std::vector<std::size_t> on_stage(const ModelsView& models, bool reference, std::size_t block_count) {
+  const std::size_t room = reference ? block_count - 1 : block_count;
+  std::vector<std::size_t> wanted;
+  if (models.active() != nullptr) wanted.push_back(models.selected);
+  if (models.verdict.chosen) wanted.push_back(*models.verdict.chosen);
+  for (const std::size_t slot : models.listed()) {
+    if (models.slots[slot].state == SlotState::ready) wanted.push_back(slot);
+  }
+  std::vector<std::size_t> stage;
+  for (const std::size_t slot : wanted) {
+    if (stage.size() < room && std::find(stage.begin(), stage.end(), slot) == stage.end()) stage.push_back(slot);
+  }
+  std::sort(stage.begin(), stage.end());
+  if (reference) stage.push_back(kReferenceBlock);
+  return stage;
+}
+
+ModelsView models_view(const LiveSession& session, double until_s) {
+  ModelsView view;
+  for (std::size_t i = 0; i < session.models().size(); ++i)
+    view.slots.push_back({session.models().info(i), session.figures(i)});
+  view.selected = session.models().selected();
+  view.in_contact = session.newest().tick.in_contact;
+  const Comparison& comparison = session.comparison();
+  view.compared = session.has_reference(comparison.reference());
+  if (comparison.reference() == ReferenceKind::direct && view.compared) view.reference = *session.models().reference();
+  view.off_from = session.reference_words(true);
+  view.counted = counted_words(session);
+  view.knows_this = session.replay() != nullptr && session.replays_training();
+  view.jnd = session.jnd();
+  view.verdict = session.verdict();
+  if (const HistoryPoint* now = comparison.history().last_until(until_s)) {
+    view.now = *now;
+    view.any_now = true;
+  }
+  return view;
+}
+
+std::string reference_block(const LiveSession& session) {
+  if (session.comparison().reference() == ReferenceKind::truth) return "the true material";
+  return session.replay() != nullptr ? "as recorded" : "the real block";
+}
+
+}  // namespace
+
+std::vector<std::size_t> ModelsView::listed() const {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].state != SlotState::hidden) list.push_back(i);
+  }
+  return list;
+}
+
+std::size_t ModelsView::number_of(std::size_t slot) const {
+  const std::vector<std::size_t> list = listed();
+  return static_cast<std::size_t>(std::find(list.begin(), list.end(), slot) - list.begin()) + 1;
+}
+
+const ModelView* ModelsView::active() const noexcept {
+  if (selected >= slots.size() || slots[selected].state != SlotState::ready) return nullptr;
+  return &slots[selected];
+}
+
+bool ModelsView::out_of_domain() const noexcept {
+  const ModelView* model = active();
+  return in_contact && model != nullptr && model->out_of_domain && !knows_this;
+}
+
+std::string counted_words(const LiveSession& session) {
+  const Comparison& comparison = session.comparison();
+  const std::size_t active = session.models().selected();
+  if (!session.has_reference(comparison.reference())) return session.reference_words(true);
+  if (active >= session.models().size()) return {};
+  if (session.models().info(active).foreign)
+    return "no truth to compare " + session.models().info(active).name + " with";
+  if (session.tests_recording()) {
+    return grouped(session.figures(active).errors.samples) + " samples in contact, all of " +
+           session.replay()->recording().name;
+  }
+  std::string words = fixed(comparison.counted_s(), 1) + " s of contact since " + comparison.counted_since();
+  const double left_out_s = comparison.contact_s() - comparison.counted_s();
+  if (left_out_s > 0.05) words += "; " + fixed(left_out_s, 1) + " s left out";
+  if (comparison.outside_s() > 0.05) words += ", deeper or faster than recorded";
+  return words;
+}
+
+HealthView health_view(const LiveSession& session) {
+  HealthView view;
+  view.loop = session.loop().statistics();
+  view.scheduling = session.loop().scheduling();
+  view.missed_of_late = session.faults().missed_of_late();
+  view.now_s = session.newest().loop_time_s;
+  view.faults = session.faults().events();
+  view.alarms = session.alarms();
+  view.device_name = session.device_name();
+  view.device = session.newest().device;
+  view.heat_share = static_cast<double>(session.newest().heat_share);
+  view.stiffness_share = static_cast<double>(session.newest().stiffness_share);
+  view.late_ms = static_cast<double>(session.newest().late_ms);
+  return view;
+}
+
+WindowView window_view(const LiveSession& session, const ViewState& view) {
+  static std::uint64_t made = 0;
+  WindowView shown;
+  shown.number = ++made;
+  shown.models = models_view(session, view.time.end_s(std::numeric_limits<double>::infinity()));
+  shown.health = health_view(session);
+  const ReferenceKind kind = session.comparison().reference();
+  const std::size_t blocks = view.settings.block_count;
+  const bool reference = blocks > 1 && kind != ReferenceKind::direct && session.has_reference(kind);
+  shown.stage = on_stage(shown.models, reference, blocks);
+  shown.reference_block = reference_block(session);
+  shown.reference_words = session.reference_words();
+  shown.reference_N = session.comparison().reference_N();
+  shown.usual_force_N = kUsualOverStrongest * session.scene().strongest_press_N;
+  shown.usual_depth_m = session.models().trained_depth_m();
+  shown.history = &session.comparison().history();
+  return shown;
+}
+
+}  // namespace palpate

@@ -1,0 +1,384 @@
+#include "scenes/live/session_models.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "models/model/file/model_io.h"
+#include "models/model/fitted_model.h"
+#include "scenes/worker/model_worker.h"
+#include "scenes/worker/slot_plan.h"
+
+namespace palpate {
+namespace {
+
+std::string recordings_of(const FittedModel& model) {
+  std::string names;
+  for (const std::string& name : model.data().provenance.recordings) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+// What one evaluation takes, in distances; of a grid the corners of a cell.
+int cost_of(const FittedModel& model) {
+  const Method* method = find_method(model.method());
+  const bool grid = method != nullptr && method->can_take(kTakesGrid);
+  return grid ? 1 << std::min<std::size_t>(model.features().size(), kMaxFeatures) : model.centre_count();
+}
+
+}  // namespace
+
+struct SessionModels::Slot {
+  ModelInfo info;
+  SlotPlan plan;
+  std::size_t job = 0;                       // of the worker
+  int asked_centres = 0;                     // of the plan, before it was changed by hand
+  std::shared_ptr<const FittedModel> model;  // null until ready
+  bool removed = false;
+  bool claimed = false;  // of a file: somebody said that it is of this material
+
+  bool hidden() const { return info.state == SlotState::hidden; }
+  bool takes_part() const { return model != nullptr && !hidden(); }
+  void show() {
+    info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
+  }
+  bool is(const SlotPlan& other) const {  // which is no file
+    return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
+           asked_centres == other.centres;
+  }
+};
+
+std::optional<std::size_t> PublishedSet::place_of(std::size_t slot) const noexcept {
+  const auto place = std::find(slots.begin(), slots.end(), slot);
+  if (place == slots.end()) return std::nullopt;
+  return static_cast<std::size_t>(place - slots.begin());
+}
+
+SessionModels::SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices)
+    : scene_(scene), notices_(notices), worker_(std::make_unique<ModelWorker>(scene_, seed)) {}
+
+SessionModels::~SessionModels() = default;
+
+Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
+  for (const SlotPlan& plan : plans) {
+    Slot& slot = add_slot(plan);
+    slot.claimed = claimed;
+    worker_->add_job(slot.job, plan, slots_.size() == 1);
+  }
+  return worker_->start();
+}
+
+// In the place of one that was removed, else of one that is hidden, as long as there are enough places.
+SessionModels::Slot& SessionModels::add_slot(const SlotPlan& plan) {
+  const auto usable = [&](bool removed) {
+    return std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
+      return (removed ? slot->removed : slot->hidden()) && &slot != (direct_ ? &slots_[*direct_] : nullptr);
+    });
+  };
+  auto place = usable(true);
+  if (place == slots_.end() && slots_.size() == kMaxModels) place = usable(false);
+  if (place == slots_.end()) place = slots_.insert(place, std::unique_ptr<Slot>());
+  if (*place != nullptr && !(*place)->removed) free(static_cast<std::size_t>(place - slots_.begin()));
+  *place = std::make_unique<Slot>();
+  Slot& slot = **place;
+  slot.job = next_job_++;
+  slot.info.name = distinct_name(plan_name(plan), &slot);
+  slot.info.method = plan_method(plan);
+  slot.info.takes_centres =
+      plan.origin == ModelOrigin::method && plan.method->can_take(kTakesCentres) && scene_.has_material();
+  slot.info.paper = plan.paper;
+  slot.plan = plan;
+  slot.asked_centres = plan.centres;
+  return slot;
+}
+
+void SessionModels::cancel() noexcept { worker_->cancel(); }
+
+std::vector<std::size_t> SessionModels::update() {
+  show_progress();
+  std::vector<std::size_t> ready = std::exchange(loaded_, {});
+  for (FinishedModel& finished : worker_->read_finished()) {
+    const std::optional<std::size_t> index = slot_of_job(finished.job_id);
+    if (!index) continue;  // it was removed meanwhile
+    Slot& slot = *slots_[*index];
+    // Asked for again while it was made: the newer one counts.
+    const bool old = slot.info.refitting && finished.plan.centres != slot.plan.centres;
+    if (join(*index, finished)) ready.push_back(*index);
+    slot.info.refitting = old;
+  }
+  return ready;
+}
+
+std::optional<std::size_t> SessionModels::slot_of_job(std::size_t job) const noexcept {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i]->job == job && !slots_[i]->removed) return i;
+  }
+  return std::nullopt;
+}
+
+void SessionModels::show_progress() {
+  const ModelWorker::Progress progress = worker_->progress();
+  const auto index = progress.working ? slot_of_job(progress.job_id) : std::nullopt;
+  if (!index) return;
+  ModelInfo& info = slots_[*index]->info;
+  if (info.state == SlotState::waiting) info.state = SlotState::fitting;
+  if (info.state == SlotState::fitting) info.progress = progress.share;
+}
+
+// A truth is one of a material: a model of something else is not wrong where it differs.
+// A recording was named together with the models that are held against it.
+bool SessionModels::is_foreign(const Slot& slot) const {
+  if (!scene_.material || slot.claimed || slot.plan.origin != ModelOrigin::file) return false;
+  const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
+  return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
+    const std::string start = *scene_.material + "_";  // as the rig names its own
+    return name.rfind(start, 0) != 0 || name.find_first_not_of("0123456789", start.size()) != std::string::npos;
+  });
+}
+
+Status SessionModels::save(std::size_t slot, const std::string& path) const {
+  if (slot >= slots_.size() || slots_[slot]->model == nullptr) return Error{"there is no model to save yet"};
+  return save_model(path, slots_[slot]->model->data(), false);
+}
+
+bool SessionModels::fits() const noexcept {
+  return std::any_of(slots_.begin(), slots_.end(),
+                     [](const auto& slot) { return slot->plan.origin != ModelOrigin::file; });
+}
+
+std::optional<std::size_t> SessionModels::reference() const noexcept {
+  if (direct_) return direct_;
+  if (fits()) return std::nullopt;
+  const auto shown = ready_slots();
+  return shown.size() > 1 ? std::optional<std::size_t>(shown.front()) : std::nullopt;
+}
+
+bool SessionModels::all_settled() const noexcept {
+  return std::none_of(slots_.begin(), slots_.end(), [](const auto& slot) {
+    const SlotState state = slot->info.state;
+    return slot->info.refitting || state == SlotState::waiting || state == SlotState::fitting;
+  });
+}
+
+std::vector<std::size_t> SessionModels::ready_slots() const {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i]->takes_part()) shown.push_back(i);
+  }
+  return shown;
+}
+
+bool SessionModels::join(std::size_t index, FinishedModel& finished) {
+  Slot& slot = *slots_[index];
+  if (finished.model == nullptr) {
+    notices_.push_back({slot.info.name + ": " + finished.problem, true});
+    slot.info.problem = finished.problem;
+    if (!slot.hidden()) slot.show();  // an old one stays
+    return false;
+  }
+  const bool first = ready_slots().empty();
+  slot.model = finished.model;
+  slot.info.cost = cost_of(*slot.model);
+  if (!slot.hidden()) slot.show();
+  slot.info.progress = 1.0;
+  slot.info.centres = slot.model->centre_count();
+  slot.info.tick_ns = finished.tick_ns;
+  slot.info.foreign = is_foreign(slot);
+  if (slot.plan.origin != ModelOrigin::position) {
+    slot.info.method = slot.model->method();
+    std::string name = slot.model->name();
+    if (slot.plan.paper) name += kPaperMark;
+    slot.info.name = distinct_name(name, &slot);
+  }
+  if (!direct_ && slot.info.method == "direct" && !slot.plan.paper) direct_ = index;
+  if (!slot.hidden() && (first || (index == 0 && !user_chose_))) selected_ = index;
+  return true;
+}
+
+void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
+  for (const auto& slot : slots_) {
+    if (slot->plan.origin != ModelOrigin::file) slot->info.state = SlotState::hidden;
+  }
+  std::optional<std::size_t> first;
+  for (const SlotPlan& plan : plans) {
+    const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) { return slot->is(plan); });
+    auto index = static_cast<std::size_t>(same - slots_.begin());
+    if (same == slots_.end()) {
+      if (!has_room("show " + plan_name(plan))) continue;
+      const Slot& slot = add_slot(plan);
+      index = *slot_of_job(slot.job);
+      worker_->add_job(slot.job, plan, !first);
+    }
+    slots_[index]->show();
+    if (!first) first = index;
+  }
+  if (slots_[selected_]->hidden() && first) selected_ = *first;
+  select_what_is_there();
+}
+
+// The active model must be one that takes part, as soon as there is one.
+void SessionModels::select_what_is_there() {
+  const auto shown = ready_slots();
+  if (!shown.empty() && !slots_[selected_]->takes_part()) selected_ = shown.front();
+}
+
+bool SessionModels::remove(std::size_t index) {
+  if (index >= slots_.size() || slots_[index]->removed) return false;
+  Slot& slot = *slots_[index];
+  if (ready_slots().size() == (slot.takes_part() ? 1 : 0)) {
+    notices_.push_back({"the last model stays: there must be one to press", false});
+    return false;
+  }
+  slot.removed = true;
+  slot.info.state = SlotState::hidden;
+  if (direct_ != index) free(index);  // which stays as the reference
+  select_what_is_there();
+  return true;
+}
+
+// Another model may have its place from now on.
+void SessionModels::free(std::size_t index) {
+  freed_.push_back(index);
+  for (PublishedSet& set : sets_) std::replace(set.slots.begin(), set.slots.end(), index, PublishedSet::kRemoved);
+}
+
+std::vector<std::size_t> SessionModels::read_freed() { return std::exchange(freed_, {}); }
+
+void SessionModels::rename(std::size_t slot, const std::string& name) {
+  if (slot < slots_.size() && !name.empty()) slots_[slot]->info.name = distinct_name(name, slots_[slot].get());
+}
+
+void SessionModels::refit(std::size_t index, int centres) {
+  if (index >= slots_.size() || !slots_[index]->info.takes_centres || centres < 1) return;
+  Slot& slot = *slots_[index];
+  if (slot.model == nullptr || slot.plan.centres == centres) return;
+  slot.plan.centres = centres;
+  slot.plan.loaded = nullptr;
+  slot.info.refitting = true;
+  worker_->add_job(slot.job, slot.plan);
+}
+
+double SessionModels::trained_depth_m() const noexcept {
+  double depth_m = std::numeric_limits<double>::infinity();
+  for (const std::size_t slot : ready_slots()) {
+    const ModelData& data = slots_[slot]->model->data();
+    for (std::size_t i = 0; i < data.features.size(); ++i) {
+      if (data.features[i].kind == FeatureKind::depth)
+        depth_m = std::min(depth_m, data.upper[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  return depth_m;
+}
+
+double SessionModels::longest_memory_s() const noexcept {
+  double memory_s = 0.0;
+  for (const std::size_t slot : ready_slots()) {
+    for (const FeatureSpec& feature : slots_[slot]->model->features())
+      memory_s = std::max(memory_s, feature.relaxation_time_s);
+  }
+  return memory_s;
+}
+
+bool SessionModels::has_room(const std::string& what) {
+  if (slots_.size() < kMaxModels) return true;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i]->hidden() && direct_ != i) return true;
+  }
+  notices_.push_back({"cannot " + what + ": there are " + std::to_string(kMaxModels) +
+                          " models already; take one out (right button on its row)",
+                      true});
+  return false;
+}
+
+std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
+                                                    std::shared_ptr<ReferenceForce> reference) {
+  PublishedSet set;
+  set.id = sets_.empty() ? 1 : sets_.back().id + 1;
+  std::vector<std::shared_ptr<const ForceModel>> models;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    // The reference stays, also where it is not shown.
+    if (!slots_[i]->takes_part() && !(direct_ == i && slots_[i]->model != nullptr)) continue;
+    models.push_back(slots_[i]->model);
+    set.slots.push_back(i);
+  }
+  auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
+  next->selected = static_cast<std::uint32_t>(set.place_of(selected_).value_or(0));
+  if (const auto model = this->reference(); model && set.place_of(*model)) {
+    next->written_model = static_cast<std::uint32_t>(*set.place_of(*model));
+  }
+  sets_.push_back(std::move(set));
+  return next;
+}
+
+const PublishedSet* SessionModels::set_of(const LoopSnapshot& snapshot) const noexcept {
+  const auto set =
+      std::find_if(sets_.rbegin(), sets_.rend(), [&](const PublishedSet& one) { return one.id == snapshot.models_id; });
+  return set != sets_.rend() ? &*set : nullptr;
+}
+
+void SessionModels::write_selection(LoopControls& controls) const {
+  if (sets_.empty()) return;
+  controls.models_id = sets_.back().id;
+  controls.selected = static_cast<std::uint32_t>(sets_.back().place_of(selected_).value_or(sets_.back().slots.size()));
+}
+
+std::size_t SessionModels::size() const noexcept { return slots_.size(); }
+const ModelInfo& SessionModels::info(std::size_t slot) const noexcept { return slots_[slot]->info; }
+const std::shared_ptr<const FittedModel>& SessionModels::model(std::size_t slot) const noexcept {
+  return slots_[slot]->model;
+}
+void SessionModels::claim(std::size_t slot) noexcept { slots_[slot]->info.foreign = false; }
+
+std::vector<SlotPlan> SessionModels::plans() const {
+  std::vector<SlotPlan> plans;
+  for (const auto& slot : slots_) {
+    if (slot->removed || slot->info.state == SlotState::failed) continue;
+    plans.push_back(slot->plan);
+    if (!slot->info.refitting) plans.back().loaded = slot->model;
+  }
+  return plans;
+}
+
+const std::vector<FeatureSpec>& SessionModels::features(std::size_t slot) const noexcept {
+  return slots_[slot]->model->features();
+}
+
+bool SessionModels::select(std::size_t slot) {
+  if (slot >= slots_.size() || !slots_[slot]->takes_part()) return false;
+  selected_ = slot;
+  user_chose_ = true;
+  return true;
+}
+
+bool SessionModels::load_file(const std::string& path) {
+  if (!has_room("load " + path)) return false;
+  auto model = load_model(path);
+  if (!model) {
+    notices_.push_back({model.error().message, true});
+    return false;
+  }
+  SlotPlan plan;
+  plan.origin = ModelOrigin::file;
+  plan.path = path;
+  plan.loaded = std::move(*model);
+  const Slot& slot = add_slot(plan);
+  loaded_.push_back(*slot_of_job(slot.job));
+  FinishedModel finished = finished_model(slot.job, plan, plan.loaded);
+  join(loaded_.back(), finished);
+  notices_.push_back(
+      {"loaded " + slot.info.name + " from " + path +
+           (slot.info.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+       false});
+  return true;
+}
+
+std::string SessionModels::distinct_name(const std::string& name, const Slot* but) const {
+  const auto taken = [&](const std::string& candidate) {
+    return std::any_of(slots_.begin(), slots_.end(),
+                       [&](const auto& slot) { return slot.get() != but && slot->info.name == candidate; });
+  };
+  std::string candidate = name;
+  for (int i = 2; taken(candidate); ++i) candidate = name + "-" + std::to_string(i);
+  return candidate;
+}
+
+}  // namespace palpate

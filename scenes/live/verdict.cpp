@@ -1,0 +1,104 @@
+#include "scenes/live/verdict.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "scenes/evaluation/ranking.h"
+#include "scenes/live/comparison.h"
+#include "scenes/live/session_models.h"
+#include "scenes/worker/model_worker.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kTick_ns = 1e6;
+constexpr double kInterval_s = 2.0;  // between two resamplings
+
+std::string formatted(const char* pattern, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
+
+std::string listed(const std::vector<std::size_t>& slots, const SessionModels& models) {
+  std::string names;
+  for (const std::size_t slot : slots) names += (names.empty() ? "" : ", ") + models.info(slot).name;
+  return names;
+}
+
+}  // namespace
+
+std::string tick_share(double tick_ns) { return formatted("%.2g %%", 100.0 * tick_ns / kTick_ns); }
+
+Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models,
+              const std::string& off_from) {
+  std::vector<Candidate> candidates;
+  for (const JudgedModel* one : judged) candidates.push_back({&one->evidence, one->cost});
+  const Ranking ranking = rank(candidates);
+  Verdict verdict;
+  const JudgedModel& chosen = *judged[ranking.chosen];
+  verdict.chosen = chosen.slot;
+  verdict.noticeable = chosen.evidence.p99_error_over_jnd > 1.0;
+  std::vector<std::size_t> as_good, noticed;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const bool tied = std::find(ranking.tied.begin(), ranking.tied.end(), i) != ranking.tied.end();
+    if (tied) verdict.tied.push_back(judged[i]->slot);
+    if (i == ranking.chosen) continue;
+    if (tied) as_good.push_back(judged[i]->slot);
+    if (!tied && judged[i]->evidence.p99_error_over_jnd > 1.0) noticed.push_back(judged[i]->slot);
+  }
+  const ModelInfo& info = models.info(chosen.slot);
+  const std::string from = off_from.empty() ? "" : " from " + off_from;
+  verdict.headline = info.name + (verdict.noticeable ? ": best here, but you can feel the difference"
+                                                     : ": you cannot feel the difference") +
+                     from + "; uses " + tick_share(info.tick_ns) + " of the time there is";
+  if (verdict.noticeable)
+    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.evidence.p99_error_over_jnd) +
+                     " times what a hand can feel, 99 % of the time. ";
+  if (!as_good.empty()) verdict.detail += "As good, at a higher cost: " + listed(as_good, models) + ". ";
+  if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
+  return verdict;
+}
+
+void LiveJudge::forget() {
+  judged_.clear();
+  discard_ = running_.valid();
+  next_s_ = 0.0;
+}
+
+void LiveJudge::update(const SessionModels& models, const Comparison& comparison, double now_s) {
+  if (running_.valid()) {
+    if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    std::vector<JudgedModel> made = running_.get();
+    if (!std::exchange(discard_, false)) judged_ = std::move(made);
+  }
+  if (now_s < next_s_ || comparison.counted_s() < kJudged_s) return;
+  next_s_ = now_s + kInterval_s;
+  struct Asked {
+    std::size_t slot;
+    int cost;
+    ModelErrors errors;
+  };
+  std::vector<Asked> asked;
+  for (const std::size_t slot : models.ready_slots()) {
+    const bool is_reference = comparison.reference() == ReferenceKind::direct && models.reference() == slot;
+    if (is_reference || models.info(slot).foreign || comparison.figures(slot).errors.samples == 0) continue;
+    asked.push_back({slot, models.info(slot).cost, comparison.evidence(slot)});
+  }
+  if (asked.empty()) return;
+  try {
+    running_ = std::async(std::launch::async, [asked = std::move(asked)] {
+      lower_thread_priority();
+      std::vector<JudgedModel> judged;
+      for (const Asked& one : asked) judged.push_back({one.slot, one.cost, one.errors.evidence()});
+      return judged;
+    });
+  } catch (const std::system_error&) {
+    // No thread to be had: a later frame tries again.
+  }
+}
+
+}  // namespace palpate
