@@ -155,6 +155,7 @@ void DemoApp::handle_exhibit_key(const KeyPress& press) {
 SceneArea DemoApp::scene_area() const { return lay_out(ImGui::GetIO().DisplaySize).scene; }
 
 void DemoApp::frame() {
+  if (session_ == nullptr) return;  // it is closing
   glfwPollEvents();
   const double now_s = steady_now_s();
   session_->update();
@@ -166,7 +167,7 @@ void DemoApp::frame() {
   frame_began_s_ = now_s;
   draw();
   handle_keys();
-  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, scene_area()))
+  if (input_.handle_mouse(*session_, shown_, *blocks_, view_, scene_area()) && !view_.exhibit.on)
     notify("the mouse has left the picture: the probe is lifted", false);
   // Between two frames: what is drawn lives as long as its session.
   if (next_) reopen(*std::exchange(next_, std::nullopt));

@@ -64,7 +64,9 @@ void draw_file_picker(ViewState& view, const OverlayActions& actions) {
   bool done = false;
   ImGui::TextDisabled("A recording, another program's table, or a model (.json). A path, then Enter:");
   ImGui::SetNextItemWidth(width);
-  if (ImGui::InputText("##path", picker.path.data(), picker.path.size(), ImGuiInputTextFlags_EnterReturnsTrue))
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (ImGui::InputText("##path", picker.path.data(), picker.path.size(),
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
     done = pick(picker, picker.path.data(), actions);
   for (const std::string& file : std::vector<std::string>(view.settings.recent))
     if (ImGui::Selectable(("opened of late: " + fs::path(file).filename().string() + "###" + file).c_str()))

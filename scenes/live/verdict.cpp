@@ -15,7 +15,9 @@ namespace palpate {
 namespace {
 
 constexpr double kTick_ns = 1e6;
-constexpr double kInterval_s = 2.0;  // between two resamplings
+// Between two resamplings, and of the contact so far: more of the same changes little.
+constexpr double kInterval_s = 2.0;
+constexpr double kMoreContact = 0.1;
 
 std::string formatted(const char* pattern, double value) {
   char text[32];
@@ -76,7 +78,7 @@ void LiveJudge::update(const SessionModels& models, const Comparison& comparison
     if (!std::exchange(discard_, false)) judged_ = std::move(made);
   }
   if (now_s < next_s_ || comparison.counted_s() < kJudged_s) return;
-  next_s_ = now_s + kInterval_s;
+  next_s_ = now_s + std::max(kInterval_s, kMoreContact * comparison.counted_s());
   struct Asked {
     std::size_t slot;
     int cost;

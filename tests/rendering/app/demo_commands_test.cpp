@@ -112,8 +112,8 @@ TEST_F(DemoCommandsTest, KeysDoWhatTheHelpSays) {
 
 TEST_F(DemoCommandsTest, TheKeysAreListedInsideTheSmallestWindow) {
   open("hand");
-  press(GLFW_KEY_M);
   press(GLFW_KEY_H);
+  press(GLFW_KEY_M);
   for (const auto& [width, height] : {std::pair{900, 600}, std::pair{800, 480}, std::pair{800, 1050}}) {
     glfwSetWindowSize(app_->window().handle(), width, height);
     frames(8);

@@ -1,0 +1,56 @@
+// Files that arrive while others are read; no window.
+#include "rendering/app/demo_files.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "models/model/file/model_io.h"
+#include "tests/support/example_model.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate {
+namespace {
+
+// A reading that takes long holds up nothing: a window that waits for it would let go of the dead man's key.
+TEST(DemoFiles, ASecondFileDoesNotWaitForTheFirstInTheWindow) {
+  const test::TemporaryFolder folder;
+  setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+  const ModelData model = test::example_model("greedy", KernelKind::cubic, test::paper_features(), 1);
+  ASSERT_TRUE(save_model(folder.file("m.json"), model, false).ok());
+  SessionRequest request;
+  request.scene = "skin";
+  request.device = "hand";
+  request.models = {folder.file("m.json")};
+  request.realtime = false;
+  auto session = LiveSession::open(request);
+  ASSERT_TRUE(session.ok()) << session.error().message;
+
+  std::promise<void> gate;
+  const std::shared_future<void> opened = gate.get_future().share();
+  ViewState view;
+  DemoFiles files(
+      view, [](const std::string&, bool) {},
+      [opened](const std::string& path, const std::string&) -> Result<RecordingOffer> {
+        opened.wait();
+        return RecordingOffer{path, {}};
+      });
+  const auto began = std::chrono::steady_clock::now();
+  files.offer("a.csv");
+  files.offer("b.csv");
+  files.update(**session);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  EXPECT_FALSE(view.dialogs.offer.any());
+  gate.set_value();
+  for (int i = 0; i < 2000 && view.dialogs.offer.recordings.size() < 2; ++i) {
+    files.update(**session);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_EQ(view.dialogs.offer.recordings.size(), 2u) << "none is lost";
+  EXPECT_EQ(view.dialogs.offer.test(), "b.csv");
+}
+
+}  // namespace
+}  // namespace palpate
