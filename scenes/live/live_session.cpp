@@ -319,7 +319,8 @@ Verdict LiveSession::verdict() const {
   Verdict verdict = judge(judged, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
     verdict.detail = "No true force is known here: test on a second recording (M).";
-  if (replay() != nullptr) verdict.detail += replays_training() ? " Tested on its own training." : "";
+  if (replay() != nullptr && replays_training()) verdict.detail += " Tested on its own training.";
+  if (!models_.all_settled()) verdict.detail = "So far: others are still being fitted. " + verdict.detail;
   return verdict;
 }
 

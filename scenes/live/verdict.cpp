@@ -33,7 +33,10 @@ std::string listed(const std::vector<std::size_t>& slots, const SessionModels& m
 
 }  // namespace
 
-std::string tick_share(double tick_ns) { return formatted("%.2g %%", 100.0 * tick_ns / kTick_ns); }
+std::string tick_share(double tick_ns) {
+  const double percent = 100.0 * tick_ns / kTick_ns;
+  return formatted(percent < 1.0 ? "%.1g %%" : "%.2g %%", percent);
+}
 
 Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models,
               const std::string& off_from) {
