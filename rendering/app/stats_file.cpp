@@ -44,7 +44,7 @@ Json model_json(const ModelView& slot) {
           {"rms_error_N", has_errors ? Json(slot.errors.rms_error_N) : Json(nullptr)},
           {"max_error_over_jnd", has_errors ? Json(slot.errors.max_error_over_jnd) : Json(nullptr)},
           {"p99_error_over_jnd", has_errors ? Json(slot.errors.p99_error_over_jnd) : Json(nullptr)},
-          {"tick_ns", slot.tick_ns > 0.0 ? Json(slot.tick_ns) : Json(nullptr)}};
+          {"tick_ns", slot.tick_ns() > 0.0 ? Json(slot.tick_ns()) : Json(nullptr)}};
 }
 
 }  // namespace

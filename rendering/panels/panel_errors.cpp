@@ -85,7 +85,7 @@ void draw_verdict(const ModelsView& models, const UiStyle& style, float height) 
       const ModelView& view = models.slots[slot];
       const double error =
           std::clamp(std::log10(std::max(view.errors.p99_error_over_jnd, 1e-9)), kErrors.from, kErrors.to);
-      const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns, 0.1))), plot.y_px(error));
+      const ImVec2 at(plot.x_px(std::log10(std::max(1e-3 * view.tick_ns(), 0.1))), plot.y_px(error));
       const ImU32 colour = ink(slot_colour(models, slot, style.theme()));
       // Where it is now: what is felt of it at the right edge of the curves.
       const double now = models.any_now ? std::abs(models.now.difference_over_jnd(slot, models.jnd)) : 0.0;

@@ -35,7 +35,7 @@ double percent_within(const ModelsView& models, Slot slot) {
 }
 
 double tick_ns(const ModelsView& models, Slot slot) {
-  return models.slots[slot].tick_ns > 0.0 ? models.slots[slot].tick_ns : std::nan("");
+  return models.slots[slot].tick_ns() > 0.0 ? models.slots[slot].tick_ns() : std::nan("");
 }
 
 double centres(const ModelsView& models, Slot slot) { return models.slots[slot].centres; }

@@ -30,6 +30,7 @@ void Comparison::forget_errors(std::string why) {
   since_ = std::move(why);
   contact_s_ = counted_s_ = outside_s_ = 0.0;
   counted_ = 0;
+  stroke_pending_ = true;
   for (Slot& slot : slots_) {
     slot.errors = {};
     slot.quantile = {};
@@ -75,7 +76,7 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
   if (snapshot.restarted || set == nullptr) {
     settled_ = set != nullptr && time_s < begins_at_s_ + kBeginning_s;
     stream_began_s_ = last_time_s_ = time_s;
-    strokes_ = StrokeCounter(std::numeric_limits<double>::infinity());
+    strokes_ = {};
   }
   if (set != nullptr &&
       (!snapshot.tick.in_contact || time_s > stream_began_s_ + kSettled_memories * models_.longest_memory_s()))
@@ -143,8 +144,7 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
     slots_[slot].sustained_over_jnd =
         slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
   }
-  if (strokes_.begins_block(point.time_s, point.in_contact)) block_pending_ = true;
-  if (strokes_.begins_stroke()) stroke_pending_ = true;
+  if (strokes_.begins_stroke(point.time_s, point.in_contact)) stroke_pending_ = true;
   // Of a set before the newest: a model that joined is not in it.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || !point.in_contact) return;
   contact_s_ += step_s;
@@ -155,8 +155,7 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
 }
 
 void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set) {
-  const bool begins = std::exchange(block_pending_, false);
-  const bool begins_stroke = std::exchange(stroke_pending_, false);
+  const bool begins = std::exchange(stroke_pending_, false);
   ++counted_;
   for (const std::size_t index : set.slots) {
     if (index == PublishedSet::kRemoved) continue;
@@ -168,7 +167,7 @@ void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set
     slot.errors.add(model_N, reference_N, false, jnd_);
     slot.quantile.add(std::abs(difference));
     if (counted_ > kMostJudged) continue;
-    if (begins) slot.evidence.begin_block(begins_stroke);
+    if (begins) slot.evidence.begin_stroke();
     slot.evidence.add(model_N, reference_N, false);
   }
 }

@@ -100,9 +100,8 @@ class Comparison {
   std::string since_ = "the start";
   double contact_s_ = 0.0, counted_s_ = 0.0, outside_s_ = 0.0;
   std::uint64_t counted_ = 0;
-  StrokeCounter strokes_{std::numeric_limits<double>::infinity()};
-  // A block, a stroke has begun since the last sample that counts.
-  bool block_pending_ = true, stroke_pending_ = true;
+  StrokeCounter strokes_;
+  bool stroke_pending_ = true;   // one has begun since the last sample that counts
   bool settled_ = false;         // the filters know what was before
   double stream_began_s_ = 0.0;  // device time
   double begins_at_s_ = -std::numeric_limits<double>::infinity();

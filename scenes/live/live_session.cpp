@@ -308,7 +308,7 @@ Verdict LiveSession::verdict() const {
   if (tests_recording()) {
     for (const std::size_t slot : models_.ready_slots()) {
       const Evidence* errors = test_.errors(models_.model(slot).get());
-      if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).cost, *errors});
+      if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).tick, *errors});
     }
     for (const JudgedModel& one : tested) judged.push_back(&one);
   } else {

@@ -18,13 +18,6 @@ std::string recordings_of(const FittedModel& model) {
   return names;
 }
 
-// What one evaluation takes, in distances; of a grid the corners of a cell.
-int cost_of(const FittedModel& model) {
-  const Method* method = find_method(model.method());
-  const bool grid = method != nullptr && method->can_take(kTakesGrid);
-  return grid ? 1 << std::min<std::size_t>(model.features().size(), kMaxFeatures) : model.centre_count();
-}
-
 }  // namespace
 
 struct SessionModels::Slot {
@@ -177,11 +170,10 @@ bool SessionModels::join(std::size_t index, FinishedModel& finished) {
   }
   const bool first = ready_slots().empty();
   slot.model = finished.model;
-  slot.info.cost = cost_of(*slot.model);
   if (!slot.hidden()) slot.show();
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
-  slot.info.tick_ns = finished.tick_ns;
+  slot.info.tick = finished.tick;
   slot.info.foreign = is_foreign(slot);
   if (slot.plan.origin != ModelOrigin::position) {
     slot.info.method = slot.model->method();

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/live/live_tick.h"
+#include "scenes/evaluation/model_timing.h"
 #include "scenes/live/notices.h"
 #include "scenes/scene/scene.h"
 
@@ -33,11 +34,11 @@ struct ModelInfo {
   std::string method;  // a method's name; "position" for depth alone
   int centres = 0;     // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
-  double progress = 0.0;   // of the fit, 0..1
-  std::string problem;     // when failed
-  bool foreign = false;    // of another material than the one that is pressed: nothing to compare it with
-  double tick_ns = 0.0;    // a whole tick of this model alone, the fastest of several measurements
-  int cost = 0;            // what one evaluation takes, in distances (scenes/evaluation/ranking.h)
+  double progress = 0.0;  // of the fit, 0..1
+  std::string problem;    // when failed
+  bool foreign = false;   // of another material than the one that is pressed: nothing to compare it with
+  Timing tick;            // a whole one of this model alone
+  double tick_ns() const noexcept { return tick.low_ns; }  // other programs only ever make it slower
   bool refitting = false;  // with another number of centres; the old one is there until then
   bool takes_centres = false;
   bool paper = false;  // by the recipe of 2009

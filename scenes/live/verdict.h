@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenes/evaluation/model_errors.h"
+#include "scenes/evaluation/model_timing.h"
 
 namespace palpate {
 
@@ -19,13 +20,13 @@ class SessionModels;
 // A model that was judged on the same samples as the others.
 struct JudgedModel {
   std::size_t slot = 0;
-  int cost = 0;  // see Candidate
+  Timing tick;
   Evidence evidence;
 };
 
 struct Verdict {
   std::optional<std::size_t> chosen;  // slot; nothing: `headline` says why there is none yet
-  std::vector<std::size_t> tied;      // slots that do as well, the chosen among them
+  std::vector<std::size_t> tied;      // slots that are not inferior, the chosen among them
   bool noticeable = false;            // the 99 % error of the chosen is above one JND
   std::string headline;               // one line
   std::string detail;                 // a second, smaller one; may be empty

@@ -24,6 +24,7 @@
 #include "models/fit/fit.h"
 #include "models/fit/nested_fit.h"
 #include "models/model/fitted_model.h"
+#include "scenes/evaluation/model_timing.h"
 #include "scenes/scene/scene.h"
 #include "scenes/worker/slot_plan.h"
 
@@ -34,7 +35,7 @@ struct FinishedModel {
   SlotPlan plan;
   std::shared_ptr<const FittedModel> model;  // null: `problem` says why
   std::string problem;
-  double tick_ns = 0.0;  // a whole tick of this model alone (scenes/evaluation/model_timing.h)
+  Timing tick;  // a whole one of this model alone
 };
 
 // A model that is there already.

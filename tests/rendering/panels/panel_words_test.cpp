@@ -1,6 +1,8 @@
 // The sentences of the panels from plain views: no session, no thread, no device.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "rendering/panels/panel_health.h"
 #include "rendering/panels/panel_models.h"
 #include "rendering/panels/panel_parts.h"
@@ -14,6 +16,13 @@ ModelView ready_slot(const char* name) {
   slot.name = name;
   slot.state = SlotState::ready;
   return slot;
+}
+
+ModelsView view_of(std::vector<ModelView> slots, bool in_contact) {
+  ModelsView models;
+  models.slots = std::move(slots);
+  models.in_contact = in_contact;
+  return models;
 }
 
 TEST(PanelWords, AStalledLoopComesBeforeAllElse) {
@@ -74,7 +83,7 @@ TEST(PanelWords, AModelThatIsNotReadyTellsHowFarItIs) {
 }
 
 TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
-  ModelsView models{{ready_slot("greedy-100"), ready_slot("direct")}, 0, false};
+  ModelsView models = view_of({ready_slot("greedy-100"), ready_slot("direct")}, false);
   models.slots[0].out_of_domain = true;
   EXPECT_EQ(data_warning(models), "");
   models.in_contact = true;
@@ -88,7 +97,7 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
 
 // One number: the table's, of the same samples, and of whom and than what it is.
 TEST(PanelWords, TheBigNumberIsTheTablesAndSaysOfWhom) {
-  ModelsView models{{ready_slot("greedy-100")}, 0, true};
+  ModelsView models = view_of({ready_slot("greedy-100")}, true);
   EXPECT_EQ(big_number(models, true).number, "–");
   models.slots[0].errors.samples = 1000;
   models.slots[0].errors.p99_error_over_jnd = 3.83;
@@ -102,7 +111,7 @@ TEST(PanelWords, TheBigNumberIsTheTablesAndSaysOfWhom) {
 }
 
 TEST(PanelWords, WithoutATruthTheBigNumberSaysSo) {
-  ModelsView models{{ready_slot("greedy-100")}, 0, true};
+  ModelsView models = view_of({ready_slot("greedy-100")}, true);
   ModelView& greedy = models.slots[0];
   // What the model predicts of itself, of 0.13 N at 1 N.
   models.compared = false;
@@ -122,7 +131,7 @@ TEST(PanelWords, BeforeTheFirstModelTheFitIsTheNumber) {
   trend.name = "trend";
   trend.state = SlotState::fitting;
   trend.progress = 0.34;
-  const ModelsView models{{trend}, 0, true};
+  const ModelsView models = view_of({trend}, true);
   EXPECT_EQ(big_number(models, true).number, "34 %");
   EXPECT_NE(big_number(models, true).below.find("true material"), std::string::npos);
   EXPECT_EQ(big_number(models, false).below.find("true material"), std::string::npos) << "there is none";

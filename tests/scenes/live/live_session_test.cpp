@@ -131,7 +131,7 @@ TEST(LiveSession, ComparesWithTheForceInTheRecording) {
   EXPECT_EQ(session->models().info(1).method, "direct");
   ASSERT_TRUE(frames_until(*session, [&] { return session->figures(1).errors.samples > 300; }));
   EXPECT_GT(session->figures(0).errors.rms_error_N, 0.0);
-  EXPECT_GT(session->models().info(0).tick_ns, 0.0);
+  EXPECT_GT(session->models().info(0).tick_ns(), 0.0);
   session->use_reference(ReferenceKind::truth);
   EXPECT_EQ(session->comparison().reference(), ReferenceKind::measured) << "there is none";
   session->use_reference(ReferenceKind::direct);
