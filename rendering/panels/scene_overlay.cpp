@@ -151,8 +151,7 @@ std::string scale_words(const ForceScale& scale) {
 
 std::string data_warning(const ModelsView& models) {
   if (!models.out_of_domain()) return {};
-  return "Nothing like this was recorded: here " + models.active()->name +
-         " only follows the trend";
+  return "Nothing like this was recorded: here " + models.active()->name + " only follows the trend";
 }
 
 std::string recording_words(const RecordingStatus& recording) {

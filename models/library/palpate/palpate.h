@@ -121,8 +121,9 @@ PALPATE_API void palpate_stream_free(palpate_stream*);
 PALPATE_API void palpate_stream_reset(palpate_stream*);
 
 /* The next sample; returns the force in N: at most 1.2 times the largest force that the model was
- * fitted to, and below 0 only where that material pulled, never beyond its strongest pull. A value that is not finite, or a time that is not later than the
- * last one: 0 N, and the state is kept. Wait-free: no allocation, lock, system call. */
+ * fitted to, and below 0 only where that material pulled, never beyond its strongest pull. A value that is not finite,
+ * or a time that is not later than the last one: 0 N, and the state is kept. Wait-free: no allocation, lock, system
+ * call. */
 PALPATE_API double palpate_stream_force(palpate_stream*, double time_s, double position_m);
 /* The same with measured velocity and acceleration; a channel that the sensor does not
  * have is ignored, whatever is in it. */
@@ -138,8 +139,8 @@ PALPATE_API int palpate_stream_forces(palpate_stream*, size_t n, const double* t
  * vectors, one after the other. Each of the results may be NULL. */
 PALPATE_API int palpate_stream_forces_with_motion(palpate_stream*, size_t n, const double* time_s,
                                                   const double* position_m, const double* velocity_m_per_s,
-                                                  const double* acceleration_m_per_s2, double* force_N,
-                                                  double* bound_N, double* features);
+                                                  const double* acceleration_m_per_s2, double* force_N, double* bound_N,
+                                                  double* features);
 
 /* Of the last sample that was taken: 1 when its motion is unlike the recordings, so that
  * the force is the model's safe trend; 0 otherwise, and out of contact. Wait-free. */

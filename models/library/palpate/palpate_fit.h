@@ -31,8 +31,8 @@ PALPATE_API palpate_recording* palpate_recording_load(const char* path, char* er
 PALPATE_API palpate_recording* palpate_recording_new(const char* name, size_t n, const double* time_s,
                                                      const double* position_m, const double* force_N,
                                                      const double* velocity_m_per_s,
-                                                     const double* acceleration_m_per_s2,
-                                                     const unsigned char* left_out, char* error, size_t error_size);
+                                                     const double* acceleration_m_per_s2, const unsigned char* left_out,
+                                                     char* error, size_t error_size);
 PALPATE_API void palpate_recording_free(palpate_recording*);
 /* Of a file: its name without folder and ending. Valid until the recording is freed. */
 PALPATE_API const char* palpate_recording_name(const palpate_recording*);
@@ -93,7 +93,8 @@ PALPATE_API void palpate_fit_options_default(palpate_fit_options*);
  * error. NULL options: the default ones. NULL: see error. */
 PALPATE_API palpate_model* palpate_fit_recordings(const palpate_recording* const* recordings, size_t recording_count,
                                                   const palpate_fit_options*, char* error, size_t error_size);
-/* The same from files to a file: the same bytes as `palpate fit` with these options. Returns 0, or -1: see error; then no file is left. */
+/* The same from files to a file: the same bytes as `palpate fit` with these options. Returns 0, or -1: see error; then
+ * no file is left. */
 PALPATE_API int palpate_fit(const char* const* recordings, size_t recording_count, const palpate_fit_options*,
                             const char* model, char* error, size_t error_size);
 

@@ -22,7 +22,8 @@ Result<std::shared_ptr<const FittedModel>> load_model(const std::string& path) t
     return Error{path + ": found " + std::to_string(bytes) + " bytes, expected at most " +
                  std::to_string(kMaximumModelFileBytes) + "; name a file that palpate fit wrote"};
   }
-  const Result<std::string> text = read_plain_file(path, "a model file", ", or make one with palpate fit", kMaximumModelFileBytes);
+  const Result<std::string> text =
+      read_plain_file(path, "a model file", ", or make one with palpate fit", kMaximumModelFileBytes);
   if (!text) return text.error();
   Result<ModelData> data = read_model_text(*text, path);
   if (!data) return data.error();
