@@ -181,7 +181,7 @@ int deal(std::size_t n, const double* depth_m, const int* recording, int* fold) 
     ++extent.contact_samples;
   }
   FoldDealer dealer(recordings, extent.strokes, extent.contact_samples, extent.turns_round());
-  for (std::size_t i = 0; i < n; ++i) fold[i] = dealer.next(rows[i]);
+  for (std::size_t i = 0; i < n; ++i) fold[i] = dealer.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
   return dealer.folds();
 }
 
