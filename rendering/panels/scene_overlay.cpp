@@ -36,7 +36,7 @@ void draw_feel(LiveSession& session, const UiStyle& style, const SceneArea& area
 }
 
 // What is pressed, and how the picture differs from it.
-void draw_title(const LiveSession& session, const WindowView& shown, const ViewState& view, const SceneArea& area) {
+void draw_title(const LiveSession& session, const ViewState& view, const SceneArea& area) {
   ImGui::SetNextWindowPos({area.at.x + 2.0F, area.at.y + 2.0F});
   ImGui::Begin("title", nullptr, kFloating);
   ImGui::TextUnformatted(session.scene().title.c_str());
@@ -232,7 +232,7 @@ void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const Blo
   if (!view.exhibit.on) {
     draw_labels(shown, blocks, style, area, big_number_height(style, bars));
     if (!shown.models.slots.empty()) draw_big_number(shown, style, area, bars);
-    draw_title(session, shown, view, area);
+    draw_title(session, view, area);
     top_px = draw_headline(shown, style, area);
     draw_data_warning(shown.models, style, area, top_px);
     if (view.feel) draw_feel(session, style, area);
