@@ -38,7 +38,7 @@ class DemoWindowTest : public ::testing::Test {
   void save(const std::string& file, std::uint64_t seed, double firmness) {
     ModelData data = example_model("greedy", KernelKind::cubic, paper_features(), seed);
     data.name = file.substr(0, file.find('.'));
-    for (double& value : data.trend.elastic_N) value *= firmness;
+    for (double& value : data.trend.elastic.pieces_N) value *= firmness;
     ASSERT_TRUE(save_model(folder_.file(file), data, false).ok());
   }
 
