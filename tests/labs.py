@@ -12,14 +12,15 @@ the worst error in JND as recorded, the share of the test within the 95 % bound,
 fit. "Surface moved" fits the test's own surface (and force zero, lag) to the forces of the test: it shows what
 is left when the rig is registered, and is no prediction. The means of recorded sets and of virtual materials
 are separate. Models are those of the program, and bins and ridge of baselines.py. --json keeps the
-figures, --against prints what changed since such a file. --write puts the table into README.md, with what
-a report says of the silicone and its figure. Minutes on two cores. Needs python3-numpy.
+figures, --against prints what changed since such a file. --write puts the table into bench/RESULTS.md, and
+its means into README.md, with what a report says of the silicone and its figure. Minutes on two cores. Needs python3-numpy.
 """
 import argparse
 import concurrent.futures
 import csv
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -31,6 +32,7 @@ import baselines
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- results: python3 tests/labs.py --models recipe trend greedy --write -->", "<!-- end of results -->"
+RESULTS = ROOT / "tests" / "bench" / "RESULTS.md"
 FIGURE = "assets/figures/speed_error.png"
 MODELS = {"trend": ["--method", "trend"],
           # Two relaxation times, fitted to the recordings.
@@ -185,13 +187,26 @@ def means(kind, names, results, models):
     return lines
 
 
-def front_page(options, folder, lines):
-    """The table, what a report says of the silicone, and its figure, into README.md."""
+def summary_table(summary):
+    """A row for the mean of every kind of sets and model."""
+    lines = ["| sets | model | as recorded | surface moved | tests |", "|---|---|---:|---:|---:|"]
+    for line in summary:
+        found = re.match(r"([^,]+), (\w+): mean ([\d.]+) % as recorded, ([\d.]+) % surface moved, (\d+) tests", line)
+        if found:
+            lines.append("| " + " | ".join(found.groups()) + " |")
+    return lines
+
+
+def front_page(options, folder, rows, summary):
+    """All sets into RESULTS.md; the means, the sentence of a report on the silicone and its figure into README.md."""
+    RESULTS.write_text("\n".join(["# Results", "", "Made by `python3 tests/labs.py --models recipe trend greedy --write`, whose header says what",
+                                  "the columns are. Recorded sets first; each has its source and licence in a PROVENANCE.md beside it,",
+                                  "outside of this repository.", "", *rows, "", *summary, ""]))
     report = folder / "report"
     run(options.palpate, "report", "--train", folder / "silicone_1.csv", "--test", folder / "silicone_2.csv", "--out", report)
     answer = json.loads((report / "report.json").read_text())["timings"]["answer"]
     shutil.copyfile(report / "figures" / "speed_error.png", ROOT / FIGURE)
-    text = "\n".join([*lines, "", *textwrap.wrap("The report on the silicone: " + answer, 90), "",
+    text = "\n".join([*summary_table(summary), "", *textwrap.wrap("The report on the silicone: " + answer, 90), "",
                       f"![Time of a whole tick against error on the virtual silicone: the 2009 recipe hollow, Palpate filled]({FIGURE})"])
     readme = ROOT / "README.md"
     before, rest = readme.read_text().split(BEGIN)
@@ -218,12 +233,12 @@ def main():
                 for name, train, tests in sets for model in options.models]
         results = dict(job.result() for job in jobs)
         names = [name for name, _, _ in sets]
-        lines = [*table(names, results, options.models), "",
-                 *means("Recorded sets", names[:len(real)], results, options.models),
-                 *means("Virtual materials", names[len(real):], results, options.models)]
-        print("\n".join(lines))
+        rows = table(names, results, options.models)
+        summary = [*means("Recorded sets", names[:len(real)], results, options.models),
+                   *means("Virtual materials", names[len(real):], results, options.models)]
+        print("\n".join([*rows, "", *summary]))
         if options.write:
-            front_page(options, folder, lines)
+            front_page(options, folder, rows, summary)
     for key, entry in results.items():
         if "error" in entry:
             print(f"{' '.join(key)}: {entry['error']}")
