@@ -51,7 +51,7 @@ struct TrendProblem {
   double rms_velocity_m_per_s = 0.0;
   double force_noise_floor_N = 0.0;  // at or below it a sample has no measured force
   Weighting weighting = Weighting::jnd;
-  JndLine jnd;
+  JndLine jnd{};
 };
 
 struct CrossValidated {
