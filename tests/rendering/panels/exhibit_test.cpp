@@ -288,7 +288,7 @@ TEST_F(ExhibitTest, AForceDeviceIsComparedBlindly) {
   for (const char* round : {"1", "2"}) {
     ASSERT_EQ(state(), State::press) << "no guess before a hand has felt anything";
     EXPECT_TRUE(says("feel a difference"));
-    EXPECT_TRUE(app_->view().blind);
+    EXPECT_TRUE(app_->view().exhibit.blind);
     EXPECT_EQ(app_->view().settings.block_count, 1u);
     stroke_device();
     press(GLFW_KEY_D);
