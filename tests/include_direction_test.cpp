@@ -32,7 +32,8 @@ const std::map<std::string, Names> kRooms = {
     {"models/export", {"models/model"}},
     {"models/library", {"models/export", "engine/live"}},
     {"models/training", {"models/model"}},
-    {"models/surface", {"models/training"}},
+    {"models/recordings", {"engine/tick"}},
+    {"models/surface", {"models/training", "models/recordings"}},
     {"models/check", {"models/surface"}},
     {"models/solve", {"models/training"}},
     {"models/fit", {"models/surface", "models/solve"}},
@@ -163,7 +164,7 @@ TEST(IncludeDirection, FindsTheFaultOfEachArrow) {
   EXPECT_NE(find_fault("models/model", "devices/link/device_bus.h", true), "");
   EXPECT_NE(find_fault("scenes/report", "scenes/live/live_session.h", true), "");
   EXPECT_NE(find_fault("scenes/study", "scenes/live/live_session.h", true), "");
-  EXPECT_NE(find_fault("devices/stream", "devices/link/device_bus.h", true), "");
+  EXPECT_NE(find_fault("engine/live", "devices/link/device_bus.h", true), "");
   EXPECT_NE(find_fault("devices/hid", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("rendering/ui", "models/model/trend.h", true), "");
   EXPECT_NE(find_fault("scenes/live", "rendering/ui/plot.h", true), "");

@@ -115,7 +115,6 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
   object["surface_told"] = replayed.surface.told;
-  object["force_offset_or_surface_N"] = replayed.surface.force_offset_N;
   const PredictedErrors& predicted = replayed.predicted;
   object["predicted_error"] = {
       {"bound_95_held", number_or_null(!std::isnan(predicted.held_share), predicted.held_share)},
