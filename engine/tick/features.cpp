@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "engine/tick/exponential.h"
 
 namespace palpate {
 namespace {
@@ -85,7 +86,9 @@ double surface_halfway(double last_surface_m, double last_depth_m, double depth_
 
 double branch_clock(double slowing, double surface_m, double reference_depth_m) noexcept {
   if (slowing == 0.0) return 1.0;
-  return std::exp(slowing * std::min(surface_m / reference_depth_m, 1.0));
+  V4 clock{slowing * std::min(surface_m / reference_depth_m, 1.0)};
+  to_exponential(clock);  // the lanes' own, so that both have the same bits
+  return clock[0];
 }
 
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
