@@ -13,8 +13,7 @@ namespace {
 
 StudyAnalysis example() {
   StudyAnalysis analysis;
-  analysis.subjects.push_back(
-      {"S01", 0, {{0.3, 0.3, 80, 0.09, true}, {2.5, 2.5, 80, 0.4, false}}});
+  analysis.subjects.push_back({"S01", 0, {{0.3, 0.3, 80, 0.09, true}, {2.5, 2.5, 80, 0.4, false}}});
   analysis.points = {
       {0.3, 0.09, 0.01, "study"}, {2.5, 0.3, 0.02, "study"}, {2.5, 0.225, 0.0, "Pang, Tan & Durlach (1991)"}};
   analysis.lines = JndLines{{0.07, 0.08}, {0.065, 0.08}};
