@@ -1,5 +1,5 @@
 // The third file of a new device is the table of devices with a row for it; here, a table of the test's own.
-#include "tests/devices/registry/own_device.h"
+#include "tests/support/own_device.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The second file of a new device.
-#include "tests/devices/registry/own_device.h"
+#include "tests/support/own_device.h"
 
 #include <cmath>
 #include <cstdlib>
