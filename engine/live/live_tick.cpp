@@ -113,6 +113,7 @@ LiveTick::LiveTick(Device& device, ModelSlot<LiveModels>& slot, const LiveTickSe
       slot_(slot),
       mixer_(settings.jnd),
       stability_(device.sensor().encoder_step_m),
+      bounded_(device.holder() == Holder::person),
       passivity_(device.sensor().encoder_step_m),
       passivity_on_(settings.passivity && settings.source == nullptr),
       limiter_(device.limits()),
@@ -243,8 +244,9 @@ double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) 
   const double late_s = snapshot_.device.late_s;
   stability_.update(late_s > kInTick_s ? late_s : kInTick_s, step_s);
   const Impedance model = impedance();
-  const ForceScale limited = wanted.limited(stability_, model);
-  snapshot_.stiffness_share = static_cast<float>(limited.stiffness / wanted.limited(StabilityLimit(), {}).stiffness);
+  const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
+  const ForceScale limited = bounded_ ? wanted.limited(stability_, model) : unbounded;
+  snapshot_.stiffness_share = static_cast<float>(limited.stiffness / unbounded.stiffness);
   snapshot_.late_ms = static_cast<float>(1e3 * stability_.late_s());
   model_damping_Ns_per_m_ = limited.stiffness * model.damping_Ns_per_m;
   const TickSnapshot& tick = snapshot_.tick;

@@ -195,6 +195,7 @@ class LiveTick {
   ModelSlot<LiveModels>& slot_;
   ForceMixer mixer_;
   StabilityLimit stability_;
+  bool bounded_;  // by it: a person holds the device, not a simulated hand
   ScaledForce scaled_;
   double model_damping_Ns_per_m_ = 0.0;  // as scaled
   PassivityController passivity_;
