@@ -27,16 +27,13 @@ std::vector<double> decade_tics(const AxisRange& range, const std::vector<double
 
 std::vector<double> even_tics(const AxisRange& range, std::size_t most) {
   const double width = range.high - range.low;
-  const double decade = std::pow(10.0, std::floor(std::log10(width / static_cast<double>(most))));
+  const double least = width / static_cast<double>(most);
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10.0 * decade;
+  for (const double factor : {5.0, 2.0, 1.0}) step = factor * decade >= least ? factor * decade : step;
   std::vector<double> tics;
-  // The largest step with three labels at least.
-  for (const double factor : {10.0, 5.0, 2.0, 1.0}) {
-    const double step = factor * decade;
-    tics.clear();
-    for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * width; ++k)
-      tics.push_back(std::abs(k) < 0.5 ? 0.0 : k * step);
-    if (tics.size() >= 3) break;
-  }
+  for (double k = std::ceil(range.low / step - 1e-9); k * step <= range.high + 1e-9 * width; ++k)
+    tics.push_back(std::abs(k) < 0.5 ? 0.0 : k * step);
   return tics;
 }
 

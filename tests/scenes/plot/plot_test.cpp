@@ -85,13 +85,6 @@ TEST(Layout, EveryAxisHasTwoLabelsAtLeastAndNotTooMany) {
   }
 }
 
-TEST(Layout, ALowPanelAroundZeroHasLabelsOnBothSides) {
-  const std::vector<double> tics = tics_of({}, {-47.0, 47.0}, 3);
-  EXPECT_LT(tics.front(), 0.0);
-  EXPECT_GT(tics.back(), 0.0);
-  EXPECT_LE(tics.size(), 5u);
-}
-
 TEST(Layout, NamesAtTheEndsOfCurvesDoNotOverlap) {
   Panel panel;
   panel.names_at_ends = true;
