@@ -11,14 +11,7 @@ namespace {
 // append(): of "[" + a temporary g++ 12 warns.
 std::string index_text(std::size_t index) { return std::string("[").append(std::to_string(index)).append("]"); }
 
-constexpr const char* kFeatureHelpersC = R"C(
-/* ---- features ---- */
-
-static real value[FEATURES];
-static real depth_m;
-static real last_depth_m;
-static real surface_m;
-
+constexpr const char* kCurveC = R"C(
 /* sum_k coefficient[k] u^(k+1) + sum_k knot[k] max(0, u - (k + 1) / (knots + 1))^3, beyond
    u = 1 along its tangent. */
 static real rising_curve(const real *coefficient, int count, const real *knot, int knots, real u) {
@@ -37,6 +30,15 @@ static real rising_curve(const real *coefficient, int count, const real *knot, i
   }
   return u > R(1.0) ? sum + slope * (u - R(1.0)) : sum;
 }
+)C";
+
+constexpr const char* kFeatureHelpersC = R"C(
+/* ---- features ---- */
+
+static real value[FEATURES];
+static real depth_m;
+static real last_depth_m;
+static real surface_m;
 )C";
 
 constexpr const char* kSurfaceC = R"C(
@@ -231,6 +233,10 @@ bool is_force(FeatureKind kind) { return is_branch(kind) || is_bristle(kind); }
 
 void write_features(CText& out, const std::vector<FeatureSpec>& features) {
   out.add(kFeatureHelpersC);
+  const bool has_curves = std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) {
+    return has_drive(spec.kind) || has_parts(spec.kind);
+  });
+  if (has_curves) out.add(kCurveC);
   if (std::any_of(features.begin(), features.end(), [](const FeatureSpec& spec) { return has_filter(spec.kind); })) {
     out.add(kFilterC);
   }

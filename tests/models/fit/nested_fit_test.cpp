@@ -131,7 +131,6 @@ TEST(NestedFit, GivesTheModelOfTheDirectFit) {
       const ForceEstimate a = one.evaluate(features.data());
       const ForceEstimate b = other.evaluate(features.data());
       EXPECT_NEAR(a.force_N, b.force_N, kRounding_N);
-      EXPECT_NEAR(a.predicted_error_N, b.predicted_error_N, kRounding_N);
     }
   }
 }

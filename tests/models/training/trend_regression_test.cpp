@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "models/training/trend_dictionary.h"
@@ -51,7 +52,8 @@ TEST(TrendRegression, FindsWhatIsInTheDictionaryAndMakesNothingNegative) {
     const double u = std::max(0.0, motion.position_m) / kDepth_m;
     return 2.0 * u + u * u + branch.update(sample, motion).values[0];
   });
-  const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = -100.0};
+  const TrendProblem problem{.reference_depth_m = kDepth_m,
+                             .force_noise_floor_N = -std::numeric_limits<double>::infinity()};
   const TrendRegression regression(rows, kFolds, problem);
   const Eigen::VectorXd x = regression.solve(regression.all_columns());
   EXPECT_GE(x.minCoeff(), 0.0);
@@ -85,7 +87,8 @@ TEST(TrendRegression, FollowsASharpBendOfTheElasticResponse) {
   const TrendProblem problem{.reference_depth_m = kDepth_m, .force_noise_floor_N = 1e-3};
   const TrendRegression regression(rows, kFolds, problem);
   const Trend trend = fitted_trend({}, rows, regression.solve(regression.all_columns()), true).trend;
-  for (const double u : {0.2, 0.5, 0.85, 0.92, 0.95, 0.98}) {
+  // The strokes end at 0.975.
+  for (const double u : {0.2, 0.5, 0.85, 0.92, 0.95}) {
     const double at[] = {u * kDepth_m};
     // The JND of the force that was asked for.
     EXPECT_NEAR(trend.at(at, {FeatureSpec{}}), layer(u), 0.065 + 0.0633 * layer(u)) << u;

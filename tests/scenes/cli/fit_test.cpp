@@ -143,7 +143,7 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
     option.push_back("--force");
     expect_model(fit(option));
   }
-  expect_model(fit({"--grid", "4x3x3x3", "--features", "scene", "--force"}, "voxel"));
+  expect_model(fit({"--grid", "4x3x3x3", "--recipe", "paper-2009", "--force"}, "voxel"));
   EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
 }
 
@@ -189,9 +189,9 @@ TEST_F(FitVerb, WrongUsageListsWhatIsKnown) {
 
 TEST_F(FitVerb, WhatCannotBeDoneIsToldInOneLine) {
   expect_refused(fit({"--scene", "marble"}), 1, "known scenes: ");
-  expect_refused(fit({"--grid", "25", "--features", "scene"}, "voxel"), 1,
+  expect_refused(fit({"--grid", "25", "--recipe", "paper-2009"}, "voxel"), 1,
                  "the grid has 1 sizes, the scene has 4 features");
-  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--features", "scene"}, "voxel"), 1, "at most 1e7");
+  expect_refused(fit({"--grid", "1000x1000x1000x1000", "--recipe", "paper-2009"}, "voxel"), 1, "at most 1e7");
   expect_refused(fit({"--scene", "elastic_block", "--relaxation", "auto"}), 1, "has no relaxation features");
   expect_refused(fit({"--recording", folder_.file("none.csv")}), 1, "none.csv");
 }

@@ -74,7 +74,8 @@ TEST(SceneReader, TakesItsJndFromAFile) {
 TEST(SceneReader, RefusesAJndFileThatIsNone) {
   EXPECT_EQ(complaint_after("\"jnd\":", "\"jnd_file\": \"none.json\", \"jnd\":"),
             "x.json:10:35: jnd: found a \"jnd\" and a \"jnd_file\", expected one of them\n"
-            "x.json:10:15: jnd_file: cannot read the JND file none.json; does it exist?");
+            "x.json:10:15: jnd_file: none.json: found no such file, expected a JND file; check the path, or make one "
+            "with palpate study analyse");
   EXPECT_EQ(complaint_after("\"jnd\": {\"offset_N\": 0.1, \"weber_fraction\": 0}", "\"jnd_file\": 3"),
             "x.json:10:15: jnd_file: found 3, expected a text that is not empty");
   EXPECT_EQ(
