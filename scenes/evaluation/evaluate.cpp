@@ -39,6 +39,8 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
                          const EvaluationRequest& request, double from, const ReplayVisitor& also) {
   Passed passed{{}, ModelErrors(models.front().jnd), {}, std::vector<Bounds>(models.size())};
   for (const EvaluatedModel& one : models) passed.errors.emplace_back(one.jnd);
+  // By row, from the first models: every model is judged on the same samples.
+  std::vector<bool> contact;
   for (std::size_t first = 0; first < models.size(); first += kMaxModels) {
     const double done = static_cast<double>(first) / static_cast<double>(models.size());
     if (!request.control.may_continue(from + 0.5 * done)) return interrupted();
@@ -46,10 +48,13 @@ Result<Passed> pass_over(const RowSource& rows, const Models& models, double sur
     ForceModels batch;
     for (std::size_t i = first; i < end; ++i) batch.push_back(models[i].model);
     StrokeCounter strokes;
+    std::size_t row_number = 0;
     const auto visitor = [&](const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick) {
       if (first == 0 && also) also(row, snapshot, tick);
-      const bool begins = strokes.begins_stroke(row.time_s, snapshot.in_contact);
-      if (!snapshot.in_contact || row.time_s < request.counted_s.low || row.time_s >= request.counted_s.high) return;
+      if (first == 0) contact.push_back(snapshot.in_contact);
+      const bool in_contact = contact[row_number++];
+      const bool begins = strokes.begins_stroke(row.time_s, in_contact);
+      if (!in_contact || row.time_s < request.counted_s.low || row.time_s >= request.counted_s.high) return;
       const auto add = [&](ModelErrors& errors, double model_N, bool out_of_domain) {
         if (begins) errors.begin_stroke();
         errors.add(model_N, row.force_N, out_of_domain);
