@@ -5,10 +5,8 @@
 //                      trend, features, normalisation, reduction, one-sided contact, domain cover
 //   fit_method         one of the methods of models/fit/methods.h on the prepared sites
 //
-// The paper's own recipe (reduction by force and weighting 1/f, together) is
-// run as the paper has it: low-pass features and the force itself as target,
-// the trend (position alone) only out of domain. Otherwise the methods fit
-// what the viscoelastic trend leaves over.
+// The paper's recipe (recipe_2009.h) fits the force itself, without trend, trust and surface search.
+// Otherwise the methods fit what the viscoelastic trend leaves over.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -40,8 +38,10 @@ enum class Surface { automatic, recorded };
 // Which features: the whole dictionary (trend_dictionary.h), the scene's (with
 // `relaxation`), or a list.
 enum class FeatureChoice { automatic, scene, given };
+enum class FitRecipe { standard, paper_2009 };
 
 struct TrainingRequest {
+  FitRecipe recipe = FitRecipe::standard;
   std::string scene;
   std::vector<FeatureSpec> features;  // the scene's: depth, velocity, lowpass_velocity
   JndLine jnd;

@@ -11,6 +11,7 @@
 #include "models/model/rbf/rbf_correction.h"
 #include "models/solve/choose_smoothing.h"
 #include "models/solve/projected_kernel.h"
+#include "models/solve/truncated_svd.h"
 
 namespace palpate {
 namespace {
@@ -58,6 +59,7 @@ Result<FittedRbf> fit_direct(const Sites& sites, const DirectOptions& options, c
   if (sites.count() > kMostDirectSites)
     return Error{"a direct fit of " + std::to_string(sites.count()) + " sites is too large, at most " +
                  std::to_string(kMostDirectSites) + "; reduce the recording further or use greedy"};
+  if (sites.as_2009) return truncated_interpolant(sites, options.kernel, control);
   if (!control.may_continue(0.0)) return interrupted();
   const ProjectedKernel kernel(sites, options.kernel);
   if (!control.may_continue(0.1)) return interrupted();

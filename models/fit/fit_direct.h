@@ -1,8 +1,8 @@
 // Direct interpolation: every site is a centre, smoothed as much as the data
 // ask for (decide_strength.h, else choose_smoothing.h), with the side condition of eq. 3.
 //
-// Cholesky factorises the projected system (projected_kernel.h); the paper's truncated
-// SVD takes some thirty times longer and agreed within the noise.
+// Cholesky factorises the projected system (projected_kernel.h); sites as_2009 get the paper's truncated SVD
+// (truncated_svd.h), which takes some thirty times longer.
 // Source: Hoever & Harders (2009), section 3, eqs. 2-8.
 #pragma once
 

@@ -37,8 +37,8 @@ std::vector<int> default_grid(std::size_t features) {
 }
 
 // Node coordinates of one axis: half evenly spread, half where the data are.
-// A fast poke makes most of an even axis empty and slow motion too coarse.
-std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count) {
+// A fast poke makes most of an even axis empty and slow motion too coarse. `even`: as the paper has them.
+std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count, bool even) {
   std::vector<double> sorted(values.data(), values.data() + values.size());
   std::sort(sorted.begin(), sorted.end());
   const double low = sorted.front();
@@ -55,7 +55,8 @@ std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count) {
     const auto below = static_cast<std::size_t>(at);
     const std::size_t above = std::min(below + 1, sorted.size() - 1);
     const double quantile = sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-    nodes.push_back(0.5 * (low + share * (high - low)) + 0.5 * quantile);
+    const double evenly = low + share * (high - low);
+    nodes.push_back(even ? evenly : 0.5 * evenly + 0.5 * quantile);
   }
   return nodes;
 }
@@ -79,7 +80,7 @@ Result<VoxelGrid> make_grid(const Sites& sites, const RbfFunction& function, std
   for (std::size_t k = 0; k < d; ++k) {
     if (sizes[k] < 2)
       return Error{"a grid needs at least 2 nodes along every feature, found " + std::to_string(sizes[k])};
-    grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k]));
+    grid.nodes.push_back(axis_nodes(sites.points.row(static_cast<Eigen::Index>(k)), sizes[k], sites.as_2009));
   }
   const RbfEvaluator evaluator(function);
   const Status filled = fill_grid(

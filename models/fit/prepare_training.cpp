@@ -20,9 +20,12 @@ constexpr std::size_t kMaximumEvaluationSamples = 100000;
 constexpr std::size_t kTrendRows = 8000;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
+// Normalised features are about 1, and forces of a function that extrapolates stay below a hundred times its data.
+constexpr double kEverywhere = 1e6;
+constexpr double kUnlimited = 100.0;
 
 bool is_papers_recipe(const TrainingRequest& request) {
-  return request.reduction == Reduction::force && request.weighting == Weighting::relative;
+  return request.recipe == FitRecipe::paper_2009;
 }
 
 bool has_velocity(const std::vector<FeatureSpec>& features) {
@@ -68,6 +71,15 @@ std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
   return times;
 }
 
+// The paper trusts its function everywhere, as far as the output's own limits go, and has even grids and
+// pseudo-inverses by truncated singular values.
+void without_guard(PreparedTraining& prepared) {
+  prepared.sites.as_2009 = true;
+  prepared.common.cover.inner_radius = kEverywhere;
+  prepared.common.cover.outer_radius = 2.0 * kEverywhere;
+  prepared.common.correction_limit_N *= kUnlimited;
+}
+
 void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   const TrainingSet& set = prepared.set;
   const auto n = static_cast<Eigen::Index>(set.sites.size());
@@ -97,6 +109,7 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     largest_N = std::max(largest_N, std::abs(correction_N));
   }
   prepared.common.correction_limit_N = kCorrectionMargin * largest_N;
+  if (is_papers_recipe(request)) without_guard(prepared);
 }
 
 // Moves every recording to the common surface; returns where that is, m.

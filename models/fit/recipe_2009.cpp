@@ -5,6 +5,8 @@
 namespace palpate {
 
 TrainingRequest recipe_2009_request(TrainingRequest request) {
+  request.recipe = FitRecipe::paper_2009;
+  request.surface = Surface::recorded;
   request.reduction = Reduction::force;
   request.weighting = Weighting::relative;
   request.choice = FeatureChoice::scene;

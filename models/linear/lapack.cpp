@@ -20,6 +20,8 @@ void dsyrk_(const char*, const char*, const int*, const int*, const double*, con
             double*, const int*);
 void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*, const int*,
              int*);
+void dgesvd_(const char*, const char*, const int*, const int*, double*, const int*, double*, double*, const int*,
+             double*, const int*, double*, const int*, int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
 void dpotrs_(const char*, const int*, const int*, const double*, const int*, double*, const int*, int*);
 void dpocon_(const char*, const int*, const double*, const int*, const double*, double*, double*, int*, int*);
@@ -163,6 +165,25 @@ bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values) {
   Eigen::VectorXd work(work_size);
   std::vector<int> integers(static_cast<std::size_t>(wanted_integers));
   dsyevd_("V", "L", &n, a.data(), &n, values.data(), work.data(), &work_size, integers.data(), &wanted_integers, &info);
+  return info == 0;
+}
+
+bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixXd& v_transposed) {
+  const int m = to_int(a.rows());
+  const int n = to_int(a.cols());
+  const int lda = std::max(1, m);
+  const int ldv = std::max(1, n);
+  values.resize(n);
+  v_transposed.resize(n, n);
+  double wanted = 0.0;
+  int size = -1;
+  int info = 0;
+  dgesvd_("O", "S", &m, &n, a.data(), &lda, values.data(), nullptr, &lda, v_transposed.data(), &ldv, &wanted, &size,
+          &info);
+  size = static_cast<int>(wanted);
+  Eigen::VectorXd work(size);
+  dgesvd_("O", "S", &m, &n, a.data(), &lda, values.data(), nullptr, &lda, v_transposed.data(), &ldv, work.data(), &size,
+          &info);
   return info == 0;
 }
 

@@ -55,6 +55,10 @@ void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors,
 // the lower triangle is read). False when the iteration did not converge.
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
 
+// Singular values of `a` (rows >= columns) descending in `values`; `a` becomes U, its columns, and V^T is in
+// `v_transposed`. False when the iteration did not converge.
+bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixXd& v_transposed);
+
 // Cholesky factor in the lower triangle of `a`. False when `a` is not positive
 // definite, or when `may_continue`, asked now and then with the share done, says no.
 bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue = {});

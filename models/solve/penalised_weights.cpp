@@ -7,6 +7,7 @@
 #include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
+#include "models/solve/truncated_svd.h"
 
 namespace palpate {
 namespace {
@@ -121,6 +122,7 @@ void multiply_by_basis(MatrixRef matrix, const PenaltySpace& space) {
 }
 
 FittedRbf penalised_weights(const FoldedRows& folded, KernelKind kernel, const Eigen::MatrixXd& centres) {
+  if (folded.as_2009) return truncated_weights(folded, kernel, centres);
   const BlasThreads one_thread(1);
   const Eigen::MatrixXd& triangle = folded.triangle;
   const Eigen::Index n = centres.cols();

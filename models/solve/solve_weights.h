@@ -26,6 +26,7 @@ struct FoldedRows {
   Eigen::Index told = 0;  // up to so many unknowns plain least squares
   double smoothing = 0.0;
   double strength = 1.0;
+  bool as_2009 = false;  // weights by truncated singular values
 };
 
 // Block after block of each half of the rows, then both. `sites` and `centres` must fit together.

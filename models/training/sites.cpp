@@ -39,6 +39,7 @@ Sites even_subset(const Sites& sites, Eigen::Index most) {
   Sites subset;
   subset.smoothing = sites.smoothing;
   subset.strength = sites.strength;
+  subset.as_2009 = sites.as_2009;
   subset.points.resize(sites.dimension(), count);
   subset.target_N.resize(count);
   subset.row_scale.resize(count);

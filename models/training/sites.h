@@ -25,6 +25,8 @@ struct Sites {
   // what a method would choose itself, and the share of it that the model gets.
   std::optional<double> smoothing;  // of the cubic kernel; others choose their own
   double strength = 1.0;
+  // As Hoever & Harders (2009) solve: truncated singular values, even grids.
+  bool as_2009 = false;
 
   Eigen::Index count() const { return points.cols(); }
   int dimension() const { return static_cast<int>(points.rows()); }

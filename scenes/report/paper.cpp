@@ -1,0 +1,247 @@
+#include "scenes/report/paper.h"
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "scenes/plot/draw.h"
+#include "scenes/plot/inline_svg.h"
+#include "scenes/report/publish.h"
+#include "scenes/report/table.h"
+
+namespace palpate {
+namespace {
+
+using BinFigure = double (*)(const PaperBin&);
+
+// The JND as the curve that it is on any axis, absolute or over the force.
+Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) {
+  Series curve{"JND", kMutedColour, Mark::dashed, {}};
+  for (int i = 0; i <= 60; ++i) {
+    const double force_N = from_N + (to_N - from_N) * i / 60.0;
+    curve.rows.push_back({force_N, jnd.at(force_N) / (relative ? force_N : 1.0)});
+  }
+  return curve;
+}
+
+Figure bins_figure(const PaperData& data, int number, const std::string& title, bool relative, BinFigure value) {
+  Figure figure;
+  figure.plot.name = "figure_" + std::to_string(number);
+  figure.plot.columns = 2;
+  figure.caption = "Figure " + std::to_string(number) + ": " + title + " over the absolute value of the force.";
+  for (const PaperRun& run : data.runs) {
+    Panel panel;
+    panel.title = run_name(run);
+    panel.x.title = "Force [N]";
+    panel.y = {relative ? "Relative error" : "Error", relative ? "" : "N", true};
+    panel.names_at_ends = true;
+    double from_N = 1e300;
+    double to_N = 0.0;
+    for (const PaperModel& model : run.models) {
+      Series series{model.name, model.colour, Mark::curve, {}};
+      for (const PaperBin& bin : model.bins) {
+        series.rows.push_back({bin.force_N, value(bin)});
+        from_N = std::min(from_N, bin.force_N);
+        to_N = std::max(to_N, bin.force_N);
+      }
+      panel.series.push_back(std::move(series));
+    }
+    panel.series.push_back(jnd_curve(data.jnd, from_N, to_N, relative));
+    figure.plot.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure dimension_figure(const PaperData& data) {
+  Figure figure;
+  figure.plot.name = "figure_2";
+  figure.plot.width = 0.6;
+  figure.caption =
+      "Figure 2: computation time over the dimension of the domain, interpolation of all sites and a grid of 10 nodes a "
+      "dimension.";
+  Panel panel;
+  panel.x.title = "Dimensions";
+  panel.y = {"Time", "s", true};
+  panel.names_at_ends = true;
+  Series solve{"solve", kInkColour, Mark::curve, {}};
+  Series grid{"grid", kVoxelMethod.colour, Mark::curve, {}};
+  Series both{"both", kMutedColour, Mark::curve, {}};
+  for (const DimensionTimes& one : data.by_dimension) {
+    const auto d = static_cast<double>(one.dimensions);
+    solve.rows.push_back({d, one.solve_s});
+    grid.rows.push_back({d, one.grid_s});
+    both.rows.push_back({d, one.solve_s + one.grid_s});
+  }
+  panel.series = {std::move(both), std::move(solve), std::move(grid)};
+  figure.plot.panels = {std::move(panel)};
+  return figure;
+}
+
+Figure jnd_figure(const PaperData& data) {
+  Figure figure;
+  figure.plot.name = "figure_3";
+  figure.plot.columns = 2;
+  figure.caption = "Figure 3: the conservative threshold, absolute and relative; the paper's study is palpate study's.";
+  for (const bool relative : {false, true}) {
+    Panel panel;
+    panel.x.title = "Reference force [N]";
+    panel.y.title = relative ? "Relative JND" : "JND [N]";
+    panel.series = {jnd_curve(data.jnd, 0.1, 10.0, relative)};
+    panel.series.front().name.clear();
+    figure.plot.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure sites_figure(const PaperData& data) {
+  Figure figure;
+  figure.plot.name = "figure_8";
+  figure.plot.width = 0.6;
+  figure.caption = "Figure 8: computation time over the number of data points; the interpolation with its 25x11x11x11 grid.";
+  Panel panel;
+  panel.x = {"Data points", "", true};
+  panel.y = {"Time", "s", true};
+  panel.names_at_ends = true;
+  for (std::size_t i = 0; i < data.runs.front().models.size(); ++i) {
+    const PaperModel& model = data.runs.front().models[i];
+    Series series{model.name, model.colour, Mark::curve, {}};
+    for (const FitTimes& one : data.by_sites) series.rows.push_back({static_cast<double>(one.sites), one.seconds[i]});
+    panel.series.push_back(std::move(series));
+  }
+  figure.plot.panels = {std::move(panel)};
+  return figure;
+}
+
+std::vector<Figure> paper_figures(const PaperData& data) {
+  return {dimension_figure(data),
+          jnd_figure(data),
+          bins_figure(data, 4, "mean plus standard deviation of the absolute error", false,
+                      [](const PaperBin& bin) { return bin.mean_N + bin.std_N; }),
+          bins_figure(data, 5, "mean plus standard deviation of the relative error", true,
+                      [](const PaperBin& bin) { return bin.mean_relative + bin.std_relative; }),
+          bins_figure(data, 6, "maximum absolute error", false, [](const PaperBin& bin) { return bin.max_N; }),
+          bins_figure(data, 7, "maximum relative error", true, [](const PaperBin& bin) { return bin.max_relative; }),
+          sites_figure(data)};
+}
+
+Table claims_table(const PaperData& data, const std::vector<Claim>& claims) {
+  Table table{"claims", true};
+  for (const Claim& claim : claims) {
+    table.begin_row();
+    table.add({"claim", "claim of the paper"}, claim.claim);
+    table.add({"there", "there"}, claim.there);
+    for (std::size_t i = 0; i < data.runs.size(); ++i) {
+      const std::string name = run_name(data.runs[i]);
+      const bool said = !claim.here[i].empty();
+      table.add({name, name}, claim.here[i]);
+      table.add({name + " reproduced", "reproduced"}, std::string(!said ? "" : claim.reproduced[i] ? "yes" : "no"));
+    }
+    table.add({"remark", "remark"}, claim.why);
+  }
+  return table;
+}
+
+Table models_table(const PaperData& data) {
+  Table table{"models", true};
+  for (const PaperRun& run : data.runs) {
+    for (const PaperModel& model : run.models) {
+      table.begin_row();
+      table.add({"run", "run"}, run_name(run));
+      table.add({"model", "model"}, model.name);
+      table.add({"rms_error_N", "RMS [mN]", kInMilli}, model.rms_N);
+      table.add({"fit_seconds", "fit [s]"}, model.fit_seconds);
+      table.add({"evaluation_ns", "evaluation [ns]", 1.0, 0}, model.time.evaluation.median_ns);
+      table.add({"tick_ns", "tick [ns]", 1.0, 0}, model.time.tick.median_ns);
+    }
+  }
+  return table;
+}
+
+Table bins_table(const PaperData& data) {
+  Table table{"bins"};
+  for (const PaperRun& run : data.runs) {
+    for (const PaperModel& model : run.models) {
+      for (const PaperBin& bin : model.bins) {
+        table.begin_row();
+        table.add({"run", ""}, run_name(run));
+        table.add({"model", ""}, model.name);
+        table.add({"force_N", ""}, bin.force_N);
+        table.add({"count", ""}, bin.count);
+        table.add({"mean_error_N", ""}, bin.mean_N);
+        table.add({"std_error_N", ""}, bin.std_N);
+        table.add({"max_error_N", ""}, bin.max_N);
+        table.add({"mean_relative_error", ""}, bin.mean_relative);
+        table.add({"std_relative_error", ""}, bin.std_relative);
+        table.add({"max_relative_error", ""}, bin.max_relative);
+        table.add({"jnd_N", ""}, data.jnd.at(bin.force_N));
+      }
+    }
+  }
+  return table;
+}
+
+std::string protocol_words(const PaperData& data) {
+  std::string text =
+      "Samples at steps of 50 mN; depth, velocity and two low-passed velocities; rows scaled by 1/f; linear polynomial "
+      "tail; pseudo-inverses by truncated singular values; 100 centres; no trend, trust or surface search. Forces are cut "
+      "at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of fewer than 20 "
+      "samples in contact are left out.";
+  for (const PaperRun& run : data.runs) {
+    text += " " + run_name(run) + ": " + with_thousands(std::to_string(run.trained)) + " samples to train, " +
+            with_thousands(std::to_string(run.tested)) + " to test, relaxation times";
+    for (const double time_s : run.times_s) text += " " + three_digits(time_s) + " s";
+    text += ".";
+  }
+  return text;
+}
+
+std::string summary(const PaperData& data, const std::vector<Claim>& claims) {
+  std::string text = "Reproduced: ";
+  for (std::size_t i = 0; i < data.runs.size(); ++i) {
+    std::size_t said = 0;
+    std::size_t yes = 0;
+    for (const Claim& claim : claims) {
+      if (claim.here[i].empty()) continue;
+      ++said;
+      yes += claim.reproduced[i] ? 1 : 0;
+    }
+    text += (i == 0 ? "" : "; ") + std::to_string(yes) + " of " + std::to_string(said) + " claims on " + run_name(data.runs[i]);
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+Result<std::string> make_paper(const PaperRequest& request, const FitControl& control) {
+  if (const Status gnuplot = find_gnuplot(); !gnuplot) return gnuplot.error();
+  auto folder = ReportFolder::create(request.out, request.force);
+  if (!folder) return folder.error();
+  const auto data = measure_paper(request.quick, control);
+  if (!data) return data.error();
+  const std::vector<Claim> claims = paper_claims(*data);
+  const std::vector<Table> tables{claims_table(*data, claims), models_table(*data), bins_table(*data)};
+  std::vector<Figure> figures = paper_figures(*data);
+  if (const Status drawn = draw_figures(*folder, figures); !drawn) return control.may_continue(0.99) ? drawn.error() : interrupted();
+  std::string drawings;
+  for (const Figure& figure : figures) drawings += figure_html(figure);
+  for (const Table& table : tables) {
+    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status) return status.error();
+  }
+  const std::string answer = summary(*data, claims);
+  const auto page = fill_page("paper.html", {{"answer", escape_html(answer)},
+                                             {"claims", table_html(tables[0])},
+                                             {"models", table_html(tables[1])},
+                                             {"protocol", escape_html(protocol_words(*data))},
+                                             {"figures", drawings},
+                                             {"origin", escape_html(request.origin)}});
+  if (!page) return page.error();
+  if (const Status status = folder->write("index.html", *page); !status) return status.error();
+  // What marks the folder as one that may be replaced.
+  nlohmann::ordered_json report{{"format", "palpate-paper"}, {"version", 1}, {"answer", answer}};
+  for (const Table& table : tables) report["tables"][table.name] = table_json(table);
+  if (const Status status = folder->write("report.json", report.dump(1) + "\n"); !status) return status.error();
+  if (!control.may_continue(1.0)) return interrupted();
+  if (const Status status = folder->commit(); !status) return status.error();
+  return answer;
+}
+
+}  // namespace palpate
