@@ -176,6 +176,7 @@ TEST(SyntheticAccuracy, StiffAndElasticBlocksWithTheFeaturesTheyNeed) {
 // Reduction by force steps and rows scaled by 1/f, as in 2009.
 TEST(SyntheticAccuracy, ThePapersRecipeFindsWhatThePaperFound) {
   TrainingRequest request = scene_request("silicone_block");
+  request.recipe = FitRecipe::paper_2009;
   request.reduction = Reduction::force;
   request.weighting = Weighting::relative;
   const PreparedTraining prepared = prepare({maxwell_train()}, request);

@@ -167,6 +167,7 @@ const std::vector<Choice>& choices() {
       {"every_50_mN", [](TrainingRequest& t, MethodRequest&) { t.reduction = Reduction::force; }},
       {"papers_recipe",
        [](TrainingRequest& t, MethodRequest&) {
+         t.recipe = FitRecipe::paper_2009;
          t.reduction = Reduction::force;
          t.weighting = Weighting::relative;
        }},
@@ -191,6 +192,7 @@ const int registered = [] {
                               if (name == "gel") t.relaxation = Relaxation::automatic;
                             }});
       add("centres_papers_recipe", name, {std::to_string(centres), [centres](TrainingRequest& t, MethodRequest& m) {
+                                            t.recipe = FitRecipe::paper_2009;
                                             t.reduction = Reduction::force;
                                             t.weighting = Weighting::relative;
                                             m.centres = centres;

@@ -72,6 +72,7 @@ std::vector<RecordingCase> recording_cases() {
         along(papers ? "forces near zero, the paper's recipe" : "forces near zero, weights 1/f", 0.02, 0.0));
     cases.back().request.weighting = Weighting::relative;
     if (papers) cases.back().request.reduction = Reduction::force;
+    if (papers) cases.back().request.recipe = FitRecipe::paper_2009;
   }
   cases.push_back(with_forces("all forces zero", [](std::size_t, double) { return 0.0; }));
   std::fill(cases.back().held_out.true_N.begin(), cases.back().held_out.true_N.end(), 0.0);

@@ -15,6 +15,7 @@ Result<MethodFit> fit_trend_alone(Weighting weighting, Reduction reduction) {
   request.features = test::paper_features();
   request.weighting = weighting;
   request.reduction = reduction;
+  if (reduction == Reduction::force) request.recipe = FitRecipe::paper_2009;
   const auto prepared = prepare_training(source, request);
   if (!prepared) return prepared.error();
   MethodRequest asked;

@@ -147,6 +147,15 @@ TEST_F(FitVerb, EveryOptionHasAUse) {
   EXPECT_EQ((*load_model(out()))->name(), "voxel-4x3x3x3");
 }
 
+TEST_F(FitVerb, ThePapersRecipeHasTwoSpellings) {
+  expect_model(fit({"--recipe", "paper-2009"}));
+  const std::string model = read_text(out());
+  expect_model(fit({"--reduction", "force", "--weighting", "relative", "--force"}));
+  EXPECT_EQ(read_text(out()), model);
+  std::filesystem::remove(out());
+  expect_refused(fit({"--recipe", "paper-2009", "--surface", "auto"}), 2, "--surface");
+}
+
 TEST_F(FitVerb, SeveralRecordingsAreOneTrainingSet) {
   Recording other = example_recording(4000, 1000.0);
   for (RecordingRow& row : other.rows) row.force_N *= 1.001;
