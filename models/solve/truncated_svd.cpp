@@ -6,7 +6,7 @@
 #include "engine/base/parallel.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/solve/lapack.h"
+#include "models/linear/lapack.h"
 
 namespace palpate {
 namespace {
