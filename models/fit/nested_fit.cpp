@@ -40,8 +40,12 @@ FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) c
   const auto k = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index newest = k > 0 ? *std::max_element(columns.begin(), columns.end()) + 1 : 0;
   const Eigen::Index rows = tail + newest;
-  FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1), folded_.sites, folded_.told, folded_.smoothing,
-                    folded_.strength, folded_.as_2009};
+  FoldedRows folded{Eigen::MatrixXd::Zero(rows + 1, k + tail + 1),
+                    folded_.sites,
+                    folded_.told,
+                    folded_.smoothing,
+                    folded_.strength,
+                    folded_.as_2009};
   for (Eigen::Index j = 0; j < k; ++j) {
     folded.triangle.col(j).head(rows) = all.col(tail + columns[static_cast<std::size_t>(j)]).head(rows);
   }

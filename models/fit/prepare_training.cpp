@@ -24,9 +24,7 @@ constexpr double kMaximumSiteCount = 16.0;
 constexpr double kEverywhere = 1e6;
 constexpr double kUnlimited = 100.0;
 
-bool is_papers_recipe(const TrainingRequest& request) {
-  return request.recipe == FitRecipe::paper_2009;
-}
+bool is_papers_recipe(const TrainingRequest& request) { return request.recipe == FitRecipe::paper_2009; }
 
 bool has_velocity(const std::vector<FeatureSpec>& features) {
   return std::any_of(features.begin(), features.end(),

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "engine/base/parallel.h"
+#include "models/linear/lapack.h"
 #include "models/model/rbf/polynomial_tail.h"
 #include "models/model/rbf/rbf_evaluate.h"
-#include "models/linear/lapack.h"
 
 namespace palpate {
 namespace {

@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-using BinFigure = double (*)(const PaperBin&);
+using PaperBinFigure = double (*)(const PaperBin&);
 
 // The JND as the curve that it is on any axis, absolute or over the force.
 Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) {
@@ -23,7 +23,7 @@ Series jnd_curve(const JndLine& jnd, double from_N, double to_N, bool relative) 
   return curve;
 }
 
-Figure bins_figure(const PaperData& data, int number, const std::string& title, bool relative, BinFigure value) {
+Figure bins_figure(const PaperData& data, int number, const std::string& title, bool relative, PaperBinFigure value) {
   Figure figure;
   figure.plot.name = "figure_" + std::to_string(number);
   figure.plot.columns = 2;
@@ -56,7 +56,8 @@ Figure dimension_figure(const PaperData& data) {
   figure.plot.name = "figure_2";
   figure.plot.width = 0.6;
   figure.caption =
-      "Figure 2: computation time over the dimension of the domain, interpolation of all sites and a grid of 10 nodes a "
+      "Figure 2: computation time over the dimension of the domain, interpolation of all sites and a grid of 10 nodes "
+      "a "
       "dimension.";
   Panel panel;
   panel.x.title = "Dimensions";
@@ -96,7 +97,8 @@ Figure sites_figure(const PaperData& data) {
   Figure figure;
   figure.plot.name = "figure_8";
   figure.plot.width = 0.6;
-  figure.caption = "Figure 8: computation time over the number of data points; the interpolation with its 25x11x11x11 grid.";
+  figure.caption =
+      "Figure 8: computation time over the number of data points; the interpolation with its 25x11x11x11 grid.";
   Panel panel;
   panel.x = {"Data points", "", true};
   panel.y = {"Time", "s", true};
@@ -182,13 +184,16 @@ Table bins_table(const PaperData& data) {
 std::string protocol_words(const PaperData& data) {
   std::string text =
       "Samples at steps of 50 mN; depth, velocity and two low-passed velocities; rows scaled by 1/f; linear polynomial "
-      "tail; pseudo-inverses by truncated singular values; 100 centres; no trend, trust or surface search. Forces are cut "
-      "at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of fewer than 20 "
+      "tail; pseudo-inverses by truncated singular values; 100 centres; no trend, trust or surface search. Forces are "
+      "cut "
+      "at 0 and at 1.2 times the largest measured one, as of every model here. Bins are two JND wide, those of fewer "
+      "than 20 "
       "samples in contact are left out.";
   for (const PaperRun& run : data.runs) {
-    text += " " + run_name(run) + ": " + with_thousands(std::to_string(run.trained)) + " samples to train, " +
-            with_thousands(std::to_string(run.tested)) + " to test, relaxation times";
-    for (const double time_s : run.times_s) text += " " + three_digits(time_s) + " s";
+    text.append(" ").append(run_name(run)).append(": ").append(with_thousands(std::to_string(run.trained)));
+    text.append(" samples to train, ").append(with_thousands(std::to_string(run.tested)));
+    text.append(" to test, relaxation times");
+    for (const double time_s : run.times_s) text.append(" ").append(three_digits(time_s)).append(" s");
     text += ".";
   }
   return text;
@@ -204,7 +209,8 @@ std::string summary(const PaperData& data, const std::vector<Claim>& claims) {
       ++said;
       yes += claim.reproduced[i] ? 1 : 0;
     }
-    text += (i == 0 ? "" : "; ") + std::to_string(yes) + " of " + std::to_string(said) + " claims on " + run_name(data.runs[i]);
+    text += (i == 0 ? "" : "; ") + std::to_string(yes) + " of " + std::to_string(said) + " claims on " +
+            run_name(data.runs[i]);
   }
   return text + ".";
 }
@@ -220,11 +226,13 @@ Result<std::string> make_paper(const PaperRequest& request, const FitControl& co
   const std::vector<Claim> claims = paper_claims(*data);
   const std::vector<Table> tables{claims_table(*data, claims), models_table(*data), bins_table(*data)};
   std::vector<Figure> figures = paper_figures(*data);
-  if (const Status drawn = draw_figures(*folder, figures); !drawn) return control.may_continue(0.99) ? drawn.error() : interrupted();
+  if (const Status drawn = draw_figures(*folder, figures); !drawn)
+    return control.may_continue(0.99) ? drawn.error() : interrupted();
   std::string drawings;
   for (const Figure& figure : figures) drawings += figure_html(figure);
   for (const Table& table : tables) {
-    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status) return status.error();
+    if (const Status status = folder->write("tables/" + table.name + ".csv", table_csv(table)); !status)
+      return status.error();
   }
   const std::string answer = summary(*data, claims);
   const auto page = fill_page("paper.html", {{"answer", escape_html(answer)},

@@ -19,15 +19,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kTrainSeconds = 41.499;
-constexpr double kTestSeconds = 45.272;
+constexpr double kPaperTrain_s = 41.499;
+constexpr double kPaperTest_s = 45.272;
 constexpr double kQuickShare = 0.2;  // of both
 constexpr double kStep_N = 0.05;
 constexpr int kCentres = 100;
 const std::vector<int> kGrid{25, 11, 11, 11};
 constexpr int kNodesOfFigure2 = 10;
 // Bins with fewer samples say little.
-constexpr std::uint64_t kFewSamples = 20;
+constexpr std::uint64_t kReducedSamples = 20;
 // Low-passes of the fifth and sixth dimension of figure 2; the paper does not say which it had.
 constexpr double kMoreTimes_s[] = {0.05, 4.0};
 
@@ -72,7 +72,7 @@ std::vector<PaperBin> binned(const std::vector<Sample>& samples, const JndLine& 
   std::vector<PaperBin> result;
   for (const auto& [index, bin] : bins) {
     const std::uint64_t count = bin.force.values.size();
-    if (count < kFewSamples) continue;
+    if (count < kReducedSamples) continue;
     result.push_back({bin.force.mean(), count, bin.error.mean(), bin.error.deviation(), bin.error.largest(),
                       bin.relative.mean(), bin.relative.deviation(), bin.relative.largest()});
   }
@@ -117,7 +117,8 @@ class PaperMeasurement {
   FitControl part() {
     done_ += 1.0;
     const double parts = quick_ ? 30.0 : 60.0;
-    return {[this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
+    return {
+        [this, parts](double fraction) { return control_.may_continue(std::min(0.99, (done_ + fraction) / parts)); }};
   }
 
   Status record(const std::string& material);
@@ -138,7 +139,7 @@ class PaperMeasurement {
 
 Status PaperMeasurement::record(const std::string& material) {
   for (const auto& [recording, seed, seconds] :
-       {std::tuple{&train_, std::uint64_t{1}, kTrainSeconds}, {&test_, std::uint64_t{2}, kTestSeconds}}) {
+       {std::tuple{&train_, std::uint64_t{1}, kPaperTrain_s}, {&test_, std::uint64_t{2}, kPaperTest_s}}) {
     RigSettings settings;
     settings.material = material;
     settings.seed = seed;
@@ -168,8 +169,13 @@ Status PaperMeasurement::run_material(const std::string& material) {
     if (!fitted) request.relaxation = Relaxation::scene;  // 0.17 and 1.27 s, the paper's
     const auto prepared = prepare(request);
     if (!prepared) return prepared.error();
-    PaperRun run{material, fitted, {}, train_->rows.size(), test_->rows.size(),
-                 static_cast<std::uint64_t>(prepared->sites.count()), {}};
+    PaperRun run{material,
+                 fitted,
+                 {},
+                 train_->rows.size(),
+                 test_->rows.size(),
+                 static_cast<std::uint64_t>(prepared->sites.count()),
+                 {}};
     for (const RelaxationTime& one : prepared->common.provenance.relaxation_times) run.times_s.push_back(one.time_s);
     if (const Status status = measure_run(std::move(run), *prepared); !status) return status;
     if (data_.runs.size() > 1) continue;

@@ -37,9 +37,9 @@ bool reproduced(const PaperData& data, const std::string& claim) {
 
 TEST(PaperClaims, WhatIsAsThePaperHasItIsReproduced) {
   const PaperData data = example();
-  for (const char* claim : {"random: at every force", "kD-tree: mean plus deviation", "greedy-20: mean", "greedy-100: mean",
-                            "greedy-100 is almost as accurate", "the maxima exceed", "time of a fit", "is linear in",
-                            "third power", "tenfold"}) {
+  for (const char* claim : {"random: at every force", "kD-tree: mean plus deviation", "greedy-20: mean",
+                            "greedy-100: mean", "greedy-100 is almost as accurate", "the maxima exceed",
+                            "time of a fit", "is linear in", "third power", "tenfold"}) {
     EXPECT_TRUE(reproduced(data, claim)) << claim;
   }
   EXPECT_FALSE(reproduced(data, "maxima at small forces considerably lower")) << "they are equal here";
