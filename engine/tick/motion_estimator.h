@@ -26,9 +26,13 @@ namespace motion_filter {
 using real = double;
 #define R(x) (x)
 #define SQRT std::sqrt
+#define EXP std::exp
+#define LOG std::log
 #define MOTION_STATES 4
 #include "engine/tick/motion_filter.inc"
 #undef MOTION_STATES
+#undef LOG
+#undef EXP
 #undef SQRT
 #undef R
 }  // namespace motion_filter
@@ -46,7 +50,7 @@ class MotionEstimator {
   // deviations of the noise of the reading.
   MotionEstimate update(const ToolSample& sample) noexcept;
   // What `update` gave last.
-  MotionEstimate estimate() const noexcept { return {state_.estimate_m, state_.mean[1]}; }
+  MotionEstimate estimate() const noexcept { return {state_.estimate_m, state_.velocity_m_per_s}; }
 
  private:
   SensorSpec sensor_;

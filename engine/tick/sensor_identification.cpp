@@ -17,6 +17,9 @@ constexpr double kMultipleTolerance = 0.02;
 // anything would pass for a multiple: noise passes half the time at most.
 constexpr double kLargestMultipleTolerance = 0.25;
 constexpr double kMultipleShare = 0.99;
+// The readings of an encoder that moves advance by now more, now fewer steps: by half of its rows at most speeds. What
+// advances by the same amount throughout is a ramp of exact positions.
+constexpr double kUnevenShare = 0.05;
 // A change of position loses digits of the position: of 1 m in steps of 1 um it keeps
 // ten. Rounded to nine, the step is the number that a data sheet has, 3e-05 and not
 // 2.9999999999998778e-05, and a program that is told that number gives replay's bits.
@@ -34,15 +37,20 @@ double quantisation_step(const RecordingRow* rows, std::size_t count, double Rec
   if (!std::isfinite(step)) return 0.0;
   std::size_t moved = 0;
   std::size_t multiples = 0;
+  std::size_t uneven = 0;
+  double last_steps = 0.0;
   for (std::size_t i = 1; i < count; ++i) {
     const double steps = std::abs(rows[i].*column - rows[i - 1].*column) / step;
+    if (std::abs(steps - last_steps) > 0.5) ++uneven;
+    last_steps = steps;
     if (steps < 0.5) continue;
     ++moved;
     const double tolerance = std::min(kMultipleTolerance * std::max(1.0, steps * 0.1), kLargestMultipleTolerance);
     if (std::abs(steps - std::round(steps)) < tolerance) ++multiples;
   }
   const bool quantised = static_cast<double>(multiples) >= kMultipleShare * static_cast<double>(moved);
-  return quantised && moved >= 3 ? step : 0.0;
+  const bool is_ramp = static_cast<double>(uneven) < kUnevenShare * static_cast<double>(moved);
+  return quantised && moved >= 3 && !is_ramp ? step : 0.0;
 }
 
 double quiet_noise(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {

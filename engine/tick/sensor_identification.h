@@ -2,7 +2,7 @@
 // acceleration, read off the samples. The motion estimator needs it.
 //
 // Encoder step: the smallest position change, if all the others are multiples
-// of it, to nine digits. Noise: the standard deviation of second differences over
+// of it and not all the same, to nine digits. Noise: the standard deviation of second differences over
 // the quietest fifth of 50-sample windows, divided by sqrt(6), the factor for white
 // noise; motion, which is smooth, is nearly absent there. That of the position is
 // rounded to the series 1, 2, 5, 10, so that recordings of one rig have one sensor.

@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 // The motion filter, the depth and the last sample.
-constexpr std::size_t kMotionNumbers = 3 + 9 + 8;
+constexpr std::size_t kMotionNumbers = 2 * (3 + 9 + 1) + 2 + 6;
 
 // Text that may stand in a C comment.
 std::string in_comment(const std::string& text) {
@@ -123,9 +123,11 @@ static real model_force(void) {
 
 static real force_of(real step_s, real position_m) {
   const int first = !motion.started;
+  const int repeated = !first && position_m == motion.position_m;
   const real motion_step_s = advance_motion(&motion, MOTION_STATES, step_s, position_m);
   if (motion_step_s > R(0.0)) {
-    measure_position(&motion, MOTION_STATES, motion_step_s, R(PALPATE_ENCODER_STEP_M), R(PALPATE_POSITION_NOISE_M));
+    measure_position(&motion, MOTION_STATES, motion_step_s, repeated, R(PALPATE_ENCODER_STEP_M),
+                     R(PALPATE_POSITION_NOISE_M));
   }
   update_features(step_s, first);
   is_out_of_domain = 0;
@@ -133,7 +135,7 @@ static real force_of(real step_s, real position_m) {
 }
 
 void palpate_reset(void) {
-  static const MotionState nothing = {{R(0.0)}, {{R(0.0)}}, R(0.0), R(0.0), R(0.0), 0};
+  static MotionState nothing; /* zero */
   motion = nothing;
   is_out_of_domain = 0;
 }

@@ -116,7 +116,7 @@ std::string emit_depth(CText&, const FeatureSpec&, std::size_t index) {
 }
 
 std::string emit_velocity(CText&, const FeatureSpec&, std::size_t index) {
-  return "  value" + index_text(index) + " = depth_m > R(0.0) ? motion.mean[1] : R(0.0);\n";
+  return "  value" + index_text(index) + " = depth_m > R(0.0) ? motion.velocity_m_per_s : R(0.0);\n";
 }
 
 std::string emit_lowpass(CText& out, const FeatureSpec& spec, std::size_t index) {

@@ -161,7 +161,7 @@ Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& give
   const TrainingExtent& extent = given.extent;
   const FeatureList list =
       dictionary(extent.sample_s, extent.longest_recording_s, extent.depth_m, given.source.encoder_step_m());
-  return select_slowing(given.source, list, given.problem, prepared.gains, control, 0.15);
+  return select_memory_law(given.source, list, given.problem, prepared.gains, control, 0.15);
 }
 
 // Of each part of the list: what the folds left out lose without it.

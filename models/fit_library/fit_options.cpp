@@ -196,14 +196,12 @@ TrainingRequest training_request(const FitOptions& options, TrainingRequest scen
   TrainingRequest request = std::move(scene);
   request.weighting = static_cast<Weighting>(index_of(kWeightingNames, options.weighting));
   request.reduction = static_cast<Reduction>(index_of(kReductionNames, options.reduction));
-  if (options.recipe == kRecipe2009) {
-    request.weighting = Weighting::relative;
-    request.reduction = Reduction::force;
-  }
   request.surface = options.surface == "recorded" ? Surface::recorded : Surface::automatic;
-  // Relaxation times are options of the scene's features, and the paper's own recipe has the
-  // scene's low-pass features.
-  const bool papers = request.reduction == Reduction::force && request.weighting == Weighting::relative;
+  // The two spellings of one recipe.
+  const bool papers = options.recipe == kRecipe2009 ||
+                      (request.reduction == Reduction::force && request.weighting == Weighting::relative);
+  if (papers) request = recipe_2009_request(std::move(request));
+  // Relaxation times are options of the scene's features, and the paper's recipe has those.
   if (!options.relaxation.empty() || papers || options.features == "scene") {
     request.choice = FeatureChoice::scene;
   } else if (options.features == "auto") {
@@ -212,11 +210,11 @@ TrainingRequest training_request(const FitOptions& options, TrainingRequest scen
     request.choice = FeatureChoice::given;
     request.list = *parse_feature_list(options.features);
   }
-  // The recipe's two times are fitted, unless others are given.
-  if (papers && options.relaxation.empty()) return recipe_2009_request(request);
   if (options.relaxation == "auto") {
     request.relaxation = Relaxation::automatic;
-  } else if (!options.relaxation.empty() && options.relaxation != "scene") {
+  } else if (options.relaxation == "scene") {
+    request.relaxation = Relaxation::scene;
+  } else if (!options.relaxation.empty()) {
     request.relaxation = Relaxation::given;
     request.relaxation_times_s = parse_values(options.relaxation, ',');
   }

@@ -14,10 +14,10 @@ BranchLadder::BranchLadder(std::vector<double> times_s, std::vector<DriveCurve> 
       drive_(curves_.size(), 0.0),
       change_(curves_.size(), 0.0) {}
 
-void BranchLadder::update(double time_s, double depth_m) {
+void BranchLadder::update(double time_s, double depth_m, double surface_m) {
   if (times_s_.empty()) return;
   for (std::size_t k = 0; k < curves_.size(); ++k) {
-    const double drive = curves_[k].at(depth_m);
+    const double drive = curves_[k].at(surface_m);
     change_[k] = drive - drive_[k];
     drive_[k] = drive;
   }
@@ -25,8 +25,8 @@ void BranchLadder::update(double time_s, double depth_m) {
   if (!started_) {
     std::fill(values_.begin(), values_.end(), 0.0);
   } else if (step_s > 0.0) {
-    const double clock =
-        branch_clock(slowing_, surface_halfway(depth_m_, depth_m_, depth_m), curves_.front().reference_depth_m);
+    const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
+    const double clock = branch_clock(slowing_, halfway_m, curves_.front().reference_depth_m);
     double* value = values_.data();
     for (const double relaxation_time_s : times_s_) {
       const BranchStep step = branch_step(clock * relaxation_time_s, step_s);
@@ -39,6 +39,7 @@ void BranchLadder::update(double time_s, double depth_m) {
   started_ = true;
   time_s_ = time_s;
   depth_m_ = depth_m;
+  surface_m_ = surface_m;
 }
 
 }  // namespace palpate

@@ -148,7 +148,8 @@ Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, con
 TrendTerms terms_of(const FeatureList& list, double reference_depth_m, double rms_velocity_m_per_s) {
   return {reference_depth_m,  list.velocity ? rms_velocity_m_per_s : 0.0,
           all_times(list),    list.stop_thresholds_m,
-          list.creep_times_s, list.slowing};
+          list.creep_times_s, list.slowing,
+          list.surface};
 }
 
 std::vector<FeatureColumns> feature_columns(const FeatureList& list, const TrendRows& rows) {
@@ -175,6 +176,11 @@ std::vector<FeatureColumns> feature_columns(const FeatureList& list, const Trend
 
 FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const Eigen::VectorXd& x, bool all) {
   FittedTrend fitted{trend_from(rows, x), {FeatureSpec{}}, {}};
+  if (!list.surface.empty()) {
+    FeatureSpec lag{FeatureKind::surface_lag};
+    lag.drive = coarse_curve(fitted.trend.elastic, rows.reference_depth_m());
+    fitted.features.push_back(lag);
+  }
   std::vector<ColumnList> sums;  // of the features that are sums of columns
   std::size_t band = 0;
   for (const FeatureColumns& group : feature_columns(list, rows)) {
@@ -205,6 +211,9 @@ FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const E
           break;
         case FeatureKind::velocity:
           value = rows.velocity_m_per_s(i);
+          break;
+        case FeatureKind::surface_lag:
+          value = rows.lag_m(i);
           break;
         default:
           value = row(sums[sum]).dot(x(sums[sum]));

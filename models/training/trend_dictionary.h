@@ -35,6 +35,7 @@ struct FeatureList {
   std::vector<double> stop_thresholds_m;  // of one feature, their sum
   std::vector<double> creep_times_s;      // likewise
   double slowing = 0.0;                   // of the relaxation times
+  std::vector<FeatureSpec> surface{};     // TrendTerms::surface
 };
 
 // `sample_s`: the mean step of the recordings; `longest_s`: how long the longest is; `depth_m`: their

@@ -79,11 +79,40 @@ DriveCurve combined_friction(const double* weights, double reference_depth_m) {
   return drive;
 }
 
+DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) {
+  constexpr std::size_t kPieces = kDriveKnots + 1;
+  constexpr double kWidth = 1.0 / kPieces;
+  // Greville's knot averages, in pieces.
+  std::array<double, kPieces + 3> average{};
+  for (std::size_t i = 1; i <= kPieces + 1; ++i) average[i] = static_cast<double>(i) - 1.0;
+  average[1] = 1.0 / 3.0;
+  average[kPieces + 1] = kPieces - 1.0 / 3.0;
+  average[kPieces + 2] = kPieces;
+  // The weights of the quadratic B-splines of the slope, and the slope of that at each knot.
+  std::array<double, kPieces + 2> weight{};
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    weight[i] = (elastic.at(average[i + 1] * kWidth) - elastic.at(average[i] * kWidth)) /
+                ((average[i + 1] - average[i]) * kWidth);
+  }
+  std::array<double, kPieces + 1> bend{};
+  for (std::size_t k = 0; k <= kPieces; ++k) {
+    bend[k] = (k == 0 || k == kPieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
+  }
+  const auto cube = [&](std::size_t piece) { return (bend[piece + 1] - bend[piece]) / (6.0 * kWidth); };
+  DriveCurve curve;
+  curve.reference_depth_m = reference_depth_m;
+  curve.has_knots = true;
+  curve.coefficient_N = {weight[0], 0.5 * bend[0], cube(0), 0.0};
+  for (std::size_t k = 0; k < kDriveKnots; ++k) curve.knot_N[k] = cube(k + 1) - cube(k);
+  return curve;
+}
+
 TrendRows::TrendRows(TrendTerms terms, std::size_t most_rows)
     : terms_(std::move(terms)),
       most_rows_(most_rows),
       ladder_(terms_.relaxation_times_s, branch_curves(terms_), terms_.slowing),
       elastic_basis_(spline_basis()) {
+  if (!terms_.surface.empty()) surface_.emplace_back(terms_.surface);
   for (const double threshold_m : terms_.stop_thresholds_m) {
     bristles_.emplace_back(bristle_basis(FeatureKind::stops, threshold_m, 0.0, terms_.reference_depth_m));
   }
@@ -100,12 +129,17 @@ std::size_t TrendRows::viscous_columns() const {
 
 void TrendRows::begin_recording() {
   ladder_.reset();
-  for (FeatureFilter& filter : bristles_) filter.reset();
+  for (auto* filters : {&surface_, &bristles_}) {
+    for (FeatureFilter& filter : *filters) filter.reset();
+  }
 }
 
 void TrendRows::advance(const ToolSample& sample, const MotionEstimate& motion) {
-  for (FeatureFilter& filter : bristles_) filter.update(sample, motion);
-  ladder_.update(sample.time_s, std::max(0.0, motion.position_m));
+  for (auto* filters : {&surface_, &bristles_}) {
+    for (FeatureFilter& filter : *filters) filter.update(sample, motion);
+  }
+  const double depth_m = std::max(0.0, motion.position_m);
+  ladder_.update(sample.time_s, depth_m, surface_.empty() ? depth_m : surface_.front().surface_m());
 }
 
 void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold) {
@@ -128,6 +162,7 @@ void TrendRows::add(const ToolSample& sample, const MotionEstimate& motion, doub
   force_N_.push_back(force_N);
   velocity_m_per_s_.push_back(velocity_m_per_s);
   depth_m_.push_back(depth_m);
+  lag_m_.push_back(surface_.empty() ? 0.0 : surface_.front().surface_m() - depth_m);
   fold_.push_back(fold);
   if (count() > most_rows_) halve();
 }
@@ -137,6 +172,7 @@ void TrendRows::halve() {
   keep_every_other(force_N_, 1);
   keep_every_other(velocity_m_per_s_, 1);
   keep_every_other(depth_m_, 1);
+  keep_every_other(lag_m_, 1);
   keep_every_other(fold_, 1);
   stride_ *= 2;
   phase_ = 1;  // the newest row was kept

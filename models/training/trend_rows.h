@@ -8,6 +8,8 @@
 //   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
 //   stop       s / r times 1 - (1 - u)^4, u and u^2, per threshold r
 //   creep      q / r times the same, per time at the greatest depth r
+// With a `surface`, branches follow the material's surface instead of the tool
+// (engine/tick/features.h).
 // The filters are the features' own code, or that of branch_ladder.h. When more than
 // kMaximumTrendRows rows (or as many as asked for) come, every other one is dropped and the stride
 // doubles.
@@ -35,6 +37,11 @@ inline constexpr std::size_t kBranchTerms = 3;
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m);
 DriveCurve combined_drive(const double* weights, double reference_depth_m);
 
+// The elastic response with the kDriveKnots knots of a DriveCurve, which is enough to say where the
+// surface is: a cubic spline through the response at the knot averages (Schoenberg's variation diminishing
+// approximation; de Boor, "A practical guide to splines", chapter 11), which rises where the response does.
+DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m);
+
 // What a trend may consist of besides its elastic response, and in which basis.
 struct TrendTerms {
   double reference_depth_m = 1.0;
@@ -43,6 +50,8 @@ struct TrendTerms {
   std::vector<double> stop_thresholds_m;
   std::vector<double> creep_times_s{};
   double slowing = 0.0;  // of the relaxation times with depth
+  // A surface_lag and the branches that decide where the surface is; none: it is under the tool.
+  std::vector<FeatureSpec> surface{};
 };
 
 inline constexpr std::size_t kBristleTerms = 3;
@@ -69,6 +78,7 @@ class TrendRows {
   double force_N(std::size_t index) const { return force_N_[index]; }
   double velocity_m_per_s(std::size_t index) const { return velocity_m_per_s_[index]; }
   double depth_m(std::size_t index) const { return depth_m_[index]; }
+  double lag_m(std::size_t index) const { return lag_m_[index]; }
   int fold(std::size_t index) const { return fold_[index]; }
   const TrendTerms& terms() const { return terms_; }
   double reference_depth_m() const { return terms_.reference_depth_m; }
@@ -85,6 +95,7 @@ class TrendRows {
   TrendTerms terms_;
   std::size_t most_rows_;
   BranchLadder ladder_;
+  std::vector<FeatureFilter> surface_;   // one or none
   std::vector<FeatureFilter> bristles_;  // kBristleTerms values each
   std::vector<ElasticSpline> elastic_basis_;
   std::size_t columns_;
@@ -92,6 +103,7 @@ class TrendRows {
   std::vector<double> force_N_;
   std::vector<double> velocity_m_per_s_;
   std::vector<double> depth_m_;
+  std::vector<double> lag_m_;
   std::vector<int> fold_;
   std::size_t stride_ = 1;
   std::size_t phase_ = 0;

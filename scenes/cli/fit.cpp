@@ -163,9 +163,11 @@ void add_fit(CLI::App& app, Verbs& verbs) {
                    "Which samples become sites: feature space covered, the paper's 50 mN steps, or all")
       ->check(CLI::IsMember({"coverage", "force", "none"}))
       ->capture_default_str();
-  verb->add_option("--recipe", arguments->options.recipe,
-                   "The recipe of Hoever & Harders (2009): --reduction force --weighting relative")
-      ->check(CLI::IsMember({kRecipe2009}));
+  CLI::Option* recipe = verb->add_option("--recipe", arguments->options.recipe,
+                                         "The recipe of Hoever & Harders (2009); the same as --reduction force "
+                                         "--weighting relative. It decides these, the features and the surface")
+                            ->check(CLI::IsMember({kRecipe2009}));
+  for (const char* decided : {"--reduction", "--weighting"}) recipe->excludes(decided);
   verb->add_option("--features", arguments->options.features,
                    std::string("What the force may depend on: what the recordings support, the scene's features, or a "
                                "list such as ") +
@@ -179,6 +181,7 @@ void add_fit(CLI::App& app, Verbs& verbs) {
                    "Where each recording's surface is: found, or at 0 as recorded")
       ->check(CLI::IsMember({"auto", "recorded"}))
       ->capture_default_str();
+  for (const char* decided : {"--features", "--surface"}) recipe->excludes(decided);
   verb->add_option("--grid", arguments->options.grid,
                    "Nodes of the grid per feature [25x11x11x11], of " + methods_that_take(kTakesGrid))
       ->check(CLI::Validator(check_grid, "NxN"));

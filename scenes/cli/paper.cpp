@@ -11,7 +11,8 @@ namespace palpate::cli {
 namespace {
 
 Status run(PaperRequest request) {
-  request.origin = "palpate paper --out " + request.out + (request.quick ? " --quick" : "") + " · palpate " PALPATE_VERSION;
+  request.origin =
+      "palpate paper --out " + request.out + (request.quick ? " --quick" : "") + " · palpate " PALPATE_VERSION;
   const Result<std::string> answer = [&] {
     ProgressLine line("measuring");
     FitControl control;

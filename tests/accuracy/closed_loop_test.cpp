@@ -61,9 +61,9 @@ TEST(ClosedLoop, ComesToRestOnSiliconeInEveryHand) {
 }
 
 // A transport that takes 2 or 3 ms: every millisecond costs 0.6 N s/m of damping.
-// Measured: 2.0 steps and 0.6 JND; a mass that nothing holds goes on by 5.9 steps of 30 um, for the controller sees
+// Measured: 2.0 steps and 0.6 JND; a mass that nothing holds goes on by 5.4 steps of 30 um, for the controller sees
 // nothing within one.
-constexpr double kMassAlone_steps = 8.0;
+constexpr double kMassAlone_steps = 6.0;
 TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
   for (const double delay_s : {2e-3, 3e-3}) {
     Rest worst, alone;
@@ -78,6 +78,7 @@ TEST(ClosedLoop, ComesToRestOnSiliconeWithThreeMillisecondsOfDelay) {
     }
     say("at rest, force " + std::to_string(std::lround(1e3 * delay_s)) + " ms late",
         "%.2f encoder steps, %.2f JND peak to peak", worst.position_steps, worst.force_jnd);
+    std::cout << "a mass alone: " << alone.position_steps << " steps\n";
     EXPECT_LE(worst.position_steps, kStill_steps) << delay_s;
     EXPECT_LE(worst.force_jnd, kStill_jnd) << delay_s;
     EXPECT_LE(alone.position_steps, kMassAlone_steps) << delay_s;

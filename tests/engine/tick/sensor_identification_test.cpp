@@ -45,6 +45,18 @@ TEST(SensorIdentification, AStepOfFewDigitsIsFoundToTheLastBit) {
   }
 }
 
+// A machine's straight strokes, written as they were asked for.
+TEST(SensorIdentification, ARampIsNoEncoder) {
+  Recording recording;
+  for (int i = 0; i < 1000; ++i) {
+    RecordingRow row;
+    row.time_s = 1e-3 * i;
+    row.position_m = 5e-5 * std::min(std::max(0, i - 200), std::max(0, 600 - i));
+    recording.rows.push_back(row);
+  }
+  EXPECT_EQ(identify(recording).encoder_step_m, 0.0);
+}
+
 TEST(SensorIdentification, TheLastDigitOfATextIsNoEncoder) {
   Recording recording = test::example_recording(5000, 1000.0);
   add_noise(recording, &RecordingRow::position_m, 6e-6);

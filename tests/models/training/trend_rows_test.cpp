@@ -75,6 +75,25 @@ TEST(TrendRows, CombinedDriveIsTheWeightedSumOfTheBasis) {
   }
 }
 
+// What says where the surface is: a line is itself, and a rise stays a rise.
+TEST(TrendRows, TheCoarseCurveIsTheSplineAndRises) {
+  const std::vector<ElasticSpline> basis = spline_basis();
+  const std::vector<double> ones(kElasticTerms, 1.0);
+  const DriveCurve straight = coarse_curve(combined_spline(basis, ones.data()), kDepth_m);
+  std::vector<double> stiffening(kElasticTerms);
+  for (std::size_t i = 0; i < kElasticTerms; ++i) stiffening[i] = 1.0 + static_cast<double>(i);
+  const ElasticSpline elastic = combined_spline(basis, stiffening.data());
+  const DriveCurve coarse = coarse_curve(elastic, kDepth_m);
+  const DriveCurve bend = coarse_curve(basis[16], kDepth_m);
+  for (int i = 1; i <= 240; ++i) {
+    const double u = i / 200.0;
+    EXPECT_NEAR(straight.at(u * kDepth_m), u, 1e-12);
+    // Schoenberg's approximation is off by E'' h^2 / 6 with h an eighth, E'' at most 34 here.
+    EXPECT_NEAR(coarse.at(std::min(u, 1.0) * kDepth_m), elastic.at(std::min(u, 1.0)), 34.0 / 64.0 / 6.0);
+    EXPECT_GE(bend.at(u * kDepth_m), bend.at((u - 0.005) * kDepth_m) - 1e-13);
+  }
+}
+
 TEST(TrendRows, ALadderIsItsBranches) {
   for (const double slowing : {0.0, 2.0}) {
     std::vector<FeatureSpec> specs = branch_basis(0.3, kDepth_m);
@@ -84,7 +103,7 @@ TEST(TrendRows, ALadderIsItsBranches) {
     for (int i = 0; i < 2000; ++i) {
       const auto [sample, motion] = step_at(i);
       const double depth_m = std::max(0.0, motion.position_m);
-      ladder.update(sample.time_s, depth_m);
+      ladder.update(sample.time_s, depth_m, depth_m);
       const FeatureVector& vector = filter.update(sample, motion);
       for (std::size_t k = 0; k < kBranchTerms; ++k)
         ASSERT_DOUBLE_EQ(ladder.values()[kBranchTerms + k], vector.values[k]);
