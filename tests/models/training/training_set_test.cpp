@@ -52,11 +52,12 @@ TEST(TrainingSet, CoverageNeverLeavesMoreThanItsCap) {
   EXPECT_EQ(samples, static_cast<double>(set.contact_samples));
 }
 
-// Position only and the tool at rest in ten places: ten sites, each with the
-// mean of its samples.
+// Position only and the tool at rest in ten places, not evenly apart, which would be the steps of an
+// encoder: ten sites, each with the mean of its samples.
 TEST(TrainingSet, ASiteIsTheMeanOfItsCube) {
   const Recording recording = recording_of(5000, [](int i) {
-    return std::pair{1e-3 * (1 + i / 500), 1.0 + i / 500 + (i % 2 == 0 ? 0.1 : -0.1)};
+    const int place = i / 500;
+    return std::pair{1e-3 * (1 + place) + 2e-4 * std::sin(place), 1.0 + i / 500 + (i % 2 == 0 ? 0.1 : -0.1)};
   });
   const TrainingSet set = set_of(recording, test::position_features(), Reduction::coverage);
   double samples = 0.0;

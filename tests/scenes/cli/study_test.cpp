@@ -70,7 +70,7 @@ TEST(Study, StrokesAreToldApartByASimulatedHand) {
       run_palpate({"study", "simulate", "--discriminate", foam, "--model", "greedy", "--subjects", "2", "--out", out});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
-  EXPECT_NE(run.out.find("comparison   greedy-100\nstroke       foam, "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("comparison   greedy-0\nstroke       foam, "), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("Predicted above the JND"), std::string::npos)
       << "a model of silicone against foam: " << run.out;
   EXPECT_NE(run.out.find("one JND: consistent."), std::string::npos) << run.out;
@@ -89,7 +89,7 @@ TEST(Study, StrokesOfTheSceneNeedNoFile) {
   const test::TemporaryFolder folder;
   const auto run = run_palpate({"study", "simulate", "--discriminate", "--subjects", "1", "--out", folder.file("out")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("reference    recorded force\ncomparison   greedy-100\nstroke       silicone_2, "),
+  EXPECT_NE(run.out.find("reference    recorded force\ncomparison   greedy-0\nstroke       silicone_2, "),
             std::string::npos)
       << run.out;
   EXPECT_NE(run.out.find("Predicted below the JND"), std::string::npos) << run.out;
