@@ -248,7 +248,6 @@ double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) 
   const ForceScale limited = bounded_ ? wanted.limited(stability_, model) : unbounded;
   snapshot_.stiffness_share = static_cast<float>(limited.stiffness / unbounded.stiffness);
   snapshot_.late_ms = static_cast<float>(1e3 * stability_.late_s());
-  model_damping_Ns_per_m_ = limited.stiffness * model.damping_Ns_per_m;
   const TickSnapshot& tick = snapshot_.tick;
   return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
 }

@@ -197,7 +197,6 @@ class LiveTick {
   StabilityLimit stability_;
   bool bounded_;  // by it: a person holds the device, not a simulated hand
   ScaledForce scaled_;
-  double model_damping_Ns_per_m_ = 0.0;  // as scaled
   PassivityController passivity_;
   bool passivity_on_;
   ForceLimiter limiter_;

@@ -1,5 +1,5 @@
 // Position and velocity of the tool from quantised positions, causally, with
-// an accelerometer or a measured velocity when there is one: the Kalman filter of
+// an accelerometer or a measured velocity when there is one: the two Kalman filters of
 // motion_filter.inc.
 //
 // On simulated hands behind a 30 um encoder the velocity error is 0.8 of that of first-order

@@ -60,7 +60,7 @@ struct StrengthChoice {
   double smoothing = 0.0;
   double strength = 1.0;
   double inner_radius = 0.0;
-  double trend_error_over_jnd = 0.0;  // RMS on the samples left out
+  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::typical), without and with the correction
   double error_over_jnd = 0.0;
 };
 

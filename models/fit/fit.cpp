@@ -38,12 +38,6 @@ std::optional<double> share_within_jnd(const PreparedTraining& prepared, const M
   return static_cast<double>(within) / static_cast<double>(count);
 }
 
-double rms_over_jnd(const std::vector<LeftOutPrediction>& errors, const JndLine& jnd) {
-  double sum = 0.0;
-  for (const LeftOutPrediction& one : errors) sum += std::pow(one.error_N / jnd.at(one.measured_N), 2);
-  return errors.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(errors.size()));
-}
-
 }  // namespace
 
 Eigen::VectorXd site_thresholds(const PreparedTraining& prepared) {
@@ -82,7 +76,6 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
     const auto errors = cross_validate(prepared, fit.data.correction->is_none() ? nullptr : &request, control);
     if (!errors) return errors.error();
     fit.data.error_bound = bound_of(prepared, *errors);
-    fit.cross_validated_rms_jnd = rms_over_jnd(*errors, prepared.common.jnd);
   }
   fit.data.name = method.name;
   if (!fitted->size.empty()) fit.data.name.append("-").append(fitted->size);

@@ -72,7 +72,6 @@ struct PreparedTraining {
 struct MethodFit {
   ModelData data;
   FitReport report;
-  std::optional<double> cross_validated_rms_jnd{};  // of this method with these centres
 };
 
 // Errors: those of the recordings; nothing in contact; the request does not fit

@@ -174,7 +174,7 @@ void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendR
     }
     const bool taken = (x(group.columns).array() > 0.0).any();
     prepared.gains.push_back(
-        {group.name, taken, with_all.errors.rms(), regression.cross_validate(others).errors.rms()});
+        {group.name, taken, with_all.errors.typical(), regression.cross_validate(others).errors.typical()});
   }
   std::stable_partition(prepared.gains.begin(), prepared.gains.end(), [](const PartGain& one) { return one.taken; });
 }

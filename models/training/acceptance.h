@@ -1,9 +1,8 @@
 // Whether one candidate offset is significantly worse than another (models/surface/profile_search.h).
 //
 // Candidates have the same blocks of samples. A block has one vote, its relative difference
-// r_k = (a_k - b_k) / (a_k + b_k), and a is significantly worse where mean r > 2 s / sqrt(n): a paired
-// t-test at two standard errors.
-// Thread guarantee: pure functions.
+// r_k = (a_k - b_k) / (a_k + b_k + m / 10) with m the mean of the b, and a is significantly worse where mean r > 2 s /
+// sqrt(n): a paired t-test at two standard errors. Thread guarantee: pure functions.
 #pragma once
 
 #include <algorithm>

@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-// The gain of a part of the trend: the cross-validated error in JND (RMS) with it and without it.
+// The gain of a part of the trend: the cross-validated error in JND (FoldErrors::typical) with it and without it.
 struct PartGain {
   std::string name;
   bool taken = false;

@@ -1,5 +1,6 @@
 #include "models/training/selection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -34,6 +35,13 @@ bool is_adequate(const std::vector<double>& one, const std::vector<double>& best
 double FoldErrors::rms() const {
   const double count = sum_of(counts);
   return count > 0.0 ? std::sqrt(sum_of(squares) / count) : 0.0;
+}
+
+double FoldErrors::typical() const {
+  const std::vector<double> scores = scores_of(*this);
+  if (scores.empty()) return 0.0;
+  const double square = std::exp(sum_of(scores) / static_cast<double>(scores.size()));
+  return std::sqrt(std::max(0.0, square - kUnnoticed_jnd * kUnnoticed_jnd));
 }
 
 std::size_t best_score(std::span<const FoldErrors> candidates) {

@@ -32,6 +32,8 @@ struct FoldErrors {
   }
   // Over all samples, in JND.
   double rms() const;
+  // What the rule compares, in JND: the error (RMS) of a fold whose score is the mean score.
+  double typical() const;
 
   std::vector<double> squares;  // by fold, in JND^2
   std::vector<double> counts;   // samples

@@ -19,30 +19,29 @@ std::string relaxation_text(const std::vector<RelaxationTime>& times) {
   return text.empty() ? "none" : text;
 }
 
-// One row a feature: what the trend's error on strokes left out is with it and
-// without it.
+// One row a feature: the cross-validated error of the trend with it and without it. The rule that selects
+// (models/training/selection.h) compares these errors and their standard errors.
 void print_gains(const std::vector<PartGain>& gains) {
   if (gains.empty()) return;
-  std::printf("%-32s %-5s %12s %12s   RMS over the JND, strokes left out\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
+  std::printf("%-32s %-5s %12s %12s   cross-validated error [JND]\n", "FEATURE", "TAKEN", "WITH", "WITHOUT");
   for (const PartGain& one : gains) {
-    std::printf("%-32s %-5s %12.4f %12.4f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
+    std::printf("%-32s %-5s %12.3f %12.3f\n", one.name.c_str(), one.taken ? "yes" : "no", one.error_with,
                 one.error_without);
   }
   std::fflush(stdout);
 }
 
-std::string strength_text(const StrengthChoice& strength, const std::optional<double>& rms_jnd) {
+std::string strength_text(const StrengthChoice& strength) {
   if (strength.strength == 0.0) return "off: it does not lower the cross-validated error, so the model is its trend";
-  return "strength " + fixed(strength.strength, 2) + "; cross-validated RMS error " +
-         fixed(rms_jnd.value_or(strength.error_over_jnd), 3) + " JND, trend alone " +
-         fixed(strength.trend_error_over_jnd, 3) + " JND";
+  return "strength " + fixed(strength.strength, 2) + "; cross-validated error " + fixed(strength.error_over_jnd, 3) +
+         " JND, trend alone " + fixed(strength.trend_error_over_jnd, 3) + " JND";
 }
 
 void print_surfaces(const Provenance& provenance) {
   for (const RecordingSurface& surface : provenance.surfaces) {
     const std::string error = std::isfinite(surface.standard_error_m)
                                   ? " +- " + fixed(1e3 * surface.standard_error_m, 3) + " mm"
-                                  : std::string(" mm (not told)");
+                                  : std::string(" mm (not identified)");
     std::cout << "surface             " << fixed(1e3 * surface.offset_m, 3) << error << ", force zero "
               << fixed(1e3 * surface.force_zero_N, 1) << " mN"
               << (surface.lag_s != 0.0 ? ", force moved back by " + fixed(1e3 * surface.lag_s, 1) + " ms" : "") << ": "
@@ -64,9 +63,7 @@ void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std
   if (const double begins_m = fit.data.features.front().surface_position_m; begins_m != 0.0)
     std::cout << "depth begins        at " << fixed(1e3 * begins_m, 3) << " mm, where the recordings' force does\n";
   std::cout << "relaxation times    " << relaxation_text(provenance.relaxation_times) << "\n"
-            << "correction          "
-            << (prepared.strength ? strength_text(*prepared.strength, fit.cross_validated_rms_jnd) : "all of it")
-            << "\n"
+            << "correction          " << (prepared.strength ? strength_text(*prepared.strength) : "all of it") << "\n"
             << "fit time            " << fixed(seconds, 2) << " s\n"
             << "training <= JND     " << fixed(100.0 * provenance.training_within_jnd, 2) << " %" << sensor << "\n";
   for (const std::string& note : fit.report.notes) std::cout << "note                " << note << "\n";

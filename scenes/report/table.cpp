@@ -152,7 +152,7 @@ Table gains_table(const ReportData& data) {
     table.begin_row();
     table.add({"feature", "feature"}, one.name);
     table.add({"taken", "taken"}, yes_or_no(one.taken));
-    table.add({"error_over_jnd_with", "RMS error over the JND with it"}, one.error_with);
+    table.add({"error_over_jnd_with", "cross-validated error with it [JND]"}, one.error_with);
     table.add({"error_over_jnd_without", "without"}, one.error_without);
   }
   return table;

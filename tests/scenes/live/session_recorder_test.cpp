@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <thread>
 
 #include "devices/virtual/hand_device.h"
@@ -50,6 +51,16 @@ struct Rig {
       return 0;
     });
     loop.run(pacer);
+  }
+  // Samples come as long as the recorder takes them; what the ring cannot hold meanwhile is dropped.
+  Notice until_the_recorder_ends() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    std::optional<Notice> outcome;
+    while (!outcome && std::chrono::steady_clock::now() < end) {
+      run(1000);
+      outcome = recorder.read_outcome();
+    }
+    return outcome.value_or(Notice{"no outcome", false});
   }
   Notice finish() {
     recorder.stop();
@@ -215,9 +226,7 @@ TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
   {
     const SmallFiles small;
     ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-    rig.run(30000);
-    rig.recorder.wait();
-    notice = rig.recorder.read_outcome().value_or(Notice{"no outcome", false});
+    notice = rig.until_the_recorder_ends();
   }
   EXPECT_TRUE(notice.problem);
   EXPECT_EQ(notice.text, "the recording was lost: cannot write " + folder.file("a.csv") + ": File too large");
@@ -237,9 +246,7 @@ TEST(SessionRecorder, KeepsWhatWasOnTheDiskWhenItFillsUp) {
     const auto on_disk = [&] { return !folder.entries().empty(); };
     for (int i = 0; i < 200 && !on_disk(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     ASSERT_TRUE(on_disk());
-    rig.run(30000);
-    rig.recorder.wait();
-    notice = rig.recorder.read_outcome().value_or(Notice{"no outcome", false});
+    notice = rig.until_the_recorder_ends();
   }
   EXPECT_TRUE(notice.problem);
   EXPECT_NE(notice.text.find("File too large"), std::string::npos) << notice.text;
