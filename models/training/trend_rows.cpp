@@ -80,23 +80,23 @@ DriveCurve combined_friction(const double* weights, double reference_depth_m) {
 }
 
 DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) {
-  constexpr std::size_t kPieces = kDriveKnots + 1;
-  constexpr double kWidth = 1.0 / kPieces;
+  constexpr std::size_t kCoarsePieces = kDriveKnots + 1;
+  constexpr double kWidth = 1.0 / kCoarsePieces;
   // Greville's knot averages, in pieces.
-  std::array<double, kPieces + 3> average{};
-  for (std::size_t i = 1; i <= kPieces + 1; ++i) average[i] = static_cast<double>(i) - 1.0;
+  std::array<double, kCoarsePieces + 3> average{};
+  for (std::size_t i = 1; i <= kCoarsePieces + 1; ++i) average[i] = static_cast<double>(i) - 1.0;
   average[1] = 1.0 / 3.0;
-  average[kPieces + 1] = kPieces - 1.0 / 3.0;
-  average[kPieces + 2] = kPieces;
+  average[kCoarsePieces + 1] = kCoarsePieces - 1.0 / 3.0;
+  average[kCoarsePieces + 2] = kCoarsePieces;
   // The weights of the quadratic B-splines of the slope, and the slope of that at each knot.
-  std::array<double, kPieces + 2> weight{};
+  std::array<double, kCoarsePieces + 2> weight{};
   for (std::size_t i = 0; i < weight.size(); ++i) {
     weight[i] = (elastic.at(average[i + 1] * kWidth) - elastic.at(average[i] * kWidth)) /
                 ((average[i + 1] - average[i]) * kWidth);
   }
-  std::array<double, kPieces + 1> bend{};
-  for (std::size_t k = 0; k <= kPieces; ++k) {
-    bend[k] = (k == 0 || k == kPieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
+  std::array<double, kCoarsePieces + 1> bend{};
+  for (std::size_t k = 0; k <= kCoarsePieces; ++k) {
+    bend[k] = (k == 0 || k == kCoarsePieces ? 2.0 : 1.0) * (weight[k + 1] - weight[k]) / kWidth;
   }
   const auto cube = [&](std::size_t piece) { return (bend[piece + 1] - bend[piece]) / (6.0 * kWidth); };
   DriveCurve curve;

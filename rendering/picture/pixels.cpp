@@ -26,8 +26,10 @@ bool Pixels::make() {
     glTexImage2DMultisample(kind, samples_, GL_RGBA8, width_, height_, GL_TRUE);
   } else {
     glTexImage2D(kind, 0, GL_RGBA8, width_, height_, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(kind, filter, GL_LINEAR);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(kind, wrap, GL_CLAMP_TO_EDGE);
+    for (const int filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(kind, static_cast<GLenum>(filter), GL_LINEAR);
+    for (const int wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      glTexParameteri(kind, static_cast<GLenum>(wrap), GL_CLAMP_TO_EDGE);
   }
   glBindRenderbuffer(GL_RENDERBUFFER, depth_);
   glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_, GL_DEPTH_COMPONENT24, width_, height_);
