@@ -52,15 +52,13 @@ struct Rig {
     });
     loop.run(pacer);
   }
-  // Samples come as long as the recorder takes them; what the ring cannot hold meanwhile is dropped.
-  Notice until_the_recorder_ends() {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    std::optional<Notice> outcome;
-    while (!outcome && std::chrono::steady_clock::now() < end) {
-      run(1000);
-      outcome = recorder.read_outcome();
+  // What the recorder says when it ends by itself, within two seconds.
+  Notice outcome() {
+    std::optional<Notice> said;
+    for (int i = 0; i < 200 && !(said = recorder.read_outcome()); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    return outcome.value_or(Notice{"no outcome", false});
+    return said.value_or(Notice{"no outcome", false});
   }
   Notice finish() {
     recorder.stop();
@@ -226,7 +224,8 @@ TEST(SessionRecorder, EndsByItselfWhenTheDiskIsFull) {
   {
     const SmallFiles small;
     ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-    notice = rig.until_the_recorder_ends();
+    rig.run(30000);
+    notice = rig.outcome();
   }
   EXPECT_TRUE(notice.problem);
   EXPECT_EQ(notice.text, "the recording was lost: cannot write " + folder.file("a.csv") + ": File too large");
@@ -242,11 +241,17 @@ TEST(SessionRecorder, KeepsWhatWasOnTheDiskWhenItFillsUp) {
   {
     const SmallFiles small;
     ASSERT_TRUE(rig.start(folder.file("a.csv"), ReferenceKind::truth).ok());
-    rig.run(1500);
     const auto on_disk = [&] { return !folder.entries().empty(); };
-    for (int i = 0; i < 200 && !on_disk(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    FakePacer pacer([&](int wait) -> std::int64_t {
+      for (int i = 0; wait == 1500 && i < 200 && !on_disk(); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+      if (wait == 30000) rig.loop.request_stop();
+      return 0;
+    });
+    rig.loop.run(pacer);
     ASSERT_TRUE(on_disk());
-    notice = rig.until_the_recorder_ends();
+    notice = rig.outcome();
   }
   EXPECT_TRUE(notice.problem);
   EXPECT_NE(notice.text.find("File too large"), std::string::npos) << notice.text;
