@@ -30,6 +30,8 @@ using real = double;
 #define LOG std::log
 #define MOTION_STATES 4
 #include "engine/tick/motion_filter.inc"
+#undef EACH_FILTER
+#undef MOTION_FILTERS
 #undef MOTION_STATES
 #undef LOG
 #undef EXP

@@ -2,7 +2,9 @@
 //
 // Candidates have the same blocks of samples. A block has one vote, its relative difference
 // r_k = (a_k - b_k) / (a_k + b_k + m / 10) with m the mean of the b, and a is significantly worse where mean r > 2 s /
-// sqrt(n): a paired t-test at two standard errors. Thread guarantee: pure functions.
+// sqrt(n): a paired t-test at two standard errors.
+//
+// Thread guarantee: pure functions.
 #pragma once
 
 #include <algorithm>
