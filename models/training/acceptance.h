@@ -1,8 +1,8 @@
-// Whether one candidate offset is significantly worse than another (models/surface/profile_search.h).
+// Paired comparison of the costs of two candidate offsets (models/surface/profile_search.h).
 //
-// Candidates have the same blocks of samples. A block has one vote, its relative difference
-// r_k = (a_k - b_k) / (a_k + b_k + m / 10) with m the mean of the b, and a is significantly worse where mean r > 2 s /
-// sqrt(n): a paired t-test at two standard errors.
+// Both candidates have the same n blocks of samples. Block k gives the relative difference
+// r_k = (a_k - b_k) / (a_k + b_k + m / 10), where m is the mean of the b. Candidate a is significantly worse if
+// mean r > 2 s / sqrt(n), s the standard deviation of r: a paired t-test at two standard errors.
 //
 // Thread guarantee: pure functions.
 #pragma once
@@ -15,8 +15,7 @@
 
 namespace palpate {
 
-// Whether the blocks of `one` sum to no more than those of the best by one standard error of their
-// paired differences.
+// Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
 inline bool is_as_good(const std::vector<double>& one, const std::vector<double>& best) {
   const auto count = static_cast<double>(one.size());
   const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
@@ -26,8 +25,8 @@ inline bool is_as_good(const std::vector<double>& one, const std::vector<double>
   return sum <= std::sqrt(squares * count / (count - 1.0));
 }
 
-// Whether `one` is worse than the best, block by block. Differences below a tenth of a mean
-// block are noise.
+// Whether `one` is significantly worse than `best` by the test above. The tenth of the mean block damps blocks with
+// small costs, whose relative differences are noise.
 inline bool is_certainly_worse(const std::vector<double>& one, const std::vector<double>& best) {
   constexpr double kLeastBlock = 0.1;
   const auto count = static_cast<double>(one.size());

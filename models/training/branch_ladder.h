@@ -1,7 +1,7 @@
-// The basis of a branch for many relaxation times at once: z_tk of every time tau_t and
-// every curve g_k, driven by the depth of the material's surface as in
-// engine/tick/features.h, by the steps of that file. The curves are evaluated once a sample and the decay once a
-// time, so a ladder of twenty times costs little more than one.
+// Maxwell branches for many relaxation times tau_t and drive curves g_k at once: the outputs z_tk of
+//   dz/dt = g_k'(s) ds/dt - z / tau_t
+// with s the depth of the material's surface (engine/tick/features.h), discretised as there. Each curve is evaluated
+// once a sample and each decay once a relaxation time.
 // Thread guarantee: value type, slow side.
 #pragma once
 
@@ -13,13 +13,14 @@ namespace palpate {
 
 class BranchLadder {
  public:
-  // `slowing`: of all times, over the curves' reference depth.
+  // `times_s`: relaxation times. `slowing`: growth of all relaxation times with depth (FeatureSpec::slowing); its
+  // depth is normalised by the reference depth of the first curve.
   BranchLadder(std::vector<double> times_s, std::vector<DriveCurve> curves, double slowing);
 
   void reset() { started_ = false; }
-  // The next sample; times increase. `depth_m`: of the tool, at most that of the surface.
+  // Adds the next sample; times increase. `depth_m`: depth of the tool, at most `surface_m`, that of the surface.
   void update(double time_s, double depth_m, double surface_m);
-  // One value for each time and curve, times outside.
+  // z_tk, index t * curves + k.
   const std::vector<double>& values() const { return values_; }
 
  private:

@@ -1,11 +1,10 @@
-// Deals the samples of the training recordings to folds, for everything that is
-// decided by leaving data out: features, the strength of the correction, the
-// predicted error. Neighbouring samples of a stroke share their errors, so single
-// samples are never left out: with three recordings or more a fold is made of
-// whole recordings, otherwise of whole strokes (contacts); a stroke that holds
-// more than a tenth of the contact is cut into pieces in time. A recording that only
-// goes in has no second sample at any depth, and is cut into many small pieces.
-// Thread guarantee: a value type, slow side.
+// Assigns the samples of the training recordings to the folds of every cross-validation.
+//
+// Neighbouring samples of a stroke have correlated errors, so a fold never consists of single samples. With three
+// recordings or more a fold is made of whole recordings, otherwise of whole strokes (contacts). A stroke with more
+// than a tenth of the samples in contact is cut into pieces in time. A recording without unloading visits each depth
+// once and is cut into pieces of a fiftieth.
+// Thread guarantee: value type, slow side.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +15,11 @@ inline constexpr int kMaximumFolds = 6;
 
 class FoldDealer {
  public:
-  // `contact_samples`, `strokes`: over all recordings.
-  // `turns_round`: whether the tool comes back in contact.
+  // `contact_samples`, `strokes`: totals of all recordings. `turns_round`: whether the recordings contain unloading.
   FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool turns_round = true);
 
   int folds() const noexcept { return folds_; }
-  // The fold of a row; every row of every recording in order, from the beginning.
+  // The fold of the next row, 0 to folds() - 1. To be called for every row of every recording in order.
   int next(int recording, int stroke, bool in_contact) noexcept;
 
  private:

@@ -1,7 +1,6 @@
-// The laws of memory in which the trend is not linear, by cross-validation and the common rule
-// (models/training/selection.h): whether the material's surface stays behind a tool that
-// retreats fast (`surface_lag`, engine/tick/features.h), and whether its relaxation times grow
-// or shrink with depth (`slowing`).
+// Selects, by cross-validation and the common rule (models/training/selection.h), the two laws of memory in which the
+// trend is not linear: whether the material's surface lags behind a retreating tool (`surface_lag`,
+// engine/tick/features.h), and how the relaxation times change with depth (`slowing`).
 // Thread guarantee: slow side.
 #pragma once
 
@@ -12,7 +11,7 @@
 
 namespace palpate {
 
-// The gain of a part of the trend: the cross-validated error in JND (FoldErrors::typical) with it and without it.
+// The gain of a term of the trend: the cross-validated error in JND (FoldErrors::typical) with it and without it.
 struct PartGain {
   std::string name;
   bool taken = false;
@@ -20,8 +19,8 @@ struct PartGain {
   double error_without = 0.0;
 };
 
-// `list` with the surface and the slowing that were selected. Appends to `gains`. Errors: those of the source;
-// interrupted.
+// Returns `list` with the selected surface and slowing, and appends their gains to `gains`. Errors: those of the
+// source; interrupted.
 Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
                                       std::vector<PartGain>& gains, const FitControl& control, double fraction);
 

@@ -1,11 +1,10 @@
-// The training recordings as streams of motion: every pass of a fit over its
-// data goes through here, with the estimators that replay and the live loop use.
+// The training recordings as streams of motion estimates. Every pass of a fit over its data uses this class, with the
+// estimators of replay and of the live loop.
 //
-// Each recording has its own sensor (read off its first rows) and its own filter state.
-// Recordings are read and estimated once and kept in memory, up to kMaximumRows together. Of
-// longer ones (ten hours at 1 kHz are 36 million rows) fewer than that are kept: the beginning, from
-// which the surface is told, stretches, evenly, and as a run-up to each of these, so that
-// filters remember what was before it, every so-many-th row.
+// The sensor of each recording is identified from its first rows, and each recording has its own filter state.
+// Recordings are read and estimated once and kept in memory. If they have more than kMaximumRows together, they are
+// read again and thinned: the beginning stays, from which the surface is estimated, then evenly spaced stretches, and
+// between these every n-th row as a run-up, so that filters keep their memory.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -26,10 +25,10 @@
 
 namespace palpate {
 
-// Half an hour at 1 kHz, 144 MB: more rows tell a fit of some thousand sites nothing new.
+// Half an hour at 1 kHz, some 144 MB. A fit of some thousand sites gains nothing from more rows.
 inline constexpr std::size_t kMaximumRows = 2000000;
 
-// Some 20 ms of reading: a long pass can be stopped at once.
+// Rows between two calls of FitControl, some 20 ms of reading.
 inline constexpr std::size_t kRowsPerQuestion = 65536;
 
 struct MotionRow {
@@ -37,18 +36,18 @@ struct MotionRow {
   MotionEstimate motion;
   double force_N = 0.0;
   int recording = 0;
-  int stroke = 0;       // counts contacts, over all recordings
-  int fold = 0;         // of the cross-validation (fold_dealer.h); 0 until folds are dealt
-  bool first = false;   // of its recording: filters start anew
-  bool run_up = false;  // between the stretches of a long one: filters take it, nothing else does
+  int stroke = 0;       // number of the contact, counted over all recordings
+  int fold = 0;         // of the cross-validation (fold_dealer.h); 0 before `deal`
+  bool first = false;   // of its recording: filters are reset
+  bool run_up = false;  // only updates filters, is not a training sample
 };
 
-// What is taken off the rows of one recording on their way into training; velocity and
-// acceleration stay as they are. With a lag, rows at its end that have no force go.
+// Is subtracted from the rows of one recording; velocity and acceleration stay as they are. With a lag, rows at either
+// end for which no force was recorded are dropped.
 struct RowCorrection {
   double offset_m = 0.0;
   double force_zero_N = 0.0;
-  double lag_s = 0.0;  // the force of a row is what was recorded so much later
+  double lag_s = 0.0;  // the force of a row at t is the force recorded at t + lag_s, interpolated
 };
 
 class MotionSource {
@@ -57,41 +56,41 @@ class MotionSource {
   struct Input {
     std::string path;  // used when `loaded` is empty
     std::shared_ptr<const Recording> loaded;
-    // Of every row of `loaded`, when it is known already.
+    // The estimate of every row of `loaded` if it was computed before, else null.
     std::shared_ptr<const std::vector<MotionEstimate>> motion{};
-    // Whether each row of `loaded` is a run-up, for validation by data that were left out; empty: none.
+    // True for rows of `loaded` that only update filters, because validation uses them. Empty: none.
     std::vector<bool> left_out{};
   };
 
-  // `most_rows`: how many stay in memory, about.
+  // `most_rows`: the approximate number of rows to keep in memory.
   explicit MotionSource(std::vector<Input> inputs, std::size_t most_rows = kMaximumRows)
       : inputs_(std::move(inputs)), most_rows_(most_rows) {}
 
-  // Calls `visit` for every row that is kept, in order, the longest recording first; a visit that
-  // returns false ends the pass with "interrupted", and so does `control`, asked every
-  // kRowsPerQuestion rows with `fraction`. Errors: those of RecordingReader.
+  // Calls `visit` for every kept row in order, the longest recording first. The pass ends with "interrupted" when
+  // `visit` returns false or `control`, called every kRowsPerQuestion rows with `fraction`, asks for it.
+  // Errors: also those of RecordingReader.
   Status for_each(const std::function<bool(const MotionRow&)>& visit, const FitControl& control = {},
                   double fraction = 0.0);
 
-  // From now on every pass sees its rows moved; one for each recording, in the
-  // order of `names`. Contact and strokes follow the moved position.
+  // Sets the corrections of all later passes, one for each recording in the order of `names`. Contact and strokes are
+  // determined from the corrected position.
   void correct(std::vector<RowCorrection> corrections) { corrections_ = std::move(corrections); }
-  // And so far further, all of them.
+  // Adds `offset_m` to the offsets of all recordings.
   void shift(double offset_m) {
     for (RowCorrection& one : corrections_) one.offset_m += offset_m;
   }
 
-  // From now on every pass deals its rows to these folds.
+  // Assigns the rows of all later passes to the folds of `dealer`.
   void deal(const FoldDealer& dealer) { dealer_ = dealer; }
   int folds() const { return dealer_ ? dealer_->folds() : 1; }
 
-  // After the first pass.
+  // Valid after the first pass, as all below.
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<std::uint64_t>& hashes() const { return hashes_; }  // engine/recording/content_hash.h
-  // Recorded, of which no more than about `most_rows` are kept.
+  // The number of recorded rows, of which about `most_rows` are kept.
   std::size_t rows() const { return rows_; }
-  // The largest force noise among the recordings, the coarsest of their encoder steps, then of
-  // their noises.
+  // The largest force noise and encoder step of the recordings, and the position noise of the recording with the
+  // largest encoder step.
   double force_noise_N() const { return force_noise_N_; }
   double encoder_step_m() const { return encoder_step_m_; }
   double position_noise_m() const { return position_noise_m_; }
@@ -101,9 +100,11 @@ class MotionSource {
     std::string name;
     std::size_t recorded = 0;
     std::uint64_t hash = 0;       // of its content
-    std::vector<MotionRow> rows;  // as recorded
+    std::vector<MotionRow> rows;  // without corrections
   };
-  // Rows up to `beginning`, then the first `stretch` of every `sparse` times as many.
+  // Keeps all rows before `beginning`, then the first `stretch` rows of every `sparse` * `stretch`; of the others
+  // every
+  // `sparse`-th is kept as a run-up.
   struct Thinning {
     std::size_t beginning = 0;
     std::size_t sparse = 1;
@@ -117,7 +118,7 @@ class MotionSource {
 
   std::vector<Input> inputs_;
   std::size_t most_rows_;
-  std::vector<std::string> names_;  // none: not loaded yet
+  std::vector<std::string> names_;  // empty before loading
   std::vector<std::uint64_t> hashes_;
   std::vector<OneRecording> recordings_;
   std::vector<RowCorrection> corrections_;

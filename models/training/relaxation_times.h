@@ -1,10 +1,9 @@
-// One to three relaxation times of the branches that explain the recordings best, for who
-// asks for so few features (`--relaxation auto`, and the 2009 recipe, whose authors fitted
-// theirs to the transients of the recording).
+// Identifies one to three relaxation times, for models with few features: `--relaxation auto`, and the recipe of 2009,
+// whose authors fitted theirs to the transients of the recording.
 //
-// Every set of one, two and three times of a ladder is a set of columns of one regression
-// (trend_regression.h); of the best set of each size, one more time stays where the folds
-// left out reward it (selection.h).
+// The candidates are the times of a ladder; each is a group of columns of one regression (trend_regression.h). Times
+// are added one by one, by the lowest cross-validated error, after which each may move by a rung. A further time is
+// kept if the common rule (selection.h) prefers it.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -15,7 +14,8 @@
 
 namespace palpate {
 
-// Seconds, ascending. `count`: one to three; 0: as many as the folds reward. Errors: those of the source; interrupted.
+// Returns seconds, ascending. `count`: 1 to 3, or 0 to select the number by cross-validation. `velocity`: whether the
+// trend has viscosity. Errors: recordings too short; those of the source; interrupted.
 Result<std::vector<double>> identify_relaxation(MotionSource& source, const TrendProblem& problem,
                                                 const TrainingExtent& extent, bool velocity, std::size_t count,
                                                 const FitControl& control, double fraction);

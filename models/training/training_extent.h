@@ -1,4 +1,4 @@
-// What the rows of a training source span, measured in one pass.
+// The ranges of the training data, measured in one pass.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -15,16 +15,16 @@ namespace palpate {
 struct TrainingExtent {
   double depth_m = 0.0;
   double force_N = 0.0;
-  double lowest_force_N = 0.0;        // of a material that pulls for certain, else 0
+  double lowest_force_N = 0.0;        // < 0 if the material is known to pull (adhesion), else 0
   double rms_velocity_m_per_s = 0.0;  // in contact
   std::size_t contact_samples = 0;
   std::size_t strokes = 0;
-  double way_in_m = 0.0;  // in contact
-  double way_out_m = 0.0;
-  double sample_s = 0.0;  // the mean step
+  double way_in_m = 0.0;   // path of the tool in contact, loading
+  double way_out_m = 0.0;  // the same, unloading
+  double sample_s = 0.0;   // mean sampling period
   double longest_recording_s = 0.0;
 
-  // Whether the tool comes back in contact.
+  // Whether the recordings contain unloading in contact.
   bool turns_round() const;
 };
 
@@ -33,11 +33,11 @@ FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent);
 // Errors: those of the source; interrupted.
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);
 
-// Where depth has to begin so that the force begins at 0, m; 0 where that is at the zero of
-// positions already, or cannot be told. Many rigs count depth from a preload. The straight line
-// through what is shallower than a hundredth of the greatest depth has its zero there; it is
-// believed where its force at the zero of positions is one that a hand notices, and that and
-// its slope are beyond two of their standard errors. Not farther out than the recordings go in.
+// The surface position in m, <= 0, of recordings whose depth counts from a preload; 0 where there is none or it cannot
+// be identified. A straight line is fitted to the samples whose depth is below a hundredth of the greatest; the
+// surface
+// is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard errors, its
+// slope exceeds two standard errors, and the surface is nearer than the greatest depth.
 // Errors: those of the source; interrupted.
 Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
                               const FitControl& control);

@@ -1,29 +1,20 @@
 // From recordings to sites: features, normalisation and reduction.
 //
-// Normalisation: u = (x - mean) / sqrt(range x 4 sigma) per feature, over the
-// samples in contact. The range alone lets one fast poke squeeze all slow motion
-// together, the deviation alone stretches it; their geometric mean measured
-// best on held-out recordings.
+// Normalisation: u = (x - mean) / sqrt(range x 4 sigma) for each feature, over the samples in contact. With the range
+// alone, one fast poke compresses all slow motion; with sigma alone it is stretched. Their geometric mean had the
+// lowest errors on recordings that were not used for training.
 //
 // Reduction, one of
-//   coverage  the feature space is divided into cubes of side `step`; all
-//             samples of a cube become one site with their mean feature vector
-//             and mean force (default). Dwell is thinned, nothing that was
-//             visited is lost, and noise averages out. The step starts fine and
-//             grows until kCoverageSites are enough, so a short recording keeps
-//             its detail.
-//   force     the paper's rule (section 2.1): a sample is kept when the force
-//             moved 50 mN since the last one kept.
-//   none      every sample in contact.
-// When more than kMaximumSites sites come together, the step (or the 50 mN)
-// grows by a quarter and what is there is reduced again, so a long or noisy
-// recording streams through in bounded memory. (none: every other sample is
-// dropped instead.)
+//   coverage  the feature space is divided into cubes of side `step`; all samples of a cube become one site with their
+//             mean feature vector and mean force (default). This thins dwell, keeps every visited region and averages
+//             noise. The step starts at kCoverageStep and grows by a quarter while there are more than kCoverageSites.
+//   force     the paper's rule (section 2.1): a sample is kept when the force has changed by 50 mN since the last kept
+//             one. The 50 mN grow by a quarter while there are more than kMaximumSites.
+//   none      every sample in contact; beyond a million every other one is dropped.
+// Recordings stream through in bounded memory.
 //
-// Samples of different folds (fold_dealer.h), when they are dealt, never share a
-// site: what is decided by leaving folds out must not have seen them.
-// Contact is one-sided: samples without measured force never share a site with
-// others and are marked.
+// In `coverage`, a site has samples of one fold only (fold_dealer.h), so that cross-validation has no leakage, and
+// samples without measured force (contact is one-sided) form sites of their own, which are marked.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -45,9 +36,9 @@ inline constexpr std::array<const char*, 3> kReductionNames{"coverage", "force",
 inline const char* reduction_name(Reduction reduction) { return kReductionNames[static_cast<std::size_t>(reduction)]; }
 
 inline constexpr std::size_t kMaximumSites = 10000;
-inline constexpr double kReductionForce_N = 0.05;    // the paper's 50 mN
+inline constexpr double kReductionForce_N = 0.05;    // threshold at the start, the paper's 50 mN
 inline constexpr std::size_t kCoverageSites = 7500;  // the paper worked with 6,850
-inline constexpr double kCoverageStep = 0.005;       // of normalised feature space, to begin with
+inline constexpr double kCoverageStep = 0.005;       // at the start, in normalised feature space
 
 struct Normalisation {
   Eigen::VectorXd offset;  // SI
@@ -59,10 +50,10 @@ struct Normalisation {
 struct TrainingSite {
   std::array<double, kMaxFeatures> features{};  // SI
   double force_N = 0.0;
-  double count = 1.0;  // samples behind it
+  double count = 1.0;  // number of samples merged into it
   int stroke = 0;
   int fold = 0;
-  bool no_force = false;  // one-sided: the force is not positive, no more is known
+  bool no_force = false;  // force at or below the noise floor: one-sided, known only not to be positive
 };
 
 struct TrainingSet {
@@ -70,18 +61,18 @@ struct TrainingSet {
   Normalisation normalisation;
   std::vector<TrainingSite> sites;
   std::uint64_t contact_samples = 0;
-  double coverage_step = 0.0;      // in the end
-  double reduction_force_N = 0.0;  // in the end
+  double coverage_step = 0.0;      // final value
+  double reduction_force_N = 0.0;  // final value
 };
 
 struct TrainingSetOptions {
-  double fraction = 0.0;  // of the progress
-  // Called with every sample in contact and its features, once.
+  double fraction = 0.0;  // passed to FitControl as progress
+  // Called once with every training sample in contact and its features.
   std::function<void(const MotionRow&, const FeatureVector&)> also{};
 };
 
-// `force_noise_floor_N`: at or below it a sample counts as "no measured force". Errors:
-// those of the source; no sample in contact; interrupted.
+// `force_noise_floor_N`: at or below it a sample has no measured force. Errors: those of the source; no sample in
+// contact; interrupted.
 Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<FeatureSpec>& features,
                                       Reduction reduction, double force_noise_floor_N, const FitControl& control = {},
                                       const TrainingSetOptions& options = {});

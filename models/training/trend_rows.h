@@ -1,18 +1,15 @@
-// The rows of the trend's regression, gathered from recordings in one pass and
-// bounded memory.
+// The rows of the regression of the trend, gathered from recordings in one pass and bounded memory.
 //
-// Each row holds the trend's basis at one sample in contact:
+// Each row holds the basis functions of the trend at one sample in contact, u = depth / reference depth:
 //   elastic    int_0^u of the quadratic B-splines (models/model/elastic_spline.h)
-//   viscous    v B_k,2(min(u, 1))      k = 0..2, when the scene has velocity,
+//   viscous    v B_k,2(min(u, 1))      k = 0..2, if the model has velocity,
 //              then the same with v / (1 + |v| / v_0)
-//   branch     Maxwell filter driven by int_0^u B_k,2, k = 0..2, per relaxation time
-//   stop       s / r times 1 - (1 - u)^4, u and u^2, per threshold r
-//   creep      q / r times the same, per time at the greatest depth r
-// With a `surface`, branches follow the material's surface instead of the tool
-// (engine/tick/features.h).
-// The filters are the features' own code, or that of branch_ladder.h. When more than
-// kMaximumTrendRows rows (or as many as asked for) come, every other one is dropped and the stride
-// doubles.
+//   branch     Maxwell branch driven by int_0^u B_k,2, k = 0..2, for each relaxation time
+//   stop       s / r times 1 - (1 - u)^4, u and u^2, for each threshold r
+//   creep      q / r times the same, for each time; r is the greatest depth
+// With a `surface`, branches follow the material's surface instead of the tool (engine/tick/features.h). The filters
+// are those of the features or branch_ladder.h. When there are more than `most_rows` rows, every other one is dropped
+// and the stride doubles.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -28,47 +25,47 @@
 namespace palpate {
 
 inline constexpr std::size_t kMaximumTrendRows = 100000;
-// Where many regressions are compared.
+// The limit where many regressions are compared.
 inline constexpr std::size_t kSearchedRows = 4000;
 inline constexpr std::size_t kBranchTerms = 3;
 
-// The three branch features of one relaxation time whose weighted sum can be
-// any branch; the weights become one DriveCurve by `combined_drive`.
+// The basis of a branch with one relaxation time: kBranchTerms features. `combined_drive` turns their weights into the
+// drive curve of the branch that is their weighted sum.
 std::vector<FeatureSpec> branch_basis(double relaxation_time_s, double reference_depth_m);
 DriveCurve combined_drive(const double* weights, double reference_depth_m);
 
-// The elastic response with the kDriveKnots knots of a DriveCurve, which is enough to say where the
-// surface is: a cubic spline through the response at the knot averages (Schoenberg's variation diminishing
-// approximation; de Boor, "A practical guide to splines", chapter 11), which rises where the response does.
+// The elastic response with only the kDriveKnots knots of a DriveCurve, for surface_lag: a cubic spline through the
+// response at the knot averages (Schoenberg's variation diminishing approximation; de Boor, "A practical guide to
+// splines", chapter 11). It rises where the response rises.
 DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m);
 
-// What a trend may consist of besides its elastic response, and in which basis.
+// The terms of a trend besides its elastic response.
 struct TrendTerms {
   double reference_depth_m = 1.0;
   double thinning_velocity_m_per_s = 0.0;  // v_0; 0: no viscosity
   std::vector<double> relaxation_times_s;
   std::vector<double> stop_thresholds_m;
   std::vector<double> creep_times_s{};
-  double slowing = 0.0;  // of the relaxation times with depth
-  // A surface_lag and the branches that decide where the surface is; none: it is under the tool.
+  double slowing = 0.0;  // growth of the relaxation times with depth
+  // A surface_lag feature and the branches that determine the surface; empty: the surface does not lag.
   std::vector<FeatureSpec> surface{};
 };
 
 inline constexpr std::size_t kBristleTerms = 3;
 
-// g of a bristle from its kBristleTerms weights: as many shapes of rising friction.
+// The friction curve g of a bristle from its kBristleTerms weights.
 DriveCurve combined_friction(const double* weights, double reference_depth_m);
 
 class TrendRows {
  public:
   explicit TrendRows(TrendTerms terms, std::size_t most_rows = kMaximumTrendRows);
 
-  // A new recording begins: filters start anew.
+  // Resets the filters for a new recording.
   void begin_recording();
-  // Every sample in order, in contact or not. `fold`: fold_dealer.h.
+  // Adds the next sample, in contact or not; only samples in contact make rows. `fold`: fold_dealer.h.
   void add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold);
 
-  // A sample that only moves the filters and makes no row.
+  // Updates the filters with a sample that makes no row.
   void advance(const ToolSample& sample, const MotionEstimate& motion);
 
   std::size_t columns() const { return columns_; }
@@ -84,7 +81,7 @@ class TrendRows {
   double reference_depth_m() const { return terms_.reference_depth_m; }
   double thinning_velocity_m_per_s() const { return terms_.thinning_velocity_m_per_s; }
   const std::vector<double>& relaxation_times_s() const { return terms_.relaxation_times_s; }
-  // Where the columns of each kind begin; those of the elastic response begin at 0.
+  // The first column of each kind of term; the elastic response begins at 0.
   std::size_t first_branch() const { return kElasticTerms + viscous_columns(); }
   std::size_t first_stop() const { return first_branch() + kBranchTerms * terms_.relaxation_times_s.size(); }
   std::size_t first_creep() const { return first_stop() + kBristleTerms * terms_.stop_thresholds_m.size(); }
@@ -95,7 +92,7 @@ class TrendRows {
   TrendTerms terms_;
   std::size_t most_rows_;
   BranchLadder ladder_;
-  std::vector<FeatureFilter> surface_;   // one or none
+  std::vector<FeatureFilter> surface_;   // size 0 or 1
   std::vector<FeatureFilter> bristles_;  // kBristleTerms values each
   std::vector<ElasticSpline> elastic_basis_;
   std::size_t columns_;

@@ -1,4 +1,4 @@
-// How much each sample's error counts in a fit.
+// The factors of the residuals in a fit.
 #pragma once
 
 #include <algorithm>
@@ -11,17 +11,17 @@
 namespace palpate {
 
 enum class Weighting {
-  jnd,       // 1 / JND(f): errors count as a hand feels them (default)
-  relative,  // 1 / |f|, the paper's eq. (8), floored where it would explode
+  jnd,       // 1 / JND(f), errors relative to perception (default)
+  relative,  // 1 / max(|f|, kRelativeWeightFloor_N), eq. (8) of the paper
   none,      // 1
 };
 
-// In commands and model files, in the order of the values.
+// Names in commands and model files, in the order of the values.
 inline constexpr std::array<const char*, 3> kWeightingNames{"jnd", "relative", "none"};
 inline const char* weighting_name(Weighting weighting) { return kWeightingNames[static_cast<std::size_t>(weighting)]; }
 
-// Below this force the paper's 1/|f| is held constant: 50 mN, the step of its
-// own reduction, under which it has no distinct samples.
+// Below this force the paper's 1 / |f| is constant: 50 mN is the step of its reduction, which separates no smaller
+// forces.
 inline constexpr double kRelativeWeightFloor_N = 0.05;
 
 inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N) noexcept {
@@ -36,9 +36,8 @@ inline double row_scale(Weighting weighting, const JndLine& jnd, double force_N)
   return 1.0;
 }
 
-// What an error of `error_over_jnd` leaves of the row's scale: errors that are felt
-// anyhow must not bend the fit where it could be right. The weights of a Cauchy
-// likelihood (Holland & Welsch 1977), which leave small errors alone.
+// Square root of the weight of a Cauchy likelihood (Holland & Welsch 1977): 1 for small errors, less for errors well
+// above the JND, which would otherwise bend the fit elsewhere.
 inline constexpr double kRobustError_jnd = 2.0;
 
 inline double robust_scale(double error_over_jnd) noexcept {
