@@ -1,12 +1,10 @@
-// One regression over recordings that lie somewhere to each other: rows in, what a common
-// material leaves unexplained out.
+// A regression of one material over several recordings, whose residual measures how well their offsets agree:
 //
 //   F ~ c + E(z) + sum_t b_t + eta(z) v,   z = p(t - lag) - offset
 //
-// E, and the spring behind each Maxwell branch b_t, are rising splines over the positions
-// themselves, eta is not negative, and none of them needs to know where the surface is:
-// in air they are 0. A residual counts in units of noise and 3 % of the force, Huber's
-// beyond 3; a row without force counts only where the fit has one.
+// E and the spring of each Maxwell branch b_t are rising splines over the positions, and eta is not negative. All are
+// 0 in air, so the position of the surface is not needed. Residuals are divided by the noise plus 3 % of the force,
+// with a Huber loss beyond 3. A row without force counts only where the fit is positive.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -21,15 +19,16 @@ namespace palpate {
 
 class CommonFit {
  public:
-  static constexpr std::size_t kBlocks = 10;  // of every recording, by the way the tool went
+  static constexpr std::size_t kBlocks = 10;  // of every recording, of equal path length of the tool
 
-  // Splines from `low_m` to `high_m`; `noise_N`: of the forces.
+  // The splines reach from `low_m` to `high_m`. `noise_N`: standard deviation of the forces.
   CommonFit(double low_m, double high_m, double noise_N) : low_m_(low_m), high_m_(high_m), noise_N_(noise_N) {}
 
-  // A recording with its place. Those added stay; `residual` tries one more beside them.
+  // Adds a recording with its offset and lag to the members of the fit.
   void add(const std::vector<SurfaceRow>& rows, double offset_m, double lag_s = 0.0);
 
-  // J by blocks: those of the recording tried, then, together, of those added.
+  // The cost J of a fit of the members and one more recording, by blocks: first the kBlocks of that recording, then,
+  // if there are members, kBlocks of all members together.
   BlockCosts residual(const std::vector<SurfaceRow>& rows, double offset_m, double lag_s = 0.0) const;
 
  private:
@@ -45,7 +44,7 @@ class CommonFit {
   void put_row(double z_m, double velocity_m_per_s, double* row) const;
   bool is_idle(double force_N, double predicted_N) const;
   double error(const Member& member, Eigen::Index i, double predicted_N) const;
-  // Adds the normal equations of one recording, weighted for what `x` leaves (empty: not).
+  // Adds the normal equations of one recording. `x`: weights whose residuals give the Huber weights, or empty.
   void add_equations(const Member& member, const Eigen::VectorXd& x, Eigen::MatrixXd& gram,
                      Eigen::VectorXd& right_side) const;
 
@@ -53,7 +52,7 @@ class CommonFit {
   double high_m_;
   double noise_N_;
   std::vector<Member> members_;
-  Eigen::MatrixXd gram_;  // of the members, as they last fitted by themselves
+  Eigen::MatrixXd gram_;  // of the members, with the weights of their own fit
   Eigen::VectorXd right_side_;
 };
 

@@ -1,10 +1,9 @@
-// How late the force channel of a recording is against its position channel.
+// Estimates the lag of the force channel of a recording against its position channel.
 //
-// A material's memory lets the force run ahead of the depth, never behind, so a common
-// fit (common_fit.h) whose springs, dashpots and branches cannot be negative explains a
-// late force worse than one that was moved back; an early one looks like viscosity, until
-// force begins before the tool is there. Lags of -50 to 50 ms are searched, and where no
-// lag explains it as well, there is none (profile_search.h).
+// The memory of a material makes the force lead the depth, never lag. A common fit (common_fit.h) with non-negative
+// springs, dashpots and branches therefore has a larger residual where the force is late. Where it is early, it looks
+// like viscosity until force begins before contact. Lags of -50 to 50 ms are searched; a lag that does not improve the
+// fit significantly is 0 (profile_search.h).
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -13,15 +12,15 @@
 
 namespace palpate {
 
-// A lag that is told worse (two standard errors) is not corrected; lags that agree to this are
-// one. Rows ten times as far apart tell none.
+// The accuracy of a lag, s. A lag with a larger error (two standard errors) is not used; lags that differ by at most
+// this agree. Rows more than ten times as far apart identify no lag.
 inline constexpr double kToldLag_s = 0.002;
 
-// `rows` of a recording in time order. Positive: the force is late, s. Not told where
-// rows are too rare for it, or there are fewer than three strokes.
+// `rows`: of a recording, in time order. `at` > 0 s: the force is late. Not identified with fewer than 100 rows or
+// three strokes, or with rows too far apart.
 Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N);
 
-// The rows with the force moved back by `lag_s`; those without any are left out.
+// The rows with the force shifted by `lag_s` to earlier times; rows for which no force was recorded are dropped.
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s);
 
 }  // namespace palpate

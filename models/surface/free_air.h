@@ -1,4 +1,4 @@
-// Evidence of free air in one recording; surface_estimate.h says what it is.
+// Detects free air in one recording; surface_estimate.h defines it.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -10,17 +10,17 @@ namespace palpate {
 
 struct FreeAir {
   bool found = false;
-  double inner_end_m = 0.0;  // of the stretch
+  double inner_end_m = 0.0;  // free air is certain for positions below
   double zero_N = 0.0;
   double zero_error_N = 0.0;  // standard error
-  double drift_N = 0.0;       // of the zero, the last third minus the first
-  double tool_mass_kg = 0.0;
+  double drift_N = 0.0;       // of the zero: median of the last third minus the first
+  double tool_mass_kg = 0.0;  // mass carried by the force sensor; 0 if not identified
 };
 
-// `force_noise_N`: its standard deviation.
+// `rows`: in time order. `force_noise_N`: standard deviation.
 FreeAir find_free_air(const std::vector<SurfaceRow>& rows, double force_noise_N);
 
-// Takes the inertia of `mass_kg` off the forces.
+// Subtracts the inertial force of `mass_kg` from the forces.
 void subtract_inertia(std::vector<SurfaceRow>& rows, double mass_kg);
 
 }  // namespace palpate

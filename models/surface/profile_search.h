@@ -1,18 +1,15 @@
-// Where a cost has its minimum, how sure that is, and whether it can be told at all:
-// the one search behind shifts, surfaces and lags.
+// The search for an offset (of a surface, a force lag, ...) that minimises a cost, with its standard error and a test
+// whether the data identify it.
 //
-// The cost comes in blocks, pieces of the recordings that err independently. A scan over the
-// whole range and golden sections at its lowest valleys find the best place. Its standard error
-// is the jackknife's: how far the minimum moves when one block after the other is left out
-// (Quenouille 1956; Tukey 1958), sqrt((n - 1)/n sum_b (x_b - mean)^2). Not told is a place
-// whose two standard errors reach an edge of the range or are wider than `widest`, and
-// one of two valleys as good as each other, neither certainly worse (acceptance.h).
-// Within two standard errors of 0 it is 0: what was recorded stands until the evidence is
-// against it, or lies outside of the range.
-// What a material imitates (friction a shift, viscosity a lag) errs in all blocks alike, which no
-// jackknife sees: such a place is told when 0 is certainly worse;
-// and where the material imitates within `blur`, when all that far from it is certainly worse and
-// 0 further away.
+// The cost is a sum over blocks, pieces of the recordings with independent errors. A scan of the range and golden
+// sections at its lowest minima find the best offset. Its standard error is the jackknife's, with one block left out
+// at a time (Quenouille 1956; Tukey 1958): sqrt((n - 1)/n sum_b (x_b - mean)^2). The offset is not identified if two
+// standard errors reach an end of the range or exceed `widest`, or if another minimum is not significantly worse
+// (acceptance.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
+// An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
+// blocks, and a jackknife does not see it. In such a case the offset is identified only if 0 is significantly worse.
+// If the effect reaches as far as `blur`, the costs at `blur` on either side must be significantly worse, too, and 0
+// must be further away by `blur`.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -24,15 +21,15 @@ namespace palpate {
 using BlockCosts = std::vector<double>;
 
 struct Located {
-  double at = 0.0;              // 0 where it is not told
-  bool not_zero = false;        // 0 is not the best place, told or not
-  double standard_error = 0.0;  // infinite: not told
-  bool told = false;
-  double cost = 0.0;  // J there, and at 0
+  double at = 0.0;              // the offset; 0 if not identified or not significantly different from 0
+  bool not_zero = false;        // the minimum differs from 0, identified or not
+  double standard_error = 0.0;  // infinite if not identified
+  bool told = false;            // identified
+  double cost = 0.0;            // J at the minimum, and at 0
   double cost_at_zero = 0.0;
-  double minimum_at = 0.0;  // where J is least, told or not, and its blocks
+  double minimum_at = 0.0;  // the minimum, identified or not, and its blocks
   BlockCosts minimum{};
-  // Another explanation, which J cannot distinguish from an offset that then is not told: N; 0: none.
+  // A force offset that explains the data as well, so that `at` is not identified: N; 0: none.
   double force_offset_N = 0.0;
 };
 
@@ -41,16 +38,17 @@ struct SearchRange {
   double high = 0.0;
   double coarse_step = 0.0;
   double fine_step = 0.0;
-  double widest = 0.0;    // two standard errors of a place that is told
-  bool imitated = false;  // by what the material does itself
-  double blur = 0.0;
+  double widest = 0.0;    // limit of two standard errors
+  bool imitated = false;  // the material has an effect that looks like an offset
+  double blur = 0.0;      // 0, or the size of that effect
 };
 
+// The minimum of `cost` in `range`. Not identified where the range is empty.
 Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
 
-// Whether an offset of the force explains as much as the shift that was found, within one standard error
-// (acceptance.h): `cost` has J by blocks for
-// an offset of the force in N, of at most `most_N` either way. Then the shift is not told.
+// Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
+// -most_N to most_N exceeds that of the shift by at most one standard error (acceptance.h). If so, the shift is not
+// identified. `cost`: J by blocks for a force offset in N.
 Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N);
 
 }  // namespace palpate

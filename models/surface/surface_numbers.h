@@ -1,4 +1,4 @@
-// What the files about surfaces share: when a number is not known, and when it counts.
+// Constants and small functions that the files of this room share.
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -10,26 +10,26 @@
 
 namespace palpate {
 
-// The standard error of a number that a recording does not tell.
+// The standard error of a quantity that a recording does not identify.
 inline constexpr double kUnknownError = std::numeric_limits<double>::infinity();
-// An offset counts when it is this many standard errors from 0.
+// An offset is significant at this many standard errors from 0.
 inline constexpr double kSignificantErrors = 2.0;
-// Smaller offsets are not told from 0: no motion estimate from one touch is finer.
+// Smaller offsets count as 0: the position estimate of one touch is no finer.
 inline constexpr double kLeastOffset_m = 0.02e-3;
-// A surface that is not told better than to this, two standard errors, is not told: in
-// soft materials, where forces begin to rise by 0.1 N/mm, it is one JND.
+// A surface with a larger error (two standard errors) is not identified: in soft materials, whose force rises by
+// 0.1 N/mm at first, it is one JND.
 inline constexpr double kWidestSurface_m = 0.5e-3;
 
-// No place is searched for more finely.
+// The resolution of all searches.
 inline constexpr double kFinest_m = 2e-6;
 
-// What an error counts: its square up to `limit`, in proportion beyond (Huber 1964).
+// Huber's loss (1964): the square of the error up to `limit`, linear beyond.
 inline double huber(double error, double limit) {
   const double size = std::abs(error);
   return size <= limit ? size * size : limit * (2.0 * size - limit);
 }
 
-// 0 for no values.
+// The median (the upper one of an even number); 0 for no values.
 inline double median_of(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -1,5 +1,4 @@
-// The onset of force of touches of a surface at rest; see surface_estimate.h
-// for the equation.
+// The onset of force in touches of a surface at rest; surface_estimate.h gives the equation.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -10,25 +9,25 @@
 
 namespace palpate {
 
-// One touch: the rows [begin, end) on the way in.
+// One touch: the rows [begin, end) of its loading.
 struct Touch {
   std::size_t begin = 0;
   std::size_t end = 0;
-  double first_force_m = 0.0;  // where force leaves its noise: late where the onset is soft
+  double first_force_m = 0.0;  // position where the force leaves the noise: too deep if the onset is soft
 };
 
 struct Onset {
   double at_m = 0.0;
-  double standard_error_m = 0.0;  // infinite where there is no minimum
-  double misfit_m = 0.0;          // a further error, where the force follows neither law
+  double standard_error_m = 0.0;  // infinite if J has no minimum
+  double misfit_m = 0.0;          // additional error if the force follows neither law
 };
 
-// `zero_N`: what the force sensor reads in air. `threshold_N`: beyond its noise. Of touches
-// before which the tool was outside `air_end_m`.
+// The touches of a surface at rest that begin in free air. `zero_N`: force zero. `threshold_N`: force above the noise
+// that counts as contact. `air_end_m`: free air is certain for positions below.
 std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double zero_N, double threshold_N,
                                    double air_end_m);
 
-// Of all `touches`, at least one, together; they share the onset and nothing else.
+// The common onset of at least one touch; the coefficients a and b of each touch are its own.
 Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches, double zero_N,
                  double force_noise_N);
 

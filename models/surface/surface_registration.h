@@ -1,15 +1,13 @@
-// How the training recordings lie to each other, and where their common surface is.
+// Estimates the offsets of the training recordings to each other, and their common surface.
 //
-// Registration is relative: the recording with the longest way stays, every other one is
-// moved over the whole overlap of positions until one material explains both best
-// (common_fit.h, profile_search.h). What all of them share is the rig's: the
-// recording in the middle stays as it is, of two the later one. A recording whose place
-// cannot be told stays as recorded. The model's own surface is where the onsets of force
-// say, in these positions, either side of 0; without free air it is at 0.
-// Where recorded forces reach further out (adhesion, a press that never lets go), it is
-// there, so that the model has them. Force zeros are taken off where every recording shows
-// free air, otherwise nowhere: one rule for all. So it is with a lag of the force
-// (force_lag.h): it is the rig's where half of the recordings tell it, and agree.
+// The recording with the longest range of positions is the reference. Every other one is shifted over all offsets at
+// which the ranges overlap, to the one at which one material explains both best (common_fit.h, profile_search.h). Only
+// differences matter: the common offset belongs to the rig, so the recording with the medoid of the offsets keeps its
+// positions (of two, the later one). A recording whose offset is not identified stays as recorded. The surface of the
+// model is the mean of the onsets of force in these positions, on either side of 0; without free air it is 0. If
+// measured forces reach further out (adhesion, a press that never leaves the material), it is there, so that the model
+// has them. Force zeros are subtracted if every recording has free air, otherwise in none. A lag of the force
+// (force_lag.h) is used if at least half of the recordings identify one and these agree.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -23,19 +21,19 @@
 namespace palpate {
 
 struct RegisteredSurface {
-  double offset_m = 0.0;          // against the rig's own positions
-  double standard_error_m = 0.0;  // infinite where it is not told
+  double offset_m = 0.0;          // to be subtracted from the positions
+  double standard_error_m = 0.0;  // infinite if not identified
   double force_zero_N = 0.0;
   bool told() const { return std::isfinite(standard_error_m); }
 };
 
 struct RegisteredSurfaces {
   std::vector<RegisteredSurface> recordings;  // in the order of `source.names()`
-  double surface_position_m = 0.0;            // of all, moved by their offsets
-  double lag_s = 0.0;                         // of the force, one for the rig; 0: none, or not told
+  double surface_position_m = 0.0;            // in positions corrected by the offsets
+  double lag_s = 0.0;                         // of the force, one for all recordings; 0: none, or not identified
 };
 
-// `source` must not be corrected yet. Errors: those of the source; interrupted.
+// `source` must have no corrections. Errors: those of the source; interrupted.
 Result<RegisteredSurfaces> register_surfaces(MotionSource& source, const FitControl& control = {},
                                              double fraction = 0.0);
 

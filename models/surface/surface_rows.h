@@ -1,4 +1,4 @@
-// Rows for the search for a surface: a recording thinned to what that needs.
+// The rows of a recording, thinned, for the search for a surface.
 // Thread guarantee: value types and pure functions, slow side.
 #pragma once
 
@@ -12,17 +12,17 @@
 
 namespace palpate {
 
-// Rows that a search works on at most; thin longer recordings to these.
+// The maximum number of rows of a search.
 inline constexpr std::size_t kSearchRows = 4000;
 
 struct SurfaceRow {
   ToolSample sample;
-  MotionEstimate motion;  // by the estimator over every row, before thinning
+  MotionEstimate motion;  // estimated from every row, before thinning
   double force_N = 0.0;
 };
 
-// Every row up to a bound; beyond, every second one, then every fourth ... but none further
-// apart than `coarsest_s`: then the rows are those of the beginning.
+// Keeps rows in bounded memory: all, and whenever there are `most`, every other one of them. If these would be further
+// apart than `coarsest_s`, the later rows are dropped instead.
 class GrowingStride {
  public:
   explicit GrowingStride(std::size_t most, double coarsest_s = std::numeric_limits<double>::infinity())
@@ -39,13 +39,13 @@ class GrowingStride {
   std::vector<SurfaceRow> rows_;
 };
 
-// Every n-th row, at most `most` of them.
+// Every n-th row, with the smallest n that leaves at most `most`.
 std::vector<SurfaceRow> thinned_rows(const std::vector<SurfaceRow>& rows, std::size_t most);
-// Every row of a recording, or every n-th, at most `most` of them.
+// The rows of a recording with their motion estimates: all, or at most `most`.
 std::vector<SurfaceRow> all_rows(const Recording& recording);
 std::vector<SurfaceRow> thinned_rows(const Recording& recording, std::size_t most);
 
-// Which of `blocks` pieces of equal way of the tool each row is in.
+// The block of each row, of `blocks` blocks of equal path length of the tool.
 std::vector<std::size_t> blocks_by_way(const std::vector<SurfaceRow>& rows, std::size_t blocks);
 
 }  // namespace palpate

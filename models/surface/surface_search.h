@@ -1,8 +1,7 @@
-// Where the surface of a tested recording is for a model that is there already: the shift
-// that minimises the error of its forces, over all positions at which the recording
-// overlaps the model's depths (profile_search.h). Errors count in units of the JND, in
-// proportion beyond one, so that no bad stretch decides; before the surface the model's
-// force is 0, as in the tick. Within two standard errors of where it was recorded nothing is moved.
+// Estimates the surface of a test recording for a given model: the shift of the positions that minimises the error of
+// the model's forces, over all overlaps of recording and model (profile_search.h). Errors are in JND with a Huber loss
+// beyond 1, and outside the surface the model's force is 0, as in the tick. A shift within two standard errors of 0 is
+// 0, and so is one for which a force offset is as good an explanation.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -16,8 +15,8 @@
 
 namespace palpate {
 
-// `rows`: a whole recording in time order, thinned. `at`: to be subtracted from position_m
-// so that 0 is where the models' surface is, m. Without models, or without rows, not told.
+// `rows`: a whole recording in time order, thinned. The costs of several models are added. `at`: to be subtracted from
+// position_m so that 0 is the models' surface, m. Without models or rows it is not identified.
 Located locate_surface(const std::vector<SurfaceRow>& rows,
                        const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd);
 
