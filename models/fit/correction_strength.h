@@ -1,19 +1,18 @@
-// How strong the correction of a model may be, from strokes left out.
+// Selects strength, smoothing and reach of the correction by cross-validation.
 //
-// A correction h fitted to what the trend leaves over is of use only as far as the
-// next stroke has the same rest. Whole folds (models/training/fold_dealer.h) are
-// left out in turn, of the trend too, h is fitted to the other rows by penalised least squares,
+// A correction h of the residual of the trend helps only as far as other strokes have the same residual. For each fold
+// (models/training/fold_dealer.h), h is fitted to the rows of the others, by penalised least squares on up to 200
+// random centres,
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
-// on a few hundred random centres, and the rows left out are predicted by
+// where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by
 //   f = max(lowest, T(x) + g(x) clamp(strength h(x), -limit, limit))
-// with g the trust of the domain guard around the rows that were kept. Smoothing, strength
-// (from 0, none, to 1, all) and the radius of the guard are selected together by the
-// common rule (models/training/selection.h), no correction being the simplest candidate, then
-// the shortest radius and with it the most smoothing. The smoothing is the variance of the noise over that of the prior
-// and does not depend on the number of centres: one choice serves every method, and with more centres each method comes
-// closer to the smoothing spline through all the sites instead of following the noise. Sources: Wahba (1990) (smoothing
-// splines; regression splines as subsets of the basis); Craven & Wahba (1979); Hastie, Tibshirani & Friedman
-// (2009), 7.10. Thread guarantee: slow side, pure.
+// with g the trust around the rows of the other folds. The strength (0, none, to 1) is that of the combination with
+// the lowest mean score. The common rule (models/training/selection.h) then selects smoothing and inner radius of the
+// trust at this strength. No correction is its simplest candidate, followed by the smallest radius with the most
+// smoothing. The smoothing is the ratio of noise variance to prior variance and does not depend on the number of
+// centres, so one value serves every method, and with more centres each approaches the smoothing spline through all
+// sites. Sources: Wahba (1990) (smoothing splines; regression splines as subsets of the basis); Craven & Wahba (1979);
+// Hastie, Tibshirani & Friedman (2009), 7.10. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,16 +24,16 @@
 
 namespace palpate {
 
-// Rows in contact, by fold in ascending order, each to be predicted when its fold is left out.
+// Rows in contact in ascending order of their folds; each is predicted from the other folds.
 struct LeftOutRows {
   Eigen::MatrixXd points;   // normalised features, one column a row
   Eigen::VectorXd force_N;  // measured
   Eigen::VectorXd depth_m;
-  Eigen::VectorXd row_scale;  // what an error counts
-  Eigen::MatrixXd trend_N;    // of every row, by the trend without fold k in column k
+  Eigen::VectorXd row_scale;  // factor of the residual
+  Eigen::MatrixXd trend_N;    // rows x folds: column k by the trend fitted without fold k
   std::vector<int> fold;
-  std::vector<char> no_force;    // nothing was measured: the force is not positive
-  std::vector<double> distance;  // to the nearest row of another fold; infinite without one
+  std::vector<char> no_force;    // no measured force: the force is not positive
+  std::vector<double> distance;  // to the nearest row of another fold; infinite if there is none
 };
 
 struct StrengthInput {
@@ -43,14 +42,14 @@ struct StrengthInput {
   KernelKind kernel = KernelKind::cubic;
   JndLine jnd;
   double correction_limit_N = 0.0;
-  double lowest_force_N = 0.0;  // of the model
-  double least_radius = 0.0;    // of the guard, so that every site is inside
-  double outer_to_inner = 3.0;
+  double lowest_force_N = 0.0;  // lower limit of the force of the model
+  double least_radius = 0.0;    // smallest inner radius, with every site inside
+  double outer_to_inner = 3.0;  // ratio of the outer to the inner radius
 };
 
-// One row predicted without its fold.
+// The prediction of one row by a model fitted without its fold.
 struct LeftOutPrediction {
-  double error_N = 0.0;  // of the force, absolute
+  double error_N = 0.0;  // absolute error of the force
   double measured_N = 0.0;
   double predicted_N = 0.0;
   double distance = 0.0;  // to the nearest row of another fold
@@ -60,15 +59,15 @@ struct StrengthChoice {
   double smoothing = 0.0;
   double strength = 1.0;
   double inner_radius = 0.0;
-  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::typical), without and with the correction
-  double error_over_jnd = 0.0;
+  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::typical), without the correction
+  double error_over_jnd = 0.0;        // the same, with the correction
 };
 
-// The force at row `i` without its fold, as FittedModel computes it; `h`: the correction there.
+// The force at row `i` without its fold, as FittedModel computes it. `trust`: g; `h`: strength times correction, N.
 double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h);
-// Trust of the guard at this distance.
+// The trust g at a distance: 1 up to the inner radius, 0 from the outer one, a cubic step between.
 double trust_at_distance(double distance, double inner_radius, double outer_radius);
-// `distance` of the rows, from all the rest.
+// Sets `distance` of the rows.
 void find_distances(LeftOutRows& rows, int folds);
 
 StrengthChoice choose_strength(const StrengthInput& input);

@@ -1,9 +1,8 @@
-// The methods, in one table: everything that offers, fits, draws or times methods
-// iterates over `methods()`. A new method is one source file that defines its row
-// and its fit, and one line in PALPATE_METHODS.
+// The table of methods. All code that offers, fits, draws or times methods iterates over `methods()`. A new method is
+// one source file that defines its row and its fit, and one line in PALPATE_METHODS.
 //
-// A method gives the correction of a model (models/model/correction.h), from the
-// sites that all methods share; fit.h does the rest.
+// A method computes the correction of a model (models/model/correction.h) from the sites, which are the same for all
+// methods; fit.h does the rest.
 // Thread guarantee: rows are constants; the functions are slow side.
 #pragma once
 
@@ -38,7 +37,7 @@ struct Method;
 PALPATE_METHODS(PALPATE_DECLARE_METHOD)
 #undef PALPATE_DECLARE_METHOD
 
-// What is asked of a method; it looks at what its row says it takes.
+// The parameters of a method; each uses those that its row names in `takes`.
 struct MethodRequest {
   const Method* method = &kGreedyMethod;
   int centres = 100;
@@ -48,20 +47,20 @@ struct MethodRequest {
   std::uint64_t seed = 1;
 };
 
-// What a method gives.
+// The result of a method.
 struct FittedCorrection {
   CorrectionPtr correction;
   FitReport report;
-  std::string size;  // behind the method's name in the model's: "100"; empty: nothing
+  std::string size;  // follows the method in the name of the model: "100"; or empty
 };
 
-// What a method is given. References last as long as the call.
+// The input of a method. References must be valid during the call.
 struct MethodTask {
   const Sites& sites;                        // normalised
   const std::vector<FeatureSpec>& features;  // of the rows of sites.points
   const Eigen::VectorXd& jnd_N;              // threshold at each site, > 0
   const MethodRequest& request;
-  const FittedCorrection* base = nullptr;  // the fit of the row's base, if it has one
+  const FittedCorrection* base = nullptr;  // fit of the row's base; null: none
 };
 
 enum MethodOption : unsigned {
@@ -72,45 +71,44 @@ enum MethodOption : unsigned {
   kTakesSeed = 1U << 4,
 };
 
-// Black on white and white on black: the colour of whatever has no hue of its own.
+// The colour of items without a hue of their own: black on white and white on black.
 inline constexpr std::uint32_t kNeutralColour = 0x000000;
 
 struct Method {
   const char* name = "";                  // in commands, files and scenes
   const char* label = "";                 // in figures and tables
-  std::uint32_t colour = kNeutralColour;  // 0xRRGGBB, the same everywhere
+  std::uint32_t colour = kNeutralColour;  // 0xRRGGBB, the same in all figures
   unsigned takes = 0;                     // MethodOption flags
-  // The method whose fit this one starts from; null for most.
+  // The method whose fit this one starts from, or null.
   const Method* base = nullptr;
-  // About, on one core of 2023 with 7,000 sites, beyond what the base takes: for
-  // progress lines, and so that the quickest is fitted first.
+  // Approximate time of the fit without the base, on one core of 2023 with 7,000 sites: for progress lines, and to fit
+  // the fastest method first.
   double (*expected_seconds)(const MethodRequest& request) = nullptr;
-  // Errors: the sites cannot be fitted (says why); interrupted. The same task gives
-  // the same bits. Call it through fit_correction.
+  // Errors: the sites cannot be fitted (says why); interrupted. Deterministic. To be called by fit_correction.
   Result<FittedCorrection> (*fit)(const MethodTask& task, const FitControl& control) = nullptr;
-  // The centres alone, of every number up to request.centres (nested_fit.h); null: a fit
-  // does not go on from those with fewer.
+  // Selects centres in an order of which k centres are a valid choice for every k up to request.centres
+  // (nested_fit.h). Null for methods without such an order.
   Result<CentreSequence> (*choose)(const MethodTask& task, const FitControl& control) = nullptr;
 
   bool can_take(MethodOption option) const { return (takes & option) != 0; }
 };
 
 const std::vector<const Method*>& methods();
-// Null for a name that is none of them.
+// Null for an unknown name.
 const Method* find_method(std::string_view name);
-// One more row, for a program with a method of its own: it must outlive every use.
-// Before other threads fit or draw; the name must be new. And its end.
+// Adds a row for a method of another program; it must outlive every use, and its name must be new. Not thread-safe:
+// to be called before other threads use the table. `remove_method` removes it.
 void add_method(const Method& method);
 void remove_method(const Method& method);
 
 // "trend, direct, voxel ...".
 std::string method_names();
-// "random, kdtree, greedy": the methods that take this option.
+// "random, kdtree, greedy": the methods that use this option.
 std::string methods_that_take(MethodOption option);
 
-// Fits request.method to the task, its base first when the task brings none.
+// Fits request.method, and before it its base if the task has none.
 Result<FittedCorrection> fit_correction(const MethodTask& task, const FitControl& control = {});
-// Of the method and its base together.
+// The sum for the method and its base.
 double expected_seconds(const MethodRequest& request);
 
 }  // namespace palpate

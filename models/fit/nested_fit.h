@@ -1,16 +1,13 @@
-// Every number of centres of one fit, for a slider: methods whose choice of k centres
-// goes on to k + 1 (Method::choose) choose once, and a fit of k is a matter of weights.
+// Fits with every number of centres up to a maximum, for a slider. Methods with a nested order of centres
+// (Method::choose) select once; a fit of k centres then only solves for weights.
 //
-// The rows of all sites are folded once, with the tail before the kernel columns in the
-// order in which they come in:
-//   row_scale * (G Phi f) = Q T,  T upper triangular,
-// and the columns of k centres have only as many rows of T as there are columns up to
-// the last of them. What is left for k is a system of that size; the numbers are those
-// of the direct fit to rounding, the ridge or the penalty included. Smoothing and strength
-// do not depend on the number of centres (correction_strength.h); the error bound is that of all of them.
+// The rows of all sites are reduced once, with the tail before the kernel columns in the order of selection:
+//   row_scale * (G Phi f) = Q T,  T upper triangular.
+// The columns of k centres are non-zero only in the rows of T up to the last of these columns, which leaves a system
+// of that size. The weights equal those of a separate fit to rounding, with the same ridge or penalty. Smoothing and
+// strength do not depend on the number of centres (correction_strength.h); the error bound is that of the maximum.
 //
-// Thread guarantee: immutable once made; `fit` is slow side and may be called by
-// several threads.
+// Thread guarantee: immutable; `fit` is slow side and may be called by several threads.
 // Source: Golub & Van Loan, Matrix Computations, section 6.5 (QR of fewer columns).
 #pragma once
 
@@ -27,12 +24,12 @@ namespace palpate {
 
 class NestedWeights {
  public:
-  // Errors: those of solve_weights. Takes about as long as solve_weights for the pool.
+  // Reduces the rows. Errors: those of solve_weights. Takes about as long as solve_weights for all centres.
   static Result<NestedWeights> fold(const Sites& sites, KernelKind kernel, CentreSequence sequence,
                                     const FitControl& control = {});
 
   Eigen::Index most() const { return sequence_.most; }
-  // solve_weights for `count` centres, clamped to 0 to most().
+  // The result of solve_weights for `count` centres, clamped to 0 to most().
   FittedRbf solve(Eigen::Index count) const;
 
  private:
@@ -41,20 +38,19 @@ class NestedWeights {
 
   KernelKind kernel_;
   CentreSequence sequence_;
-  FoldedRows folded_;  // its triangle in the order G, Phi, f
+  FoldedRows folded_;  // with columns in the order G, Phi, f
 };
 
-// The same for models.
+// The same for whole models.
 class NestedFit {
  public:
-  // Chooses request.centres centres. Errors: the method has no `choose`; those of
-  // fit_method.
+  // Selects request.centres centres. Errors: the method has no `choose`; those of fit_method.
   static Result<NestedFit> make(const PreparedTraining& prepared, const MethodRequest& request,
                                 const FitControl& control = {});
 
   Eigen::Index most() const { return weights_.most(); }
-  // What fit_method gives for so many centres, but for provenance.training_within_jnd,
-  // which is 0: judging takes longer than the weights.
+  // The result of fit_method for `count` centres, except that provenance.training_within_jnd is 0, because its
+  // computation takes longer than the weights.
   Result<MethodFit> fit(Eigen::Index count) const;
 
  private:

@@ -1,8 +1,8 @@
-// The recipe of Hoever & Harders (2009), to compare with: 50 mN reduction, rows scaled by
-// 1/f, depth, velocity and low-pass velocities with two relaxation times that are fitted to
-// these recordings, as the paper fits its two to the transients of its own; the force itself as target; weights by
-// truncated singular values (truncated_svd.h); positions as recorded, no trust, an even grid. Forces stay between 0
-// (the least measured) and 1.2 times the largest measured, as those of every model.
+// The recipe of Hoever & Harders (2009), for comparison: 50 mN reduction; rows scaled by 1/f; depth, velocity and
+// low-pass velocities as features, with two relaxation times identified from these recordings, as the paper identifies
+// its two from the transients of its own; the force itself as target; weights by truncated singular values
+// (truncated_svd.h); positions as recorded, no trust, an even grid. Forces are limited as in every model, to 1.2 times
+// the largest measured one and to 0, or to the lowest one of a material that pulls.
 // Thread guarantee: pure function.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-// `request`: a scene's. Its features without a relaxation time stay as they are.
+// `request`: that of a scene. A scene without low-pass velocities gets no relaxation times.
 TrainingRequest recipe_2009_request(TrainingRequest request);
 
 }  // namespace palpate
