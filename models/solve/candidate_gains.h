@@ -1,15 +1,13 @@
-// How much each site, taken as the next centre, would lower the squared error,
-// given the basis chosen so far: (c . r)^2 / |c'|^2, where c is the site's
-// scaled kernel column, c' its part outside the basis and r the residual.
+// The gain of each site as the next centre: the decrease (c . r)^2 / |c'|^2 of the squared error, given the basis
+// selected so far. c is the site's scaled kernel column, c' its part orthogonal to the basis and r the residual.
 //
-// What was once found out of a site is kept: a basis only grows, so a site that
-// comes up again owes no more than its shares of the directions added since.
+// The squares |c'|^2 are stored: the basis only grows, so an update subtracts only the components along the directions
+// that are new to the site.
 //
-// |c'|^2 = |c|^2 - |Q^T c|^2 loses its digits when c lies almost inside the
-// basis. Sums of N products are good to some 1e-14 of |c|^2; where less than
-// 1e-11 is left of the last value known in full, c' itself is computed, many
-// columns at a time, and a site with |c'| <= 1e-10 |c| has no gain. A gain is so
-// known to better than 1 %, far below any difference that matters to a choice.
+// |c'|^2 = |c|^2 - |Q^T c|^2 suffers from cancellation when c lies almost in the span of the basis. Sums of N products
+// are accurate to some 1e-14 of |c|^2. Below 1e-11 of the last fully computed value, c' itself is computed, for many
+// columns at a time, and a site with |c'| <= 1e-10 |c| has gain 0. Gains are thus accurate to better than 1 %, far
+// below any difference that matters for the selection.
 // Thread guarantee: one object, one thread; it starts others itself.
 #pragma once
 
@@ -22,8 +20,8 @@
 
 namespace palpate {
 
-inline constexpr double kCancelled = 1e-11;    // of a square: compute the column's part below this
-inline constexpr double kInsideBasis = 1e-20;  // of a square: no use below this
+inline constexpr double kCancelled = 1e-11;    // relative to the last full |c'|^2: below this c' is computed
+inline constexpr double kInsideBasis = 1e-20;  // relative to |c|^2: below this the gain is 0
 
 class CandidateGains {
  public:
@@ -33,22 +31,21 @@ class CandidateGains {
   // The scaled kernel column of a centre at a site, N values.
   Eigen::VectorXd column(Eigen::Index site) const;
 
-  // Brings these sites, each named once, up to the basis, which is always the same
-  // one, grown since the last call. O(N new directions) for each.
+  // Updates these distinct sites to the current basis, which must be that of the last call or grown from it. O(N new
+  // directions) for each.
   void update(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis);
-  // The same for sites that are up to date but for the last direction, q, of
-  // which `along` has every site's share and which took `residual_share` = q . r
-  // from the residual. O(1) for each.
+  // The same for sites that lack only the last direction q, in O(1) for each. `along`: q . c of all sites.
+  // `residual_share`: q . r.
   void advance(std::span<const Eigen::Index> sites, const OrthogonalBasis& basis, const Eigen::VectorXd& along,
                double residual_share);
-  // Takes what the column itself says of a site.
+  // Replaces the stored values of a site by those of its explicitly orthogonalised column.
   void correct(Eigen::Index site, const OrthogonalBasis::Outside& part);
 
   double gain(Eigen::Index site) const {
     const double outside = outside_squared_[site];
     return outside > 0.0 ? correlation_[site] * correlation_[site] / outside : 0.0;
   }
-  // Whether `part` of the site's column is worth a direction of its own.
+  // Whether `part` of the site's column is large enough for a direction of its own.
   bool useful(Eigen::Index site, const OrthogonalBasis::Outside& part) const {
     return part.squared > kInsideBasis * length_squared_[site];
   }
@@ -61,11 +58,11 @@ class CandidateGains {
   const Sites& sites_;
   KernelKind kernel_;
   PointArrays points_;
-  // By site; lengths and what follows from them only where known_to_ > 0.
-  std::vector<Eigen::Index> known_to_;  // directions that outside_squared_ takes into account
+  // By site; the squares are valid where known_to_ > 0.
+  std::vector<Eigen::Index> known_to_;  // number of directions that outside_squared_ accounts for
   Eigen::VectorXd length_squared_;      // |c|^2
-  Eigen::VectorXd outside_squared_;     // |c'|^2, 0 when the site is of no use
-  Eigen::VectorXd exact_squared_;       // outside_squared_ when it was last computed in full
+  Eigen::VectorXd outside_squared_;     // |c'|^2, 0 for a column in the span of the basis
+  Eigen::VectorXd exact_squared_;       // last fully computed |c'|^2
   Eigen::VectorXd correlation_;         // c . r
 };
 

@@ -1,7 +1,6 @@
-// The centres that a method takes for every number of them up to a largest, of a
-// method whose choice for k goes on to k + 1: greedy and random add one centre, the
-// kD-tree puts two in the place of one.
-// Thread guarantee: a value type.
+// The centres of a method for every number of centres up to a maximum, for methods whose selections are nested: greedy
+// and random add one centre a step, the kD-tree replaces one by two.
+// Thread guarantee: value type.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,19 +10,19 @@
 namespace palpate {
 
 struct CentreSequence {
-  // Where a centre stands among those of a count, and the counts that have it.
+  // The index of a centre, and the numbers of centres whose selection contains it.
   struct Stay {
     Eigen::Index place = 0;
     Eigen::Index from = 1;
-    Eigen::Index until = 0;  // the first count without it; 0: it stays
+    Eigen::Index until = 0;  // first number of centres without it; 0: none
   };
 
-  Eigen::MatrixXd pool;     // d x m, each centre of any count once, as they come in
-  std::vector<Stay> stays;  // m
-  Eigen::Index most = 0;    // the largest count there is
-  std::string shortage;     // why there are no more than `most`; empty: no more were asked for
+  Eigen::MatrixXd pool;     // d x m, the centres of all selections, each once, in order of appearance
+  std::vector<Stay> stays;  // one for each column of `pool`
+  Eigen::Index most = 0;    // maximum number of centres
+  std::string shortage;     // why `most` is less than requested; else empty
 
-  // Columns of `pool` that `count` (0 to most) has, by place.
+  // The columns of `pool` of the selection of `count` centres (0 to `most`), in the order of their indices.
   std::vector<Eigen::Index> columns_of(Eigen::Index count) const {
     std::vector<Eigen::Index> columns(static_cast<std::size_t>(count));
     for (std::size_t j = 0; j < stays.size(); ++j) {
@@ -36,7 +35,7 @@ struct CentreSequence {
   }
   Eigen::MatrixXd centres_of(Eigen::Index count) const { return pool(Eigen::all, columns_of(count)); }
 
-  // Of centres that come in one by one and stay.
+  // A sequence in which each centre is added after those before it and stays.
   static CentreSequence growing(Eigen::MatrixXd centres) {
     CentreSequence sequence{std::move(centres), {}, 0, ""};
     sequence.most = sequence.pool.cols();

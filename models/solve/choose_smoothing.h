@@ -1,14 +1,13 @@
-// The smoothing of a fit where none was decided by strokes left out
-// (models/fit/correction_strength.h), from the data alone and without refitting.
+// Selects the smoothing of a fit by maximum likelihood, from the data alone and without refitting, where
+// cross-validation (models/fit/correction_strength.h) has not selected it.
 //
-// One eigendecomposition of P K P (projected_kernel.h) for a subset of the sites, taken at
-// even steps, gives the likelihood of every smoothing, with noise and function normal and the
-// scale of the prior profiled out: e the eigenvalues and z the data's shares,
-//   N ln(sum_i z_i^2 / (e_i + smoothing)) + sum_i ln(e_i + smoothing) least.
-// What was left out of strokes lies where other samples are: such criteria are blind to what
-// happens between clusters of samples, and may by luck choose next to nothing. This one is not.
-// The smoothing is the variance of the noise over that of the prior, which
-// does not depend on N: what is best for the subset serves for all the sites.
+// One eigendecomposition of P K P (projected_kernel.h) for an evenly spaced subset of up to 500 sites gives the
+// likelihood of every smoothing, for normal noise and a normal prior whose scale is profiled out,
+//   minimise N ln(sum_i z_i^2 / (e_i + smoothing)) + sum_i ln(e_i + smoothing),
+// with the eigenvalues e and the components z of the data. The largest smoothing within two units of the maximum log
+// likelihood is taken. Cross-validation by samples does not see errors between clusters of samples and can select
+// almost no smoothing; the likelihood does not have this fault. The smoothing is the ratio of noise variance to prior
+// variance and does not depend on N, so that of the subset is valid for all sites.
 // Source: Wahba (1985).
 #pragma once
 
@@ -18,13 +17,13 @@
 
 namespace palpate {
 
-// Errors: the eigendecomposition did not converge. Deterministic. Off the tick.
+// Errors: the eigendecomposition did not converge. Deterministic. Slow side.
 Result<double> choose_smoothing(const Sites& sites, KernelKind kernel);
-// What was decided by leaving strokes out was so for the cubic kernel.
+// Whether cross-validation has selected the smoothing; its value is valid for the cubic kernel only.
 inline bool is_smoothing_decided(const Sites& sites, KernelKind kernel) {
   return sites.smoothing && kernel == KernelKind::cubic;
 }
-// That which was decided; otherwise the most likely.
+// The smoothing selected by cross-validation, otherwise by maximum likelihood.
 Result<double> smoothing_of(const Sites& sites, KernelKind kernel);
 
 }  // namespace palpate

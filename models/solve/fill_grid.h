@@ -13,14 +13,13 @@
 
 namespace palpate {
 
-// Fills out[i] for the points, d x M, of a batch.
+// Sets out[i] to the value at points.col(i), for a batch of points, d x M.
 using BatchFunction = std::function<void(const Eigen::MatrixXd& points, Eigen::VectorXd& out)>;
 
-// More nodes than this (800 MB) are refused.
+// The maximum number of nodes (800 MB).
 inline constexpr std::size_t kMostVoxels = 100'000'000;
 
-// Sets every value of a grid with nodes to the function there. Errors: too
-// many nodes; interrupted. Off the tick.
+// Sets the values of a grid to those of the function at its nodes. Errors: too many nodes; interrupted. Slow side.
 Status fill_grid(VoxelGrid& grid, const BatchFunction& function, const FitControl& control = {});
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// What a fit says about itself.
+// The results of a fit with its diagnostics.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +11,13 @@ namespace palpate {
 
 struct FitReport {
   Eigen::Index centres_used = 0;
-  // Condition number of the system solved: columns scaled to length 1, or the smoothed matrix
-  // (direct).
+  // Condition number of the solved system: of the columns scaled to length 1, or of the smoothed matrix (direct).
   double condition = 0.0;
   // sqrt(mean(row_scale^2 (f - h)^2)) over the sites.
   double residual_rms = 0.0;
   // The factor of the penalty (penalised_weights.h).
   double smoothing = 0.0;
-  // Sentences for people: what was clamped, truncated or skipped.
+  // Sentences for the user: what was clamped, truncated or skipped.
   std::vector<std::string> notes;
 };
 

@@ -1,6 +1,5 @@
-// An orthonormal basis of the columns chosen so far, of the rows scaled by
-// row_scale, and what of the data lies outside it. Selection methods start it
-// with the polynomial tail and add one kernel column at a time.
+// An orthonormal basis of the selected columns, scaled by row_scale, and the residual of the data. Selection methods
+// start it with the polynomial tail and add one kernel column at a time.
 // Thread guarantee: one object, one thread.
 #pragma once
 
@@ -13,23 +12,22 @@ namespace palpate {
 
 class OrthogonalBasis {
  public:
-  // The scaled tail columns G of the kernel, and row_scale * target as data.
-  // Room for `more` further columns.
+  // Starts with the scaled tail columns G of the kernel, and row_scale * target as data. `more`: maximum number of
+  // columns to be added.
   OrthogonalBasis(const Sites& sites, KernelKind kernel, Eigen::Index more);
 
-  // A column's part outside the basis, by two passes of Gram-Schmidt, which
-  // leave it orthogonal to rounding.
+  // The part of a column orthogonal to the basis, by two passes of Gram-Schmidt (orthogonal to rounding).
   struct Outside {
     Eigen::VectorXd column;
-    double squared = 0.0;      // its squared length
+    double squared = 0.0;      // squared length of `column`
     double correlation = 0.0;  // its product with the residual
   };
   Outside outside(const Eigen::VectorXd& column) const;
-  // Leaves of each column (N rows) its part outside, by the same two passes.
+  // Replaces each column (N rows) by its part orthogonal to the basis, in the same way.
   void project_out(Eigen::MatrixXd& columns) const;
 
-  // Makes the direction part of the basis and takes its share from the
-  // residual. Returns q, the new unit column. `part.squared` > 0.
+  // Adds the direction of `part` to the basis and subtracts its component from the residual. Returns q, the new unit
+  // column. `part.squared` must be > 0.
   Eigen::VectorXd add(const Outside& part);
 
   // N x (size + 1): the basis columns, then the residual.

@@ -1,5 +1,4 @@
-// The leaves of a kD-tree over sites: disjoint sets that can be split at the
-// median of their widest dimension.
+// The leaves of a kD-tree over sites: disjoint sets, each of which can be split at the median of its widest dimension.
 // Thread guarantee: one object, one thread.
 #pragma once
 
@@ -15,11 +14,9 @@ class SiteTree {
 
   Eigen::Index leaf_count() const { return static_cast<Eigen::Index>(leaves_.size()); }
   Eigen::Index leaf_of(Eigen::Index site) const { return leaf_of_[static_cast<std::size_t>(site)]; }
-  // Mean of the leaf's points.
   Eigen::VectorXd barycentre(Eigen::Index leaf) const;
-  // Splits in two halves, ties moved so that equal coordinates stay together:
-  // the lower half keeps the number, the upper one gets leaf_count(). False,
-  // and nothing done, when all points of the leaf are the same.
+  // Splits a leaf at the boundary between different coordinates nearest to the median. The lower part keeps the index,
+  // the upper one gets leaf_count(). Returns false, without a change, if all points of the leaf are equal.
   bool split(Eigen::Index leaf);
 
  private:
