@@ -1,10 +1,10 @@
-// Whether two recordings of one set have different forces at the same depth, which no single model renders:
-// another specimen, a preload, or a force zero.
+// Detects two recordings of one set with different forces at the same depth, which no single model can render: another
+// specimen, a preload, or a force zero.
 //
-// The depths that both reach are cut into sixty bins. Two recordings contradict each other when in four of five bins
-// the middle 90 % of their forces do not overlap, whatever the tool did there, when the medians of their forces on
-// the way in differ by more than two JND at the median bin, and when no shift of one against the other brings
-// that below one JND: a shift is another surface, which a fit finds.
+// The depths that both reach are divided into sixty bins. The recordings contradict each other if in four of five bins
+// the central 90 % of their forces do not overlap, if the medians of their loading forces differ by more than two JND
+// at the median bin, and if no shift of one against the other reduces that to one JND: a shift is another surface,
+// which a fit identifies.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -16,8 +16,8 @@
 namespace palpate {
 
 struct Contradiction {
-  double force_N = 0.0;      // the second less the first, at the median bin
-  double speed_ratio = 1.0;  // of the way in, the faster over the slower: a material may do that
+  double force_N = 0.0;      // the second minus the first, at the median bin
+  double speed_ratio = 1.0;  // of the mean loading speeds, the faster over the slower: may explain the difference
 };
 
 std::optional<Contradiction> find_contradiction(const Recording& first, const Recording& second, const JndLine& jnd);

@@ -1,4 +1,4 @@
-// What one pass over a recording tells of its sampling, its force and its motion.
+// Measures of the sampling, the force and the motion of a recording.
 // Thread guarantee: slow side, pure.
 #pragma once
 
@@ -10,12 +10,12 @@
 
 namespace palpate {
 
-// Depths by quarters of what was pressed, speeds by bands: one and five times that in a second, 10 and
-// 50 mm/s where a hand presses by 10 mm.
+// The edges of the speed bands, relative to the greatest depth: 10 and 50 mm/s where that is 10 mm. The depth is
+// divided into quarters.
 inline constexpr std::size_t kDepthQuarters = 4;
 inline constexpr std::size_t kSpeedBands = 3;
 inline constexpr std::array<double, kSpeedBands - 1> kSpeedEdges_per_s = {1.0, 5.0};
-inline constexpr double kLeastCell_s = 0.05;  // less time in a cell: it was not visited
+inline constexpr double kLeastCell_s = 0.05;  // a cell with less time counts as not visited
 
 struct RecordingMeasures {
   double duration_s = 0.0;
@@ -26,18 +26,17 @@ struct RecordingMeasures {
   double highest_position_m = 0.0;
   double lowest_force_N = 0.0;
   double highest_force_N = 0.0;
-  // Flat tops: rows at exactly the greatest force, in runs of at least three, while
-  // the position goes on; the greatest way that it goes in one run.
+  // Clipping: the rows at exactly the greatest force, in runs of at least three, and the largest range of positions in
+  // one run.
   std::size_t flat_rows = 0;
   double flat_travel_m = 0.0;
-  // Inside: beyond the surface given. Where the tool never came out that far, depths count from the outermost
-  // position.
+  // Contact: beyond the given surface, or beyond the lowest position where that is deeper.
   double outermost_contact_m = 0.0;
   std::size_t contact_rows = 0;
   int strokes = 0;
   double inward_travel_m = 0.0;
   double outward_travel_m = 0.0;
-  int small_strokes = 0;        // turns in contact, 5 to 40 % of the deepest apart
+  int small_strokes = 0;        // turns in contact with a distance of 5 to 40 % of the greatest depth
   double longest_hold_s = 0.0;  // in contact, moving by less than 2 % of the depth
   std::array<std::array<double, kSpeedBands>, kDepthQuarters> seconds{};  // depth x speed
 };
