@@ -1,4 +1,4 @@
-// Memory for vector loops.
+// Aligned memory for vectorised loops.
 // Thread guarantee: slow side (allocates).
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-// Zeroed, aligned to a cache line and to the widest vector.
+// `count` values, set to zero, aligned to a cache line and to the widest vector.
 template <typename T>
 std::shared_ptr<T[]> aligned_array(std::size_t count) {
   constexpr std::align_val_t kAlignment{64};

@@ -1,5 +1,5 @@
-// Bernstein polynomials on [0, 1] in powers of u: the bases of the trend, in
-// which "never negative" is "no negative coefficient".
+// Bernstein polynomials on [0, 1] in powers of u. A polynomial with non-negative coefficients in this basis is
+// non-negative on [0, 1]; the fit of the trend uses that.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
@@ -26,8 +26,7 @@ constexpr std::array<double, n + 1> bernstein(std::size_t k) noexcept {
   return power;
 }
 
-// Coefficients of the integral of B_k,n from 0 to u in u^1 .. u^(n+1): it rises
-// wherever the coefficient before it is positive.
+// Coefficients of the integral of B_k,n from 0 to u in u^1 .. u^(n+1). It increases with u.
 template <std::size_t n>
 constexpr std::array<double, n + 1> bernstein_integral(std::size_t k) noexcept {
   std::array<double, n + 1> power = bernstein<n>(k);

@@ -1,7 +1,6 @@
-// What a fitted model adds to its trend: h(u) of the normalised features. The
-// kinds (radial basis functions, a grid, nothing) are classes with one interface,
-// so that evaluation, the model file and the fits need no list of them: a new kind
-// is one source file and one line in correction.cpp.
+// The correction h(u) of the trend, a function of the normalised features. Its kinds (radial basis functions, a grid,
+// none) are classes with one interface, so that evaluation, model files and fits need no list of them: a new kind is
+// one source file and one row in correction.cpp.
 //
 // Thread guarantee: a Correction is immutable and may be shared by any threads;
 // `evaluate` and `size` as in ForceModel, the rest slow side.
@@ -26,22 +25,21 @@ class Correction {
  public:
   virtual ~Correction() = default;
 
-  // h(u) in newtons. `u`: one normalised value per feature; the correction must
-  // have passed `validate`. Haptics thread, wait-free, no allocation.
+  // h(u) in newtons. `u`: one normalised value per feature. The correction must have passed `validate`. Haptics
+  // thread, wait-free, no allocation.
   virtual double evaluate(const double* u) const noexcept = 0;
-  // Centres, or nodes of a grid; 0 when it has neither.
+  // The number of centres, or of nodes of a grid; 0 for neither.
   virtual int size() const noexcept = 0;
-  // The model is its trend alone, and `evaluate` is not asked.
+  // True if the model is its trend alone; `evaluate` is then not called.
   virtual bool is_none() const noexcept { return false; }
 
-  // Checks sizes and finiteness for `dimension` features. Errors: names the
-  // field, what was found and what was expected.
+  // Checks sizes and finiteness for `dimension` features. Errors: the field, the value found and the value expected.
   virtual Status validate(int dimension) const = 0;
-  // Everything that `read` needs to make the same correction, bit by bit.
+  // The fields of a model file; `read` of the kind makes a bit-identical correction from them.
   virtual FileFields file_fields() const = 0;
 };
 
-// That of a model which is its trend alone.
+// The correction of a model that is its trend alone.
 class NoCorrection final : public Correction {
  public:
   double evaluate(const double*) const noexcept override { return 0.0; }
@@ -53,19 +51,19 @@ class NoCorrection final : public Correction {
 
 using CorrectionPtr = std::shared_ptr<const Correction>;
 
-// How a kind is found in a model file and read from it.
+// The identification of a kind in a model file and its reader.
 struct CorrectionKind {
   const char* key;  // the top-level field that only this kind has
-  // Complains to `fields` about what is wrong, and may then return null. `top`: the
-  // whole document. The result is validated by the caller.
+  // Reports errors to `fields`, and may then return null. `top`: the whole document. The caller validates the
+  // result.
   CorrectionPtr (*read)(JsonFields& fields, const JsonNode& top, int dimension);
 };
 
 // All kinds, in the order of the table in correction.cpp.
 const std::vector<CorrectionKind>& correction_kinds();
 
-// One more kind, for a program with a method of its own. Before other threads use
-// models; `kind.key` must be new. And its end.
+// Adds a kind for a method of another program; `kind.key` must be new. Not thread-safe: to be called before other
+// threads use models. `remove_correction_kind` removes it.
 void add_correction_kind(const CorrectionKind& kind);
 void remove_correction_kind(const char* key);
 

@@ -1,17 +1,15 @@
-// How near a feature vector is to the data that a model was fitted to.
+// The distance of a feature vector from the data of a model, and the trust in the correction there.
 //
-// "Inside" means near a recorded sample in the normalised feature space, not
-// inside the bounding box: a box around a few strokes is mostly empty, and
-// radial basis functions were seen to be wrong by twice the largest force in
-// it. The guard keeps a thinned set of the sites ("cover": no site is further
-// than `cover_radius` from one of its points) and gives
+// The domain is the neighbourhood of the recorded samples in the normalised feature space, not their bounding box: the
+// box of a few strokes is mostly empty, and errors of radial basis functions in it reached twice the largest force.
+// The guard stores a thinned set of the sites, the cover, with every site well within inner_radius of it, and gives
 //
 //   trust g(x) = 1                 for distance <= inner_radius
 //              = smoothstep        between
 //              = 0                 for distance >= outer_radius
 //
-// The distance to a set of points changes no faster than the query moves, so g
-// is continuous, with slope at most 1.5 / (outer - inner).
+// The distance to a set is Lipschitz continuous with constant 1, so g is continuous, with slope at most
+// 1.5 / (outer - inner).
 //
 // Thread guarantee: immutable; `trust` is wait-free and allocates nothing.
 #pragma once
@@ -40,11 +38,10 @@ class DomainGuard {
   // `x`: d normalised values. Returns g in [0, 1]; 0 when x is not finite.
   double trust(const double* x) const noexcept { return trust_at(squared_distance(x)); }
 
-  // The squared distance to the cover, infinite when x is not finite, and the trust
-  // that goes with it. Within the inner radius, where trust is whole and the error bound
-  // does not grow, it is not told: there 0 may stand for it.
+  // The squared distance to the cover; infinite when x is not finite. Within the inner radius, where the trust is 1
+  // and the error bound does not grow, it may be 0 instead.
   double squared_distance(const double* x) const noexcept { return squared_distance(x, leaf(x)); }
-  // The same in two halves, for who has something to do between them.
+  // The same in two steps, so that the tick can interleave other work.
   const float* leaf(const double* x) const noexcept { return near_.leaf(x); }
   double squared_distance(const double* x, const float* leaf_of_x) const noexcept {
     return near_.found(x, leaf_of_x) ? 0.0 : nearest_.nearest_squared(x);

@@ -1,16 +1,14 @@
-// A fitted force model: everything that evaluation needs, as data, and the
-// ForceModel that computes it.
+// A fitted force model: its data, and the ForceModel that evaluates them.
 //
 //   f(x) = clamp( T(x) + g(u) clamp(h(u) - b(x), -limit, limit), lowest, largest )
 //   u = (x - offset) / scale                                    normalised features
 //
-// T: the trend (models/model/trend.h). h: the correction (models/model/correction.h):
-// eq. 2 of Hoever & Harders (2009), its grid, or none at all. g: trust, 1 near the data, 0 out of domain
-// (models/model/domain_guard.h). b: 0 when h was fitted to what the trend leaves over (default), T(x) when h was fitted
-// to the force itself (the paper's own recipe). limit: the largest correction that the training data called for.
-// largest: 1.2 x the largest training force. lowest: the lowest one where a material that sticks to the tool was
-// recorded, else 0. So out of its domain every method is the trend: continuous, bounded, and never pulling the tool in
-// by more than the material did.
+// T: the trend (models/model/trend.h). h: the correction (models/model/correction.h): eq. 2 of Hoever & Harders
+// (2009), a grid of it, or none. g: the trust, 1 near the data, 0 out of the domain (models/model/domain_guard.h). b: 0
+// if h was fitted to the residual of the trend (default), T(x) if it was fitted to the force (the paper's recipe).
+// limit: 1.1 x the largest correction in the training data. largest: 1.2 x the largest training force. lowest: the
+// lowest training force of a material that adheres to the tool, else 0. Out of its domain every model is thus the
+// trend: continuous, bounded, and attracting the tool at most as much as the material did.
 //
 // Thread guarantee: FittedModel is immutable; `evaluate` as in ForceModel.
 #pragma once
@@ -34,27 +32,26 @@ namespace palpate {
 
 struct RelaxationTime {
   double time_s = 0.0;
-  double standard_error_s = 0.0;  // 0: given, not identified
+  double standard_error_s = 0.0;  // 0: given by the user or the scene
 };
 
-// How a training recording lies to the others of its set, what its force sensor reads in
-// air, and how late that is; all were taken off.
+// The corrections of a training recording: its offset from the others of its set, its force zero and force lag.
 struct RecordingSurface {
   std::string name;
   double offset_m = 0.0;
-  double standard_error_m = 0.0;  // infinite: not known
+  double standard_error_m = 0.0;  // infinite: not identified
   double force_zero_N = 0.0;
-  double lag_s = 0.0;              // by which the forces were moved back
-  std::uint64_t content_hash = 0;  // of its rows as recorded; not in files
+  double lag_s = 0.0;              // the forces were shifted to earlier times by this
+  std::uint64_t content_hash = 0;  // of its rows as recorded; not stored in files
 };
 
-// What the positions of the training recordings came in: the coarsest of them.
+// The position sensor of the training recordings; the coarsest of them.
 struct PositionSensor {
   double encoder_step_m = 0.0;    // 0: not quantised
-  double position_noise_m = 0.0;  // standard deviation beside the quantisation
+  double position_noise_m = 0.0;  // standard deviation in addition to the quantisation
 };
 
-// Where a model comes from; no effect on its forces.
+// The origin of a model; it has no effect on the forces.
 struct Provenance {
   std::vector<std::string> recordings;
   std::vector<RecordingSurface> surfaces;  // empty: positions as recorded
@@ -72,21 +69,21 @@ struct Provenance {
 
 struct ModelData {
   std::string name;    // e.g. "greedy-100"
-  std::string method;  // a row's name in models/fit/methods.h, e.g. "greedy"
+  std::string method;  // name of a row in models/fit/methods.h, e.g. "greedy"
   std::vector<FeatureSpec> features;
   Eigen::VectorXd offset;  // per feature, SI
   Eigen::VectorXd scale;   // per feature, SI, > 0
-  Eigen::VectorXd lower;   // bounds of the training data, SI
+  Eigen::VectorXd lower;   // smallest values of the training data, SI
   Eigen::VectorXd upper;
   Trend trend;
   bool corrects_trend = true;  // h was fitted to f - T; false: to f
   double correction_limit_N = 0.0;
-  double largest_force_N = 0.0;  // of the training data; output stays below 1.2 times it
-  double lowest_force_N = 0.0;   // <= 0; of the training data where they pull, else 0
+  double largest_force_N = 0.0;  // of the training data; the output is at most 1.2 times this
+  double lowest_force_N = 0.0;   // of the training data if the material pulls, else 0; <= 0
   DomainCover cover;
-  std::optional<ErrorBound> error_bound;  // none in files of before, and of the paper's recipe
-  // No effect on the force of a feature vector: what a stream, or an exported file, takes
-  // for its own sensor when it is told nothing. None in files of before.
+  std::optional<ErrorBound> error_bound;  // none in earlier files and in the paper's recipe
+  // The default sensor of streams and exported files; no effect on the force of a feature vector. None in earlier
+  // files.
   std::optional<PositionSensor> sensor;
   JndLine jnd;
   CorrectionPtr correction;  // h; shared by copies
@@ -95,16 +92,15 @@ struct ModelData {
 
 inline constexpr double kForceMargin = 1.2;
 
-// Checks sizes, signs and finiteness of everything above. Errors: names the
-// field, what was found and what was expected.
+// Checks sizes, signs, finiteness and plausible forces. Errors: the field, the value found and the value expected.
 Status validate_model(const ModelData& data);
 
-// The sensor of a tool of which only the step is known: with the training recordings'
-// step, or with 0 for "not known", it is theirs; else that step and no noise.
+// The sensor of a tool with this encoder step: the sensor of the training recordings if the step is theirs or 0 (not
+// known), else one with this step and no noise.
 PositionSensor sensor_with_step(const ModelData& data, double encoder_step_m);
 
-// Depths beyond this are out of the domain whatever the guard's radius; infinite without
-// a depth feature. `feature`: which one that is; 0 without.
+// Greater depths are out of the domain at any distance from the data; infinite without a depth feature. `feature`: the
+// index of the depth feature, or 0.
 double deepest_in_domain_m(const ModelData& data, std::size_t& feature);
 
 class FittedModel final : public ForceModel {
@@ -124,10 +120,10 @@ class FittedModel final : public ForceModel {
   ModelData data_;
   TrendInputs trend_inputs_;
   DomainGuard guard_;
-  const Correction* correction_ = nullptr;  // of data_; null when the trend stands alone
+  const Correction* correction_ = nullptr;  // of data_; null for a trend alone
   std::size_t dimension_ = 0;
-  std::size_t depth_ = 0;   // which feature
-  double deepest_m_ = 0.0;  // depths beyond are out of the domain whatever the guard's radius
+  std::size_t depth_ = 0;   // index of the depth feature
+  double deepest_m_ = 0.0;  // deepest_in_domain_m
   std::array<double, kMaxFeatures> offset_{};
   std::array<double, kMaxFeatures> inverse_scale_{};
 };

@@ -1,10 +1,8 @@
-// How near a query is to a set of points: the distance to the nearest, and whether any
-// is within a radius that is known beforehand.
+// The distance of a query to the nearest of a set of points, and a faster test whether it is within a fixed radius.
 //
-// Points are stored and compared in single precision: the distance is off by at most
-// 3e-7 (|x| + largest |point|) + 1e-10, and "within" says yes only where the distance
-// would say so. What it leaves out for that is a share of 1e-5 of the squared distance
-// from the middle of the points.
+// Points are stored and compared in single precision. The error of the distance is at most
+// 3e-7 (|x| + largest |point|) + 1e-10, and the test is positive only if the exact distance is within the radius. Its
+// margin for that is 1e-5 of the squared distance from the middle of the points.
 // Thread guarantee: immutable; queries are wait-free and allocate nothing, any thread.
 #pragma once
 
@@ -23,7 +21,7 @@ class NearestDistance {
   // `points`: d x N, d from 1 to kMaxFeatures, N >= 1.
   explicit NearestDistance(const Eigen::MatrixXd& points);
 
-  // min_i |x - point_i|^2, O(N); infinite when x is not finite or further than 1e19 away.
+  // min_i |x - point_i|^2, O(N); infinite when x is not finite or has a coordinate beyond 1e19.
   double nearest_squared(const double* x) const noexcept;
 
  private:
@@ -33,10 +31,9 @@ class NearestDistance {
   simd::NearestFunction nearest_ = nullptr;
 };
 
-// A tree of five median splits, each with some points of the other half beside its own,
-// and a query looks at the points of one leaf only: on recordings 1 to 6 of a thousand
-// that are near some point do not find it there (14 with six features), where leaves
-// without such an overlap fail 28 to 200. Nothing branches on the way.
+// A tree of five median splits whose halves overlap by some points. A query examines the points of one leaf only: of a
+// thousand queries on recordings that are near a point, 1 to 6 are not found (14 with six features); without the
+// overlap it would be 28 to 200. The descent has no branches.
 class NearPoints {
  public:
   // `points` as above.
@@ -44,7 +41,7 @@ class NearPoints {
 
   // The leaf of x, for `found`.
   const float* leaf(const double* x) const noexcept { return loops_.leaf(tree_, x); }
-  // True: some point is no further than the radius. False: the distance has to say.
+  // True: a point is within the radius. False: the distance must be computed.
   bool found(const double* x, const float* leaf_of_x) const noexcept { return loops_.near(tree_, leaf_of_x, x); }
 
  private:

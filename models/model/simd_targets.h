@@ -1,7 +1,6 @@
-// The instruction sets that Highway does not compile our loops for; before its headers.
-// AVX3_DL adds nothing these loops use; machines with SSSE3 but not SSE4 are older than
-// ten years. Vectors of SVE have no size when they are compiled, so that no array can hold
-// them: on arm64 there is NEON, which all of them have.
+// The instruction sets for which Highway does not compile the loops; to be included before its headers. AVX3_DL adds
+// nothing that these loops use; machines with SSSE3 but without SSE4 are older than ten years. SVE vectors have no
+// size at compile time and cannot be stored in arrays; every arm64 machine has NEON.
 #pragma once
 
 #define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)

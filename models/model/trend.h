@@ -1,20 +1,16 @@
-// The trend: a nonlinear viscoelastic solid fitted to the recording, which the
-// radial basis functions correct near the data and which stands alone away
-// from it.
+// The trend: a nonlinear viscoelastic solid fitted to the recordings. The radial basis functions correct it near the
+// data; away from the data it is the model.
 //
-//   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum y
+//   T(x) = E(d) + eta(d) v + mu(d) v / (1 + |v| / v_0) + sum_b z_b + sum_k y_k
 //
-// d depth, v velocity, z_b the force of Maxwell branch b (engine/tick/features.h),
-// all taken from the feature vector; v_0 is the recording's RMS velocity, so
-// that the two viscous terms together follow a viscosity that falls with speed.
-// z_b also of a maxwell_spectrum, y the force of bristles, stops and those that creep. E
-// rises with depth, eta, mu and the stiffnesses of branches and bristles are never negative
-// (the fit enforces it), so that the trend stores and dissipates energy and makes none. A scene without velocity or
-// branches has the terms that it has features for; position alone leaves E(d).
+// d: depth, v: velocity, z_b: force of Maxwell branch b or of a spectrum of them, y_k: force of stops and creeping
+// bristles (engine/tick/features.h); all are features. v_0: RMS velocity of the recordings, so that the two viscous
+// terms together describe a viscosity that falls with speed. E increases with depth, and eta, mu and the stiffnesses
+// of branches and bristles are non-negative (the fit enforces it), so that the trend is passive. A model without
+// velocity or branches has only the terms of its features; position alone leaves E(d).
 //
-// Beyond the data: E continues along its tangent below the greatest recorded
-// depth, v counts up to velocity_limit, so that the value stays bounded by what
-// a recording can justify; the model clamps the rest.
+// Beyond the data: E continues along its tangent beyond the greatest recorded depth, and v is clamped to
+// velocity_limit, so that the value is bounded; the model clamps the rest.
 //
 // Thread guarantee: value type, `at` is wait-free and allocates nothing.
 #pragma once
@@ -32,8 +28,7 @@ namespace palpate {
 
 inline constexpr std::size_t kViscosityCoefficients = 3;
 
-// Where the trend finds its terms among the features: made once, so that a tick does
-// not go through their specifications.
+// The indices of the trend's inputs among the features, determined once outside the tick.
 struct TrendInputs {
   explicit TrendInputs(const std::vector<FeatureSpec>& specs) noexcept;
 
@@ -41,18 +36,18 @@ struct TrendInputs {
   std::uint8_t depth = kNone;
   std::uint8_t velocity = kNone;
   std::uint8_t force_count = 0;
-  std::array<std::uint8_t, kMaxFeatures> force{};  // features that are forces, in order
+  std::array<std::uint8_t, kMaxFeatures> force{};  // indices of features that are forces, ascending
 };
 
 struct Trend {
   double reference_depth_m = 1.0;  // greatest recorded depth; u = d / reference_depth_m
   ElasticSpline elastic;           // E
   std::array<double, kViscosityCoefficients> viscosity_Ns_per_m{};  // eta = sum c_k u^k, u <= 1
-  std::array<double, kViscosityCoefficients> thinning_Ns_per_m{};   // mu, likewise
+  std::array<double, kViscosityCoefficients> thinning_Ns_per_m{};   // mu, in the same way
   double thinning_velocity_m_per_s = 1.0;                           // v_0
   double velocity_limit_m_per_s = 0.0;
 
-  // `features` as `inputs`, or `specs`, name them. Returns newtons, any sign.
+  // T(x) in newtons, of any sign. `inputs`, or `specs`: those of `features`.
   double at(const double* features, const TrendInputs& inputs) const noexcept;
   double at(const double* features, const std::vector<FeatureSpec>& specs) const noexcept {
     return at(features, TrendInputs(specs));

@@ -1,6 +1,5 @@
-// Numbers, vectors and points of a model file: read from an untrusted JSON text, and
-// written as the shortest decimals that read back as the same double, one item to a line
-// where models are to be compared by lines.
+// Numbers, vectors and points of a model file: read from untrusted JSON text, and written as the shortest decimals
+// that read back as the same double, with one item a line so that models can be compared by lines.
 // Thread guarantee: as JsonFields; what writes is pure, slow side (allocates).
 #pragma once
 
@@ -12,16 +11,15 @@
 
 namespace palpate {
 
-// The member `key`: exactly `size` numbers (`words` says which). Zeros, and a
-// complaint, when it is anything else.
+// The member `key`: exactly `size` numbers, which error messages call `words`. Otherwise zeros, and an error in
+// `fields`.
 Eigen::VectorXd read_vector(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index size,
                             const std::string& words);
 
-// The member `key`: a list of at least one point, each a list of `dimension` numbers;
-// one point a column.
+// The member `key`: a list of at least one point, each a list of `dimension` numbers. Returns one column a point.
 Eigen::MatrixXd read_points(JsonFields& fields, const JsonNode& object, const char* key, Eigen::Index dimension);
 
-// The shortest decimal, but never "-0": as a JSON integer it would lose its sign.
+// The shortest decimal; "-0.0" for -0, because the JSON integer "-0" would lose the sign.
 std::string json_number(double value);
 std::string json_quoted(const std::string& text);
 // "[1, 2.5]"

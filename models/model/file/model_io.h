@@ -1,4 +1,4 @@
-// Model files on disk; models/model/file/model_json.h says what is in them.
+// Model files on disk; models/model/file/model_json.h describes their content.
 // Thread guarantee: slow side only (allocates, does I/O).
 #pragma once
 
@@ -11,17 +11,15 @@
 
 namespace palpate {
 
-// Larger files are refused before they are read. The largest model anyone can
-// want, a grid of ten million nodes, needs about half of it.
+// Larger files are rejected unread. A grid of ten million nodes, the largest that is saved, needs about half of it.
 inline constexpr std::uintmax_t kMaximumModelFileBytes = std::uintmax_t{512} << 20;
 
-// Writes a model file, whole or not at all. Errors: data that breaks validate_model;
-// the file exists and `overwrite` is false; the disk refuses.
+// Writes a model file atomically. Errors: data that violates validate_model; the file exists and `overwrite` is false;
+// input/output errors.
 Status save_model(const std::string& path, const ModelData& data, bool overwrite);
 
-// Reads a model file and makes it ready to evaluate; its forces are
-// bit-identical to those of the model that was saved. Errors: no such file, not
-// a plain file, larger than kMaximumModelFileBytes, or as read_model_text.
+// Reads a model file; the forces are bit-identical to those of the saved model. Errors: no such file, not a regular
+// file, larger than kMaximumModelFileBytes, or those of read_model_text.
 Result<std::shared_ptr<const FittedModel>> load_model(const std::string& path);
 
 }  // namespace palpate

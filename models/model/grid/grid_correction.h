@@ -1,5 +1,4 @@
-// A grid of forces as a model's correction: the data, for files and fits, and the
-// look-up made from it, for the tick.
+// A grid of forces as the correction of a model: the data for files and fits, and the look-up for the tick.
 // Thread guarantee: immutable.
 #pragma once
 
@@ -17,18 +16,17 @@ class GridCorrection final : public Correction {
   double evaluate(const double* u) const noexcept override { return lookup_->evaluate(u); }
   int size() const noexcept override { return static_cast<int>(grid_.node_count()); }
   Status validate(int dimension) const override { return validate_voxel_grid(grid_, dimension); }
-  // grid {nodes, values_N}: the axes first, then the values, one line for each run
-  // along the last axis.
+  // grid {nodes, values_N}: first the axes, then the values, one line for each run along the last axis.
   FileFields file_fields() const override;
 
   const VoxelGrid& grid() const noexcept { return grid_; }
 
  private:
   VoxelGrid grid_;
-  std::optional<VoxelLookup> lookup_;  // none when the grid is not valid
+  std::optional<VoxelLookup> lookup_;  // none if the grid is not valid
 };
 
-// The grid of a correction of this kind; null for another kind, or none at all.
+// The grid of a correction of this kind, else null.
 const VoxelGrid* grid_of(const CorrectionPtr& correction);
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
-// A rectilinear grid of precomputed forces, and the look-up in it: linear in each of its d
-// dimensions between the 2^d nodes around x. The loops are compiled for each dimension, and
-// widths are divided by beforehand.
-// Thread guarantee: a value type; the look-up is immutable.
+// A rectilinear grid of precomputed forces, and the look-up in it by multilinear interpolation between the 2^d nodes
+// around x. The loops are compiled for each dimension, and the reciprocal widths of the cells are precomputed.
+// Thread guarantee: value type; the look-up is immutable.
 // Source: Hoever & Harders (2009), section 3.
 #pragma once
 
@@ -16,7 +15,7 @@
 namespace palpate {
 
 struct VoxelGrid {
-  // Per dimension: the node coordinates, ascending, at least 2 (normalised).
+  // For each dimension the coordinates of the nodes, ascending, at least 2 (normalised).
   std::vector<std::vector<double>> nodes;
   // Values at the nodes, the last dimension fastest.
   std::vector<double> values_N;
@@ -24,7 +23,7 @@ struct VoxelGrid {
   std::size_t node_count() const noexcept { return values_N.size(); }
 };
 
-// Errors: names the array, what was found and what was expected.
+// Errors: the array, the value found and the value expected.
 Status validate_voxel_grid(const VoxelGrid& grid, int dimension);
 
 class VoxelLookup {
@@ -32,16 +31,15 @@ class VoxelLookup {
   // `grid` must pass validate_voxel_grid; it is copied.
   explicit VoxelLookup(const VoxelGrid& grid);
 
-  // The grid's value at x, d values; coordinates outside the box count as
-  // those of its edge, NaN as the lower edge. Haptics thread, wait-free, no
-  // allocation, O(2^d + d log nodes).
+  // The grid's value at x, d values. Coordinates outside the box are clamped to it; NaN counts as the lower edge.
+  // Haptics thread, wait-free, no allocation, O(2^d + d log nodes).
   double evaluate(const double* x) const noexcept { return (this->*interpolate_)(x); }
 
  private:
   struct Axis {
     std::vector<double> nodes;
     std::vector<double> reciprocal_width;  // of the cell that begins at each node but the last
-    std::size_t stride = 0;                // in values
+    std::size_t stride = 0;                // in values_
   };
   struct Place {
     std::size_t offset = 0;

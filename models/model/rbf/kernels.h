@@ -8,8 +8,7 @@
 //
 // With a tail of at least that degree the kernel times its sign is positive
 // definite on every weight vector orthogonal to the tail (Micchelli 1986).
-// Thread guarantee: pure functions, any thread; only the name look-up returns
-// strings.
+// Thread guarantee: pure functions, any thread.
 #pragma once
 
 #include <array>
@@ -28,14 +27,14 @@ inline constexpr std::array<KernelKind, 4> kKernelKinds = {KernelKind::cubic, Ke
 
 struct KernelFacts {
   const char* name;
-  int tail_degree;           // of the polynomial tail that goes with it
+  int tail_degree;           // degree of its polynomial tail
   double definiteness_sign;  // +1 or -1: sign * phi is conditionally positive definite
-  // For exported C, of `squared`, the squared distance.
+  // C expression of the kernel for exported code; `squared`: the squared distance.
   const char* c_text;
 };
 
-// One row a kind, in the order of the kinds. A new kernel is a kind and a row here, and its
-// vector form in rbf_simd.cpp; and data: its name in assets/formats/model.schema.json.
+// One row for each kind, in the order of KernelKind. A new kernel is a kind, a row here, its vector form in
+// rbf_simd.cpp, and its name in assets/formats/model.schema.json.
 inline constexpr std::array<KernelFacts, kKernelKinds.size()> kKernels = {{
     {"cubic", 1, 1.0, "squared * SQRT(squared)"},
     {"linear", 0, -1.0, "SQRT(squared)"},
@@ -48,7 +47,7 @@ constexpr int tail_degree(KernelKind kind) noexcept { return kernel_facts(kind).
 constexpr double definiteness_sign(KernelKind kind) noexcept { return kernel_facts(kind).definiteness_sign; }
 constexpr std::string_view kernel_name(KernelKind kind) noexcept { return kernel_facts(kind).name; }
 
-// The kernel of that name, or nothing when there is none.
+// The kernel of that name; none for an unknown name.
 constexpr std::optional<KernelKind> kernel_from_name(std::string_view name) noexcept {
   for (const KernelKind kind : kKernelKinds)
     if (kernel_name(kind) == name) return kind;

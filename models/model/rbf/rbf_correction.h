@@ -1,5 +1,4 @@
-// A radial basis function as a model's correction: the data, for files and fits,
-// and the evaluator made from it, for the tick.
+// A radial basis function as the correction of a model: the data for files and fits, and the evaluator for the tick.
 // Thread guarantee: immutable.
 #pragma once
 
@@ -25,10 +24,10 @@ class RbfCorrection final : public Correction {
 
  private:
   RbfFunction function_;
-  std::optional<RbfEvaluator> evaluator_;  // none when the function is not valid
+  std::optional<RbfEvaluator> evaluator_;  // none if the function is not valid
 };
 
-// The function of a correction of this kind; null for another kind, or none at all.
+// The function of a correction of this kind, else null.
 const RbfFunction* rbf_of(const CorrectionPtr& correction);
 
 }  // namespace palpate

@@ -1,17 +1,14 @@
-// Fast evaluation of radial basis functions: the vectorised hot loops behind
-// the tick, the grid and the fits. The instruction set is chosen when an
-// object is built (AVX-512, AVX2, SSE4, NEON, SVE or plain), not per call.
+// Vectorised evaluation of radial basis functions for the tick, the grid and the fits. The instruction set (AVX-512,
+// AVX2, SSE4, NEON or plain) is selected when an object is built, not per call.
 //
-// Accuracy: each phi carries a relative error of at most 4 ulp (thin-plate:
-// 8 ulp of r^2 (1 + |log r|)), distances below 1e-18 counting as that; sums are taken in double, in an order that
-// depends on the target. Two targets, or the plain loop of rbf_value, differ
-// by at most 32 eps (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps = 2^-53.
+// Accuracy: each phi has a relative error of at most 4 ulp (thin-plate: 8 ulp of r^2 (1 + |log r|)); distances below
+// 1e-18 are set to 1e-18. Sums are taken in double, in an order that depends on the instruction set. The results of
+// two instruction sets, or of the defining sum, differ by at most 32 eps (sum_j |w_j phi_j| + sum_k |d_k g_k|), eps =
+// 2^-53.
 //
-// No slow denormals: coordinates and weights below 1e-100 in size count as 0
-// and squared distances are lifted to 1e-36, so no intermediate of the loop is
-// denormal unless the result is. Finite results are promised while |x| and
-// |centres| stay below 1e60 and the result below 1e300; a non-finite x gives a
-// non-finite result.
+// Denormals: coordinates and weights below 1e-100 count as 0 and squared distances below 1e-36 are set to it, so no
+// intermediate value is denormal unless the result is. Results are finite while |x| and |centres| are below 1e60 and
+// the result is below 1e300; a non-finite x gives a non-finite result.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,26 +35,24 @@ class PointArrays {
   Eigen::Index count() const noexcept { return count_; }
 
  private:
-  std::shared_ptr<const double[]> memory_;  // shared: copies of an immutable thing are free
+  std::shared_ptr<const double[]> memory_;  // shared by copies
   simd::Points view_;
   Eigen::Index count_ = 0;
 };
 
-// h(x) of eq. 2, ready to evaluate. Immutable: any number of threads may use
-// one object at once.
+// h(x) of eq. 2. Immutable; may be used by several threads at once.
 class RbfEvaluator {
  public:
   // `function` must pass validate_rbf_function.
   explicit RbfEvaluator(const RbfFunction& function);
 
-  // h(x) in newtons. `x`: d values, normalised. Haptics thread, wait-free,
-  // O(n), no allocation.
+  // h(x) in newtons. `x`: d values, normalised. Haptics thread, wait-free, O(n), no allocation.
   double evaluate(const double* x) const noexcept {
     return evaluate_(centres_.view(), weights_.get(), tail_.data(), x);
   }
 
-  // out[i] = h(points.col(i)). `points`: d x M. Off the tick: spreads large M
-  // over all cores; the values equal those of evaluate() to the bit.
+  // out[i] = h(points.col(i)). `points`: d x M. Slow side; uses all cores for large M. Values are bit-identical to
+  // those of evaluate().
   void evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd& out) const;
 
   int dimension() const noexcept { return dimension_; }
@@ -71,15 +66,16 @@ class RbfEvaluator {
   simd::EvaluateFunction evaluate_ = nullptr;
 };
 
-// Rows of the matrix Phi of eq. 5:
+// Rows of the matrix Phi of eq. 5,
 //   out(i, j) = phi(|points.col(first_row + i) - centres.col(j)|)
-// `out`: rows x n, contiguous columns; `first_row` a multiple of 8. Runs on the
-// calling thread; parts of a matrix may be filled by several threads at once.
+// `out`: rows x n, contiguous columns; `first_row`: a multiple of 8. Runs on the calling thread; several threads may
+// fill parts of a matrix at once.
 void kernel_matrix(KernelKind kind, const PointArrays& points, const Eigen::Ref<const Eigen::MatrixXd>& centres,
                    Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index first_row = 0);
 
-// Phi v, the product with the kernel matrix of one point set, which is never stored.
-// `points`: d x N; `v`: N values. On all cores; the result does not depend on their number.
+// Phi v, the product with the kernel matrix of a point set, without storing the matrix. `points`: d x N; `v`: N
+// values.
+// Uses all cores; the result does not depend on their number.
 Eigen::VectorXd kernel_product(KernelKind kind, const Eigen::MatrixXd& points, const Eigen::VectorXd& v);
 
 }  // namespace palpate

@@ -1,10 +1,8 @@
-// The inner loops of everything that computes kernels, one variant per
-// instruction set, chosen when the program runs. Only rbf_evaluate.cpp uses
-// this header; everyone else uses rbf_evaluate.h.
+// The inner loops of all kernel computations, one variant per instruction set, selected at run time. Only
+// rbf_evaluate.h, tests and benchmarks include this header.
 //
-// Arrays are structure-of-arrays: coordinate k of point i is at
-// coordinates[k * stride + i]; counts are multiples of kSimdPad, made up with
-// harmless points (weight 0). Pointers are 64-byte aligned where padded.
+// Points are structures of arrays: coordinate k of point i is coordinates[k * stride + i]. Counts are multiples of
+// kSimdPad, padded with points of weight 0; padded arrays are 64-byte aligned.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +17,7 @@ namespace palpate::simd {
 // Doubles in the widest vector used; every narrower one divides it.
 inline constexpr std::size_t kSimdPad = 8;
 
-// Smaller than this in size counts as 0: no product of such numbers is denormal.
+// Numbers below this count as 0: no product of two others is denormal.
 inline constexpr double kTiny = 1e-100;
 inline double without_denormals(double value) noexcept { return value < kTiny && value > -kTiny ? 0.0 : value; }
 
@@ -30,8 +28,9 @@ struct Points {
   int dimension = 0;
 };
 
-// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of
-// the kernel's degree (polynomial_tail.h); x as without_denormals() has it.
+// sum_j weights[j] phi(|x - point_j|) + sum_k tail[k] g_k(x), with the tail of the kernel's degree
+// (polynomial_tail.h).
+// Coordinates of x below kTiny count as 0.
 using EvaluateFunction = double (*)(const Points& points, const double* weights, const double* tail,
                                     const double* x) noexcept;
 // out[i] = phi(|point_i - centre|) for i < count.
@@ -41,13 +40,12 @@ struct KernelLoops {
   EvaluateFunction evaluate = nullptr;
   ColumnFunction column = nullptr;
 };
-// The loops for this kernel and dimension (1 to 8) on the chosen target.
+// The loops for this kernel and dimension (1 to 8) on the selected instruction set.
 KernelLoops kernel_loops(KernelKind kind, int dimension);
 
-// Names of the instruction sets this processor can run, best first, and the
-// one in use. choose_target takes one of them, or "" for the best; it concerns
-// objects built afterwards. Returns false when there is no such target. For
-// tests and benchmarks, not while other threads build evaluators.
+// The names of the instruction sets of this processor, best first, and the one in use. choose_target selects one of
+// them, or the best for "", for objects built afterwards; false for an unknown name. For tests and benchmarks only,
+// and not while other threads build evaluators.
 std::vector<std::string> target_names();
 std::string target_name();
 bool choose_target(const std::string& name);
