@@ -103,8 +103,7 @@ class MotionSource {
     std::vector<MotionRow> rows;  // without corrections
   };
   // Keeps all rows before `beginning`, then the first `stretch` rows of every `sparse` * `stretch`; of the others
-  // every
-  // `sparse`-th is kept as a run-up.
+  // every `sparse`-th is kept as a run-up.
   struct Thinning {
     std::size_t beginning = 0;
     std::size_t sparse = 1;

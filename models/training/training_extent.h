@@ -35,9 +35,8 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
 
 // The surface position in m, <= 0, of recordings whose depth counts from a preload; 0 where there is none or it cannot
 // be identified. A straight line is fitted to the samples whose depth is below a hundredth of the greatest; the
-// surface
-// is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard errors, its
-// slope exceeds two standard errors, and the surface is nearer than the greatest depth.
+// surface is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard
+// errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
 // Errors: those of the source; interrupted.
 Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
                               const FitControl& control);

@@ -43,8 +43,7 @@ FeatureList dictionary(double sample_s, double longest_s, double depth_m, double
 std::vector<double> all_times(const FeatureList& list);
 
 // The rows of the regression with the list's terms, at most `most_rows`, with their folds. Samples that follow the
-// last
-// used one by less than `least_step_s` are skipped. Errors: those of the source; interrupted.
+// last used one by less than `least_step_s` are skipped. Errors: those of the source; interrupted.
 Result<TrendRows> gather_rows(MotionSource& source, const FeatureList& list, const TrendProblem& problem,
                               std::size_t most_rows, double least_step_s, const FitControl& control, double fraction);
 
