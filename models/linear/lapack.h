@@ -1,7 +1,5 @@
-// The few BLAS and LAPACK routines the fits use, by their Fortran names, and
-// thin wrappers for Eigen matrices. They choose the best instructions when the
-// program runs, which Eigen's own products in a portable build do not.
-// Off the tick only.
+// The BLAS and LAPACK routines of the fits, by their Fortran names, and wrappers for Eigen matrices. These libraries
+// select the instruction set at run time; Eigen's own products in a portable build do not. Slow side only.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,10 +11,9 @@ namespace palpate {
 using MatrixRef = Eigen::Ref<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
-// Sets the threads of BLAS (OpenBLAS; others are left alone) while it lives:
-// one thread where work is split by parallel_for or is too small to split,
-// all of them for a large factorisation. The setting is global, so fits that
-// run at once take turns; the same thread may nest them.
+// Sets the number of threads of BLAS during its lifetime (OpenBLAS only): one where work is split by parallel_for or is
+// too small to split, all for a large factorisation. The setting is global, so concurrent fits wait for each other;
+// one thread may nest them.
 class BlasThreads {
  public:
   explicit BlasThreads(int count);
@@ -29,42 +26,40 @@ class BlasThreads {
   int before_ = 0;
 };
 
-// For programs, at the beginning of main, before another thread computes; not in a library,
-// whose user owns these settings. OpenBLAS takes a processor that is newer than itself for a
-// Prescott of 2004, which makes fits two to three times slower (0.3.21 of Debian 12 on a Xeon
-// of 2023): then it chooses again, unless OPENBLAS_CORETYPE says which. And the threads that it
-// has started with the program end, which spin on the other cores for some 30 ms whether
-// anything is computed or not; from then on products are on one thread, but within BlasThreads.
+// For programs, at the beginning of main, before another thread computes; not for libraries, whose caller owns these
+// settings. OpenBLAS treats a processor that is newer than itself as a Prescott of 2004, which makes fits two to three
+// times slower (0.3.21 of Debian 12 on a Xeon of 2023); this function selects the right type unless OPENBLAS_CORETYPE
+// is set. It also ends the threads that OpenBLAS starts with the program, because they occupy the other cores for some
+// 30 ms. From then on products use one thread, except within BlasThreads.
 void prepare_blas();
 
-// c = alpha op(a) op(b) + beta c, op being the transpose where asked.
+// c = alpha op(a) op(b) + beta c, where op is the transpose or nothing.
 void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b, bool transpose_b, double alpha,
               double beta, MatrixRef c);
 
-// The lower triangle of c = a^T a; what is above stays.
+// The lower triangle of c = a^T a; the rest of c stays as it is.
 void gram(const ConstMatrixRef& a, MatrixRef c);
 
-// Replaces the upper triangle of `a` (rows >= cols) by R of its QR
-// factorisation; below the diagonal it holds reflectors afterwards, whose factors are
-// the result.
+// Replaces the upper triangle of `a` (rows >= cols) by R of its QR factorisation and the rest by the reflectors.
+// Returns the factors of the block reflectors.
 Eigen::MatrixXd qr_in_place(MatrixRef a);
-// c = Q^T c, of `a` and `factors` as qr_in_place leaves them.
+// c = Q^T c, with `a` and `factors` from qr_in_place.
 void apply_transposed_q(const ConstMatrixRef& a, const Eigen::MatrixXd& factors, Eigen::VectorXd& c);
 
-// Eigenvalues ascending in `values`, eigenvectors in the columns of `a` (only
-// the lower triangle is read). False when the iteration did not converge.
+// Eigenvalues in ascending order in `values`, eigenvectors in the columns of `a`, of which only the lower triangle is
+// read. False if the iteration did not converge.
 bool symmetric_eigen(Eigen::MatrixXd& a, Eigen::VectorXd& values);
 
-// Singular values of `a` (rows >= columns) descending in `values`; `a` becomes U, its columns, and V^T is in
-// `v_transposed`. False when the iteration did not converge.
+// Singular values of `a` (rows >= columns) in descending order in `values`; `a` becomes U, and `v_transposed` V^T.
+// False if the iteration did not converge.
 bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixXd& v_transposed);
 
-// Cholesky factor in the lower triangle of `a`. False when `a` is not positive
-// definite, or when `may_continue`, asked now and then with the share done, says no.
+// Cholesky factor in the lower triangle of `a`. False if `a` is not positive definite, or if `may_continue`, which is
+// called with the finished share from time to time, returns false.
 bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue = {});
 // Solves a x = b in place, `factor` from cholesky_in_place.
 void cholesky_solve(const ConstMatrixRef& factor, Eigen::VectorXd& b);
-// Estimate of the condition number in the 1-norm. `norm`: norm_1 of the matrix.
+// Estimated condition number in the 1-norm. `norm`: the 1-norm of the matrix.
 double cholesky_condition(const ConstMatrixRef& factor, double norm);
 // The 1-norm of a symmetric matrix given by its lower triangle.
 double symmetric_norm(const ConstMatrixRef& a);
