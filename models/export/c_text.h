@@ -9,18 +9,18 @@
 
 namespace palpate {
 
-// Collects the text of the file, and counts what it needs.
+// Collects the text of the file and counts the bytes of its tables.
 class CText {
  public:
   explicit CText(bool single_precision) : single_(single_precision) {}
 
   void add(std::string_view text) { text_ += text; }
 
-  // The shortest decimal that reads back as the same number, as a literal of `real`.
+  // The shortest decimal that reads back as the same number, as a literal of type `real`.
   std::string number(double value) const;
-  // "static const real NAME[ROWS][COLUMNS] = {...};", one column of `values` a row.
+  // "static const real NAME[ROWS][COLUMNS] = {...};": each column of `values` is one row of the table.
   void table(const std::string& name, const Eigen::MatrixXd& values);
-  // The same in single precision, whatever that of the file.
+  // The same in single precision, independent of the precision of the file.
   void float_table(const std::string& name, const Eigen::MatrixXd& values);
   // "static const real NAME[SIZE] = {...};"
   void list(const std::string& name, const Eigen::VectorXd& values);

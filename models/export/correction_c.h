@@ -1,5 +1,5 @@
-// The correction of a model (models/model/correction.h) and the trust in it
-// (models/model/domain_guard.h) as C99 text: one emitter for each kind.
+// Writes the correction of a model (models/model/correction.h) and the trust in it (models/model/domain_guard.h) as
+// C99 text, with one function for each kind.
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace palpate {
 
-// "static real correction_of(const real *u)": newtons, from normalised features.
-// Errors: a kind without an emitter.
+// "static real correction_of(const real *u)": newtons, from normalised features. Errors: a kind that cannot be
+// exported.
 Status write_correction(CText& out, const CorrectionPtr& correction);
 
 // "static real trust_in(const real *u)": 1 near the data, 0 out of domain.

@@ -1,5 +1,5 @@
-// The features (engine/tick/features.h) and the trend (models/model/trend.h) as C99
-// text: one emitter for each feature kind and for each part of the trend.
+// Writes the features (engine/tick/features.h) and the trend (models/model/trend.h) as C99 text, with one function for
+// each kind of feature.
 // Thread guarantee: pure functions, slow side (allocate).
 #pragma once
 
@@ -11,11 +11,10 @@
 
 namespace palpate {
 
-// "static void update_features(real step_s, int first)": from the motion estimate to
-// value[].
+// "static void update_features(real step_s, int first)": computes value[] from the motion estimate.
 void write_features(CText& out, const std::vector<FeatureSpec>& features);
 
-// "static real trend_of(void)": newtons, from value[].
+// "static real trend_of(void)": computes newtons from value[].
 void write_trend(CText& out, const Trend& trend, const std::vector<FeatureSpec>& features);
 
 }  // namespace palpate
