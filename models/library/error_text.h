@@ -1,5 +1,4 @@
-// How functions of the C interface report what went wrong: as text in the caller's
-// buffer, and never as an exception.
+// Error reports of the C interface: text in the caller's buffer, never an exception.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
@@ -12,20 +11,20 @@
 
 namespace palpate::library {
 
-// The caller's buffer for one error; may be none.
+// The caller's buffer for one error message; `text` may be null.
 struct Place {
   char* text = nullptr;
   std::size_t size = 0;
 
-  // 0, or -1 and the error's text, for functions that return a status.
+  // Returns 0, or -1 after writing the error's text, for functions that return a status.
   int report(const Status& status) const noexcept {
     if (status) return 0;
     fail(status.error().message);
     return -1;
   }
 
-  // Writes as much of `message` as fits, in whole UTF-8 characters, and its end.
-  // Returns null, for functions that return handles.
+  // Writes as much of `message` as fits, in whole UTF-8 characters, with a terminating zero. Returns null, for
+  // functions that return handles.
   std::nullptr_t fail(std::string_view message) const noexcept {
     if (text == nullptr || size == 0) return nullptr;
     std::size_t count = message.size() < size ? message.size() : size - 1;
@@ -38,8 +37,7 @@ struct Place {
   }
 };
 
-// What `work` returns; `failed`, with a text at `place`, when it throws. The text
-// is empty when nothing was wrong.
+// Returns the result of `work`, or `failed` if it throws, with the text at `place`. Without an error the text is empty.
 template <typename T, typename Work>
 T guarded(T failed, Place place, Work&& work) noexcept {
   place.fail("");
