@@ -1,11 +1,11 @@
-// The options of a fit as text, for `palpate fit`, the C interface and Python alike.
+// The options of a fit as text, for `palpate fit`, the C interface and Python.
 //
 // A list of features:
 //   depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.05mm+0.1mm,creep:0.1+1
-// Items in any order, each but maxwell at most once; depth is always there:
+// Items in any order, each except maxwell at most once; depth is always included:
 //   maxwell:T[+T...]     one feature, the sum of the branches with these times (s)
 //   stops:Rmm[+Rmm...]   the sum of stop operators with these thresholds
-//   creep:T[+T...]       the sum of bristles that creep, with these times (s) at the greatest depth
+//   creep:T[+T...]       the sum of creeping bristles with these times (s) at the greatest depth
 // Thread guarantee: pure functions, slow side.
 #pragma once
 
@@ -23,8 +23,8 @@ namespace palpate {
 inline constexpr const char* kFeatureListExample =
     "depth,velocity,maxwell:0.17,maxwell:0.4+1.27,stops:0.1mm,creep:0.1+1";
 
-// The time to choose centres grows with the square of their number, half a minute at this many;
-// the method direct, with every site as a centre, is hardly larger.
+// The time to select centres grows with the square of their number, to half a minute at the limit. The method direct,
+// with every site as a centre, has hardly more.
 inline constexpr int kMostCentres = 2000;
 
 struct FitOptions {
@@ -36,30 +36,30 @@ struct FitOptions {
   std::string reduction = "coverage";  // kReductionNames
   std::string recipe;                  // empty: none; paper-2009: that of Hoever & Harders (2009)
   std::string features = "auto";       // auto, scene, or a list
-  std::string relaxation;              // empty: not given; scene, auto, or times such as 0.17,1.27
+  std::string relaxation;              // empty: default; scene, auto, or times such as 0.17,1.27
   std::string surface = "auto";        // auto, recorded
-  std::string grid;                    // empty: not given; nodes per feature such as 25x11x11x11
+  std::string grid;                    // empty: default; nodes per feature such as 25x11x11x11
   std::uint64_t seed = 1;
 };
 
 inline constexpr const char* kRecipe2009 = "paper-2009";
 
-// For one option each: empty, or "found ..., expected ...".
+// Checks of one option each: empty, or "found ..., expected ...".
 std::string check_candidates(const std::string& text);
 std::string check_relaxation(const std::string& text);
 std::string check_grid(const std::string& text);
 std::string check_features(const std::string& text);
 
-// Errors: the first option with a value that is not one of those above: "name: found ..., expected ...".
+// Errors: the first option with a value that is not allowed: "name: found ..., expected ...".
 Status check_fit_options(const FitOptions& options);
 
-// Errors: the item, what was found and what was expected.
+// Errors: the item, the value found and the value expected.
 Result<FeatureList> parse_feature_list(const std::string& text);
 
-// "depth,velocity,lowpass_velocity:0.17": those that a scene's file may have, depth among them.
+// "depth,velocity,lowpass_velocity:0.17": the features that a scene's file may have; depth is required.
 Result<std::vector<FeatureSpec>> parse_scene_features(const std::string& text);
 
-// `scene`: a request with the scene's name, features and JND line; the options must have passed
+// The request of a fit. `scene`: a request with the scene's name, features and JND line. The options must have passed
 // check_fit_options.
 TrainingRequest training_request(const FitOptions& options, TrainingRequest scene);
 MethodRequest method_request(const FitOptions& options);

@@ -1,4 +1,4 @@
-// Checked recordings in, a fitted model out: what `palpate fit` and the C interface share.
+// Fits a model to checked recordings, for `palpate fit` and the C interface.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -21,13 +21,14 @@ struct RecordingsFit {
   double seconds = 0.0;
 };
 
-// `scene`: as training_request. `began`: the beginning of what counts as seconds. `progress`: called with the fraction
-// done, returns false to stop; may be empty. Errors: an option; those of the recordings and of the fit; interrupted.
+// `scene`: as training_request. `began`: the time from which `seconds` are counted. `progress`: called with the
+// finished fraction, returns false to interrupt; may be empty. Errors: an option; those of recordings and fit;
+// interrupted.
 Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const TrainingRequest& scene,
                                      const FitOptions& options, std::chrono::steady_clock::time_point began,
                                      const std::function<bool(double)>& progress);
 
-// The contract's object of `palpate fit --json`.
+// The JSON object that `palpate fit --json` prints.
 nlohmann::ordered_json fit_json(const RecordingsFit& fitted, const FitOptions& options);
 
 }  // namespace palpate
