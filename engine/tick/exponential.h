@@ -1,6 +1,6 @@
-// Four exponentials at once, by arithmetic alone: the same bits on every processor.
+// Four exponentials at once, by arithmetic operations only, so that results are bit-identical on every processor.
 //   x = k ln 2 + r, |r| <= ln 2 / 2;  exp(x) = 2^k sum_(n <= 13) r^n / n!
-// Within 1 ulp; x counts from -700 to 700.
+// The error is at most 1 ulp; x is clamped to -700 to 700.
 // Thread guarantee: pure, wait-free.
 // Source: Cody & Waite (1980), "Software manual for the elementary functions", chapter 6.
 #pragma once
@@ -13,12 +13,12 @@
 namespace palpate {
 namespace exponential_parts {
 
-// Added to a number, leaves it rounded to an integer in the lowest bits.
+// The sum of this and a number has the number, rounded to an integer, in its lowest bits.
 inline constexpr double kRound = 0x1.8p52;
 inline constexpr int kExponentBit = 52;
 inline constexpr std::int64_t kOne = std::int64_t{1023} << kExponentBit;  // the bits of 1.0
 
-// 2^k from kRound + k.
+// Computes 2^k from kRound + k.
 using Integers [[gnu::vector_size(kLanes * sizeof(std::int64_t))]] = std::int64_t;
 PALPATE_INLINE void power_of_two(V4& power, const V4& shifted) noexcept {
   Integers bits;

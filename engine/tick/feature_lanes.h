@@ -1,7 +1,6 @@
-// The parts of relaxation spectra and of bristles, stop operators and those that creep
-// (features.h has the equations), four at a time. All branches of a filter stand in one row,
-// each feature's beside one another, and so do all bristles. What they remember is the caller's:
-// kMemory rows of four for each group.
+// The branches of relaxation spectra, and the stop operators and creeping bristles (features.h gives the equations),
+// four at a time in SIMD lanes. All branches of a filter are in one sequence of groups of four, and all bristles in
+// another. The caller stores their state: kMemory vectors of four for each group.
 // Thread guarantee: immutable after the last `add`, which allocates; all else is wait-free.
 #pragma once
 
@@ -19,7 +18,7 @@ inline constexpr std::size_t kDriveCoefficients = 4;
 
 struct DriveCurve;
 
-// Four drives. A lane without a part has g = 0.
+// Four drive curves. An unused lane has g = 0.
 struct alignas(sizeof(V4)) CurveLanes {
   V4 coefficient_N[kDriveCoefficients]{};
   V4 knot_N[kDriveKnots]{};
@@ -36,7 +35,7 @@ struct BranchStep {
   double gain = 0.0;
 };
 BranchStep branch_step(double relaxation_time_s, double step_s) noexcept;
-// As many parts as a filter can have.
+// Groups that suffice for all parts of a filter.
 inline constexpr std::size_t kMaxLaneGroups = 16;
 
 class BranchLanes {
@@ -44,27 +43,27 @@ class BranchLanes {
   struct alignas(sizeof(V4)) Group {
     CurveLanes drive;
     V4 relaxation_time_s{1.0, 1.0, 1.0, 1.0};
-    V4 slowing{};  // of these times, and the depth of its strain
+    V4 slowing{};  // exponents of the growth of these times with depth
     V4 slowing_depth_m{1.0, 1.0, 1.0, 1.0};
-    bool slows = false;  // one of them
+    bool slows = false;  // whether one lane has a slowing
   };
   struct alignas(sizeof(V4)) Step {
     V4 keep;
     V4 gain;
   };
-  // What a group remembers: z, and g(s) at the same time.
+  // The state of a group: z, and g(s) at the same time.
   static constexpr std::size_t kMemory = 2;
 
-  // Returns the branch's place.
+  // Returns the index of the branch among the lanes.
   std::size_t add(const DriveCurve& drive, double relaxation_time_s, double slowing = 0.0,
                   double slowing_depth_m = 1.0);
   std::size_t groups() const noexcept { return groups_.size(); }
 
-  // The steps of all groups with the surface there; of none, where `step_s` is 0, they stay as they are.
+  // Computes the steps of all groups for the surface at `surface_m`. With `step_s` 0 the state will not change.
   void prepare(double step_s, double surface_m, Step* step) const noexcept;
-  // What the branches hold together after the step, with the surface there; `to` may be `from`.
+  // Advances all branches to the surface at `surface_m` and returns the sum of their forces, N; `to` may be `from`.
   double advance(const Step* step, double surface_m, const V4* from, V4* to) const noexcept;
-  // Of `count` branches from `place` on.
+  // The sum of the forces of `count` branches from index `place`, N.
   static double force_N(const V4* memory, std::size_t place, std::size_t count) noexcept;
 
  private:
@@ -77,21 +76,21 @@ class BristleLanes {
   struct alignas(sizeof(V4)) Group {
     CurveLanes drive;
     V4 threshold_m{1.0, 1.0, 1.0, 1.0};
-    // Further than this none bends: the threshold of a stop, nothing for one that creeps.
+    // The largest deflection: the threshold of a stop, infinite for a creeping bristle.
     V4 limit_m{1.0, 1.0, 1.0, 1.0};
-    V4 air_limit_m{};     // the same out of contact
-    V4 creep_per_m2_s{};  // 1 / (tau r^2); 0 of stops
-    bool creeps = false;  // one of them
+    V4 air_limit_m{};     // the same out of contact: 0 for a stop
+    V4 creep_per_m2_s{};  // 1 / (tau r^2); 0 for a stop
+    bool creeps = false;  // whether one lane creeps
   };
-  // What a group remembers: s, q.
+  // The state of a group: the deflection s or q.
   static constexpr std::size_t kMemory = 1;
 
-  // `creep_time_s`: tau, or 0 for a stop.
+  // `creep_time_s`: tau, or 0 for a stop. Returns the index of the bristle among the lanes.
   std::size_t add(const DriveCurve& drive, double threshold_m, double creep_time_s);
   std::size_t groups() const noexcept { return groups_.size(); }
 
-  // The bristles follow the depth from the last one, for a `step_s` above 0; out of contact a
-  // stop lets go. `force_N`: what they hold then.
+  // Advances all bristles from the last depth by `step_s`; with 0 only the forces are computed. Out of contact the
+  // deflection of a stop becomes 0. `force_N`: receives the forces.
   void advance(double last_depth_m, double depth_m, double step_s, V4* bend_m, V4* force_N) const noexcept;
   static double force_N(const V4* force_N, std::size_t place, std::size_t count) noexcept;
 

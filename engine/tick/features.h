@@ -1,6 +1,5 @@
-// The dynamic feature vector: what a force model is given, from one scene's
-// choice of one to eight features. Recording, fitting, replay and the live
-// loop run this code and no other.
+// The feature vector of a force model: one to eight features of the tool's motion with their memory. Recording, fit,
+// replay and live loop all run this code.
 //
 //   depth             d = max(0, estimated position - surface)              [m]
 //   velocity          v = estimated velocity while d > 0, else 0            [m/s]
@@ -8,54 +7,47 @@
 //   maxwell_branch    z with dz/dt = g'(d) dd/dt - z / tau                  [N]
 //   maxwell_spectrum  z = sum_p z_p, each a branch with tau_p and g_p       [N]
 //   stops             y = sum_p g_p(d) s_p / r_p, s_p a stop operator       [N]
-//   creep             y = sum_p g_p(d) q_p / r_p, q_p a bristle that creeps
-//                     by a power law                                        [N]
+//   creep             y = sum_p g_p(d) q_p / r_p, q_p a creeping bristle    [N]
 //   surface_lag       s - d, s the depth of the material's surface          [m]
 //
-// The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the
-// same filter behind a spring whose stiffness g'(d) depends on depth; g is
-// identified from the recording (models/training/trend_regression.h), and with g = d / tau it is the
-// low-pass. Both are driven by the depth, not by the velocity estimate: free
-// air relaxes the material and does not load it.
+// The low-pass is eq. (1) of Hoever & Harders (2009). The Maxwell branch is the same filter after a spring whose
+// stiffness g'(d) depends on depth; g is identified from the recording (models/training/trend_regression.h), and with
+// g = d / tau it is the low-pass. Both are driven by the depth, not by the velocity estimate: in free air the material
+// relaxes and is not loaded.
 //
-// The surface is where position_m is 0, or, for a model of recordings whose surface lay
-// elsewhere, at the depth feature's `surface_position_m`, on either side of 0: the tool is
-// in contact beyond it.
+// The tool is in contact beyond the surface, which is at the depth feature's `surface_position_m`: 0, or, for a model
+// of recordings with another surface, on either side of 0.
 //
-// With a surface_lag among the features, the branches follow the surface and not the
-// tool: s = d while the elastic response E and all branches together push the tool
-// out, and otherwise the s >= d at which they hold nothing, E(s) + sum z = 0. So a
-// tool that retreats faster than the material comes back leaves it, and meets it
-// again where it is (Johnson 1985, section 6.5: unloading of viscoelastic contacts).
-// With a `slowing` b, tau becomes tau exp(b s / reference depth): a fluid that is
-// squeezed through pores that close has one clock for all its times, which slows
-// down with the strain (Lai & Mow 1980: permeability and strain).
+// With a surface_lag among the features, the branches follow the surface and not the tool: s = d while the sum of
+// elastic response E and all branches pushes the tool out, and otherwise the s >= d at which it is zero,
+// E(s) + sum z = 0. A tool that retreats faster than the material recovers thus loses contact, and regains it where the
+// material then is (Johnson 1985, section 6.5: unloading of viscoelastic contacts). With a `slowing` b, tau becomes
+// tau exp(b s / reference depth): a fluid that is squeezed through closing pores has one time scale for all its times,
+// which grows with the strain (Lai & Mow 1980: permeability and strain).
 //
-// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau, and of the store
-// integral_0^d g ds - q d + integral_0^q g^-1 ds it loses
-// (d - g^-1(q)) (g(d) - q) / tau >= 0 while g rises, whatever tau > 0 is just then.
+// A branch is dissipative: with q = g(d) - z, dq/dt = z / tau. The stored energy
+// integral_0^d g ds - q d + integral_0^q g^-1 ds decreases by (d - g^-1(q)) (g(d) - q) / tau >= 0 while g increases,
+// for any current tau > 0.
 //
-// A stop operator of threshold r follows the depth like the tip of a bristle that
-// bends by at most r and then slips: s' = clamp(s + d' - d, -r, r), and 0 out of
-// contact. Several together are a Prandtl-Ishlinskii operator: dry friction with
-// presliding. With every g_p >= 0 a closed cycle of depth takes the energy
+// A stop operator of threshold r is the deflection of a bristle that follows the depth, bends by at most r and then
+// slips: s' = clamp(s + d' - d, -r, r), and 0 out of contact. A weighted sum of stops is a Prandtl-Ishlinskii operator:
+// dry friction with presliding. With every g_p >= 0 a closed cycle of depth dissipates the energy
 //   sum_p closed integral G_p(d) dp_p / r_p >= 0,  G_p' = g_p, p_p = d - s_p,
-// for p_p moves up only at d = p_p + r and down only at d = p_p - r; of a bristle that
-// creeps up only at d > p_p and down only at d < p_p, which is enough.
+// because p_p increases only at d = p_p + r and decreases only at d = p_p - r; for a creeping bristle, it increases
+// only at d > p_p and decreases only at d < p_p, which suffices.
 //
-// A bristle that creeps slips at every bend, by a power law of it,
-//   dq/dt = dd/dt - (q / tau) (q / r)^2:
-// a stop operator has the power infinity and a Maxwell branch 1. What it holds after a
-// hold of t falls as t^-1/2, as networks of rubber do (Bergstrom & Boyce 1998), and its
-// force over speed rises with the cube root. Free air lets it creep on.
+// A creeping bristle slips at every deflection, by a power law,
+//   dq/dt = dd/dt - (q / tau) (q / r)^2.
+// A stop operator has the power infinity and a Maxwell branch 1. During a hold of duration t its force falls as t^-1/2,
+// as in networks of rubber (Bergstrom & Boyce 1998), and in steady motion it rises with the cube root of the speed. It
+// continues to creep in free air.
 //
 // Discretisation is exact for a depth that is linear between samples, with the
 // measured time step h and e = exp(-h / tau):
 //   y' = e y + (1 - e) (d' - d) / h
 //   z' = e z + tau (1 - e) (g(d') - g(d)) / h
-// so recordings of one motion at different rates give the same features. A creeping
-// bristle takes half of its step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), before it
-// follows the depth and half of it after (Strang 1968).
+// so recordings of one motion at different rates give the same features. A creeping bristle creeps for half of the
+// step, exactly, q / sqrt(1 + (h / tau) (q / r)^2), before it follows the depth and for half of it after (Strang 1968).
 // Sources: Visintin (1994), "Differential models of hysteresis" (stop and play
 // operators); Dahl (1968) (friction with presliding); Bergstrom & Boyce (1998), "Constitutive
 // modeling of the large strain time-dependent behavior of elastomers".
@@ -93,14 +85,14 @@ enum class FeatureKind {
 
 struct FeatureKindFacts {
   std::string_view name;   // in model files and column names
-  std::string_view unit;   // as a column name ends
-  bool has_time = false;   // one time constant
-  bool has_drive = false;  // a drive of its own
+  std::string_view unit;   // end of the column name
+  bool has_time = false;   // has one time constant
+  bool has_drive = false;  // has a drive curve of its own
   bool has_parts = false;
-  bool is_branch = false;   // made of Maxwell branches
-  bool is_bristle = false;  // or of bristles
+  bool is_branch = false;   // consists of Maxwell branches
+  bool is_bristle = false;  // consists of bristles
 };
-// One row a kind, in their order.
+// One row for each kind, in the order of FeatureKind.
 inline constexpr std::array<FeatureKindFacts, 8> kFeatureKinds{{
     {.name = "depth", .unit = "_m"},
     {.name = "velocity", .unit = "_m_per_s"},
@@ -120,9 +112,8 @@ constexpr bool has_parts(FeatureKind kind) noexcept { return facts_of(kind).has_
 constexpr bool is_branch(FeatureKind kind) noexcept { return facts_of(kind).is_branch; }
 constexpr bool is_bristle(FeatureKind kind) noexcept { return facts_of(kind).is_bristle; }
 
-// g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for
-// u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
-// spline (rising_curve.h): their sum comes on top.
+// g(d) = sum_k coefficient_N[k] u^(k+1) with u = d / reference_depth_m, for u <= 1; beyond, g continues along its
+// tangent at u = 1. With knots, g is a cubic spline: the truncated powers of rising_curve.h are added.
 struct DriveCurve {
   double reference_depth_m = 1.0;
   std::array<double, kDriveCoefficients> coefficient_N{};
@@ -137,7 +128,7 @@ struct DriveCurve {
 struct FeaturePart {
   double relaxation_time_s = 0.0;  // maxwell_spectrum; tau of creep
   double threshold_m = 0.0;        // r of stops and creep
-  DriveCurve drive;                // g_p; of stops and creep never negative
+  DriveCurve drive;                // g_p; >= 0 for stops and creep
 
   bool operator==(const FeaturePart&) const = default;
 };
@@ -145,25 +136,26 @@ struct FeaturePart {
 struct FeatureSpec {
   FeatureKind kind = FeatureKind::depth;
   double relaxation_time_s = 0.0;  // lowpass_velocity, maxwell_branch
-  DriveCurve drive{};              // maxwell_branch; of surface_lag E
+  DriveCurve drive{};              // g of maxwell_branch; E of surface_lag
   std::size_t part_count = 0;      // maxwell_spectrum, stops and creep
   std::array<FeaturePart, kMaxFeatureParts> parts{};
   double slowing = 0.0;             // b of maxwell_branch and maxwell_spectrum
-  double surface_position_m = 0.0;  // depth: for all features beside it
+  double surface_position_m = 0.0;  // of the depth feature; valid for all features
 
   bool operator==(const FeatureSpec&) const = default;
 };
 
-// The material's surface halfway through a step: between the last surface and the tool, or,
-// where the tool had left it and has not come back, still there.
+// The material's surface halfway through a step: the mean of the last surface and the tool, or the last surface if the
+// tool has left it and not reached it again.
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
-// What a `slowing` makes of the relaxation times with the surface there.
+// The factor exp(b s / reference depth) of the relaxation times with the surface at `surface_m`; s is clamped to the
+// reference depth.
 double branch_clock(double slowing, double surface_m, double reference_depth_m) noexcept;
 
-// Where the surface lies on the axis of position_m: what the depth feature says.
+// The position of the surface: that of the depth feature; 0 without one.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;
 
-// Column name with unit, e.g. "depth_m", "lowpass_velocity_0.17s_m_per_s".
+// Column name with unit, e.g. "feature_depth_m", "feature_lowpass_velocity_0.17s_m_per_s".
 std::string feature_name(const FeatureSpec& spec);
 
 struct FeatureVector {
@@ -172,19 +164,19 @@ struct FeatureVector {
   bool in_contact = false;
 };
 
-// All that the filters behind one scene's features remember of a stream. Trivially copyable.
+// The state of the filters of one list of features. Trivially copyable.
 struct alignas(sizeof(V4)) FeatureState {
   FeatureVector vector;
   double depth_m = 0.0;    // at the last sample
-  double surface_m = 0.0;  // s, at least the depth; it without a surface_lag
+  double surface_m = 0.0;  // s >= depth_m; equal without a surface_lag
   double time_s = 0.0;
   bool started = false;
-  // Of the branches, then of the bristles: features have at most 16 groups of parts.
+  // Of the branches, then of the bristles; features have at most 16 groups of parts.
   V4 memory[BranchLanes::kMemory * kMaxLaneGroups]{};
 };
 static_assert(std::is_trivially_copyable_v<FeatureState>);
 
-// What does not change: the features, their parts in lanes, and where the surface lies.
+// The immutable part of a filter: the features, their parts in lanes, and the surface.
 // Thread guarantee: immutable; constructing allocates, all else is wait-free.
 class FeaturePlan {
  public:
@@ -193,12 +185,11 @@ class FeaturePlan {
 
   const std::vector<FeatureSpec>& specs() const noexcept { return specs_; }
 
-  // `sample` and its motion estimate; times increase. The contact state is
-  // that of the raw position at this surface.
+  // Advances `state` by a sample and its motion estimate; times increase. Contact is determined from the raw position.
   void update(FeatureState& state, const ToolSample& sample, const MotionEstimate& motion) const noexcept;
-  // After an `update`: takes over the memory that `before`, fed with the same motion, has of
-  // the same features of `plan`, so that a change of models loses none. A stop's bend depends
-  // on its threshold alone; all else, and where the surface lies, must be equal.
+  // To be called after an `update`: copies the state that `before`, fed with the same motion, has of equal features of
+  // `plan`, so that a change of models keeps the memory of the material. Bristles are matched by threshold and creep
+  // time, other features by equality; the surface positions must be equal, otherwise nothing is copied.
   void adopt(FeatureState& state, const FeaturePlan& plan, const FeatureState& before) const noexcept;
 
  private:
@@ -210,14 +201,14 @@ class FeaturePlan {
   }
 
   std::vector<FeatureSpec> specs_;
-  std::array<std::size_t, kMaxFeatures> place_{};  // of its first part in the lanes
+  std::array<std::size_t, kMaxFeatures> place_{};  // index of the first part of each feature among the lanes
   BranchLanes branches_;
   BristleLanes bristles_;
-  std::size_t lag_ = kMaxFeatures;  // which feature is the surface_lag; none
+  std::size_t lag_ = kMaxFeatures;  // index of the surface_lag; kMaxFeatures: none
   double surface_position_m_ = 0.0;
 };
 
-// Both for one stream of samples.
+// A plan and a state, for one stream of samples.
 class FeatureFilter {
  public:
   explicit FeatureFilter(const std::vector<FeatureSpec>& specs) : plan_(specs) {}
@@ -225,14 +216,14 @@ class FeatureFilter {
   const FeaturePlan& plan() const noexcept { return plan_; }
   const FeatureState& state() const noexcept { return state_; }
   void reset() noexcept { state_.started = false; }
-  // Of the last sample; minus infinity before the first.
+  // The time of the last sample; minus infinity before the first.
   double time_s() const noexcept { return state_.started ? state_.time_s : -std::numeric_limits<double>::infinity(); }
   const FeatureVector& update(const ToolSample& sample, const MotionEstimate& motion) noexcept {
     plan_.update(state_, sample, motion);
     return state_.vector;
   }
   void adopt(const FeatureFilter& before) noexcept { plan_.adopt(state_, before.plan_, before.state_); }
-  // What `update` gave last.
+  // The result of the last `update`.
   const FeatureVector& vector() const noexcept { return state_.vector; }
   double surface_m() const noexcept { return state_.surface_m; }
 

@@ -1,6 +1,5 @@
-// One tick of haptic rendering as a plain function: a tool sample in, every
-// model's force and a snapshot out. No clock, no thread, no device: replay and
-// the live loop call the same code, so the same samples give the same bits.
+// One tick of haptic rendering as a plain function: takes a tool sample, returns every model's force and a snapshot. It
+// has no clock, thread or device: replay and live loop call the same code, so the same samples give the same bits.
 //
 // The order is: motion estimate (once), features (once per distinct feature
 // list among the models), forces (every model). Out of contact every force is 0.
@@ -27,12 +26,12 @@ inline constexpr std::size_t kMaxModels = 16;
 
 enum class TickFault : std::uint8_t {
   none,
-  bad_sample,        // a value of the sample was not finite: the tick keeps its last state
-  time_not_later,    // the sample is not later than the last one: likewise
-  force_not_finite,  // a model gave a non-finite force: 0 instead
+  bad_sample,        // a value of the sample is not finite: the state is kept
+  time_not_later,    // the sample is not later than the last one: the state is kept
+  force_not_finite,  // a model returned a non-finite force: replaced by 0
 };
 
-// Everything a tick has to say, for the graphics thread and for replay.
+// The results of a tick, for the graphics thread and for replay.
 struct TickSnapshot {
   std::uint64_t tick = 0;
   double time_s = 0.0;
@@ -44,13 +43,12 @@ struct TickSnapshot {
   std::uint32_t model_count = 0;
   std::uint32_t out_of_domain_mask = 0;  // bit i: model i
   std::array<double, kMaxModels> force_N{};
-  // 95 % bounds on the errors of the forces; NaN where a model has none, and 0 out of
-  // contact.
+  // 95 % bounds on the errors of the forces; NaN if a model has none, 0 out of contact.
   std::array<double, kMaxModels> predicted_error_N{};
 };
 static_assert(std::is_trivially_copyable_v<TickSnapshot>);
 
-// Where the tool was, for the memory of models that were not there.
+// A past sample, for the memory of new models.
 struct PastMotion {
   double time_s = 0.0;
   double position_m = 0.0;
@@ -62,41 +60,38 @@ class HapticsTick {
   // `models`: up to kMaxModels, kept alive by the caller's shared pointers.
   HapticsTick(const SensorSpec& sensor, std::vector<std::shared_ptr<const ForceModel>> models);
 
-  // Forgets motion and filters; the next sample starts a new stream.
+  // Resets the motion estimate and the filters; the next sample starts a new stream.
   void reset() noexcept;
 
   const TickSnapshot& step(const ToolSample& sample) noexcept;
 
-  // Goes through a step with the last sample once more and forgets it: code and data that
-  // the next one needs are in the caches then. In contact or not, for the next sample may
-  // be. Wait-free; the next `step` gives what it would have given.
+  // Computes a step 1 ms after the last sample, evaluates the models also out of contact, and discards the result, so
+  // that code and data of the next step are in the caches. Wait-free; the state does not change.
   void rehearse() noexcept;
 
-  // Slow side, before `continue_from`: the filters meet the tool there; times increase.
+  // Slow side, before `continue_from`: advances the filters by a past sample; times increase.
   void recall(const PastMotion& motion) noexcept;
 
-  // Goes on where `before` is: same motion estimate and, for every feature that both
-  // have, same memory, so that a change of models in mid-press loses none of the
-  // material's; its snapshot is that of these models. A feature that is new has the
-  // memory of what was recalled, up to a few seconds ago, or is at rest at the last
-  // sample. Same sensor. Wait-free.
+  // Continues from the state of `before`: takes over the motion estimate and the memory of equal features, so that a
+  // change of models in mid-press does not lose the memory of the material; the snapshot is evaluated with these
+  // models. A new feature has the memory of the recalled motion if that ended less than 5 s ago, otherwise it is at
+  // rest at the last sample. Requires the same sensor. Wait-free.
   void continue_from(const HapticsTick& before) noexcept;
 
-  // Slow side: from now on `step` also times each evaluation, in units of
-  // engine/base/cycle_clock.h; some 10 ns each.
+  // Slow side: from now on `step` measures the time of each evaluation in units of engine/base/cycle_clock.h, which
+  // takes some 10 ns each.
   void time_evaluations(bool timed) noexcept { timed_ = timed; }
-  // What the last evaluation of model `index` took; 0 before the first one. Out of
-  // contact nothing is evaluated and the figure stays.
+  // The duration of the last evaluation of model `index`; 0 before the first. Out of contact it does not change.
   std::uint64_t evaluation_cycles(std::size_t index) const noexcept { return cycles_[index]; }
 
-  // What `step` gave last.
+  // The result of the last `step`.
   const TickSnapshot& snapshot() const noexcept { return snapshot_; }
 
   MotionEstimate motion() const noexcept { return motion_.estimate(); }
 
   std::size_t model_count() const noexcept { return models_.size(); }
   const ForceModel& model(std::size_t index) const noexcept { return *models_[index]; }
-  // The features that model `index` was last given.
+  // The last features of model `index`.
   const FeatureVector& features_of(std::size_t index) const noexcept { return filters_[filter_of_[index]].vector(); }
   std::size_t filter_count() const noexcept { return filters_.size(); }
 
@@ -106,10 +101,10 @@ class HapticsTick {
   MotionEstimator motion_;
   std::vector<std::shared_ptr<const ForceModel>> models_;
   std::vector<FeatureFilter> filters_;
-  std::vector<std::size_t> filter_of_;  // per model
+  std::vector<std::size_t> filter_of_;  // for each model
   std::array<std::uint64_t, kMaxModels> cycles_{};
-  ToolSample sample_;         // the last one
-  double rehearsed_N_ = 0.0;  // so that no rehearsal is optimised away
+  ToolSample sample_;         // last sample
+  double rehearsed_N_ = 0.0;  // result of `rehearse`, so that the compiler keeps it
   TickSnapshot snapshot_;
   bool started_ = false;
   bool timed_ = false;

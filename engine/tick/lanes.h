@@ -1,7 +1,6 @@
-// Four doubles to an instruction where the processor has it, as GCC and Clang both know
-// them: the same operations in the same order as one after the other, so the same bits.
-// A function that works on lanes is compiled twice, plainly and with [[gnu::target("avx2")]],
-// from one PALPATE_INLINE template, and `has_wide_lanes` chooses when the program starts.
+// Vectors of four doubles (GCC and Clang extensions). The operations and their order are those of four scalars, so the
+// results are bit-identical. A function on vectors is compiled twice from one PALPATE_INLINE template, plainly and with
+// [[gnu::target("avx2")]]; `has_wide_lanes` selects one at the start of the program.
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -13,9 +12,9 @@ namespace palpate {
 
 inline constexpr std::size_t kLanes = 4;
 
-// Passed by reference only: by value their ABI depends on the instructions. Kept as V4 too:
-// what is copied in halves and read at once waits for both. A struct of them needs
-// alignas(sizeof(V4)), which GCC forgets where it compiles for processors without lanes so wide.
+// Passed by reference only, because by value the ABI depends on the instruction set. Arrays of it are stored as V4,
+// because a load of a vector that was stored in halves stalls. A struct with V4 members needs alignas(sizeof(V4)),
+// which GCC omits when it compiles for processors without such vectors.
 using V4 [[gnu::vector_size(kLanes * sizeof(double))]] = double;
 #define PALPATE_INLINE [[gnu::always_inline]] inline
 

@@ -1,6 +1,5 @@
-// Position and velocity of the tool from quantised positions, causally, with
-// an accelerometer or a measured velocity when there is one: the two Kalman filters of
-// motion_filter.inc.
+// Causal estimates of position and velocity of the tool from quantised positions, with a measured acceleration or
+// velocity if there is one, by the Kalman filters of motion_filter.inc.
 //
 // On simulated hands behind a 30 um encoder the velocity error is 0.8 of that of first-order
 // adaptive windowing at its best settings, and a third of it with an accelerometer;
@@ -21,7 +20,7 @@ struct MotionEstimate {
   double velocity_m_per_s = 0.0;
 };
 
-// The text that exported models have in common with the library.
+// The source text that exported models share with the library.
 namespace motion_filter {
 using real = double;
 #define R(x) (x)
@@ -43,15 +42,14 @@ class MotionEstimator {
  public:
   explicit MotionEstimator(const SensorSpec& sensor) noexcept : sensor_(sensor) {}
 
-  // Forgets everything; the next sample is the first one.
+  // Resets the state; the next sample is the first one.
   void reset() noexcept { state_ = {}; }
 
-  // Takes the next sample; its time must be later than the last one's (a sample that is not
-  // is ignored and the last estimate is given again, and so is one sample that lies further
-  // away than a hand can move). The position is within half an encoder step and three
-  // deviations of the noise of the reading.
+  // Takes the next sample and returns the estimate. A sample that is not later than the last one is ignored, and so is
+  // one sample that is further away than a hand can move (0.1 m and 10 m/s). The position is within half an encoder
+  // step and three standard deviations of the noise of the reading.
   MotionEstimate update(const ToolSample& sample) noexcept;
-  // What `update` gave last.
+  // The last estimate.
   MotionEstimate estimate() const noexcept { return {state_.estimate_m, state_.velocity_m_per_s}; }
 
  private:

@@ -1,6 +1,5 @@
-// What the tool did in the last minute, thinned: so that models which join in mid-press
-// begin with the memory of the material that they would have had they been there, not
-// with a material at rest under the tool.
+// The motion of the tool in the last minute, thinned to 4 ms. Models that are added during a press start with the
+// memory of the material for this motion, not with a material at rest under the tool.
 // Thread guarantee: slow side (allocates); one thread.
 #pragma once
 
@@ -12,10 +11,9 @@ namespace palpate {
 
 class MotionHistory {
  public:
-  // Every tick in order. `restarted`: a new stream began with it, and what was before is
-  // forgotten, as the tick has.
+  // Takes the snapshot of every tick in order. `restarted`: it begins a new stream; the earlier motion is deleted.
   void add(const TickSnapshot& snapshot, bool restarted);
-  // The tick's filters go through it; `HapticsTick::continue_from` goes on from there.
+  // Advances the filters of `tick` by this motion; `HapticsTick::continue_from` continues from there.
   void recall(HapticsTick& tick) const;
 
  private:

@@ -1,13 +1,12 @@
-// A recording run through the same tick as the live loop: no clock, no device,
-// as fast as it goes. The same rows and models give the same bits every time.
+// Replays a recording through the tick of the live loop, without clock and device, as fast as possible. The same rows
+// and models give the same bits.
 //
-// The sensor behind the samples is identified from the first
-// kSensorIdentificationRows rows, so a recording in memory and the same one read
-// in chunks give the same forces.
+// The sensor is identified from the first kSensorIdentificationRows rows, so a recording in memory and the same one
+// read in chunks give the same forces.
 //
-// In contact, for the visitor, is a sample beyond the surface, or one whose measured force is beyond both the
-// JND at 0 N and five times its noise: an adhesive material pulls outside, too. The surface is the outermost of
-// the models that have one of their own; without any it is at 0.
+// For the visitor, a sample is in contact beyond the surface, or if the measured force exceeds both the JND at 0 N and
+// five times its noise, because an adhesive material also pulls outside. The surface is the outermost one of the models
+// whose surface is not at 0, else 0.
 //
 // Thread guarantee: slow side (allocates before the first row, calls the
 // visitor); one thread at a time.
@@ -26,8 +25,8 @@
 
 namespace palpate {
 
-// Sees each row after its tick: `snapshot` has the forces, `tick` the feature
-// vectors. All three live until it returns.
+// Called for each row after its tick: `snapshot` has the forces, `tick` the feature vectors. The references are valid
+// during the call.
 using ReplayVisitor =
     std::function<void(const RecordingRow& row, const TickSnapshot& snapshot, const HapticsTick& tick)>;
 
@@ -39,16 +38,16 @@ struct ReplaySummary {
   std::uint64_t contact_samples = 0;
 };
 
-// A measured force beyond it is contact; from the first rows of a recording. `surface_m`: of the model.
+// The measured force beyond which a sample is in contact, N, from the noise in the first rows of a recording.
 double least_contact_N(const RecordingRow* rows, std::size_t count, double surface_m);
 
-// `surface_offset_m` is subtracted from every position before the tick; the
-// visitor still gets the row as recorded. Errors: more than kMaxModels models.
+// `surface_offset_m` is subtracted from every position before the tick; the visitor receives the row as recorded.
+// Errors: more than kMaxModels models.
 Result<ReplaySummary> replay(const Recording& recording, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m = 0.0);
 
-// The rest of `reader` in bounded memory. Errors: as above, and any of the
-// reader's; rows before the fault have been visited then.
+// The same for the remaining rows of `reader`, in bounded memory. Errors also of the reader, after the visits of the
+// rows before the fault.
 Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m = 0.0);
 

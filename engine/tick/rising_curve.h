@@ -1,7 +1,7 @@
-// The curves that the trend and the features are made of:
+// The curves of the trend and the features:
 //   g(u) = sum_k c_k u^(k+1) + sum_k knot_k max(0, u - (k + 1) / (knots + 1))^3
-// for u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic
-// spline. For one number and for several at once (lanes.h), the same bits.
+// for u <= 1; beyond, g continues along its tangent at u = 1. With knots it is a cubic spline. Results for one number
+// and for vectors (lanes.h) are bit-identical.
 // Thread guarantee: pure, wait-free.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace palpate {
 inline constexpr std::size_t kDriveKnots = 7;
 constexpr double knot_place(std::size_t k) noexcept { return static_cast<double>(k + 1) / (kDriveKnots + 1); }
 
-// Of u up to 1. `coefficient`, `knot`: an array of Number or of double; null without knots.
+// g(u) for u <= 1. `coefficient`, `knot`: arrays of Number or of double; `knot` is null without knots.
 template <typename Number, typename List, typename Knots>
 [[gnu::always_inline]] inline void rising_value(Number& value, const List& coefficient, const Knots* knot,
                                                 const Number& u) noexcept {

@@ -1,12 +1,11 @@
-// What sensor made a recording: encoder step, noise of position, velocity and
-// acceleration, read off the samples. The motion estimator needs it.
+// Identifies the sensor of a recording, which the motion estimator needs: encoder step, and noise of position, velocity
+// and acceleration.
 //
-// Encoder step: the smallest position change, if all the others are multiples
-// of it and not all the same, to nine digits. Noise: the standard deviation of second differences over
-// the quietest fifth of 50-sample windows, divided by sqrt(6), the factor for white
-// noise; motion, which is smooth, is nearly absent there. That of the position is
-// rounded to the series 1, 2, 5, 10, so that recordings of one rig have one sensor.
-// Errors: none; a column without information gives the finest plausible value.
+// Encoder step: the smallest change of position, to nine digits, if 99 % of the changes are multiples of it and at
+// least 5 % differ from the one before; else 0. Noise: the standard deviation of second differences divided by sqrt(6),
+// the factor for white noise, in the 20 % quantile of 50-sample windows; smooth motion nearly vanishes there. The
+// position noise does not include the quantisation and is rounded to the series 1, 2, 5, 10, so that recordings of one
+// rig have one sensor. Errors: none; a column without information gives the finest plausible value.
 // Thread guarantee: slow side (allocates).
 #pragma once
 
@@ -19,11 +18,11 @@
 
 namespace palpate {
 
-// Rows that identification looks at, from the beginning of a recording.
+// The rows that are used, from the beginning of a recording.
 inline constexpr std::size_t kSensorIdentificationRows = 30000;
 
 SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, RecordingColumns columns);
-// Of the first rows that `reader` still has. Errors: the reader's.
+// The same for the next rows of `reader`. Errors: those of the reader.
 Result<SensorSpec> identify_sensor(RecordingReader& reader);
 
 // The white noise of the force column, N.
@@ -31,10 +30,10 @@ double identify_force_noise_N(const RecordingRow* rows, std::size_t count);
 
 ToolSample tool_sample(const RecordingRow& row) noexcept;
 
-// At or below it a force counts as none: three deviations of the noise, at least 10 mN.
+// A force at or below this counts as none: three standard deviations of the noise, at least 10 mN.
 inline constexpr double kForceFloor_N = 0.01;
 inline double no_force_N(double noise_N) noexcept { return std::max(kForceFloor_N, 3.0 * noise_N); }
-// Beyond it one is there for certain, wherever the tool is: five deviations, and felt.
+// A force above this is certain at any position: five standard deviations of the noise, and the JND.
 inline double certain_force_N(double noise_N) noexcept { return std::max(JndLine{}.at(0.0), 5.0 * noise_N); }
 
 }  // namespace palpate

@@ -1,13 +1,12 @@
-// What a device, or a recording, says about the tool at one moment.
+// The measured state of the tool at one time, and the sensor that measured it.
 #pragma once
 
 #include <type_traits>
 
 namespace palpate {
 
-// One sample. Position along the inward surface normal, 0 at the undisturbed
-// surface, positive inside the block. Velocity and acceleration only count
-// when the sensor has them, see SensorSpec.
+// One sample. The position is along the inward surface normal, 0 at the undisturbed surface, positive inside the block.
+// Velocity and acceleration are used only if the sensor has them (SensorSpec).
 struct ToolSample {
   double time_s = 0.0;
   double position_m = 0.0;
@@ -15,16 +14,15 @@ struct ToolSample {
   double acceleration_m_per_s2 = 0.0;
 };
 
-// What is known about the sensor behind the samples. It belongs to the source
-// of the samples (a device declares it, `identify_sensor` reads it off a
-// recording), not to the model that they are fed to.
+// The sensor of the samples. It belongs to their source (a device declares it, `identify_sensor` determines it from a
+// recording), not to the model.
 struct SensorSpec {
   double encoder_step_m = 0.0;    // 0: not quantised
-  double position_noise_m = 0.0;  // standard deviation beside the quantisation
+  double position_noise_m = 0.0;  // standard deviation in addition to the quantisation
   bool has_velocity = false;
   double velocity_noise_m_per_s = 0.0;
   bool has_acceleration = false;
-  double acceleration_noise_m_per_s2 = 0.0;  // white part; a drifting bias is always allowed for
+  double acceleration_noise_m_per_s2 = 0.0;  // white noise only; a drifting bias is always estimated
 };
 
 static_assert(std::is_trivially_copyable_v<ToolSample>);
