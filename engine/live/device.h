@@ -1,5 +1,4 @@
-// What holds the tool: a haptic device, a simulated hand, a recording. Samples
-// come out, a force goes in.
+// The interface of a haptic device, a simulated hand or a recording: it returns samples of the tool and takes a force.
 //
 // Thread guarantee: `open` and `close` are slow side, before and after the
 // haptics thread. `read` and `write` belong to the haptics thread: wait-free,
@@ -22,54 +21,53 @@ struct Recording;
 // One sample of a device.
 struct DeviceSample {
   ToolSample tool;
-  // What a force sensor said, newtons; NaN without one.
+  // The reading of a force sensor, N; NaN without one.
   double measured_force_N = std::numeric_limits<double>::quiet_NaN();
-  // A new stream begins here (a recording starts over): its time may be earlier
-  // than the last sample's, and the filters forget what was before.
+  // A new stream begins (a recording starts again): its time may be earlier than that of the last sample, and the
+  // filters are reset.
   bool restart = false;
 };
 
-// Most samples that one tick takes from a device: a recording at 20 kHz, or one
-// at 2 kHz played ten times too fast, and half as much again.
+// The maximum number of samples that a tick reads from a device: those of a recording at 20 kHz, or at 2 kHz played
+// ten times as fast, and half as many again.
 inline constexpr int kMaxSamplesPerTick = 32;
 
-// A tool that a window's mouse and keys may move. One thread, the window's;
-// wait-free. `now_s`: steady clock.
+// A tool that mouse and keys of a window can move. Called by the window's thread only; wait-free. `now_s`: steady
+// clock.
 class ToolInput {
  public:
   virtual ~ToolInput() = default;
   // A target that is not finite is ignored.
   virtual void set_target(double position_m, double now_s) noexcept = 0;
   virtual void nudge(double by_m, double now_s) noexcept = 0;
-  // Nobody moves it any more.
+  // The user no longer moves the tool.
   virtual void leave() noexcept = 0;
-  // Whether the tool moves by itself until somebody takes over.
+  // Whether the tool moves by itself until the user moves it.
   virtual bool hand_is_exploring() const noexcept = 0;
 };
 
-// A recording's playback. One thread, the window's; wait-free. Each limits what it
-// is given to what it can do.
+// Controls the playback of a recording. Called by the window's thread only; wait-free. Arguments are clamped to the
+// valid range.
 class ReplayControl {
  public:
   virtual ~ReplayControl() = default;
   virtual void pause(bool paused) noexcept = 0;
   virtual void set_speed(double speed) noexcept = 0;  // times the recording's own pace
   virtual void seek(double at_s) noexcept = 0;        // from the beginning of the recording
-  // Pauses, and goes so many rows on (at most kMaxSamplesPerTick at a time), or back,
-  // where the stream restarts.
+  // Pauses and moves by `rows` rows: forwards at most kMaxSamplesPerTick at a time, or backwards, which restarts the
+  // stream.
   virtual void step(int rows) noexcept = 0;
   virtual bool paused() const noexcept = 0;
   virtual double speed() const noexcept = 0;
   virtual double playhead_s() const noexcept = 0;
   virtual double duration_s() const noexcept = 0;
-  // What is subtracted from every position, so that 0 is where the models' surface
-  // is; the stream restarts with it.
+  // Sets what is subtracted from every position, so that 0 is the models' surface; the stream restarts.
   virtual void move_surface(double offset_m) noexcept = 0;
   virtual double surface_offset_m() const noexcept = 0;
-  virtual const Recording& recording() const noexcept = 0;  // as it was read; any thread
+  virtual const Recording& recording() const noexcept = 0;  // unchanged; any thread
 };
 
-// What feels the force that is written.
+// The holder of the tool, on whom the written force acts.
 enum class Holder { nobody, simulated, person };
 
 class Device {
@@ -79,36 +77,33 @@ class Device {
   virtual const std::string& name() const noexcept = 0;
   virtual SensorSpec sensor() const noexcept = 0;
   virtual Holder holder() const noexcept = 0;
-  // Whether its samples carry the force of a sensor.
+  // Whether its samples have a measured force.
   virtual bool measures_force() const noexcept { return false; }
-  // What the device may be given, see ForceLimiter.
+  // The limits of the force for this device, see ForceLimiter.
   virtual ForceLimits limits() const noexcept = 0;
 
-  // Slow side, blocking. Errors: says why not, and what to do.
+  // Slow side, blocking. Errors: the reason, and advice.
   virtual Status open() { return {}; }
   virtual void close() noexcept {}
 
-  // The next sample that has come by `now_s` (steady clock, increasing); false:
-  // none since the last call. Several may have: the loop asks again, up to
-  // kMaxSamplesPerTick times a tick, and the device makes sure that what it did
-  // not hand over in time is neither lost nor piled up.
+  // The next sample up to `now_s` (steady clock, increasing); false: none since the last call. The loop calls it again,
+  // up to kMaxSamplesPerTick times a tick, because there may be several. The device must neither lose samples beyond
+  // that nor accumulate them.
   virtual bool read(double now_s, DeviceSample& sample) noexcept = 0;
   // The force to render from now on, limited and finite.
   virtual void write(double force_N) noexcept = 0;
-  // Haptics thread, wait-free: how the device is at `now_s`. What may fail says
-  // so here; the loop gives no force while `may_push()` is false.
+  // Haptics thread, wait-free: the state of the device at `now_s`, with its faults. The loop renders no force while
+  // `may_push()` is false.
   virtual DeviceHealth health(double) noexcept { return {}; }
 
-  // Any thread, wait-free: the tool is at its marked rest position now. Answered
-  // in `health`; ignored by a device that needs no zeroing.
+  // Any thread, wait-free: declares that the tool is at its marked rest position. The result is in `health`; a device
+  // without zeroing ignores it.
   virtual void start_zeroing() noexcept {}
 
-  // Slow side: what people should know of the choice of this device, e.g. what
-  // "auto" fell back to and why; empty when there is nothing to say.
+  // Slow side: a note for the user on the selection of this device, e.g. why "auto" selected another; may be empty.
   virtual std::string note() const { return {}; }
 
-  // Slow side: what else this device can be asked for, as long as it lives; null: it
-  // cannot.
+  // Slow side: further interfaces of this device, valid during its lifetime; null: not available.
   virtual ToolInput* mouse() noexcept { return nullptr; }
   virtual ReplayControl* replay() noexcept { return nullptr; }
 };

@@ -1,6 +1,6 @@
-// The last second of ticks before a fault, kept for inspection: what the tool
-// did, what the models asked for, what the device got.
-// Thread guarantee: one slow-side thread, the one that reads the loop's snapshots.
+// Keeps the last second of ticks before a fault: the motion of the tool, the forces of the models and the rendered
+// force.
+// Thread guarantee: one slow-side thread, which reads the loop's snapshots.
 #pragma once
 
 #include <cstddef>
@@ -15,24 +15,23 @@ namespace palpate {
 class FaultRecorder {
  public:
   static constexpr std::size_t kTicks = 1000;
-  static constexpr std::size_t kTicksAfter = 100;  // of these, after the fault
+  static constexpr std::size_t kTicksAfter = 100;  // number of ticks after the fault
 
-  // Every snapshot in order. True: `ticks` are those around a fault that takes the force
-  // away, its first tick kTicksAfter before the end, so that the way to no force is in
-  // them. A fault that begins in the meantime is part of it.
+  // Takes every snapshot in order. Returns true when `ticks` contains a fault that stops the force and kTicksAfter
+  // ticks from its beginning, so that the decay of the force is included. A fault in the meantime belongs to it.
   bool add(const LoopSnapshot& snapshot);
 
-  // Oldest first; fewer than kTicks when the loop has not run for a second.
+  // Oldest first; fewer than kTicks in the first second of the loop.
   const std::deque<LoopSnapshot>& ticks() const noexcept { return ticks_; }
 
  private:
   std::deque<LoopSnapshot> ticks_;
-  std::size_t left_ = 0;  // ticks until the fault is whole; 0: no fault
+  std::size_t left_ = 0;  // ticks until the fault is complete; 0: no fault
   bool in_fault_ = false;
 };
 
-// The file of one fault: a header that names the columns, one line a tick.
-// Errors: as AtomicFile, never writes over.
+// Writes the file of a fault: a header with the column names, one line for each tick. Errors: those of AtomicFile; an
+// existing file is not overwritten.
 Status write_fault_file(const std::string& path, const std::deque<LoopSnapshot>& ticks);
 
 }  // namespace palpate

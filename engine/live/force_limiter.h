@@ -1,20 +1,16 @@
-// The last word on every force before a device gets it. In this order:
+// Limits every force before the device gets it. In this order:
 //
-//   stop     no force while the sample is stale, the device has a fault or the
-//            dead-man switch is released; a force that is not a number is a
-//            fault as well
-//   ramp     the share that is let through grows from 0 to 1 over `ramp_s` from
-//            the start, and again after each stop
+//   stop     no force while the sample is stale, the device has a fault or the dead-man switch is released; a force
+//            that is not finite is a fault, too
+//   ramp     a factor that grows from 0 to 1 over `ramp_s` from the start, and again after each stop
 //   clamp    |force| <= largest_N, and less as the motor warms up (below)
-//   slew     |change| <= fastest_N_per_s x the time since the last force, so
-//            that neither a fault nor a jump is felt as a kick; only a stop may
-//            be quicker, so that it takes `stop_s` at most
+//   slew     |change| <= fastest_N_per_s x the time since the last force, so that neither a fault nor a jump is felt as
+//            a kick; only a stop may be faster, so that it takes at most `stop_s`
 //
-// Thermal budget. A motor's winding warms with the square of the force and cools
-// by itself: tau dH/dt = F^2 - H, with H in N^2 and continuous_N^2 what it bears
-// for ever. From kFoldback of that on the clamp falls,
+// Thermal model. The motor's winding warms with the square of the force and cools by itself: tau dH/dt = F^2 - H, with
+// H in N^2 and c = continuous_N the force that it can hold permanently. From H = kFoldback c^2 on the clamp decreases,
 //   F^2 <= c^2 + (largest^2 - c^2) (1 - H / c^2) / (1 - kFoldback),
-// and at H = c^2 it is the continuous force: H never exceeds it.
+// down to c at H = c^2: H never exceeds it.
 //
 // Thread guarantee: one thread at a time; wait-free, never throws.
 #pragma once
@@ -29,27 +25,27 @@ struct ForceLimits {
   double largest_N = 10.0;          // peak, > 0
   double fastest_N_per_s = 5000.0;  // > 0
   double ramp_s = 0.3;              // >= 0
-  // May be held for ever, > 0; infinite: no thermal budget.
+  // Force that the motor can hold permanently, > 0; infinite: no thermal limit.
   double continuous_N = std::numeric_limits<double>::infinity();
   double thermal_time_s = 10.0;  // tau, > 0
-  double stale_after_s = 0.01;   // age of a sample that is too old to push by
-  double stop_s = 0.01;          // from any force to none; >= 0
+  double stale_after_s = 0.01;   // maximum age of a sample
+  double stop_s = 0.01;          // time to reduce any force to 0; >= 0
 };
 
-// What is known of the moment beside the force that is wanted.
+// The conditions of one force.
 struct ForceConditions {
   double sample_age_s = 0.0;  // NaN counts as stale
   bool device_fault = false;
-  bool dead_man_released = false;  // a dead-man switch is in use and nobody holds it
+  bool dead_man_released = false;  // a dead-man switch is in use and not held
 };
 
-// What the limiter did to one force; bits, for TickSnapshot's neighbours.
+// What the limiter did to one force: bits of LoopSnapshot::limiter_flags.
 namespace force_limit {
 inline constexpr std::uint32_t kNotFinite = 1;  // fault
 inline constexpr std::uint32_t kClamped = 2;
 inline constexpr std::uint32_t kSlewed = 4;
 inline constexpr std::uint32_t kRamping = 8;
-inline constexpr std::uint32_t kThermal = 16;      // clamped below largest_N by the budget
+inline constexpr std::uint32_t kThermal = 16;      // clamped below largest_N by the thermal model
 inline constexpr std::uint32_t kStale = 32;        // fault
 inline constexpr std::uint32_t kDeviceFault = 64;  // fault
 inline constexpr std::uint32_t kReleased = 128;
@@ -57,25 +53,22 @@ inline constexpr std::uint32_t kReleased = 128;
 
 class ForceLimiter {
  public:
-  // Share of the thermal budget from which on the peak is no longer allowed, and
-  // what it begins with: nobody knows what the motor did before.
+  // H / c^2 from which the clamp decreases, and its initial value, because the earlier temperature is unknown.
   static constexpr double kFoldback = 0.8;
 
   explicit ForceLimiter(const ForceLimits& limits) noexcept
       : limits_(limits), heat_(kFoldback * limits.continuous_N * limits.continuous_N) {}
 
-  // `commanded_N`: anything; `step_s`: since the last call, counted as between 0
-  // and 10 ms, so that a stall does not license a jump. Returns the force to
-  // render, finite, and sets `flags`.
+  // `commanded_N`: any value; `step_s`: since the last call, clamped to 0 to 10 ms for ramp and slew, so that a stall
+  // does not permit a jump. Returns the force to render, finite, and sets `flags`.
   double limit(double commanded_N, double step_s, const ForceConditions& conditions = {}) noexcept;
 
-  // No force in the next call and the ramp begins again; for a fault found
-  // elsewhere.
+  // Requests a stop in the next call, for a fault found elsewhere; the ramp begins again.
   void fault() noexcept { stop_asked_ = true; }
 
   std::uint32_t flags() const noexcept { return flags_; }
   double force_N() const noexcept { return force_N_; }
-  // Of the thermal budget; 0 without one.
+  // H / c^2; 0 without a thermal limit.
   double heat_share() const noexcept;
 
  private:

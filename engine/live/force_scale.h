@@ -1,8 +1,7 @@
-// The active model made stiffer or softer, and more damped, by whoever holds the tool.
-// Bounded by what is stable (StabilityLimit). It comes before passivity and limiter: what they promise, they promise of
-// this force.
+// Scales the stiffness of the active model and adds damping, as the user wants, within the stability limit
+// (StabilityLimit). Passivity controller and limiter come after it and apply to the scaled force.
 //
-//   F' = k F + b v     in contact; b v, v inward, never turns a push into a pull
+//   F' = k F + b v     in contact; v inward; b v never changes the sign of a positive force
 //
 // Thread guarantee: the haptics thread; wait-free.
 #pragma once
@@ -21,11 +20,11 @@ struct ForceScale {
   double damping_Ns_per_m = 0.0;
   bool operator==(const ForceScale&) const = default;
 
-  // Within the bounds above, and of a model of this impedance what is stable.
+  // Clamped to the bounds above and, for a model of this impedance, to the stability limit.
   ForceScale limited(const StabilityLimit& limit, const Impedance& model) const noexcept {
     const double scale = std::min(std::clamp(stiffness, kLeast, kMost), limit.largest_scale(model));
-    // Half of what is left, for the velocity that it uses lags by more than the position; the passivity controller has
-    // the rest.
+    // Half of the rest, because the estimated velocity lags more than the position; the passivity controller uses the
+    // other half.
     const double left_Ns_per_m = 0.5 * (limit.damping_Ns_per_m() - scale * model.damping_Ns_per_m);
     return {scale, std::min(std::clamp(damping_Ns_per_m, 0.0, kMostDamping_Ns_per_m), left_Ns_per_m)};
   }
@@ -33,8 +32,8 @@ struct ForceScale {
 
 class ScaledForce {
  public:
-  // Moves towards `wanted`, which is not clamped, within a tenth of a second or two, so that it is not felt as a kick.
-  // As it is by default, the force keeps its bits.
+  // Moves towards `wanted`, which is not clamped, with a time constant of 50 ms, so that the change is not felt as a
+  // kick, and returns the scaled force. With the default scale the force stays bit-identical.
   double apply(double force_N, double velocity_m_per_s, bool in_contact, const ForceScale& wanted,
                double step_s) noexcept {
     const double share = std::clamp(step_s / kEasing_s, 0.0, 1.0);

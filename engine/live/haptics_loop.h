@@ -1,9 +1,8 @@
 // The haptics thread: a LiveTick every millisecond, by absolute deadlines.
 //
-// Deadline k is start + k x 1 ms, however long a tick took. Deadlines that have
-// passed when the loop gets to them are counted as missed and skipped, never
-// made up in a burst. Nothing is shared with other threads but a TripleBuffer
-// each way, an SpscRing of snapshots and one of samples, the ModelSlot and counters.
+// Deadline k is start + k x 1 ms, independent of the duration of ticks. Deadlines that have passed are counted as
+// missed and skipped, not made up for in a burst. The loop shares with other threads only a TripleBuffer each way, an
+// SpscRing of snapshots and one of samples, the ModelSlot and counters.
 #pragma once
 
 #include <atomic>
@@ -24,49 +23,46 @@ namespace palpate {
 
 struct LoopSettings {
   std::int64_t period_ns = 1'000'000;
-  // How long before a deadline the thread wakes up, to rehearse the tick, again in the last
-  // quarter of it, and to spin: the first evaluations after a pause pay for what the caches
-  // have lost, and a sleep ends late. 0: it sleeps until the deadline.
+  // Time before a deadline at which the thread wakes up, rehearses the tick twice and spins: without it, the first
+  // evaluations after a pause have cold caches, and a sleep ends late. 0: the thread sleeps until the deadline.
   std::int64_t rehearse_ns = 0;
-  bool realtime = true;  // ask for it
+  bool realtime = true;  // request real-time scheduling
   JndLine jnd;
   ForceSource* source = nullptr;  // outlives the loop; null: the models
 };
 
 struct LoopStatistics {
   std::uint64_t ticks = 0;
-  std::uint64_t missed_deadlines = 0;   // skipped
-  std::uint64_t dropped_snapshots = 0;  // the ring was full
-  TimePercentiles lateness;             // of each tick's deadline
+  std::uint64_t missed_deadlines = 0;   // skipped deadlines
+  std::uint64_t dropped_snapshots = 0;  // because the ring was full
+  TimePercentiles lateness;             // after each tick's deadline
   TimePercentiles tick;                 // duration of a tick, publishing included
-  double age_s = 0.0;                   // since the last tick ended; a stall shows here
+  double age_s = 0.0;                   // since the last tick ended; large in a stall
 };
 
-// Snapshots the ring holds: four seconds.
+// Capacity of the ring of snapshots: four seconds.
 inline constexpr std::size_t kSnapshotRing = 4096;
 
 class HapticsLoop {
  public:
-  // Slow side. `device` outlives this and is open; nobody else uses it.
+  // Slow side. `device` must be open, outlive this and not be used elsewhere.
   HapticsLoop(Device& device, const LoopSettings& settings = {});
   HapticsLoop(const HapticsLoop&) = delete;
   HapticsLoop& operator=(const HapticsLoop&) = delete;
-  // Stops.
+  // Calls `stop`.
   ~HapticsLoop();
 
-  // Slow side, blocking until the thread is about to tick. Once. Publish a first
-  // set of models before, so that the warm-up warms it. Errors: no thread.
+  // Slow side, blocks until the scheduling is set. Once. A first set of models should be published before, for the
+  // warm-up. Errors: no thread.
   Status start();
-  // Slow side, blocking: lets the force go to zero, then ends the thread. May be
-  // called again.
+  // Slow side, blocking: reduces the force to 0, then ends the thread. May be called again.
   void stop();
-  // Slow side, after `start`: what the thread was granted.
+  // Slow side, after `start`: the scheduling that the system granted.
   const RtStatus& scheduling() const noexcept { return scheduling_; }
 
   // One slow-side thread, lock-free: models for the next ticks, see ModelSlot.
   void publish_models(std::unique_ptr<LiveModels> models) { slot_.publish(std::move(models)); }
-  // The same thread: deletes the sets that the loop has done with. Call it now
-  // and then.
+  // The same thread: deletes the sets that the loop no longer uses. To be called from time to time.
   std::size_t collect_models() { return slot_.collect(); }
 
   // One slow-side thread, wait-free.
@@ -77,23 +73,23 @@ class HapticsLoop {
   // One reader thread, wait-free, O(most). Every snapshot, oldest first.
   std::size_t read_snapshots(LoopSnapshot* snapshots, std::size_t most) noexcept { return ring_->pop(snapshots, most); }
 
-  // One reader thread, the recorder's, wait-free, O(most). Every sample that was
-  // taken while the controls asked for a recording, oldest first.
+  // One reader thread, the recorder's, wait-free, O(most). Every sample that was read while the controls requested a
+  // recording, oldest first.
   std::size_t read_samples(RecordedSample* samples, std::size_t most) noexcept { return recorded_->pop(samples, most); }
-  // Any thread, wait-free. Samples that found no room since the beginning.
+  // Any thread, wait-free. The number of samples that were dropped because the ring was full.
   std::uint64_t dropped_samples() const noexcept { return recorded_->dropped(); }
 
-  // Any thread, wait-free; the figures of `statistics` that cost nothing.
+  // Any thread, wait-free: those members of `statistics` that take no computation.
   std::uint64_t dropped_snapshots() const noexcept { return ring_->dropped(); }
   double age_s() const noexcept;
 
   // Any thread, wait-free.
   LoopStatistics statistics() const noexcept;
 
-  // The loop itself on the calling thread, until `request_stop`; `start` runs it on
-  // its own. For tests, with a clock of their own.
+  // The loop on the calling thread, until `request_stop`; `start` calls it on a new thread. For tests, with their own
+  // clock.
   void run(Pacer& pacer) noexcept;
-  // Any thread, the pacer's `wait_until` included. Wait-free.
+  // Any thread, also from the pacer's `wait_until`. Wait-free.
   void request_stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
  private:

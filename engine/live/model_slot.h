@@ -1,11 +1,9 @@
-// A new set of models into the haptics thread, and the old one out of it.
+// Hands a new set of models to the haptics thread, and the old one back.
 //
-// The slow side builds, checks and warms a set, then exchanges it into
-// `pending_`; a set that was never taken comes back and is deleted there. The
-// tick takes the pending set at its boundary, but only when the retire ring has
-// room for the one it will give up: it may go on using that one (to blend the
-// force) and retires it when it is done with it. The slow side deletes what it
-// finds in the ring. So nothing is ever deleted, or waited for, in the tick.
+// The slow side builds, checks and warms a set, then exchanges it into `pending_`; a set that was never taken comes
+// back and is deleted there. The tick takes the pending set at its boundary, but only if the retire ring has room for
+// the old one, which it may continue to use (to blend the force) and retires later. The slow side deletes the sets in
+// the ring. The tick thus never deletes a set or waits.
 #pragma once
 
 #include <atomic>
@@ -24,37 +22,34 @@ class ModelSlot {
   ModelSlot() = default;
   ModelSlot(const ModelSlot&) = delete;
   ModelSlot& operator=(const ModelSlot&) = delete;
-  // Slow side, when no other thread is left.
+  // Slow side, after all other threads have ended.
   ~ModelSlot() {
     collect();
     delete pending_.load(std::memory_order_acquire);
   }
 
-  // One slow-side thread. Lock-free towards the tick; may delete a set that was
-  // never taken. `next` is not null.
+  // One slow-side thread. Lock-free; may delete a set that was never taken. `next` is not null.
   void publish(std::unique_ptr<T> next) {
     collect();
     delete pending_.exchange(next.release(), std::memory_order_acq_rel);
   }
 
-  // The same slow-side thread. Deletes what the tick has retired; returns how
-  // many.
+  // The same slow-side thread. Deletes the retired sets; returns their number.
   std::size_t collect() {
     std::size_t count = 0;
     for (T* old = nullptr; retired_.pop(old); ++count) delete old;
     return count;
   }
 
-  // Haptics thread. Wait-free. The pending set, now the caller's until `retire`;
-  // null when there is none, or when the ring has no room: try next tick.
-  // At most one taken set may be waiting for its `retire` beside the newest one.
+  // Haptics thread. Wait-free. The pending set, owned by the caller until `retire`; null if there is none or the ring
+  // has no room. Besides the newest set, at most one taken set may be waiting for its `retire`.
   T* acquire() noexcept {
     if (pending_.load(std::memory_order_relaxed) == nullptr || !retired_.has_room()) return nullptr;
     return pending_.exchange(nullptr, std::memory_order_acq_rel);
   }
 
-  // Haptics thread. Wait-free. Hands `old` over to be deleted. There is room:
-  // `take` saw it, and only this fills the ring.
+  // Haptics thread. Wait-free. Hands `old` over for deletion. There is room: `acquire` checked it, and no other
+  // function fills the ring.
   void retire(T* old) noexcept { retired_.push(old); }
 
  private:

@@ -1,14 +1,14 @@
-// Deadlines and how to wait for them.
+// Absolute deadlines, and waiting for them.
 #pragma once
 
 #include <cstdint>
 
 namespace palpate {
 
-// What happened between two deadlines.
+// The result of waiting for a deadline.
 struct Wake {
-  std::int64_t lateness_ns = 0;  // behind the deadline that was waited for; never below 0
-  std::uint64_t missed = 0;      // later deadlines that had passed as well: skipped
+  std::int64_t lateness_ns = 0;  // after the deadline, >= 0
+  std::uint64_t missed = 0;      // later deadlines that have passed, too: skipped
 };
 
 // Absolute deadlines, one period apart. Value type, no clock; wait-free.
@@ -19,8 +19,8 @@ class Deadlines {
 
   std::int64_t next_ns() const noexcept { return next_ns_; }
 
-  // The loop goes on at `now_ns`, having waited for `next_ns()`; the next deadline
-  // is then the first one after `now_ns`, on the same grid.
+  // To be called when the loop continues at `now_ns` after waiting for `next_ns()`. The next deadline is then the first
+  // one after `now_ns`, on the same grid.
   Wake wake(std::int64_t now_ns) noexcept {
     Wake wake;
     if (now_ns > next_ns_) wake.lateness_ns = now_ns - next_ns_;
@@ -41,16 +41,15 @@ class Pacer {
   virtual std::int64_t now_ns() noexcept = 0;
   // Returns at `deadline_ns` or later; at once when it has passed.
   virtual void wait_until(std::int64_t deadline_ns) noexcept = 0;
-  // The same for what is too near to sleep.
+  // The same by spinning, for short times.
   virtual void spin_until(std::int64_t deadline_ns) noexcept { wait_until(deadline_ns); }
 };
 
-// Of the clock that all of the program's times are on, CLOCK_MONOTONIC. Any
-// thread, wait-free.
+// The clock of all times of the program, CLOCK_MONOTONIC. Any thread, wait-free.
 std::int64_t steady_now_ns() noexcept;
 inline double steady_now_s() noexcept { return 1e-9 * static_cast<double>(steady_now_ns()); }
 
-// The steady clock.
+// A pacer of the steady clock.
 class SteadyPacer final : public Pacer {
  public:
   std::int64_t now_ns() noexcept override { return steady_now_ns(); }

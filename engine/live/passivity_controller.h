@@ -1,24 +1,20 @@
-// Keeps the rendered force from giving back more energy than it took. A force that
-// is held for a tick and comes late acts as negative damping, -K (T / 2 + t_d) beside
-// a stiffness K (Colgate & Schenkel 1997); where neither the material nor the hand
-// has that much, the tool is driven.
+// Keeps the rendered force from returning more energy than it received. A force that is held for a period T and lags by
+// a transport t_d acts as negative damping -K (T / 2 + t_d) in addition to its stiffness K (Colgate & Schenkel 1997);
+// without enough damping in material and hand the tool gains energy.
 //
-// Observer: the energy that the tool has put in since it touched,
-//   E += F dx,  F the force that arrived meanwhile: written as long ago as the transport takes, in time-domain
-//   passivity with the delay in the observer (Ryu et al. 2004), and the mean of them where samples come less often than
-//   ticks.
-// A material that only stores and relaxes never returns more over a way in and out
-// again than it took: at each depth, on the way out, E is no less than it was when
-// that depth was last passed on the way in. What is missing is the debt. (The usual
-// condition, E >= 0, sees a leak only when all that is stored has leaked.)
-// An encoder that flickers between two of its steps moves nothing: the observer follows
-// the depth with a play of one step, which lets F times as much go unseen at each turn.
-// Controller: on the way out, v < 0, the force is lowered by min(b, debt / (v^2 T)) |v|
-// until the debt is repaid; b is what StabilityLimit leaves beside other damping. It takes force away and never adds
-// any, and where there is no debt it does nothing at all. Another active model is another material: what was passed
-// before says nothing of it, and forces that fade into each other are no leak. The observer then begins anew. Source:
-// Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); the reference that follows the depth in the manner
-// of Ryu et al. (2004). Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
+// Observer: the energy that the tool has put in since contact,
+//   E += F dx,  F the force that acted meanwhile: that written a transport and a hold before (the observer includes the
+//   delay, Ryu et al. 2004), and the mean of these if samples come less often than ticks.
+// A material that only stores and relaxes energy returns at most what it received: during unloading, E at each depth is
+// at least the E at which that depth was last passed during loading. The difference to it is the debt. (The usual
+// condition, E >= 0, detects a leak only when all stored energy has leaked.) An encoder that flickers between two steps
+// is no motion: the observer follows the depth with a play of one step, so that at each turn an energy of F times the
+// step is not observed.
+// Controller: during unloading, v < 0, the force is reduced by min(b, debt / (v^2 T)) |v| until the debt is 0; b is the
+// damping that StabilityLimit leaves. Without a debt the force is unchanged. When the active model changes, the
+// observer is reset, because E of another material is not comparable and a fade is no leak.
+// Sources: Hannaford & Ryu (2002), IEEE Trans. Robotics & Automation 18(1); Ryu et al. (2004) for a reference that
+// follows the depth. Thread guarantee: one thread at a time; wait-free, allocates nothing, never throws.
 #pragma once
 
 #include <array>
@@ -34,21 +30,20 @@ class PassivityController {
   explicit PassivityController(double encoder_step_m = 0.0) noexcept;
 
   struct Tool {
-    double depth_m = 0.0;  // of the sample, as the encoder has it
+    double depth_m = 0.0;  // of the sample, quantised by the encoder
     double velocity_m_per_s = 0.0;
     bool in_contact = false;
-    bool other_material = false;  // the active model is being exchanged
-    bool fresh = true;            // a sample came in this tick
+    bool other_material = false;  // the active model is changing
+    bool fresh = true;            // a sample was read in this tick
   };
   struct Loop {
-    double transport_s = 1e-3;       // from a sample to the force that answers it; 60 ms at most are seen
+    double transport_s = 1e-3;       // from a sample to its force; with hold_s at most 63 ms
     double damping_Ns_per_m = 16.0;  // b
-    double hold_s = 1e-3;            // T, for which a force is held: a tick, or until the next sample
+    double hold_s = 1e-3;            // T, for which a force is held: one tick, or until the next sample
   };
 
-  // Once a tick, before the limiter. `written_N`: what the device was given in the
-  // tick before; `step_s` > 0 since then. Returns `commanded_N` or less, not below 0
-  // unless it is; not finite where `commanded_N` is not.
+  // Once a tick, before the limiter. `written_N`: the device's force in the last tick; `step_s`: since then, > 0.
+  // Returns at most `commanded_N`, and 0 or more if that is positive; not finite where `commanded_N` is not.
   double apply(double commanded_N, const Tool& tool, const Loop& loop, double written_N, double step_s) noexcept;
 
   double debt_J() const noexcept { return debt_J_; }
@@ -69,18 +64,18 @@ class PassivityController {
   double energy_when_passed(double depth_m) noexcept;
 
   double play_m_;
-  // The depths passed on the way to here and not yet on the way back, ascending. The first
-  // is where the observer began, with nothing put in: the surface, or further in.
+  // The depths passed during loading and not yet during unloading, ascending. The first is where the observer began,
+  // with E = 0: the surface, or a greater depth.
   std::array<Passed, kMostPassed> passed_{};
   std::size_t count_ = 1;
   double energy_J_ = 0.0;
   double debt_J_ = 0.0;
-  double depth_m_ = 0.0;                           // at the tick before, with the play
-  std::array<double, kMostUnderWay> written_N_{};  // of the last ticks, a ring
+  double depth_m_ = 0.0;                           // in the last tick, with the play
+  std::array<double, kMostUnderWay> written_N_{};  // ring of the last ticks
   std::size_t ticks_ = 0;
   double arrived_N_ = 0.0;  // sum over the ticks since the last sample
   int arrivals_ = 0;
-  double less_N_ = 0.0;  // taken in this tick
+  double less_N_ = 0.0;  // reduction in this tick
 };
 
 }  // namespace palpate

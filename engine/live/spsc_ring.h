@@ -1,6 +1,5 @@
-// Every value, in order, from one thread to another: samples for plots and
-// recorder, models on their way to be deleted. When the ring is full the new
-// value is dropped and counted; the writer never waits.
+// Passes every value in order from one thread to another: samples for plots and recorder, models to be deleted. When
+// the ring is full a new value is dropped and counted; the writer never waits.
 #pragma once
 
 #include <array>
@@ -34,15 +33,13 @@ class SpscRing {
     return true;
   }
 
-  // Producer thread. Wait-free. Whether the next push will succeed; only pushes
-  // can make it untrue again.
+  // Producer thread. Wait-free. Whether the next push will succeed; only a push can change true to false.
   bool has_room() noexcept { return room_for(written_.load(std::memory_order_relaxed)); }
 
-  // Consumer thread. Wait-free. False: empty, `value` as it was.
+  // Consumer thread. Wait-free. False: empty, `value` is unchanged.
   bool pop(T& value) noexcept { return pop(&value, 1) == 1; }
 
-  // Consumer thread. Wait-free, O(most). Up to `most` values, oldest first;
-  // returns how many.
+  // Consumer thread. Wait-free, O(most). Pops up to `most` values, oldest first; returns their number.
   std::size_t pop(T* values, std::size_t most) noexcept {
     const std::uint64_t read = read_.load(std::memory_order_relaxed);
     const std::uint64_t ready = written_.load(std::memory_order_acquire) - read;
@@ -52,12 +49,12 @@ class SpscRing {
     return count;
   }
 
-  // Consumer thread. Wait-free. How many are there to pop.
+  // Consumer thread. Wait-free. The number of values in the ring.
   std::size_t size() const noexcept {
     return static_cast<std::size_t>(written_.load(std::memory_order_acquire) - read_.load(std::memory_order_relaxed));
   }
 
-  // Any thread. Wait-free. Values that found no room since the beginning.
+  // Any thread. Wait-free. The number of dropped values.
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
@@ -69,7 +66,7 @@ class SpscRing {
 
   std::array<T, N> values_{};
   alignas(64) std::atomic<std::uint64_t> written_{0};
-  std::uint64_t seen_read_ = 0;  // producer's last look at read_
+  std::uint64_t seen_read_ = 0;  // the producer's last reading of read_
   std::atomic<std::uint64_t> dropped_{0};
   alignas(64) std::atomic<std::uint64_t> read_{0};
 };

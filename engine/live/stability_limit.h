@@ -1,16 +1,15 @@
-// How stiff and how damped a force may be that lags the motion by t: transport, waits, and half the time for which it
-// is held.
+// The largest stable stiffness and damping of a force that lags the motion by T: transport, waiting times, and half the
+// time for which it is held.
 //
-// A spring K acts as a spring beside the damping -K t (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006),
-// so that K t <= b + c B, where
+// A lagging spring K is a spring with the damping -K T (Colgate & Schenkel 1997; with transport: Diolaiti et al. 2006).
+// The limit is K T <= b + c B, where
 //   b  damping of the lightest hand
-//   B  the most damping that may be rendered, m / (2 t): it lags as well, and on a mass m it is unstable from
-//      pi/2 m / t on
-//   c  what of it the passivity controller brings: half, for it damps on the way out only, and of that less than half,
-//   for
-//      K beyond 0.55 m / t^2 is unstable whatever the damping (the largest K of m x'' + B x'(t - t) + K x(t - t) = 0);
-//      less with a coarse encoder, in whose play the controller sees nothing
-// B bounds the sum of what is viscous in a model, of what the user adds and of the controller's damping. Checked by
+//   B  largest rendered damping, m / (2 T): it lags as well, and is unstable on a mass m above pi/2 m / T
+//   c  share of B that the passivity controller provides: below a quarter, because it damps only during unloading, and
+//      because K > 0.55 m / T^2 is unstable with any damping (the largest K of m x''(t) + B x'(t - T) + K x(t - T) =
+//      0).
+//      It is smaller with a coarse encoder, in whose play the controller does not act.
+// B limits the sum of the damping of the model, of the user and of the controller. Verified by
 // tests/accuracy/closed_loop_late_test.cpp.
 //
 // Thread guarantee: one thread at a time; wait-free.
@@ -20,7 +19,7 @@
 
 namespace palpate {
 
-// Of a small cycle about a depth: F' = stiffness x' + damping v'.
+// The response to a small cycle about a depth: F' = stiffness x' + damping v'.
 struct Impedance {
   double stiffness_N_per_m = 0.0;
   double damping_Ns_per_m = 0.0;
@@ -28,17 +27,17 @@ struct Impedance {
 
 class StabilityLimit {
  public:
-  static constexpr double kLightestHand_kg = 0.05;  // a finger that a tool rests on
-  // A third of critical on 100 N/m; relaxed fingers have half and more (Hajian & Howe 1997).
+  static constexpr double kLightestHand_kg = 0.05;  // a finger on which a tool rests
+  // A third of critical damping on 100 N/m; relaxed fingers have half and more (Hajian & Howe 1997).
   static constexpr double kHandDamping_Ns_per_m = 1.5;
-  static constexpr double kShareOfDamping = 0.22;  // c of a fine encoder
-  static constexpr double kCoarse_m = 30e-6;       // a step of a third of the 0.1 mm that nothing may swing by: c = 0
+  static constexpr double kShareOfDamping = 0.22;  // c with a fine encoder
+  static constexpr double kCoarse_m = 30e-6;       // encoder step with c = 0: a third of the permitted swing, 0.1 mm
 
   explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
       : share_(kShareOfDamping * std::max(0.0, 1.0 - encoder_step_m / kCoarse_m)) {}
 
-  // `late_s`: now. Followed within 0.1 s where it grows and within 1 s where it falls: stiffness that comes back
-  // while a hand presses gives energy.
+  // Follows the current lag `late_s` with a time constant of 0.1 s where it grows and 1 s where it falls: an increase
+  // of stiffness during a press adds energy.
   void update(double late_s, double step_s) noexcept {
     const double time_s = late_s > late_s_ ? kRise_s : kFall_s;
     late_s_ = late_s_ > 0.0 ? late_s_ + std::clamp(step_s / time_s, 0.0, 1.0) * (late_s - late_s_) : late_s;
@@ -47,7 +46,7 @@ class StabilityLimit {
   double late_s() const noexcept { return late_s_; }
   double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / late_s_; }
   double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / late_s_; }
-  // The largest factor at which a force of this impedance is stable.
+  // The largest stable factor of a force with this impedance.
   double largest_scale(const Impedance& of) const noexcept {
     return std::min(stiffness_N_per_m() / std::max(of.stiffness_N_per_m, kNone),
                     damping_Ns_per_m() / std::max(of.damping_Ns_per_m, kNone));

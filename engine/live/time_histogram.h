@@ -1,6 +1,5 @@
-// How long things take, without keeping them: counts in fixed bins, 32 to each
-// doubling of the time, so that a percentile is right within 3.2 %. The maximum
-// is exact.
+// A histogram of durations in constant memory, with 32 bins for each factor of two, so that percentiles are accurate to
+// 3.2 %. The maximum is exact.
 #pragma once
 
 #include <array>
@@ -21,15 +20,14 @@ struct TimePercentiles {
 
 class TimeHistogram {
  public:
-  // One writer thread. Wait-free. Times below zero count as zero.
+  // One writer thread. Wait-free. Negative times count as zero.
   void add(std::int64_t time_ns) noexcept {
     const auto value = static_cast<std::uint64_t>(time_ns > 0 ? time_ns : 0);
     bump(counts_[bin_of(value)]);
     if (value > longest_ns_.load(std::memory_order_relaxed)) longest_ns_.store(value, std::memory_order_relaxed);
   }
 
-  // Any thread, wait-free, also while the writer adds: a figure may then miss
-  // the last few. O(bins).
+  // Any thread, wait-free, also while the writer adds; the last few times may then be missing. O(bins).
   TimePercentiles percentiles() const noexcept;
 
  private:
@@ -40,7 +38,7 @@ class TimeHistogram {
   static void bump(std::atomic<std::uint64_t>& counter) noexcept {
     counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
-  // Below 32 ns a bin each; above, the leading bit and the five that follow.
+  // One bin each below 32 ns; above, the leading bit and the five that follow determine the bin.
   static std::size_t bin_of(std::uint64_t value) noexcept {
     if (value < kPerDoubling) return static_cast<std::size_t>(value);
     const auto doubling = static_cast<std::size_t>(std::bit_width(value)) - kShift - 1;
