@@ -6,9 +6,8 @@
 //   b  damping of the lightest hand
 //   B  largest rendered damping, m / (2 T): it lags as well, and is unstable on a mass m above pi/2 m / T
 //   c  share of B that the passivity controller provides: below a quarter, because it damps only during unloading, and
-//      because K > 0.55 m / T^2 is unstable with any damping (the largest K of m x''(t) + B x'(t - T) + K x(t - T) =
-//      0).
-//      It is smaller with a coarse encoder, in whose play the controller does not act.
+//      K > 0.55 m / T^2, the largest K of m x''(t) + B x'(t - T) + K x(t - T) = 0, is unstable with any damping. It is
+//      smaller with a coarse encoder, in whose play the controller does not act.
 // B limits the sum of the damping of the model, of the user and of the controller. Verified by
 // tests/accuracy/closed_loop_late_test.cpp.
 //
