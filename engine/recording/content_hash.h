@@ -1,4 +1,4 @@
-// What identifies a recording whatever its name: a hash of its numbers (FNV-1a, with a mixing shift).
+// A hash of the numbers of a recording (FNV-1a with an additional shift), independent of its name.
 // Thread guarantee: value types and pure functions.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-// Row by row, for recordings that are not in memory.
+// Computes the hash row by row, for recordings that are not in memory.
 class ContentHash {
  public:
   void add(const RecordingRow& row) {

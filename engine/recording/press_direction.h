@@ -1,12 +1,11 @@
-// Which way round position and force of a recording are, from the samples alone:
-// the force of a contact grows with the depth and is (nearly) zero at the other end.
+// Determines the signs of position and force of a recording from its samples: the force of a contact grows with the
+// depth and is (nearly) zero at the other end.
 //
-// The mean force is taken over sixteenths of the range of positions. The end whose
-// force is (nearly) zero is the shallow one; where an offset of the force hides that,
-// the end where the force changes less. Position is right when the shallow end is the
-// low one, force is right when it is larger at the deep end. Certain is only what free air
-// says: at the shallow end the force is flat, and small against that at the deep end. A
-// material that softens, drags or yields looks like a flipped sign without it.
+// The mean force is computed for sixteenths of the range of positions. The shallow end is the one where the force is
+// (nearly) zero or, if an offset of the force hides that, the one where it changes less. The sign of the position is
+// right if the shallow end is the low one, that of the force if the force is larger at the deep end. The result is
+// certain only with free air: a force at the shallow end that is flat, and small relative to the deep end. Without it,
+// a material that softens, drags or yields looks like a flipped sign.
 // Thread guarantee: slow side; one thread per object.
 #pragma once
 
@@ -19,10 +18,10 @@
 namespace palpate {
 
 struct PressDirection {
-  bool known = false;             // false: the data do not say
-  bool certain = false;           // no material can look like this the right way round
-  bool position_flipped = false;  // deeper is more negative
-  bool force_flipped = false;     // pushing out is negative
+  bool known = false;             // whether the signs could be determined
+  bool certain = false;           // no material with the right signs looks like this
+  bool position_flipped = false;  // position decreases with depth
+  bool force_flipped = false;     // force is negative when the material pushes the tool out
   double shallow_force_N = 0.0;   // mean over the shallowest samples
   double deep_force_N = 0.0;
 };

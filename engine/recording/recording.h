@@ -5,14 +5,12 @@
 // ignored. Lines that begin with '#' before the header are comments. Time is
 // strictly increasing; the median time step of the first 1,000 rows (all rows
 // of a shorter recording) lies between those of 20 kHz and 10 Hz, 5 % allowed;
-// single steps may be of any length. Position is at most 1 m and force at most
-// 1e6 N either way, for anything beyond is a slip of the unit. CRLF, a UTF-8
-// byte order mark, a missing last newline, blank lines at the very end, blanks
-// around numbers and a leading '+' are accepted; everything else that is wrong,
-// lines beyond 64 KiB included, is refused with
+// single steps may be of any length. Position is at most 1 m and force at most 1e6 N either way, because a larger value
+// is in a wrong unit. CRLF, a UTF-8 byte order mark, a missing last newline, blank lines at the end, blanks around
+// numbers and a leading '+' are accepted. All other faults, and lines beyond 64 KiB, are errors,
 //   file:line:column: found X, expected Y; what to do
-// for the first fault in the file, columns counted in bytes from 1 (behind a
-// byte order mark). Numbers use '.' as decimal point whatever the locale.
+// for the first fault in the file, with columns counted in bytes from 1 (after a byte order mark). Numbers use '.' as
+// decimal point in every locale.
 // Thread guarantee: slow side only (allocates, does I/O).
 #pragma once
 
@@ -25,8 +23,7 @@
 
 namespace palpate {
 
-// One row. Coordinates as everywhere: position along the inward surface
-// normal, 0 at the undisturbed surface, positive inside; force along the
+// One row. Position along the inward surface normal, 0 at the undisturbed surface, positive inside; force along the
 // outward normal, positive when the block pushes the tool out.
 struct RecordingRow {
   double time_s = 0.0;
@@ -39,7 +36,7 @@ struct RecordingRow {
 struct RecordingColumns {
   bool velocity = false;
   bool acceleration = false;
-  bool force = true;  // false: motion alone, which a RecordingWriter writes and no reader takes
+  bool force = true;  // false: motion alone, which only RecordingWriter supports
 };
 
 struct Recording {
@@ -51,15 +48,13 @@ struct Recording {
 inline constexpr std::size_t kRecordingMinimumRows = 10;
 inline constexpr std::size_t kAllRows = std::numeric_limits<std::size_t>::max();
 
-// Reads a recording into memory, or so many of its first rows; errors as RecordingReader.
+// Reads a recording into memory, at most its first `most_rows` rows. Errors: those of RecordingReader.
 Result<Recording> read_recording(const std::string& path, std::size_t most_rows = kAllRows);
 
-// Writes `recording` to `path` atomically: a temporary file beside it, flushed
-// to disk, then renamed. Numbers are written so that reading them back gives
-// the same doubles. `comments` become '#' lines, one for each line of text.
-// Errors: the file exists and `overwrite` is false, the disk refuses, or the
-// reader would refuse the file (row by row, the rules above); then no file is
-// left.
+// Writes `recording` to `path` atomically: to a temporary file in the same folder, flushed to disk, then renamed.
+// Numbers read back as the same doubles. `comments` become '#' lines, one for each line of text. Errors: the file
+// exists and `overwrite` is false; input/output errors; a row or recording that breaks the rules above. Then no file is
+// written.
 Status write_recording(const std::string& path, const Recording& recording, const std::vector<std::string>& comments,
                        bool overwrite);
 

@@ -1,4 +1,4 @@
-// Recordings row by row, out of a file or any other source of bytes.
+// Reads recordings row by row from a file or another source of bytes.
 //
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace palpate {
 
-// What each column of the file means, in the file's order.
+// The roles of the columns of the file, in its order.
 struct RecordingHeader {
   std::vector<ColumnRole> roles;
   bool ends_with_comma = false;  // the last column has no name
@@ -28,38 +28,34 @@ struct RecordingHeader {
 // column twice, another separator than the comma.
 Result<RecordingHeader> parse_recording_header(const LineScanner& scanner, const CsvLine& line);
 
-// Says what is wrong with a row that `RecordingReader` could not read: one
-// sentence with its place. Slow, and only ever called once per file.
+// Explains why `RecordingReader` could not read a row: one sentence with its position. Slow; called once per file.
 Error explain_recording_row(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header);
 
-// One decimal number with blanks around it, '.' as decimal point, exactly
-// rounded. Returns where it ends (at a comma or at `end`), or nullptr if there
-// is no finite number.
+// Parses one decimal number with blanks around it, '.' as decimal point, correctly rounded. Returns its end (a comma or
+// `end`), or nullptr if there is no finite number.
 const char* parse_recording_number(const char* begin, const char* end, double& value);
 
 // The column (from 1) where field `index` of `text` starts; blanks
 // before a value are skipped.
 std::size_t field_column(std::string_view text, std::size_t index);
 
-// Reads a recording row by row in bounded memory, whatever its length.
+// Reads a recording of any length row by row in bounded memory.
 class RecordingReader {
  public:
-  // Opens the file and reads its header. Errors: no such file, not readable,
-  // a folder, a pipe or a device, not text, no header, missing or duplicate
-  // column.
+  // Opens the file and reads its header. Errors: no such file, not readable, a folder, a pipe or a device, not text, no
+  // header, a missing or duplicate column.
   static Result<RecordingReader> open(const std::string& path);
-  // The same of any source; `label` names it in messages.
+  // The same for any source; `label` replaces the path in messages.
   static Result<RecordingReader> from(std::unique_ptr<ByteSource> source, std::string label,
                                       std::size_t buffer_bytes = kScannerBufferBytes);
 
-  // Of the file, without folder and ending.
+  // The file name without folder and extension.
   const std::string& name() const { return name_; }
   RecordingColumns columns() const;
 
-  // Reads `capacity` rows (at least 1) into `rows`; returns how many: fewer at the
-  // end only. Errors: any row that breaks a rule of recording.h; fewer than 10 rows in
-  // all; a rate outside the range, known at row 1,000 or at the end, so after
-  // earlier rows were returned. After an error each call repeats it.
+  // Reads up to `capacity` rows (at least 1) into `rows`; returns their number, which is smaller only at the end.
+  // Errors: a row that breaks a rule of recording.h; fewer than 10 rows in total; a rate outside the range, detected at
+  // row 1,000 or at the end, after earlier rows were returned. After an error each call returns it again.
   Result<std::size_t> read(RecordingRow* rows, std::size_t capacity);
 
  private:

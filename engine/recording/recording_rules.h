@@ -1,5 +1,4 @@
-// What makes a row part of a recording, whoever made it: the rules that the
-// reader and the writer share. Internal to engine/recording.
+// The rules for the rows of a recording, used by reader and writer. Internal to engine/recording.
 //
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
@@ -17,7 +16,7 @@
 
 namespace palpate {
 
-// What a column of the file means; the order is that of RecordingRow.
+// The role of a column of the file; the order is that of RecordingRow.
 enum class ColumnRole : std::uint8_t { kTime, kPosition, kForce, kVelocity, kAcceleration, kIgnored };
 
 inline constexpr std::size_t kKnownColumns = 5;
@@ -25,22 +24,21 @@ inline constexpr std::size_t kRequiredColumns = 3;
 inline constexpr std::array<std::string_view, kKnownColumns> kColumnNames = {
     "time_s", "position_m", "force_N", "velocity_m_per_s", "acceleration_m_per_s2"};
 
-// No haptic device has a workspace of a metre, so a larger figure is a unit
-// slip, most often millimetres.
+// No haptic device has a workspace of a metre: a larger value is in a wrong unit, mostly millimetres.
 inline constexpr double kMaximumPosition_m = 1.0;
-// A hundred tonnes: never a tool, always a unit slip or a broken sensor.
+// The weight of a hundred tonnes: a larger value is in a wrong unit, or the sensor is broken.
 inline constexpr double kMaximumForce_N = 1e6;
-// The contract's range of sampling rates. The median step decides, with 5 % for
-// clocks that run slow and times rounded to few digits.
+// The range of sampling rates. The median step is compared, with 5 % tolerance for slow clocks and for times rounded to
+// few digits.
 inline constexpr double kMinimumRate_Hz = 10.0;
 inline constexpr double kMaximumRate_Hz = 20000.0;
 inline constexpr double kRateTolerance = 0.05;
-// Whether rows so far apart have a rate in that range.
+// Whether rows with this time step have a rate in that range.
 bool rate_in_range(double step_s);
-// The rate is checked once, from this many rows, so that rows can stream.
+// The rate is checked once, after this many rows, so that rows can be streamed.
 inline constexpr std::size_t kRateRows = 1000;
 
-// A broken rule: "found ..., expected ...; what to do", and where it belongs.
+// A broken rule: "found ..., expected ...; what to do", and its position.
 struct RowFault {
   enum class Place { kThisRow, kFirstRow, kEnd };
   Place place = Place::kThisRow;
@@ -48,16 +46,15 @@ struct RowFault {
   std::string text;
 };
 
-// Checks rows in order; give it every row, then `finish`.
+// Checks rows in order: `check` for every row, then `finish`.
 class RowRules {
  public:
   RowRules();
 
-  // Nothing, or the rule that `row` breaks: a value that is not finite, a
-  // position or force beyond the limits above, a time that is not later than
-  // the row before; on row kRateRows also a rate outside the range.
+  // Returns nothing, or the rule that `row` breaks: a value that is not finite, a position or force beyond the limits
+  // above, a time that is not later than that of the row before; for row kRateRows also a rate outside the range.
   std::optional<RowFault> check(const RecordingRow& row) {
-    // A comparison with NaN is false, so each of these refuses it.
+    // A comparison with NaN is false, so NaN is rejected, too.
     const bool sane = row.time_s > last_time_s_ && row.time_s < HUGE_VAL &&
                       std::abs(row.position_m) <= kMaximumPosition_m && std::abs(row.force_N) <= kMaximumForce_N &&
                       std::abs(row.velocity_m_per_s) < HUGE_VAL && std::abs(row.acceleration_m_per_s2) < HUGE_VAL;
@@ -68,8 +65,8 @@ class RowRules {
     return std::nullopt;
   }
 
-  // After the last row: fewer than kRecordingMinimumRows, or a rate outside the
-  // range in a recording shorter than kRateRows.
+  // To be called after the last row. Detects fewer than kRecordingMinimumRows rows, and a rate outside the range in a
+  // recording with fewer than kRateRows rows.
   std::optional<RowFault> finish();
 
   std::uint64_t rows() const { return rows_; }

@@ -1,5 +1,5 @@
-// A recording file written row by row in bounded memory, whatever its length;
-// whole under its name after `commit`, or not there at all.
+// Writes a recording file of any length row by row in bounded memory. The file appears under its name at `commit`, or
+// partially at `publish`.
 // Thread guarantee: slow side only; one thread at a time.
 #pragma once
 
@@ -16,29 +16,27 @@ namespace palpate {
 
 class RecordingWriter {
  public:
-  // `comments` become '#' lines, one for each line of text. Errors: as
-  // AtomicFile::create; a comment too long for a line.
+  // `comments` become '#' lines, one for each line of text. Errors: those of AtomicFile::create; a comment that is too
+  // long for a line.
   static Result<RecordingWriter> create(const std::string& path, RecordingColumns columns,
                                         const std::vector<std::string>& comments, bool overwrite);
 
-  // Buffered. Errors: the reader would refuse the row (engine/recording/recording.h has the
-  // rules), which is left out.
+  // Buffered. Errors: a row that breaks a rule (engine/recording/recording.h); it is not written.
   Status add(const RecordingRow& row);
 
   std::uint64_t rows() const { return rules_.rows(); }
-  // Whether the disk has refused something already; commit says what.
+  // Whether an input/output error has occurred; `commit` returns it.
   bool failed() const noexcept { return file_.failed(); }
 
-  // What was added so far is on the disk under its name, whole rows whenever the program is
-  // killed (AtomicFile::publish); a file that the reader would still refuse waits. Errors:
-  // as `commit`.
+  // Makes the rows written so far available under the file's name, in whole rows even if the program is killed
+  // (AtomicFile::publish); does nothing while the file is too short for the reader. Errors: as `commit`.
   Status publish();
 
-  // Rows that are under the final name whatever happens.
+  // The number of rows that `publish` has made available.
   std::uint64_t published_rows() const noexcept { return published_rows_; }
 
-  // Errors: as AtomicFile::commit; fewer than 10 rows, or a rate outside the
-  // reader's range. Then no file is left but what was published.
+  // Errors: those of AtomicFile::commit; fewer than 10 rows, or a rate outside the reader's range. Then only the
+  // published file, if any, is left.
   Status commit();
 
  private:
