@@ -1,6 +1,5 @@
-// Which column of a foreign table is the time, the position and the force, by
-// their names and units, in English, German and French and as common programs name
-// them. What two columns claim with equal right is left to the user.
+// Determines which columns of a foreign table are the time, the position and the force, from their names (English,
+// German, French, and those of common programs) and units. If two columns fit equally well, the user has to decide.
 // Thread guarantee: slow side only.
 #pragma once
 
@@ -18,14 +17,14 @@ namespace palpate {
 inline constexpr std::size_t kRoles = 3;
 inline constexpr std::array<const char*, kRoles> kRoleNames = {"time", "position", "force"};
 
-// A column as the header has it; without a header the name is its number.
+// A column with its header; without a header the name is its first value.
 struct ForeignColumn {
-  std::string header;  // as written
+  std::string header;  // as in the file
   NameAndUnit parts;
-  bool constant = false;  // over the first rows: no time
+  bool constant = false;  // in the first rows: cannot be the time
 };
 
-// What the user has said of each role: a name or a number from 1; empty: guess.
+// The user's choice for each role: a name or a number from 1; empty: to be determined.
 using RoleRequest = std::array<std::string, kRoles>;
 
 struct RoleChoice {
@@ -33,20 +32,19 @@ struct RoleChoice {
   std::array<bool, kRoles> guessed{};
 };
 
-// Errors (without the file's name), each with the header and what to add: an unknown
-// name; no column or several that can be the time, the position or the force; one
-// column for two roles.
+// Errors (without the file's name), each with the header and the option to add: an unknown name; no column, or several,
+// that can be the time, the position or the force; one column for two roles.
 Result<RoleChoice> choose_columns(const std::vector<ForeignColumn>& columns, const RoleRequest& request,
                                   bool has_header, bool needs_time);
 
-// The one column that is a measured velocity, by its name and unit ("Speed (mm/s)").
+// The only column that is a measured velocity by name and unit ("Speed (mm/s)"); none if there are several.
 struct VelocityColumn {
   std::size_t column = 0;
   double to_si = 1.0;
 };
 std::optional<VelocityColumn> find_velocity(const std::vector<ForeignColumn>& columns);
 
-// The header for a message: 1 "Zeit [s]", 2 "Weg [mm]".
+// The columns for a message: 1 "Zeit [s]", 2 "Weg [mm]".
 std::string list_columns(const std::vector<ForeignColumn>& columns);
 
 }  // namespace palpate

@@ -1,12 +1,11 @@
-// A lab's own file becomes a recording: any table of text in, rows in SI units out,
-// and every guess that was made on the way in words.
+// Converts a text table of another program into a recording in SI units, with a note on every guess.
 //
 //   foreign_text   bytes to text          table_layout   separator, decimal mark, header
 //   units          units in headers       column_roles   time, position, force
 //   table_number   one cell               import_table   all rows, units, sign, time
 //
-// Nothing is repaired in silence: what cannot be decided is an error that shows the
-// header and the option to add.
+// Nothing is repaired without a note: what cannot be determined is an error that shows the header and the option to
+// add.
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 
@@ -26,14 +25,14 @@
 namespace palpate {
 
 struct ImportRequest {
-  std::optional<char> decimal;  // mark; none: found out
+  std::optional<char> decimal;  // decimal mark; none: to be determined
   RoleRequest columns;
-  std::vector<Unit> units;        // at most one for each quantity; they beat the header's
-  std::optional<double> rate_Hz;  // evenly spaced rows; the file's time is not used
+  std::vector<Unit> units;        // at most one for each quantity; they take precedence over the header
+  std::optional<double> rate_Hz;  // for evenly spaced rows, instead of the file's time
   bool flip_position = false;
   bool flip_force = false;
-  std::optional<double> gain_N_per_V;  // of a force that was recorded in volts
-  std::uint64_t skip_bad_rows = 0;     // so many rows may not parse
+  std::optional<double> gain_N_per_V;  // for a force recorded in volts
+  std::uint64_t skip_bad_rows = 0;     // number of rows that may be unreadable
 };
 
 struct ImportedColumn {
@@ -46,14 +45,14 @@ struct ImportedColumn {
 struct ImportedTable {
   Recording recording;
   TextEncoding encoding = TextEncoding::utf8;
-  TableLayout layout;  // its names and units are gone with the text
+  TableLayout layout;  // without names and units, which refer to the text
   std::array<ImportedColumn, kRoles> columns;
-  std::vector<std::string> notes;  // sentences: guesses, what was left out, advice
+  std::vector<std::string> notes;  // sentences: guesses, omissions, advice
 };
 
 // Reads `path`. Errors: "path: ..." or "path:line: ...".
 Result<ImportedTable> import_table(const std::string& path, const ImportRequest& request);
-// The same from memory; `label` stands in messages.
+// The same from memory; `label` replaces the path in messages.
 Result<ImportedTable> import_table(const ForeignText& text, const std::string& label, const ImportRequest& request);
 
 }  // namespace palpate

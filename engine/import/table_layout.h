@@ -1,11 +1,9 @@
-// Where the table in a foreign text begins and how its rows are written: what
-// separates the fields, which decimal mark, which line names the columns, which
-// line has their units, where the numbers start.
+// Determines the layout of the table in a foreign text: separator of fields, decimal mark, the lines of column names
+// and of units, and the first line of numbers.
 //
-// Every pair of separator and decimal mark is tried on the first lines; the pair
-// under which most cells are numbers and none is a mangled one wins. The longest
-// run of rows of numbers is the table, the nearest line above it that names as many
-// columns is the header; whatever stands further above is a preamble.
+// Every pair of separator and decimal mark is tried on the first lines. Pairs without fields that begin as a number
+// but are none are preferred, then the pair with most numbers. The longest run of rows of numbers is the table, and the
+// nearest line above it with names for all columns is the header; lines further above are a preamble.
 // Thread guarantee: slow side only.
 #pragma once
 
@@ -34,15 +32,15 @@ struct TableLayout {
   std::size_t data_offset = 0;  // in the text
 };
 
-// `said`: the decimal mark, where the user has said which. Errors (without the file's name):
-// no rows of numbers; a comma that may be a decimal mark or a thousands mark.
+// `said`: the decimal mark if the user has given it. Errors (without the file's name): no rows of numbers; a comma that
+// may be a decimal mark or a thousands mark.
 Result<TableLayout> find_table_layout(std::string_view text, std::optional<char> said);
 
-// The fields of one line, without blanks and quotes around them. `fields` is filled
-// anew; empty fields at the end of the line are left out.
+// The fields of one line without blanks and quotes around them. `fields` is replaced; empty fields at the end of the
+// line are omitted.
 void split_table_fields(std::string_view line, Delimiter delimiter, std::vector<std::string_view>& fields);
 
-// The line at the start of `text` (which loses it) without its line end.
+// Removes the first line from `text` and returns it without its line end.
 std::string_view next_line(std::string_view& text);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// One cell of a foreign table: a number with a decimal point or a decimal comma,
-// or a point in time. All parsers return false for anything else and never throw.
+// Parses one cell of a foreign table: a number with a decimal point or a decimal comma, or a time. All parsers return
+// false for anything else and never throw.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
@@ -8,21 +8,20 @@
 
 namespace palpate {
 
-// "0.5", "-1,25e-3", "+3"; also with thousands marks where nothing else can be meant:
-// the other mark, an apostrophe or a blank, in groups of three, followed by the
-// decimal mark or repeated ("1,234.5", "1.234.567"). NaN and infinity are no numbers.
+// "0.5", "-1,25e-3", "+3"; also with unambiguous thousands marks: the other mark, an apostrophe or a blank, in groups
+// of three, followed by the decimal mark or repeated ("1,234.5", "1.234.567"). NaN and infinity are not numbers.
 bool parse_table_number(std::string_view text, char decimal, double& value);
 
-// "nan", "NaN", "inf", "-", "n/a": a cell that holds a value that is none.
+// "nan", "NaN", "inf", "-", "n/a": a cell for a missing value.
 bool is_missing_value(std::string_view text);
 
-// Whole units and the rest, so that a time in nanoseconds since 1970 keeps its digits.
+// A time as whole units and a fraction, so that nanoseconds since 1970 keep their digits.
 struct TableTime {
   std::int64_t whole = 0;
   double fraction = 0.0;  // of the same unit
 };
 
-// A plain number as a time.
+// Parses a plain number as a time.
 bool parse_number_time(std::string_view text, char decimal, TableTime& time);
 
 // "2024-03-05T14:03:22.123Z", "2024-03-05 14:03:22,5", "05.03.2024 14:03:22.1",

@@ -1,5 +1,5 @@
-// Units that rigs write into the headers of their tables, and where they write
-// them: "Pos [mm]", "Fz (mN)", "t/ms", "Force_N", "Standardkraft in N", "Weg mm".
+// The units in headers of tables, and the ways in which they are written: "Pos [mm]", "Fz (mN)", "t/ms", "Force_N",
+// "Standardkraft in N", "Weg mm".
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
@@ -12,28 +12,28 @@ namespace palpate {
 enum class Quantity { time, length, force };
 
 struct Unit {
-  std::string_view name;  // as it is printed: "mm"
+  std::string_view name;  // printed name: "mm"
   Quantity quantity = Quantity::time;
-  double to_si = 1.0;  // s, m or N for one of it
+  double to_si = 1.0;  // size of the unit in s, m or N
 };
 
-// Whether `list`, words between blanks, has this one.
+// Whether `list`, words separated by blanks, contains this word.
 bool is_word_of(std::string_view list, std::string_view word);
 
-// The unit called `text`: exact case first ("mN" is not "MN"), then any case where
-// only one thing can be meant ("MM", "Sec"). Grams count as the force of their weight.
+// The unit named `text`: first with exact case ("mN" is not "MN"), then with any case if it is unambiguous ("MM",
+// "Sec"). Grams are the force of their weight.
 std::optional<Unit> find_unit(std::string_view text);
 
 struct NameAndUnit {
   std::string name;          // without the unit
   std::optional<Unit> unit;  // when it is known
-  std::string foreign_unit;  // in brackets but unknown: "%", "degC"
+  std::string foreign_unit;  // unknown unit in brackets: "%", "degC"
 };
 
-// Volts in one of what `text` names, "V" or "mV" in any common spelling; 0: no voltage.
+// The size in volts of the unit in `text`, "V" or "mV" in any common spelling; 0: no voltage.
 double volts_of(std::string_view text);
 
-// Takes a column's name and its unit apart.
+// Separates the name and the unit of a column.
 NameAndUnit split_name_and_unit(std::string_view header);
 
 }  // namespace palpate
