@@ -1,5 +1,4 @@
-// Files that are either whole under their final name or not there at all, or grow there
-// by whole pieces.
+// Files that appear under their final name only when they are complete, or grow there by complete pieces.
 //
 // Thread guarantee: slow side only.
 #pragma once
@@ -11,10 +10,9 @@
 
 namespace palpate {
 
-// Collects output in a file without a name; `commit` flushes it to disk and names it.
-// Destroyed without commit, killed or interrupted, it leaves nothing under the final name,
-// and nothing at all where the file system knows files without a name (O_TMPFILE): elsewhere
-// it is a hidden file beside `path`, which a program that is killed leaves behind.
+// Collects output in a file without a name; `commit` flushes it to disk and names it. If the object is destroyed before
+// that, or the program is killed, nothing exists under the final name, and no other file if the file system supports
+// files without a name (O_TMPFILE). Otherwise a program that is killed leaves a hidden file in the folder of `path`.
 class AtomicFile {
  public:
   // Errors: `path` exists and `overwrite` is false ("... exists; pass --force
@@ -26,20 +24,18 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&& other) noexcept;
   ~AtomicFile();
 
-  // Appends; buffered. Errors are kept and reported by commit.
+  // Appends; buffered. Errors are stored and returned by `commit`.
   void write(std::string_view text);
-  // Whether the disk has refused something already; commit says what.
+  // Whether an input/output error has occurred; `commit` returns it.
   bool failed() const noexcept { return error_number_ != 0; }
 
-  // From now on the file stands under its final name with all that was written, and
-  // every further call adds to it: whole pieces of text between two calls, whenever the
-  // program is killed. Where the disk refuses a piece, the file keeps those before.
+  // Gives the file its final name with all that was written. Every further call appends the text since the last one as
+  // a complete piece, even if the program is killed. If a piece cannot be written, the file keeps the earlier ones.
   // Errors: as `commit`.
   Status publish();
 
-  // Errors: anything the disk refused since `create`, e.g. no space left; a
-  // file of that name made by someone else meanwhile, unless `overwrite`. Then
-  // nothing is left under the final name but what was there before, or was published.
+  // Errors: any input/output error since `create`, e.g. no space left; another file was created under the name in the
+  // meantime, unless `overwrite`. Then the earlier or the published file, if any, is unchanged.
   Status commit();
 
  private:
@@ -57,14 +53,14 @@ class AtomicFile {
   int error_number_ = 0;
   bool overwrite_ = false;
   bool published_ = false;
-  long long whole_bytes_ = 0;  // published
+  long long whole_bytes_ = 0;  // length that was published
 };
 
-// Makes a new name in the folder of `path` last. Some file systems cannot flush a folder; the
-// file is whole under its name either way, so a refusal is not an error.
+// Flushes the folder of `path`, so that a new name in it survives a power cut. Some file systems cannot do that; it is
+// no error, because the file itself is complete.
 void flush_folder_of(const std::string& path);
 
-// Writes `text` to `path` in one go; errors as AtomicFile.
+// Writes `text` to `path` atomically. Errors: those of AtomicFile.
 Status write_file_atomically(const std::string& path, std::string_view text, bool overwrite);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// Lines of a text file from a source that nobody trusts, in bounded memory,
-// and the pieces of every message about them. Internal to the recording reader.
+// Reads lines of an untrusted text file in bounded memory, and formats error messages about them. Internal to the
+// recording reader, except for the functions on text and numbers at the end.
 //
 // Thread guarantee: slow side only; one thread per object.
 #pragma once
@@ -15,20 +15,20 @@
 
 namespace palpate {
 
-// Longer lines are refused, so that memory stays bounded whatever the file.
+// Limit of the length of a line, bytes; it bounds the memory.
 inline constexpr std::size_t kMaximumLineBytes = 64 * 1024;
-// One read(2) at a time; larger gains nothing measurable.
+// Size of a read(2) call; a larger one is not faster.
 inline constexpr std::size_t kScannerBufferBytes = 1024 * 1024;
 
-// Where the bytes come from. `read` fills up to `capacity` bytes and returns
-// how many, 0 at the end. Errors: a sentence without the file's name.
+// A source of bytes. `read` fills up to `capacity` bytes and returns their number, 0 at the end. Errors: a sentence
+// without the file's name.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
   virtual Result<std::size_t> read(char* bytes, std::size_t capacity) = 0;
 };
 
-// Reads `text` (kept by the caller) in pieces of at most `piece_bytes`.
+// Reads `text`, which must outlive this, in pieces of at most `piece_bytes`.
 class MemorySource final : public ByteSource {
  public:
   explicit MemorySource(std::string_view text, std::size_t piece_bytes = kScannerBufferBytes);
@@ -39,7 +39,7 @@ class MemorySource final : public ByteSource {
   std::size_t piece_bytes_;
 };
 
-// Reads a file descriptor, which it closes when destroyed.
+// Reads a file descriptor and closes it in the destructor.
 class DescriptorSource final : public ByteSource {
  public:
   explicit DescriptorSource(int descriptor) : descriptor_(descriptor) {}
@@ -52,7 +52,7 @@ class DescriptorSource final : public ByteSource {
   int descriptor_;
 };
 
-// One line without its line end; `text` lives until the next call of `next`.
+// One line without its line end; `text` is valid until the next call of `next`.
 struct CsvLine {
   std::string_view text;
   std::uint64_t number = 0;  // from 1
@@ -62,13 +62,11 @@ struct CsvLine {
 // Splits a source into lines at LF or CRLF and skips a UTF-8 byte order mark.
 class LineScanner {
  public:
-  // `label` is the file's name in messages; `buffer_bytes` must hold the
-  // longest line and two bytes more.
+  // `label`: the file's name in messages. `buffer_bytes`: at least the longest line and two bytes.
   LineScanner(std::unique_ptr<ByteSource> source, std::string label, std::size_t buffer_bytes = kScannerBufferBytes);
 
-  // Reads the next line; false at the end and on an error. Errors, all of
-  // them final: UTF-16, a NUL byte, a carriage return inside a line, a line
-  // beyond kMaximumLineBytes, a source that fails.
+  // Reads the next line; false at the end and after an error. Errors (no line can be read after one): UTF-16, a NUL
+  // byte, a carriage return inside a line, a line beyond kMaximumLineBytes, an error of the source.
   bool next(CsvLine& line);
 
   const std::optional<Error>& error() const { return error_; }
@@ -100,19 +98,19 @@ class LineScanner {
 // `text` without blanks (space, tab) at both ends.
 std::string_view trimmed(std::string_view text);
 
-// With A to Z as a to z.
+// `text` with A to Z replaced by a to z.
 std::string lower_ascii(std::string_view text);
 
-// True if every byte of `text` belongs to a well-formed UTF-8 sequence;
-// otherwise `bad_offset` is the first that does not. Source: RFC 3629, section 4.
+// Whether every byte of `text` belongs to a well-formed UTF-8 sequence; if not, `bad_offset` is the first that does
+// not.
+// Source: RFC 3629, section 4.
 bool is_utf8(std::string_view text, std::size_t& bad_offset);
 
-// `text` made fit for a message: bytes that are not printable text as \xHH, and
-// cut with "..." after about `limit` bytes.
+// `text` for a message: bytes that are not printable as \xHH, truncated with "..." after about `limit` bytes.
 std::string printable(std::string_view text, std::size_t limit = 40);
 
-// One decimal number at `begin`, '.' as decimal point whatever the locale, exactly rounded; a leading '+' is
-// accepted. Returns where it ends, or nullptr where no finite number begins.
+// Parses one decimal number at `begin`, '.' as decimal point in every locale, correctly rounded; a leading '+' is
+// accepted. Returns its end, or nullptr if there is no finite number.
 const char* parse_number(const char* begin, const char* end, double& value);
 
 // The shortest decimal form that reads back as the same double.

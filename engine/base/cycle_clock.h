@@ -1,6 +1,5 @@
-// A clock of a few nanoseconds for timing single evaluations inside the tick:
-// the processor's own counter where it has one that runs evenly (x86-64, arm64),
-// else the steady clock. Its unit is whatever it is; `ns_per_cycle` measures it.
+// A clock with a resolution of a few nanoseconds for single evaluations in the tick: the processor's counter if it has
+// a constant rate (x86-64, arm64), else the steady clock. `ns_per_cycle` measures its unit.
 #pragma once
 
 #include <chrono>
@@ -24,8 +23,7 @@ inline std::uint64_t cycle_count() noexcept {
 #endif
 }
 
-// Slow side: measures for 2 ms the first time, then remembers. Good to about
-// 0.1 %.
+// Slow side: measures for 2 ms at the first call and stores the result. Accurate to about 0.1 %.
 double ns_per_cycle();
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// How a caller follows a fit and stops it.
+// Progress and cancellation of a fit.
 #pragma once
 
 #include <functional>
@@ -8,9 +8,8 @@
 namespace palpate {
 
 struct FitControl {
-  // Called now and then on the fitting thread with the fraction done, 0 to 1;
-  // returns false to cancel the fit, which then ends with interrupted(). May
-  // be empty.
+  // Called from time to time on the fitting thread with the finished fraction, 0 to 1. If it returns false, the fit
+  // ends with interrupted(). May be empty.
   std::function<bool(double fraction)> progress;
 
   bool may_continue(double fraction) const { return !progress || progress(fraction); }

@@ -1,18 +1,16 @@
-// Fork and join for the fits. Never used in the tick.
+// Parallel loops for the fits. Not for the tick.
 #pragma once
 
 #include <functional>
 
 namespace palpate {
 
-// Number of threads the fits use: what the machine has.
+// The number of threads of the fits: that of the machine's processors.
 int thread_count();
 
-// Calls work(0) ... work(count - 1), each once, on up to thread_count()
-// threads, and returns when all are done. Which thread takes which part is not
-// fixed, so parts must write to places of their own; results that are then
-// combined in the order of the parts do not depend on the threads.
-// `work` must not throw.
+// Calls work(0) ... work(count - 1) once each on up to thread_count() threads, and returns when all calls have ended.
+// The assignment of parts to threads is not deterministic, so parts must write to separate memory; results that are
+// then combined in the order of the parts are deterministic. `work` must not throw.
 void parallel_for(int count, const std::function<void(int part)>& work);
 
 }  // namespace palpate

@@ -1,9 +1,8 @@
-// Random numbers that are the same on every machine and with every library.
+// Random numbers that are bit-identical on every machine.
 //
-// RandomStream: xoshiro256** (Blackman & Vigna 2018), seeded by SplitMix64. Streams
-// of one seed are independent: each sensor and the hand have their own. SplitMix64
-// (Steele, Lea & Flood 2014): for draws without replacement. Integer arithmetic and
-// correctly rounded operations only, so the same seed gives the same bits everywhere.
+// RandomStream: xoshiro256** (Blackman & Vigna 2018), seeded by SplitMix64. Different streams of one seed are
+// independent, e.g. for each sensor and the hand. SplitMix64 (Steele, Lea & Flood 2014): for draws without replacement.
+// Both use integer arithmetic and correctly rounded operations only.
 // Thread guarantee: one thread at a time; wait-free.
 #pragma once
 
@@ -26,7 +25,7 @@ class SplitMix64 {
     return value % bound;
   }
 
-  // The step from one state to the next, and what makes a number of a state.
+  // The increment of the state, and the function from a state to a number.
   static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15u;
   static std::uint64_t mixed(std::uint64_t z) noexcept {
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
@@ -57,17 +56,16 @@ class RandomStream {
     return result;
   }
 
-  // Even in [from, to).
+  // Uniform in [from, to).
   double uniform(double from, double to) noexcept {
     return from + (to - from) * static_cast<double>(next() >> 11) * 0x1p-53;
   }
 
-  // Even among 0 .. count - 1; count > 0 and small.
+  // Uniform in 0 .. count - 1; count > 0 and small.
   std::uint64_t index(std::uint64_t count) noexcept { return (next() >> 32) * count >> 32; }
 
-  // Mean 0, variance 1: the sum of twelve even numbers (Irwin-Hall). It needs
-  // no logarithm or cosine; its tails end at 6 and are 20 % thin at 3, which
-  // no sensor model here can tell.
+  // Mean 0, variance 1, approximately normal: the sum of twelve uniform numbers (Irwin-Hall), without logarithm or
+  // cosine. Its tails end at 6 and are 20 % too thin at 3, which is irrelevant for the sensor models.
   double normal() noexcept {
     std::uint64_t sum = 0;
     for (int draw = 0; draw < 3; ++draw) {

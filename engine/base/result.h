@@ -1,8 +1,7 @@
-// A value or one explained error, for everything that comes from outside:
-// files, arguments, devices. Nothing in the tick returns one.
+// A value or an error, for all input from outside: files, arguments, devices. Not used in the tick.
 //
-// An error message is one sentence that names the place, what was found, what
-// was expected and what to do; programs print it behind "error: ".
+// An error message is one sentence with the position, what was found, what was expected and advice; programs print it
+// after "error: ".
 // Thread guarantee: as for any value type.
 #pragma once
 
@@ -48,7 +47,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
-// Done, or one explained error.
+// Success, or an error.
 class [[nodiscard]] Status {
  public:
   Status() = default;

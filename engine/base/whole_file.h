@@ -1,4 +1,4 @@
-// The bytes of a file that the user named.
+// Reads a file that the user named.
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
@@ -10,16 +10,16 @@
 
 namespace palpate {
 
-// Opens a file to be read, a plain one: a pipe or a device could block for ever or never end.
-// Returns the descriptor. `expected`, in messages: "a model file"; `or_else`: what else to do
-// where there is none, ", or ...". Errors: no such file, a folder, a pipe or a device, no permission.
+// Opens a regular file for reading and returns its descriptor; a pipe or a device could block or never end.
+// `expected`: "a model file", for messages; `or_else`: further advice if there is no such file, ", or ...". Errors: no
+// such file, a folder, a pipe or a device, no permission.
 Result<int> open_plain_file(const std::string& path, const std::string& expected, const std::string& or_else = "");
-// More than any file that a program of this kind writes for itself but a model or a recording.
+// Larger than any file that such programs write, except models and recordings.
 inline constexpr std::size_t kSmallFileBytes = std::size_t{64} << 20;
-// All of its bytes. Errors: the same, those of DescriptorSource, and a file beyond `most_bytes`.
+// Reads all bytes. Errors: as above, those of DescriptorSource, and a file beyond `most_bytes`.
 Result<std::string> read_plain_file(const std::string& path, const std::string& expected,
                                     const std::string& or_else = "", std::size_t most_bytes = kSmallFileBytes);
-// The same; nothing where it cannot be read, whatever the reason.
+// Reads all bytes; none if the file cannot be read for any reason.
 std::optional<std::string> read_whole_file(const std::string& path);
 
 }  // namespace palpate
