@@ -1,7 +1,7 @@
-// Typed reading of an untrusted JSON text: models, scenes, JND files, calibrations.
-// Each access says where it failed, what was found and what was expected:
+// Typed access to untrusted JSON text: models, scenes, JND files, calibrations. Errors have the position, the value
+// found and the value expected:
 //   path:line:column: field[index].field: found X, expected Y; what to do
-// All errors of a file are collected; a fault that follows from one already told is not.
+// All errors of a file are collected, except those that follow from an earlier one.
 //
 // Thread guarantee: one thread per object; slow side (allocates).
 #pragma once
@@ -18,24 +18,23 @@
 
 namespace palpate {
 
-// What to do, as messages end; begins with "; " or is empty.
+// The advice at the end of messages; begins with "; " or is empty.
 struct JsonAdvice {
-  std::string field;    // a field is not as it should be
-  std::string damaged;  // the text cannot have been written as it is
+  std::string field;    // for a wrong field
+  std::string damaged;  // for text that no program of Palpate has written
 };
 
-// The document in `text`, with lists and objects at most `nesting` deep. Errors:
-// not JSON, deeper, a NUL byte, a name twice in one object, a number beyond the range of a double; with
-// path:line:column.
+// Parses `text`, with lists and objects nested at most `nesting` deep. Errors, with path:line:column: not JSON, deeper
+// nesting, a NUL byte, a name twice in one object, a number beyond the range of a double.
 Result<nlohmann::json> parse_json(std::string_view text, const std::string& path, int nesting,
                                   const JsonAdvice& advice);
 
-// "found 3.5", "found a list of 7": what stands there, short enough for a message.
+// "found 3.5", "found a list of 7": a short description of a value for a message.
 std::string found(const nlohmann::json& value);
 
 enum class Sign { kAny, kNotNegative, kPositive };
 
-// The numbers that a field may hold, both ends included unless `open`: then not `low`.
+// The range of a number, both ends included; if `open`, without `low`.
 struct NumberRange {
   double low = 0.0;
   double high = 1.0;
@@ -46,52 +45,51 @@ struct NumberRange {
   std::string words() const;
 };
 
-// A value and the way to it from the top; no value when it was not there.
+// A value and its JSON pointer; `value` is null if it does not exist.
 struct JsonNode {
   const nlohmann::json* value = nullptr;
   std::string pointer;
 };
 
-// Every method complains when it does not find what it wants and then returns
-// something harmless; `error` holds all complaints, a line each.
+// Every method reports an error if it does not find what it expects, and then returns a valid default. `error` returns
+// all errors, one a line.
 class JsonFields {
  public:
-  // `text`: what the document was parsed from; kept by the caller, as `path`.
+  // `text`: the text of the document. `text` and `path` must outlive this.
   JsonFields(std::string_view text, const std::string& path, std::string advice)
       : text_(text), path_(path), advice_(std::move(advice)) {}
 
-  // Up to 20 lines, and how many more there are; nothing while all is well.
+  // Up to 20 lines, and the number of further errors; none without an error.
   std::optional<Error> error() const;
   std::size_t error_count() const noexcept { return error_count_; }
 
-  // Adds a line about the value at `pointer`, unless one stands there about it or about
-  // what it is part of.
+  // Reports an error of the value at `pointer`, unless one of it or of a value that contains it was reported.
   void complain(const std::string& pointer, const std::string& words, const std::string& advice);
   void complain(const std::string& pointer, const std::string& words) { complain(pointer, words, advice_); }
 
-  // The member `key`; `expected` describes it for the case that it is missing.
+  // The member `key`. `expected`: its description for the error if it is missing.
   JsonNode member(const JsonNode& object, const char* key, const std::string& expected);
-  // The same for a member that may be left out: then no complaint.
+  // The same for an optional member: no error if it is missing.
   JsonNode optional_member(const JsonNode& object, const char* key);
-  // A list; without one, complains and gives a JsonNode without value.
+  // A list; if there is none, reports an error and returns a JsonNode without value.
   JsonNode list(const JsonNode& object, const char* key, const std::string& expected);
   static JsonNode entry(const JsonNode& list, std::size_t index);
 
   std::string text(const JsonNode& object, const char* key);
-  // One that is not empty.
+  // A text that is not empty.
   std::string filled_text(const JsonNode& object, const char* key);
   bool boolean(const JsonNode& object, const char* key);
   std::uint64_t count(const JsonNode& object, const char* key);
   double number(const JsonNode& object, const char* key, Sign sign = Sign::kAny);
   double number(const JsonNode& object, const char* key, const NumberRange& range);
-  // The index in `names` of the text; complains with all of them, and returns nothing.
+  // The index in `names` of the text; otherwise reports an error with all names and returns none.
   std::optional<std::size_t> choice(const JsonNode& node, const std::vector<std::string>& names);
 
-  // Exactly `expected_count` numbers (`words` says which) into `values`.
+  // Reads exactly `expected_count` numbers, which messages call `words`, into `values`.
   bool fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values);
 
-  // At the end, when all that may be there was asked for: complains of every member of
-  // an object that was not, with those that were.
+  // To be called after all members have been read: reports an error for every member that was not requested, in all
+  // objects from which a member was.
   void refuse_unknown(const JsonNode& top);
 
  private:
@@ -105,9 +103,9 @@ class JsonFields {
   const std::string& path_;
   std::string advice_;
   std::vector<std::string> lines_;
-  std::vector<std::string> told_;  // pointers
+  std::vector<std::string> told_;  // pointers of reported errors
   std::size_t error_count_ = 0;
-  std::map<std::string, std::vector<std::string>> asked_;  // keys by the pointer of their object
+  std::map<std::string, std::vector<std::string>> asked_;  // requested keys, by the pointer of their object
 };
 
 }  // namespace palpate

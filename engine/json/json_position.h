@@ -1,4 +1,4 @@
-// Where in a JSON text a value stands, for messages that name line and column.
+// The line and column of a value in JSON text, for messages.
 // Thread guarantee: pure functions, any thread.
 #pragma once
 
@@ -14,15 +14,15 @@ struct TextPosition {
   std::size_t column = 1;
 };
 
-// "path:line:column: ", as messages begin.
+// "path:line:column: ", the beginning of a message.
 std::string position_prefix(const std::string& path, TextPosition position);
 
-// Of the byte at `offset`, clamped to the end of the text.
+// The position of the byte at `offset`, clamped to the end of the text.
 TextPosition position_of_offset(std::string_view text, std::size_t offset);
 
-// Of the value at a JSON pointer such as "/features/2/kind" ("" is the whole
-// document). `text` is valid JSON. A value that is missing has the position of
-// the deepest value on the way to it. Keys with escapes, '/' or '~' are not
+// The position of the value at a JSON pointer such as "/features/2/kind" ("": the whole document). `text` is valid
+// JSON.
+// A missing value has the position of the deepest existing value on its path. Keys with escapes, '/' or '~' are not
 // found.
 TextPosition position_of_value(std::string_view text, std::string_view pointer);
 
