@@ -11,9 +11,9 @@ namespace palpate {
 //
 // The non-negative coefficients are fitted to the absolute errors by least squares, with rows scaled by 1 / JND. Then
 // all are multiplied by the quantile of error over bound that gives a coverage of 97.5 % of the rows: more than 95 %,
-// because a new recording differs more from the training than its strokes from each other. The floor is at least the
-// force that counts as none (sensor_identification.h): without it the coverage was 77 to 90 % on skin and 83 % on one
-// trial of silicone, with it 97 to 100 %. The bound grows by at least a quarter of the largest force per unit of
+// because a new recording differs more from the training than its strokes from each other. The floor is at least 10 mN
+// (kForceFloor_N): without this minimum the coverage was 77 to 90 % on skin and 83 % on one trial of silicone, with it
+// 97 to 100 %. The bound grows by at least a quarter of the largest force per unit of
 // normalised distance. None with fewer than 50 predictions. Pure.
 std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& predictions, double inner_radius,
                                           const JndLine& jnd, double largest_force_N);

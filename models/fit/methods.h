@@ -43,7 +43,7 @@ struct MethodRequest {
   int centres = 100;
   int candidates = 100;  // per greedy step; 0: every site
   KernelKind kernel = KernelKind::cubic;
-  std::vector<int> grid{};  // nodes per feature; empty: 25 for depth, 11 for the others (in 4-D)
+  std::vector<int> grid{};  // nodes per feature; empty: 25 for depth, 11 for the others, fewer beyond four features
   std::uint64_t seed = 1;
 };
 
@@ -86,8 +86,8 @@ struct Method {
   double (*expected_seconds)(const MethodRequest& request) = nullptr;
   // Errors: the sites cannot be fitted (says why); interrupted. Deterministic. To be called by fit_correction.
   Result<FittedCorrection> (*fit)(const MethodTask& task, const FitControl& control) = nullptr;
-  // Selects centres in an order of which k centres are a valid choice for every k up to request.centres
-  // (nested_fit.h). Null for methods without such an order.
+  // Selects the centres for every number up to request.centres (nested_fit.h). Null for methods whose selections are
+  // not nested.
   Result<CentreSequence> (*choose)(const MethodTask& task, const FitControl& control) = nullptr;
 
   bool can_take(MethodOption option) const { return (takes & option) != 0; }

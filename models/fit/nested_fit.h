@@ -1,5 +1,5 @@
-// Fits with every number of centres up to a maximum, for a slider. Methods with a nested order of centres
-// (Method::choose) select once; a fit of k centres then only solves for weights.
+// Fits with every number of centres up to a maximum, for a slider. Methods with nested selections (Method::choose)
+// select once; a fit of k centres then only solves for weights.
 //
 // The rows of all sites are reduced once, with the tail before the kernel columns in the order of selection:
 //   row_scale * (G Phi f) = Q T,  T upper triangular.

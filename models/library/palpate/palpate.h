@@ -131,8 +131,8 @@ PALPATE_API int palpate_stream_forces_with_motion(palpate_stream*, size_t n, con
                                                   const double* acceleration_m_per_s2, double* force_N, double* bound_N,
                                                   double* features);
 
-/* 1 if the motion at the last accepted sample was out of the domain of the recordings, so that the force is the
- * model's trend; otherwise, and out of contact, 0. Wait-free. */
+/* 1 if the motion at the last accepted sample was out of the domain of the recordings, so that the force is
+ * mainly the model's trend; otherwise, and out of contact, 0. Wait-free. */
 PALPATE_API int palpate_stream_out_of_domain(const palpate_stream*);
 /* The 95 % bound on the error of the force at the same sample, N. 0 out of contact; NaN if the model has none.
  * Wait-free. */
