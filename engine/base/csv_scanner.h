@@ -1,5 +1,5 @@
-// Reads lines of an untrusted text file in bounded memory, and formats error messages about them. Internal to the
-// recording reader, except for the functions on text and numbers at the end.
+// Reads lines of an untrusted text file in bounded memory, and formats error messages about them. The scanner
+// is internal to the recording reader.
 //
 // Thread guarantee: slow side only; one thread per object.
 #pragma once

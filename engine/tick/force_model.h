@@ -11,7 +11,7 @@ namespace palpate {
 
 struct ForceEstimate {
   double force_N = 0.0;
-  // The feature vector is far from the training data, and the force is that of the model's trend
+  // The feature vector is outside the domain of the training data, where the force is mainly that of the trend
   // (models/model/domain_guard.h).
   bool out_of_domain = false;
   // 95 % bound on the error of the force, N; NaN if the model has none (models/model/error_bound.h).
