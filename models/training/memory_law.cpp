@@ -55,26 +55,33 @@ class LawSearch {
     list_.creep_times_s = evenly(list.creep_times_s, kSearchedBristles);
   }
 
-  // Adds the law to those tried. With `lags` the surface is searched from that of the law, which may have none.
+  // Adds the law to those tried. With `lags` its surface is searched first, beginning with that of the law, which may
+  // have none; the surface that is scored is the one of the law.
   Status add(Tried& tried, Law law, bool lags) const {
-    for (int pass = 0; pass < (lags ? kSurfacePasses : 1); ++pass) {
-      FeatureList list = list_;
-      list.slowing = law.slowing;
-      list.surface = law.surface;
-      const auto rows = gather_rows(source_, list, problem_, kSearchedRows, kSearchStep_s, control_, fraction_);
+    for (int pass = 0; lags && pass < kSurfacePasses; ++pass) {
+      const auto rows = rows_of(law);
       if (!rows) return rows.error();
       const TrendRegression regression(*rows, source_.folds(), problem_, TrendRegression::Smoothness::fixed);
       ColumnList columns = regression.all_columns();
-      if (pass + 1 == (lags ? kSurfacePasses : 1)) tried.errors.push_back(regression.cross_validate(columns).errors);
-      if (!lags) break;
       columns.resize(rows->first_stop());  // friction and creep hold no surface back
       law.surface = surface_of(*rows, regression.solve(columns));
     }
+    const auto rows = rows_of(law);
+    if (!rows) return rows.error();
+    const TrendRegression regression(*rows, source_.folds(), problem_, TrendRegression::Smoothness::fixed);
+    tried.errors.push_back(regression.cross_validate(regression.all_columns()).errors);
     tried.laws.push_back(std::move(law));
     return {};
   }
 
  private:
+  Result<TrendRows> rows_of(const Law& law) const {
+    FeatureList list = list_;
+    list.slowing = law.slowing;
+    list.surface = law.surface;
+    return gather_rows(source_, list, problem_, kSearchedRows, kSearchStep_s, control_, fraction_);
+  }
+
   std::vector<FeatureSpec> surface_of(const TrendRows& rows, const Eigen::VectorXd& x) const {
     FeatureList list = list_;
     list.slowing = rows.terms().slowing;
