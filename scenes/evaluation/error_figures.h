@@ -1,11 +1,10 @@
-// A model's errors so far, in memory that does not grow with time; and the one binning by force.
-//   Bins are kBinWidth_jnd just noticeable differences wide, whatever the forces are: with
-//   JND(F) = o + w F the number of JNDs between 0 and F is
-//     u(F) = integral_0^F dF / JND = log(1 + w F / o) / w,   F / o where w is 0,
-//   and bin k holds the forces with k <= u / kBinWidth_jnd < k + 1. That makes 3 bins up to
-//   0.3 N, 15 up to 6 N and 63 up to 3 kN with the paper's line.
-// Thread guarantee: value type; slow side (allocates). Source: figures 4 to 7 of Hoever & Harders (2009) for errors
-// against force.
+// Error statistics of a model in bounded memory, in total and in bins of the reference force.
+// Every bin is kBinWidth_jnd just noticeable differences wide. With JND(F) = o + w F the number of JNDs
+// between 0 and F is
+//   u(F) = integral_0^F dF / JND = log(1 + w F / o) / w,   F / o where w is 0,
+// and bin k holds the forces with k <= u / kBinWidth_jnd < k + 1. With the paper's JND line this gives about
+// 3 bins up to 0.3 N, 15 up to 6 N and 63 up to 3 kN.
+// Thread guarantee: value type; slow side (allocates). Source: figures 4 to 7 of Hoever & Harders (2009).
 #pragma once
 
 #include <cstddef>
@@ -17,7 +16,7 @@
 namespace palpate {
 
 inline constexpr double kBinWidth_jnd = 2.0;
-// At most so many bins, for a line that is flat: the last one takes the rest.
+// Bounds the memory where the JND line is flat. The last bin holds all larger forces.
 inline constexpr std::size_t kMaximumForceBins = 2000;
 
 // Errors of the samples with force_from_N <= measured force < force_to_N.
@@ -30,7 +29,7 @@ struct ForceBin {
   double mean_abs_error_N = 0.0;
   double std_abs_error_N = 0.0;  // population standard deviation
   double max_abs_error_N = 0.0;
-  // Error over the JND, taken sample by sample.
+  // Of the ratio error / JND, computed sample by sample.
   double mean_error_over_jnd = 0.0;
   double std_error_over_jnd = 0.0;
   double max_error_over_jnd = 0.0;
@@ -44,25 +43,25 @@ double force_bin_begin_N(std::size_t index, const JndLine& jnd) noexcept;
 
 class ErrorFigures {
  public:
-  // One sample in contact, both forces finite; always with the same `jnd`.
+  // Adds one sample in contact. Both forces are finite, and `jnd` is the same in every call.
   void add(double model_N, double reference_N, bool out_of_domain, const JndLine& jnd);
-  // What `other` has seen, as if seen here as well.
+  // Adds all samples of `other`, which has the same JND line.
   void add(const ErrorFigures& other);
 
   std::uint64_t samples() const noexcept { return samples_; }
-  // The rest is 0 without samples.
+  // Without samples the following figures are 0.
   double within_jnd() const noexcept;  // share of the samples with an error up to one JND
   double rms_error_N() const noexcept;
   double max_error_N() const noexcept { return max_error_N_; }
   double mean_error_over_jnd() const noexcept;
   double max_error_over_jnd() const noexcept { return max_ratio_; }
   std::uint64_t out_of_domain_samples() const noexcept { return out_of_domain_; }
-  // From 0 to the largest reference force.
+  // All bins from 0 to the largest reference force.
   std::vector<ForceBin> bins(const JndLine& jnd) const;
 
  private:
-  // Mean and sum of squares around it: no cancellation, whatever the count.
-  // Source: Welford (1962); Chan, Golub & LeVeque (1983) for two of them together.
+  // Mean and sum of squared deviations, updated without cancellation.
+  // Source: Welford (1962); Chan, Golub & LeVeque (1983) for merging two of them.
   struct Moments {
     double mean = 0.0;
     double squares = 0.0;

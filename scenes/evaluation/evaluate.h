@@ -1,7 +1,7 @@
-// Models against one recording, through the tick of the live loop, sixteen at a time: errors with positions
-// as recorded, and with the surface moved to where the models have theirs. Every model says itself where the
-// surface is (models/surface/surface_search.h), or some say it for all; the moved figures come from the
-// same rows, each position less the offset, and their own samples in contact.
+// Evaluates models on one recording through the tick of the live loop, kMaxModels at a time. Errors are computed
+// twice: with the positions as recorded, and with a surface offset subtracted from every position. The offset is
+// estimated for each model (models/surface/surface_search.h), or once for all models. With the offset, contact is
+// determined anew.
 // Thread guarantee: slow side; one thread per call.
 #pragma once
 
@@ -28,29 +28,29 @@ struct EvaluatedModel {
   JndLine jnd;
 };
 
-// The rows of a recording, as often as they are asked for: run through a tick with up to
-// kMaxModels models, `surface_offset_m` subtracted from every position.
+// A recording that can be replayed several times. `replay` steps a tick with up to kMaxModels models through all
+// rows and subtracts `surface_offset_m` from every position.
 struct RowSource {
   std::function<Result<ReplaySummary>(const ForceModels& models, const ReplayVisitor& visitor, double surface_offset_m)>
       replay;
 };
-RowSource rows_of(const Recording& recording);    // which outlives it
-RowSource rows_of_file(const std::string& path);  // in bounded memory
+RowSource rows_of(const Recording& recording);    // `recording` outlives the result
+RowSource rows_of_file(const std::string& path);  // reads the file in each replay, in bounded memory
 
 struct EvaluationRequest {
-  // Sees every row as recorded, with the first kMaxModels models.
+  // Called for every row as recorded, with the first kMaxModels models; may be empty.
   ReplayVisitor also;
-  // Rows outside are replayed, since the material remembers them, but do not count.
+  // Errors are counted for times in [low, high). Earlier rows are replayed because the features have memory.
   Interval counted_s{-1e300, 1e300};
   bool move_surface = true;
-  // The models that say together where the surface is, for all; empty: each for itself.
+  // The models from which one common surface offset is estimated. Empty: one offset is estimated for each model.
   std::vector<ModelPointer> surface_models;
   FitControl control;
 };
 
-// The predicted 95 % bounds against the errors; NaN for a model without.
+// Coverage and median of a model's 95 % error bounds; NaN for a model without bounds.
 struct PredictedErrors {
-  double held_share = std::numeric_limits<double>::quiet_NaN();
+  double held_share = std::numeric_limits<double>::quiet_NaN();  // coverage: share of the errors within the bound
   double median_N = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -58,18 +58,18 @@ struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
   PredictedErrors predicted;  // with the surface moved
-  Located surface;            // identified or not
+  Located surface;            // 0 where no offset is determined
 };
 
 struct RecordingEvaluation {
   std::uint64_t samples = 0;
   std::uint64_t contact_samples = 0;
   std::vector<ModelEvaluation> models;
-  ModelErrors no_force{JndLine{}};  // of a model that always says 0 N, as recorded, at the first model's JND
-  TimedSamples timing;              // to time models on
+  ModelErrors no_force{JndLine{}};  // of a model that is always 0 N, as recorded, with the JND of the first model
+  TimedSamples timing;              // the first kTimedSamples samples in contact, for time_models
 };
 
-// One evaluation a model, in their order. Errors: those of the rows; interrupted.
+// Returns one evaluation per model, in the order of `models` (at least one). Errors: those of `rows`; interrupted.
 Result<RecordingEvaluation> evaluate(const RowSource& rows, const std::vector<EvaluatedModel>& models,
                                      const EvaluationRequest& request = {});
 

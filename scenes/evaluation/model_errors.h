@@ -1,15 +1,15 @@
-// The errors of one model over the samples in contact: every figure of merit, defined here
-// and nowhere else, and how far it can be trusted.
+// The errors of one model over the samples in contact: the definition of every figure of merit, and its
+// confidence interval.
 //
 //   within the JND   share of the samples with |model - measured| <= JND(measured)
 //   99 % error       the smallest error over the JND that 99 % of the samples do not exceed
 //                    (nearest rank)
 //   RMS, maximum     of |model - measured|
-// Neighbouring samples are alike, so intervals come from independent units (unit_statistics.h): whole recordings
-// where there are several, else strokes, from touch to release. With fewer than kLeastUnits there is none. The
-// share has the standard error of a ratio; the 99 % error that of the mean of the units' own. Where no unit goes
-// beyond one JND the scatter is 0, and the bound is exact: of n units at most 1 - 0.05^(1/n) do, at 95 %.
-// Two models over the same samples are compared unit by unit (paired).
+// Neighbouring samples are correlated, so intervals come from independent units (unit_statistics.h): whole
+// recordings where there are several, else strokes (from touch to release). With fewer than kLeastUnits units there
+// is no interval. The share has the standard error of a ratio; the 99 % error has the standard error of the mean of
+// the units' 99 % errors. Where no unit has a sample beyond one JND, the exact binomial bound applies: at 95 %, at
+// most 1 - 0.05^(1/n) of all units have one. Two models are compared by paired differences of the same units.
 // Source: Cochran (1977), Sampling Techniques, 2.7 and 6.4; Clopper & Pearson (1934).
 // Thread guarantee: slow side; one thread per object.
 #pragma once
@@ -24,11 +24,10 @@
 
 namespace palpate {
 
-// Out of contact for less is the same stroke: noise at the surface.
+// A shorter loss of contact does not end a stroke: noise at the surface causes it.
 inline constexpr double kStrokePause_s = 0.05;
 
-// Without samples every figure is 0 and there are no bins; callers look at
-// `samples` first.
+// Without samples every figure is 0 and `bins` is empty; check `samples` first.
 struct ErrorSummary {
   std::uint64_t samples = 0;
   double rms_error_N = 0.0;
@@ -40,27 +39,28 @@ struct ErrorSummary {
   std::vector<ForceBin> bins;  // from 0 to the largest measured force
 };
 
-// Figures of merit, and those of every unit.
+// The figures of merit over all samples and of each unit.
 struct Evidence : ErrorSummary {
-  bool units_are_recordings = false;
-  std::uint64_t beyond_units = 0;  // with a sample beyond one JND
+  bool units_are_recordings = false;  // false: units are strokes
+  std::uint64_t beyond_units = 0;     // number of units with a sample beyond one JND
   std::vector<double> unit_samples;
   std::vector<double> unit_within;  // samples within the JND
   std::vector<double> unit_p99;     // 99 % error over the JND
 
   std::size_t units() const { return unit_samples.size(); }
   bool has_intervals() const { return units() >= kLeastUnits; }
-  // Not known with too few units.
-  Interval p99_interval() const;
-  double p99_at_most() const;      // 95 %, one-sided
-  double within_at_least() const;  // of the samples; of the units where none goes beyond
+  // The following are NaN with fewer than kLeastUnits units.
+  Interval p99_interval() const;  // 95 %, two-sided
+  double p99_at_most() const;     // 95 %, one-sided
+  // 95 % lower bound of the share of samples within the JND; of the share of units where beyond_units is 0.
+  double within_at_least() const;
 };
 
-// The 99 % error of one model less that of another, in JND, over the same samples.
+// The 99 % error of one model minus that of another, in JND, over the same samples.
 struct PairedDifference {
   double p99 = 0.0;
-  Interval interval;          // 95 %; not known with too few units
-  double at_most = kUnknown;  // 95 %, one-sided
+  Interval interval;          // 95 %, two-sided; NaN with fewer than kLeastUnits units
+  double at_most = kUnknown;  // 95 %, one-sided; NaN likewise
 };
 PairedDifference paired_difference(double one_p99, const std::vector<double>& one_units, double other_p99,
                                    const std::vector<double>& other_units);
@@ -68,10 +68,10 @@ inline PairedDifference paired_difference(const Evidence& one, const Evidence& o
   return paired_difference(one.p99_error_over_jnd, one.unit_p99, other.p99_error_over_jnd, other.unit_p99);
 }
 
-// Where strokes begin; one for a recording.
+// Detects the beginnings of strokes in one recording.
 class StrokeCounter {
  public:
-  // Every row in time order. True when this row begins a stroke.
+  // Call it for every row in time order. Returns true when the row begins a stroke.
   bool begins_stroke(double time_s, bool in_contact);
 
  private:
@@ -79,27 +79,27 @@ class StrokeCounter {
   bool in_air_ = true;  // since the last row in contact
 };
 
-// Takes 4 bytes a sample, for the exact percentile.
+// Collects errors. Needs 4 bytes per sample, for an exact percentile.
 class ModelErrors {
  public:
   explicit ModelErrors(const JndLine& jnd) : jnd_(jnd) {}
 
   void begin_stroke() { strokes_.push_back(ratios_.size()); }
-  // One sample in contact, of the stroke begun last: both forces finite.
+  // Adds one sample in contact to the stroke that began last. Both forces are finite.
   void add(double model_N, double measured_N, bool out_of_domain);
-  // Another recording after this one.
+  // Adds the samples of another recording.
   void append(const ModelErrors& other);
 
   ErrorSummary summary() const;
-  Evidence evidence() const;  // a summary with its units
-  // The same error at every sample.
+  Evidence evidence() const;
+  // Whether error / JND is the same at every sample.
   bool equals(const ModelErrors& other) const { return ratios_ == other.ratios_; }
 
  private:
   JndLine jnd_;
   ErrorFigures figures_;
   std::vector<float> ratios_;
-  // Where each begins in `ratios_`.
+  // Index in `ratios_` of the first sample of each.
   std::vector<std::size_t> strokes_;
   std::vector<std::size_t> recordings_;
 };

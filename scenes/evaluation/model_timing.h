@@ -1,9 +1,9 @@
-// How long models take, measured on samples that they meet in use.
-//   tick         motion estimate, features and force of this one model: what a caller waits for
-//   evaluation   the force alone, from features that are there already
-// Every model is timed in kTimingRounds rounds, one model after the other in each, so that a slow spell of the
-// machine meets all of them. The median of n rounds lies between the least and the greatest of them with
-// probability 1 - 2^(1 - n): 97 % for six.
+// Computation time of models, measured on recorded samples in contact.
+//   tick         motion estimate, features and force of this one model
+//   evaluation   the force alone, from features that are computed before
+// There are kTimingRounds rounds, and each round times every model once, so that a slow phase of the machine
+// affects all models. The true median lies between the least and the greatest of n rounds with probability
+// 1 - 2^(1 - n): 97 % for six.
 // Thread guarantee: slow side; one thread per call.
 #pragma once
 
@@ -18,30 +18,30 @@ namespace palpate {
 
 inline constexpr int kTimingRounds = 6;
 
-// Of the rounds' medians over blocks of 64 steps.
+// Each round has the mean times of blocks of 64 steps. The first three are those of the rounds' medians over blocks.
 struct Timing {
   double median_ns = 0.0;
-  double low_ns = 0.0;  // least and greatest
-  double high_ns = 0.0;
-  double p99_ns = 0.0;  // 99th percentile of the blocks, median of the rounds
+  double low_ns = 0.0;   // the least median
+  double high_ns = 0.0;  // the greatest median
+  double p99_ns = 0.0;   // 99th percentile of the blocks; its median over the rounds
 };
 
 struct ModelTiming {
   Timing tick;
   Timing evaluation;
-  bool measured = false;  // false: there was nothing to evaluate
+  bool measured = false;  // false: there were no samples
 };
 
-// Enough samples in contact, of all recordings; out of contact no model is evaluated.
+// Most samples of one recording that are timed. All are in contact: out of contact no model is evaluated.
 inline constexpr std::size_t kTimedSamples = 4096;
 
-// A stretch of one recording, with its sensor.
+// Samples of one recording, with its sensor.
 struct TimedSamples {
   SensorSpec sensor;
   std::vector<ToolSample> samples;
 };
 
-// One result a model. Evaluations wait for the last one's force, as in a tick.
+// Returns one result per model. An evaluation depends on the force of the one before, so that they do not overlap.
 std::vector<ModelTiming> time_models(const std::vector<std::shared_ptr<const ForceModel>>& models,
                                      const std::vector<TimedSamples>& stretches);
 

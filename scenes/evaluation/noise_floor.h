@@ -1,9 +1,9 @@
-// What a perfect model could reach, given the noise of the force sensor: with errors
-// that are normal with the sensor's deviation s,
+// The figures of merit of a perfect model, given the noise of the force sensor. Its error e is normal with the
+// standard deviation s of the sensor:
 //   within the JND = mean over the samples of P(|e| <= JND(f))
 //   99 % error: the q with mean P(|e| <= q JND(f)) = 0.99
-// s is identified from each recording itself: second differences of the force over the quietest fifth of
-// its first 30,000 rows (engine/tick/sensor_identification.h): white noise, without drift and hysteresis.
+// s is estimated from each recording: second differences of the force over the quietest fifth of its first 30,000
+// rows (engine/tick/sensor_identification.h). It contains white noise, but neither drift nor hysteresis.
 // Thread guarantee: pure function, slow side.
 #pragma once
 
@@ -20,7 +20,7 @@ struct NoiseFloor {
   double p99_error_over_jnd = 0.0;
 };
 
-// Of the samples in contact (position_m > 0) of all `recordings`, each with its own noise.
+// Uses the samples in contact (position_m > 0) of all `recordings`, at most 10,000 rows of each, evenly spaced.
 NoiseFloor noise_floor(const std::vector<const Recording*>& recordings, const JndLine& jnd);
 
 }  // namespace palpate

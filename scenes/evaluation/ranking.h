@@ -1,11 +1,10 @@
-// Which model to recommend, of some that were evaluated over the same samples: non-inferiority, then time.
-//   best         the smallest 99 % error
-//   qualified    the one-sided 95 % bound of its error less the best's, paired by unit, is at most
-//                kMargin_jnd; where there are too few units for a bound the difference itself is
-//   recommended  of the qualified the one with the least measured time; times whose intervals overlap are equal,
-//                and of equal ones the smallest error counts
-//   never one that another model beats in both time and error.
-// The one rule of the report, the window and the front page.
+// Recommends one of several models that were evaluated on the same samples: non-inferiority test, then time.
+//   best         the model with the smallest 99 % error
+//   qualified    non-inferior to the best: the one-sided 95 % bound of the difference of the errors, paired by unit,
+//                is at most kMargin_jnd. With too few units for a bound, the difference itself is compared.
+//   recommended  the fastest qualified model. Where the interval of a time overlaps that of the fastest, the
+//                smaller error decides. A model that dominates the result (smaller error, less time) replaces it.
+// The report, the window and the front page use this rule.
 // Source: Piaggio et al. (2012), JAMA 308, for non-inferiority.
 // Thread guarantee: pure functions.
 #pragma once
@@ -18,14 +17,13 @@
 
 namespace palpate {
 
-// One JND is what 75 % of forced choices between two forces get right, z(0.75) = 0.674 standard deviations of the
-// psychometric function. A difference of a quarter of it is right in Phi(0.25 x 0.674) = 57 % of the choices, where
-// guessing has 50.
+// One JND is the difference at which 75 % of forced choices between two forces are correct: z(0.75) = 0.674 standard
+// deviations of the psychometric function. At a quarter of it Phi(0.25 x 0.674) = 57 % are correct; chance is 50 %.
 inline constexpr double kMargin_jnd = 0.25;
 
 struct Candidate {
-  double error_over_jnd = 0.0;               // 99 % error, over all samples
-  std::vector<double> unit_errors_over_jnd;  // of each unit, the same units for every candidate
+  double error_over_jnd = 0.0;               // 99 % error over all samples
+  std::vector<double> unit_errors_over_jnd;  // 99 % error of each unit; every candidate has the same units
   Timing tick;
 };
 Candidate candidate(const Evidence& errors, const ModelTiming& time);
@@ -33,13 +31,13 @@ Candidate candidate(const Evidence& errors, const ModelTiming& time);
 struct Ranking {
   std::size_t best = 0;
   std::size_t recommended = 0;
-  std::vector<std::size_t> qualified;  // best and recommended among them, in the order given
+  std::vector<std::size_t> qualified;  // ascending; includes `best` and `recommended`
 };
 
-// `candidates`: one at least, all with samples.
+// `candidates`: at least one, each with samples. The result contains indices of `candidates`.
 Ranking rank(const std::vector<Candidate>& candidates);
 
-// Smaller error, and a time whose interval is below: the other one is never recommended.
+// Whether `one` has the smaller error and a time whose whole interval is below that of `other`.
 bool dominates(const Candidate& one, const Candidate& other);
 
 }  // namespace palpate

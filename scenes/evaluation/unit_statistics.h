@@ -20,7 +20,7 @@ struct Interval {
 };
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// With fewer units there is no interval: at two, t is 12.7 and the interval says nothing.
+// With fewer units there is no interval: with two units t is 12.7, and the interval would be useless.
 inline constexpr std::size_t kLeastUnits = 3;
 
 // The value that Student's t with `degrees` >= 1 degrees of freedom exceeds with probability `above`, 0 to 0.5.
@@ -30,12 +30,12 @@ double student_t(double above, std::size_t degrees);
 // Standard error of the mean of `values`; NaN with fewer than kLeastUnits.
 double standard_error(const std::vector<double>& values);
 
-// Standard error of sum(numerators) / sum(denominators), one of each a unit; NaN likewise.
+// Standard error of sum(numerators) / sum(denominators), with one of each per unit; NaN with fewer than kLeastUnits.
 double ratio_standard_error(const std::vector<double>& numerators, const std::vector<double>& denominators);
 
-// estimate -+ t error, 95 %, two-sided; not known where the error is not.
+// estimate -+ t error, 95 %, two-sided; NaN where `error` is NaN.
 Interval interval_95(double estimate, double error, std::size_t units);
-// estimate + t error, 95 %, one-sided; a negative error gives the lower bound. NaN where the error is.
+// estimate + t error, 95 %, one-sided; a negative error gives the lower bound. NaN where `error` is NaN.
 double bound_95(double estimate, double error, std::size_t units);
 
 }  // namespace palpate
