@@ -1,9 +1,9 @@
-// The dent that one model's surface shows, and its colour. It follows the tool in and comes back slowly, by
-// the model's own relaxation times tau_b: a low-passed depth each,
+// The depth and the error colour of the dent that is drawn for one model. The dent follows the tool inwards at once
+// and recovers with the relaxation times tau_b of the model's features: for each a low-pass m_b of the depth d,
 //   m_b <- d + (m_b - d) exp(-h / tau_b)      [= d - tau_b x (low-passed velocity)]
 //   dent = max(d, 0.35 mean_b m_b)
-// and dent = d without any. The colour is the largest error of late, fading within 0.3 s. A picture: no force
-// depends on it.
+// Without relaxation times dent = d. The colour is that of the largest recent error, which decays with a time
+// constant of 0.3 s. No force depends on the dent.
 // Thread guarantee: one thread; allocates in the constructor only.
 #pragma once
 
@@ -24,9 +24,9 @@ class Dent {
     }
   }
 
-  // `step_s`: since the last call.
+  // `step_s`: time since the last call.
   void step(double depth_m, double error_over_jnd, double step_s) {
-    constexpr double kShown = 0.35;  // of the remembered depth, on a free surface
+    constexpr double kShown = 0.35;  // share of the low-passed depth that is drawn without contact
     constexpr double kFading_s = 0.3;
     double sum_m = 0.0;
     for (Branch& branch : branches_) {

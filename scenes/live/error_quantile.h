@@ -1,6 +1,5 @@
-// The 99 % error of a stream of any length, in bounded memory: the smallest error over
-// the JND that 99 % of the samples do not exceed (as scenes/evaluation/model_errors.h, to
-// 4.4 %; on either side of 1 exactly).
+// The 99 % error of a stream in bounded memory: the smallest error over the JND that 99 % of the samples do not
+// exceed (scenes/evaluation/model_errors.h). It is rounded up by at most 4.4 %, never across 1.
 // Thread guarantee: value type; `add` allocates nothing.
 #pragma once
 
@@ -21,7 +20,7 @@ class ErrorQuantile {
   }
   // 0 without samples.
   double p99() const noexcept {
-    std::uint64_t beyond = samples_ / 100;  // so many may lie above
+    std::uint64_t beyond = samples_ / 100;  // number of samples that may lie above
     for (std::size_t i = counts_.size(); i-- > 0;) {
       if (counts_[i] > beyond) return i == 0 ? 0.0 : std::exp2((static_cast<double>(i) - kBelow) / kPerOctave);
       beyond -= counts_[i];
@@ -30,7 +29,7 @@ class ErrorQuantile {
   }
 
  private:
-  // Borders are powers of two and so 1 is one: from 1/1024 to 1024 JND.
+  // Logarithmic bins from 1/1024 to 1024 JND; 1 is the edge of a bin.
   static constexpr double kPerOctave = 16.0;
   static constexpr double kBelow = 160.0;
   static constexpr double kBins = 321.0;

@@ -1,13 +1,13 @@
-// The exhibit's game: three rounds from obvious to impossible, a visitor's answers and the score. Pure logic.
-// With a mouse, a finger or keys (seen) a round is a guess, then 15 s of pressing two blocks with one
-// stroke, the reference's and a model's, then a reveal:
+// The rules of the exhibit's game, without graphics: up to three rounds of rising difficulty, a visitor's answers and
+// the score.
+// Without a force device (mode "seen") the visitor guesses whether a hand would notice a difference, then presses two
+// blocks with one stroke for 15 s: one renders the reference, the other a model. Then the result is shown:
 //   attract -> guess -> press -> reveal -> guess ... -> score
-// With a force device (felt) it is a blind comparison of two models under the keys 1 and 2: the same or
-// different? One pair of the three is a catch trial, the same model twice:
+// With a force device (mode "felt") a round is a blind comparison of two models under the keys 1 and 2: are they the
+// same or different? One round is a catch trial with the same model twice:
 //   attract -> press -> reveal -> press ... -> score
-// What a hand would notice is computed from the visitor's own strokes: where the difference over the JND,
-// as its mean over 50 ms (HistoryPoint), was anywhere more than 1, within what the models were trained on; from
-// 0.8 to 1.25 it is on the edge, where either answer is right.
+// A difference is noticeable when the mean over 50 ms of difference / JND (HistoryPoint) exceeded 1 anywhere in the
+// visitor's own strokes within the models' training domain. From 0.8 to 1.25 either answer is correct.
 // The same seed and the same models give the same rounds.
 // Thread guarantee: one thread; `add` allocates nothing after the first minute.
 #pragma once
@@ -23,25 +23,24 @@
 
 namespace palpate {
 
-// One tick of both forces.
 struct ExhibitTick {
   double loop_time_s = 0.0;
   double first_N = 0.0;
   double second_N = 0.0;
-  double over_jnd = 0.0;  // the difference as its mean over 50 ms; signed, multiples of the JND; NaN: none
+  double over_jnd = 0.0;  // mean over 50 ms of difference / JND, signed; NaN: none
   bool in_contact = false;
   bool out_of_domain = false;
 };
 
-// Both forces since the first contact, in columns of 25 ms; the first minute of them.
+// Both forces during the first minute after the first contact, averaged over columns of 25 ms.
 class ExhibitTrace {
  public:
   static constexpr double kColumn_s = 0.025;
   struct Column {
-    double first_N = 0.0;  // means
-    double second_N = 0.0;
-    double over_jnd = 0.0;  // the largest, signed
-    int ticks = 0;          // that count; 0: none, the curve has a gap
+    double first_N = 0.0;   // mean
+    double second_N = 0.0;  // mean
+    double over_jnd = 0.0;  // the value of largest magnitude, signed
+    int ticks = 0;          // ticks within the training domain; 0: the curve has a gap
   };
 
   void clear();
@@ -50,7 +49,7 @@ class ExhibitTrace {
   const std::vector<Column>& columns() const noexcept { return columns_; }
   // NaN: a gap.
   double over_jnd(std::size_t column) const noexcept;
-  // The largest of them so far, and in which column.
+  // The largest magnitude so far, and its column.
   double largest_over_jnd() const noexcept { return largest_; }
   std::size_t largest_at() const noexcept { return largest_at_; }
 
@@ -65,20 +64,20 @@ class ExhibitTrace {
 // A model that is ready.
 struct ExhibitModel {
   std::size_t slot = 0;
-  std::string method;  // "position": knows the depth alone
-  bool paper = false;  // by the paper's recipe of 2009
+  std::string method;  // "position": a model with the depth as its only feature
+  bool paper = false;  // fitted by the recipe of the paper (2009)
 };
 
 struct ExhibitRound {
-  std::optional<ExhibitModel> first;  // nothing: the reference itself
+  std::optional<ExhibitModel> first;  // empty: the reference
   ExhibitModel second;
   bool answered = false;
   bool said_noticed = false;
-  double largest_over_jnd = 0.0;  // once it is over
+  double largest_over_jnd = 0.0;  // set at the end of the round
 
   bool is_catch() const noexcept { return first && first->slot == second.slot; }
   bool noticed() const noexcept { return largest_over_jnd > 1.0; }
-  // A hand's smallest difference is no sharp line: within a quarter of it some trials go either way.
+  // The JND is a point on a gradual psychometric function: within a factor of 1.25 of it either answer is accepted.
   bool on_the_edge() const noexcept { return largest_over_jnd >= 0.8 && largest_over_jnd <= 1.25; }
   bool right() const noexcept { return answered && (on_the_edge() || said_noticed == noticed()); }
 };
@@ -91,39 +90,39 @@ class ExhibitGame {
 
   explicit ExhibitGame(std::uint64_t seed) : random_(seed, kStream) {}
 
-  // From obvious to impossible: the model of depth alone, the paper's recipe, the best one (greedy, else
-  // direct, else the first), as far as they are there. Seen: each against the reference, or without one
-  // against the first model; felt: against the best.
+  // The rounds in order of rising difficulty, at most kMostRounds: the model of depth alone, a model of the paper's
+  // recipe, the best model (greedy, else direct, else the first), then the others of `ready`. The other side is the
+  // best model when `felt`, else the reference, and without a reference the first model.
   static std::vector<ExhibitRound> rounds_of(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt);
-  // False, and nothing changes: there is nothing to compare. `press_s`: of a round that is seen.
+  // Starts a game. Returns false and changes nothing when there are no two forces to compare. `press_s`: duration of
+  // pressing when not `felt`, from the first contact.
   bool begin(const std::vector<ExhibitModel>& ready, bool has_reference, bool felt, double press_s = kPress_s);
   void reset();
 
   State state() const noexcept { return state_; }
   bool felt() const noexcept { return felt_; }
   const std::vector<ExhibitRound>& rounds() const noexcept { return rounds_; }
-  const ExhibitRound& round() const noexcept { return rounds_[index_]; }  // not in attract
-  std::size_t number() const noexcept { return index_ + 1; }              // of the round
+  const ExhibitRound& round() const noexcept { return rounds_[index_]; }  // not in the state attract
+  std::size_t number() const noexcept { return index_ + 1; }              // of the round, from 1
   const ExhibitTrace& trace() const noexcept { return trace_; }
 
-  // Seen: would a hand notice a difference? Then the pressing begins.
+  // Mode "seen": stores the guess whether a hand would notice a difference, and begins the pressing.
   void guess(bool noticed);
-  // Felt: key 1 or 2 chooses what is rendered; both have to be pressed once before an answer.
+  // Mode "felt": key 1 or 2 chooses the rendered model. `answer` needs a contact with each.
   void choose(int key) noexcept;
   int chosen() const noexcept { return chosen_; }
   bool pressed_both() const noexcept { return pressed_[0] && pressed_[1]; }
-  // The model to render while there is a choice.
-  const ExhibitModel& rendered() const noexcept;
-  void answer(bool different);
-  // Every tick while pressing. What is seen ends by itself.
+  const ExhibitModel& rendered() const noexcept;  // the model to render
+  void answer(bool different);                    // ends a round in mode "felt"
+  // Call it in every tick. In mode "seen" the round ends after `press_s`.
   void add(const ExhibitTick& tick);
-  // From a reveal on to the next round or the score.
+  // Leaves a reveal for the next round or the score.
   void go_on();
 
-  std::size_t right() const noexcept;
+  std::size_t right() const noexcept;  // number of correct answers
 
  private:
-  static constexpr std::uint64_t kStream = 21;  // of the seed, its own
+  static constexpr std::uint64_t kStream = 21;  // number of this game's random stream of the seed
   void begin_round();
   void end_round();
 

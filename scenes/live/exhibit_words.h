@@ -1,5 +1,5 @@
-// What the exhibit says, in several languages: one text file each in assets/exhibit,
-// lines "key = text", "#" begins a comment. And how visitors answered so far.
+// The texts of the exhibit, one file in assets/exhibit per language with lines "key = text" ("#" begins a comment),
+// and the tally of the visitors' answers.
 // Thread guarantee: slow side; values.
 #pragma once
 
@@ -18,7 +18,7 @@ class ExhibitWords {
   // Errors: a line without "=", a key twice, as "path:line: ...".
   static Result<ExhibitWords> parse(std::string_view text, const std::string& path);
 
-  // The text of a key, with %1 and %2 replaced; the key itself where there is none.
+  // The text of a key, with %1 and %2 replaced by `one` and `two`; the key itself where it has no text.
   std::string operator()(const std::string& key, const std::string& one = "", const std::string& two = "") const;
   std::vector<std::string> keys() const;
 
@@ -26,7 +26,7 @@ class ExhibitWords {
   std::map<std::string, std::string> texts_;
 };
 
-// All languages of a folder, in their order ("order = 1"). Errors: no file; those above.
+// All languages of a folder, sorted by the text of their key "order". Errors: no file; those of `parse`.
 Result<std::vector<ExhibitWords>> read_exhibit_words(const std::string& folder);
 
 // Answers of all visitors, kept across restarts.
@@ -34,7 +34,7 @@ struct ExhibitTally {
   std::uint64_t answers = 0;
   std::uint64_t as_expected = 0;
 };
-// A file that is not there, or cannot be read, is a tally that begins.
+// Zero where the file is missing or invalid.
 ExhibitTally read_tally(const std::string& path);
 Status write_tally(const std::string& path, const ExhibitTally& tally);
 

@@ -1,5 +1,5 @@
-// What went wrong in the loop, in words, newest last. A fault that follows one of its kind within a second
-// counts there. The limiter holding back while the force ramps is no fault.
+// Log of the faults of the loop in words, newest last. A fault that follows one of the same kind within a second
+// increments its count. The limiter's action while the force ramps up is not a fault.
 // Thread guarantee: one thread.
 #pragma once
 
@@ -14,40 +14,41 @@ namespace palpate {
 
 struct FaultEvent {
   double loop_time_s = 0.0;  // of the first
-  std::string text;          // in words
-  std::uint64_t count = 1;   // of the same kind that followed within a second
-  bool alarm = true;         // else: counted, but nobody needs to be told at once
-  double last_s = 0.0;       // loop time of the last
+  std::string text;
+  std::uint64_t count = 1;  // occurrences, each within a second of the one before
+  bool alarm = true;        // false: it is logged without an alarm
+  double last_s = 0.0;      // loop time of the last
 };
 
-// What was wrong with one tick, for a mark on the curves.
+// The worst fault of one tick, for a mark on the curves.
 enum class TickTrouble : std::uint8_t {
   none,
-  late,   // deadlines were missed before it
-  alarm,  // anything worse
+  late,   // deadlines were missed before the tick
+  alarm,  // a fault of the loop or the device
 };
 
 class FaultLog {
  public:
   static constexpr std::size_t kMost = 200;
-  // An older last tick is a stall.
+  // The loop has stalled when its last tick is older.
   static constexpr double kStall_s = 0.05;
 
-  // Every snapshot in order; what it holds.
+  // Call it for every snapshot in order. Returns the worst fault of the snapshot.
   TickTrouble update(const LoopSnapshot& snapshot);
-  // `dropped`: snapshots lost so far, in all.
+  // `dropped`: total number of snapshots lost so far.
   void update_dropped(std::uint64_t dropped, double now_s);
-  // `age_s`: of the last tick. A stall counts once, however long.
+  // `age_s`: time since the last tick. A stall is logged once, at its beginning.
   void update_age(double age_s, double now_s);
 
   const std::vector<FaultEvent>& events() const noexcept { return events_; }
 
-  // The share of missed deadlines over some ten seconds; older ones fade.
+  // The share of missed deadlines, averaged exponentially over 10,000 deadlines (10 s).
   double missed_of_late() const noexcept { return missed_of_late_; }
 
-  // What has been an alarm since the last `acknowledge`, the device's first; `newest` has what the loop latched.
+  // The alarms since the last acknowledgement, those of the device first: the faults that are latched in `newest`,
+  // and a stall.
   std::vector<std::string> alarms(const LoopSnapshot& newest) const;
-  // The user has seen the alarms; the loop is told by LoopControls::acknowledged.
+  // Clears the alarm of a stall. LoopControls::acknowledged clears the latched faults.
   void acknowledge() noexcept { stall_unseen_ = false; }
 
  private:

@@ -1,4 +1,4 @@
-// The last minutes of forces, one point a tick, for curves.
+// The forces of the last kHistory_s at 1 kHz, one point per tick, for curves.
 // Thread guarantee: one thread; `append` allocates nothing.
 #pragma once
 
@@ -17,36 +17,35 @@ namespace palpate {
 
 inline constexpr double kHistory_s = 120.0;
 
-// What the models are compared with.
+// The force that the models are compared with.
 enum class ReferenceKind : std::uint8_t {
-  measured,  // the force in the recording that is replayed
+  measured,  // of the device's force sensor, or of the recording that is replayed
   truth,     // of the scene's virtual material under the same tool
-  direct,    // a model: the direct interpolant, all sites; of files without one, the first
+  direct,    // of the model SessionModels::reference
 };
 inline constexpr std::array<ReferenceKind, 3> kReferenceKinds{ReferenceKind::measured, ReferenceKind::truth,
                                                               ReferenceKind::direct};
 
 struct HistoryPoint {
   double loop_time_s = 0.0;  // steady clock
-  double time_s = 0.0;       // the device's: of a recording that is stepped, its own
-  float position_m = 0.0F;   // of the tool: negative in the air
+  double time_s = 0.0;       // device time; the time in the recording where one is replayed
+  float position_m = 0.0F;   // of the tool; negative in the air
   float depth_m = 0.0F;
   float reference_N = 0.0F;  // NaN: none
   float rendered_N = 0.0F;
   float predicted_error_N = 0.0F;  // 95 %, of the active model; NaN: none
-  std::uint8_t reference = 0;      // which it was, a ReferenceKind
+  std::uint8_t reference = 0;      // a ReferenceKind
   bool in_contact = false;
-  bool counts = true;          // in contact: among the samples that figures are made of
+  bool counts = true;          // in contact, without a fault, and the feature filters have settled
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
   TickTrouble trouble = TickTrouble::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
-  // (model - reference) / JND as its mean over 50 ms (sustained_error.h), signed; 0 in the air, NaN where
-  // there is nothing to compare.
+  // By slot: mean over 50 ms of (model - reference) / JND (sustained_error.h), signed; NaN without a comparison.
   std::array<float, kMaxModels> sustained_over_jnd{};
-  std::uint16_t foreign = 0;  // bits by slot: models with nothing to compare with
+  std::uint16_t foreign = 0;  // bit per slot: a model of another material, which is not compared
 
-  // (model - reference) / JND in this tick alone. 0 in the air, NaN where there is nothing to compare.
+  // (model - reference) / JND of this tick; 0 in the air, NaN without a comparison.
   double difference_over_jnd(std::size_t slot, const JndLine& jnd) const noexcept {
     const bool none = std::isnan(reference_N) || std::isnan(force_N[slot]) || (foreign >> slot & 1U) != 0;
     if (none || (in_contact && !counts)) return std::numeric_limits<double>::quiet_NaN();
@@ -57,7 +56,7 @@ struct HistoryPoint {
 
 class ForceHistory {
  public:
-  // One a millisecond.
+  // Capacity: one point per millisecond.
   ForceHistory() : points_(static_cast<std::size_t>(kHistory_s * 1000.0)) {}
 
   std::size_t size() const noexcept { return size_; }
@@ -66,7 +65,7 @@ class ForceHistory {
     const std::size_t at = first_ + index;
     return points_[at < points_.size() ? at : at - points_.size()];
   }
-  // The first point at `loop_time_s` or later; size() when there is none. O(log).
+  // Index of the first point at `loop_time_s` or later; size() when there is none. O(log).
   std::size_t first_at(double loop_time_s) const noexcept {
     std::size_t from = 0;
     for (std::size_t to = size_; from < to;) {
@@ -81,7 +80,7 @@ class ForceHistory {
     const std::size_t next = first_at(std::nextafter(loop_time_s, std::numeric_limits<double>::infinity()));
     return next > 0 ? &(*this)[next - 1] : nullptr;
   }
-  // The slot's model is gone.
+  // Removes the forces of a slot from all points.
   void forget(std::size_t slot) noexcept {
     for (HistoryPoint& point : points_) point.force_N[slot] = point.sustained_over_jnd[slot] = std::nanf("");
   }

@@ -1,7 +1,7 @@
-// A live session without a window: a scene, a device, the haptics loop, the models (SessionModels), how they
-// agree with a reference (Comparison; over a whole recording ReplayTest), the verdict, the recorder and the
-// log of faults.
-// Thread guarantee: one thread (the window's); it never waits for the haptics thread, nor that for it.
+// A live session without a window: a scene, a device, the haptics loop, the models (SessionModels), their errors
+// against a reference (Comparison; over a whole recording ReplayTest), the verdict, the recorder and the fault log.
+// Thread guarantee: one thread (the window's). While the session runs, neither it nor the haptics thread waits for
+// the other; `open` and the destructor block.
 #pragma once
 
 #include <cstdint>
@@ -31,121 +31,116 @@ class DeviceBus;
 struct Recording;
 
 struct SessionRequest {
-  std::string scene;  // empty: silicone, or of model files alone what they were fitted for
-  // The material that models are fitted to, all of them one training set; none: the recording that the device
-  // replays, or the scene's virtual material.
+  std::string scene;  // empty: silicone_block, or with model files only the scene that the first was fitted for
+  // Training set of the models. Empty: the recording that the device replays, else the scene's virtual material.
   std::vector<std::string> recordings;
   std::string device = "auto";
-  std::vector<std::string> models;  // methods or model files; empty: the line-up
-  std::string line_up;              // of line_ups(); empty, or not of the scene's: the scene's default
-  // Models of a session before (SessionModels::plans): they stay. `refits` false: there are no others.
+  std::vector<std::string> models;  // methods or model files; empty: those of `line_up`
+  std::string line_up;              // a name of line_ups(); empty or unknown: the scene's default models
+  // Models of an earlier session (SessionModels::plans), in addition. `refits` false: there are no others.
   std::vector<SlotPlan> kept;
   bool refits = true;
-  std::uint64_t seed = 1;      // of the hand, the training recording, the fits
-  bool position_only = false;  // one more slot: a model that knows the depth alone
-  bool realtime = true;
-  std::string data_folder;   // for files about faults; empty: where the program runs
-  DeviceBus* bus = nullptr;  // outlives the session; null: the machine's own
+  std::uint64_t seed = 1;      // of the simulated hand, the training recording and the fits
+  bool position_only = false;  // adds a model with the depth as its only feature
+  bool realtime = true;        // asks for real-time scheduling
+  std::string data_folder;     // for fault files; empty: the working directory
+  DeviceBus* bus = nullptr;    // outlives the session; null: the bus of this machine
 };
 
-// What a hand must stay inside of, for models to know its presses: of what is in contact in all of these.
+// The range of the training data, within which a simulated hand has to stay.
 struct PressRange {
-  double strongest_N = 0.0;
-  double deepest_m = 0.0;
-  double fastest_m_per_s = 0.0;
+  double strongest_N = 0.0;      // largest force
+  double deepest_m = 0.0;        // largest depth
+  double fastest_m_per_s = 0.0;  // 99th percentile of the speed in contact, over at least 20 ms
 };
 PressRange press_range(const std::vector<Recording>& recordings);
 
-// The devices that a session can be opened with, for whoever does not see them.
+// A device that a session can be opened with, for code that may not include devices/.
 struct DeviceChoice {
   std::string name;
   std::string summary;  // one line
-  std::string problem;  // why it cannot be opened and what to do; empty: it can
+  std::string problem;  // why it cannot be opened and what to do; empty: it can be opened
 };
 
-// Those that need no more than their name. Slow: opens and closes what is plugged in.
+// The devices that need no argument after their name. Slow: opens and closes each connected device.
 std::vector<DeviceChoice> device_choices();
 
 class LiveSession {
  public:
-  // Quick: fits and files come later. Errors: unknown scene, unknown method, a
-  // model file that does not exist, the device cannot be opened, more than
-  // kMaxModels models, no thread.
+  // Reads the scene, recordings and model files, opens the device and starts the loop; models are fitted in the
+  // background. Errors: those of load_scene, read_usable_recording, plan_slots and open_device; no thread.
   static Result<std::unique_ptr<LiveSession>> open(const SessionRequest& request);
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
-  // Ends a recording as stop_recording does, and waits until it is on the disk;
-  // lets the force go to zero; interrupts fits.
+  // Ends a recording and waits until it is on the disk; ramps the force to zero; interrupts fits.
   ~LiveSession();
 
-  // Once a frame: takes in all ticks since the last call and what the worker has ready.
+  // Call it once a frame: processes all ticks since the last call and the models that became ready.
   void update();
 
   const Scene& scene() const noexcept { return scene_; }
   const JndLine& jnd() const noexcept { return scene_.jnd; }
   const LoopSnapshot& newest() const noexcept { return newest_; }
-  const HapticsLoop& loop() const noexcept { return *loop_; }  // its statistics and scheduling
+  const HapticsLoop& loop() const noexcept { return *loop_; }
 
   // Models.
   const SessionModels& models() const noexcept { return models_; }
-  void select(std::size_t slot);  // makes its model the active one; ignored unless ready
+  void select(std::size_t slot);  // makes the slot's model the active one; ignored unless it is ready
   bool load_file(const std::string& path) { return models_.load_file(path); }
   Status save_model(std::size_t slot, const std::string& path) const { return models_.save(slot, path); }
-  void claim(std::size_t slot);  // see SessionModels
+  void claim(std::size_t slot);  // see SessionModels::claim
   void rename(std::size_t slot, const std::string& name) { models_.rename(slot, name); }
   void refit(std::size_t slot, int centres) { models_.refit(slot, centres); }
-  void remove(std::size_t slot);  // ignored, with a notice: it is the last one
-  // The line-up that is shown; empty: models that were asked for one by one.
+  void remove(std::size_t slot);  // the last model stays, with a notice
+  // The line-up that is shown; empty: the models were requested one by one.
   const std::string& line_up() const noexcept { return request_.line_up; }
-  void use_line_up(const std::string& name);
+  void use_line_up(const std::string& name);  // ignored when unknown or without a material to fit to
 
-  // What they are compared with, and how that went.
+  // The reference, and the errors against it.
   const Comparison& comparison() const noexcept { return comparison_; }
-  // Its errors are those over the whole recording, where one is replayed and the models are compared with it.
+  // With tests_recording() the errors are those over the whole recording, else those of the ticks so far.
   ModelFigures figures(std::size_t slot) const;
-  // Whether they are: the same wherever the playhead is.
+  // Whether a recording is replayed, its force is the reference, and ReplayTest has a result.
   bool tests_recording() const noexcept;
-  // By what is judged of the models now.
   Verdict verdict() const;
-  // Whether the recording that is replayed is among those that the models are fitted to.
+  // Whether the recording that is replayed belongs to the training set.
   bool replays_training() const noexcept;
   bool has_reference(ReferenceKind kind) const noexcept;
-  void use_reference(ReferenceKind kind);  // forgets the errors; ignored without one
-  // "true force of the virtual silicone"; `brief`: what errors are off from, in few words.
+  void use_reference(ReferenceKind kind);  // clears the errors; ignored where has_reference is false
+  // "true force of the virtual material, silicone"; `brief`: "the material".
   std::string reference_words(bool brief = false) const;
-  // Forgets errors so far and alarms that are over; curves stay.
+  // Clears the errors so far and acknowledges the alarms; the history stays.
   void reset_figures();
 
-  // What went wrong; `alarms`: since the last reset_figures, in words, the worst first.
   const FaultLog& faults() const noexcept { return faults_; }
-  std::vector<std::string> alarms() const { return faults_.alarms(newest_); }
+  std::vector<std::string> alarms() const { return faults_.alarms(newest_); }  // see FaultLog::alarms
 
-  // The device: `newest().device` says how it is.
+  // The device. Its state is `newest().device`.
   const std::string& device_name() const noexcept { return device_->name(); }
-  std::string device_words() const;                   // what to do for it to render force; empty: nothing
-  bool renders_force() const noexcept;                // that a person feels
-  void start_zeroing() { device_->start_zeroing(); }  // the tool is at its rest position
-  // What it can be asked for beside: null when it cannot.
+  std::string device_words() const;                   // what the user has to do before it renders force; may be empty
+  bool renders_force() const noexcept;                // whether a person holds it
+  void start_zeroing() { device_->start_zeroing(); }  // call it while the tool is at its rest position
+  // Null where the device has none.
   ToolInput* mouse() const noexcept { return device_->mouse(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
-  // Where the surface of a recording is for the models. Errors so far are forgotten with every change.
+  // The estimated surface offset of the replayed recording. Every change of the offset clears the errors.
   const ReplayTest& replay_test() const noexcept { return test_; }
   void move_surface(bool moved);
-  // What must be held for the device to push; `hold` says that it is, every frame.
+  // The dead-man switch that enables the force. Call `hold` in every frame in which its key is held.
   DeadMan dead_man() const noexcept { return controls_.dead_man; }
   void use_dead_man(DeadMan what);
   void hold();
-  // Of the active model's force in the hand; errors stay those of the models as they are.
+  // Scales the rendered force of the active model; errors are computed before the scaling.
   const ForceScale& scale() const noexcept { return controls_.scale; }
   void use_scale(const ForceScale& scale);
 
-  // Records every sample from now on, with the selected reference as its force; a notice says how it ended.
-  // Errors: the file exists, cannot be written, already recording, no reference.
+  // Records every sample from now on, with the selected reference as its force. A notice reports the outcome.
+  // Errors: the file exists or cannot be written, a recording is running, there is no reference.
   Status start_recording(const std::string& path);
   void stop_recording();
   RecordingStatus recording() const noexcept { return recorder_->status(); }
 
-  // What happened since the last call.
+  // Returns and clears the notices since the last call.
   Notices read_notices() { return std::exchange(notices_, {}); }
 
  private:
@@ -163,7 +158,7 @@ class LiveSession {
   SessionRequest request_;
   Scene scene_;
   Notices notices_;
-  // In the order in which they need each other; gone in the opposite order.
+  // Members depend on those above them; destruction is in reverse order.
   std::unique_ptr<Device> device_;
   std::shared_ptr<ReferenceForce> truth_;  // null: none for this scene and device
   std::unique_ptr<HapticsLoop> loop_;

@@ -1,4 +1,4 @@
-// What happened in a session, for people, oldest first.
+// Messages of a session to the user, oldest first.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace palpate {
 
 struct Notice {
   std::string text;
-  bool problem = false;  // else: good news
+  bool problem = false;
 };
 using Notices = std::vector<Notice>;
 

@@ -1,5 +1,5 @@
-// A file that somebody drops on the window or names: a recording as it is, or another
-// program's table, which becomes one (engine/import) in the user's data folder.
+// Opens a file that the user drops on the window or names: a recording, or a table of another program, which is
+// converted to a recording (engine/import).
 // Thread guarantee: slow side (does I/O); any thread.
 #pragma once
 
@@ -11,14 +11,15 @@
 namespace palpate {
 
 struct RecordingOffer {
-  std::string path;                // of a recording that can be fitted and replayed
-  std::vector<std::string> words;  // what an import found and guessed; none: it was one
+  std::string path;                // of the recording
+  std::vector<std::string> words;  // columns and guesses of the import; empty: the file was a recording already
 };
 
-// Whether a file is offered as a recording: anything with an ending but a model (.json).
+// Whether a file may be a recording: it has an extension other than .json (models).
 bool is_offered(const std::string& path);
 
-// Errors: those of read_recording or import_table; the new file cannot be written.
+// `folder`: where a converted recording is written. Errors: those of read_recording or import_table; the new file
+// cannot be written.
 Result<RecordingOffer> offer_recording(const std::string& path, const std::string& folder);
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
-// A recording that is replayed into a session, as a test of the models that are ready: the errors over all of
-// it, as `palpate replay` has them (scenes/evaluation/evaluate.h), wherever the playhead is; and where its
-// surface is for the models together, which is given to the device. Found on a thread of its own, once the
-// first model is ready and again when all are.
+// Tests the ready models of a session on the whole recording that is replayed, as `palpate replay` does
+// (scenes/evaluation/evaluate.h), independently of the playhead. It also estimates one surface offset for all models
+// together and applies it to the replay. Both run on a separate thread, once a model is ready and again when all are.
 // Thread guarantee: one thread; only the destructor waits, some tenths of a second.
 #pragma once
 
@@ -21,24 +20,24 @@ class SessionModels;
 
 class ReplayTest {
  public:
-  // `replay` outlives this; null: no recording, and nothing ever happens.
+  // `replay` outlives this; null: there is no recording to test on.
   ReplayTest(ReplayControl* replay, const JndLine& jnd) : replay_(replay), jnd_(jnd) {}
   ReplayTest(const ReplayTest&) = delete;
   ReplayTest& operator=(const ReplayTest&) = delete;
   ~ReplayTest() { cancelled_.store(true, std::memory_order_relaxed); }
 
-  // Once a frame. Returns whether the positions are other ones from now on.
+  // Call it once a frame. Returns whether the offset of the replay changed.
   bool update(const SessionModels& models);
-  // Whether positions are moved; as recorded when not. Returns as `update`.
+  // Whether to apply the estimated offset. Returns as `update`.
   bool move(bool moved);
 
   bool moved() const noexcept { return moved_; }
-  double found_m() const noexcept { return found_.surface.at; }  // 0: none, or not yet
-  // What is subtracted from the positions now.
+  double found_m() const noexcept { return found_.surface.at; }  // estimated offset; 0: none yet, or not significant
+  // The offset that is subtracted from the positions now.
   double offset_m() const noexcept { return moved_ ? found_m() : 0.0; }
-  // Of a model over the whole recording; null: not known yet.
+  // The errors of a model over the whole recording; null: not tested yet.
   const Evidence* errors(const ForceModel* model) const noexcept;
-  // How often there were new ones.
+  // Number of finished tests.
   int rounds() const noexcept { return rounds_; }
 
  private:
@@ -57,7 +56,7 @@ class ReplayTest {
   JndLine jnd_;
   bool moved_ = true;
   int rounds_ = 0;
-  std::vector<std::shared_ptr<const ForceModel>> asked_;  // of the last run
+  std::vector<std::shared_ptr<const ForceModel>> asked_;  // models of the last test
   Outcome found_;
   std::atomic<bool> cancelled_{false};
   std::future<Outcome> running_;

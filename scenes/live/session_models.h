@@ -1,8 +1,8 @@
-// The models of a session and the sets of them that the haptics loop holds.
+// The models of a session, and the sets of models that are published to the haptics loop.
 //
-// Slots keep the numbers in which models were asked for. A slot's model is fitted or read by the
-// worker, the quickest first, and joins the next set when it is ready, so that a session is alive at once.
-// Thread guarantee: one thread; it never waits for the worker but in the destructor.
+// Every model has a slot, numbered in the order of the requests. The worker fits the models, those of the least
+// expected time first, and a model joins the next set when it is ready. A new model reuses the slot of a removed one.
+// Thread guarantee: one thread; only the destructor waits for the worker.
 #pragma once
 
 #include <cstddef>
@@ -25,23 +25,23 @@ enum class SlotState : std::uint8_t {
   fitting,
   ready,
   failed,
-  hidden,  // of a line-up that is not shown, or removed: not evaluated, not listed
+  hidden,  // of a line-up that is not shown, or removed: neither evaluated nor listed
 };
 
-// What a slot's model is and how far it has come; how well it does is Comparison's.
+// Identity and state of a slot's model. Its errors are in Comparison.
 struct ModelInfo {
-  std::string name;    // distinct among the slots
-  std::string method;  // a method's name; "position" for depth alone
+  std::string name;    // unique among the slots
+  std::string method;  // name of a method; "position": the depth is the only feature
   int centres = 0;     // nodes for a grid; 0 until ready
   SlotState state = SlotState::waiting;
   double progress = 0.0;  // of the fit, 0..1
   std::string problem;    // when failed
-  bool foreign = false;   // of another material than the one that is pressed: nothing to compare it with
-  Timing tick;            // a whole one of this model alone
-  double tick_ns() const noexcept { return tick.low_ns; }  // other programs only ever make it slower
-  bool refitting = false;  // with another number of centres; the old one is there until then
-  bool takes_centres = false;
-  bool paper = false;  // by the recipe of 2009
+  bool foreign = false;   // fitted to another material than the virtual one: it is not compared
+  Timing tick;            // a whole tick with this model alone
+  double tick_ns() const noexcept { return tick.low_ns; }  // the minimum, because other programs only add time
+  bool refitting = false;      // with another number of centres; the present model stays until then
+  bool takes_centres = false;  // the number of centres can be changed
+  bool paper = false;          // fitted by the recipe of the paper (2009)
 };
 
 class FittedModel;
@@ -49,86 +49,87 @@ class ModelWorker;
 struct FinishedModel;
 struct SlotPlan;
 
-// Maps the models of a set in the loop to their slots: snapshots of it come after the next one was published.
+// Maps the models of a published set to their slots. Snapshots of a set may still arrive after the next set was
+// published.
 struct PublishedSet {
-  // In place of a slot whose model was removed.
+  // Replaces the index of a slot whose model was removed.
   static constexpr std::size_t kRemoved = static_cast<std::size_t>(-1);
   std::uint32_t id = 0;
   std::vector<std::size_t> slots;
 
-  // The slot's place in the set; nothing when it is not in it.
+  // Index of the slot's model in the set; empty when it has none.
   std::optional<std::size_t> place_of(std::size_t slot) const noexcept;
 };
 
 class SessionModels {
  public:
-  // `scene` and `notices` outlive this. `seed`: of the training recording and the fits.
+  // `scene` and `notices` outlive this. `seed` is that of the training recording and the fits.
   SessionModels(const Scene& scene, std::uint64_t seed, Notices& notices);
   SessionModels(const SessionModels&) = delete;
   SessionModels& operator=(const SessionModels&) = delete;
   // Interrupts fits.
   ~SessionModels();
 
-  // A slot for each plan. `claimed`: files among them are of this material, whoever asked
-  // for both says so. Errors: no thread.
+  // Makes a slot for each plan. `claimed`: model files are of this material, whatever their provenance.
+  // Errors: no thread.
   Status start(const std::vector<SlotPlan>& plans, bool claimed);
   // Interrupts fits; does not wait.
   void cancel() noexcept;
-  // Once a frame. Returns the slots whose models became ready; when there are any, publish a new set.
+  // Call it once a frame. Returns the slots whose models became ready. If there are any, publish a new set.
   std::vector<std::size_t> update();
 
-  // All ready models; `reference` may be null. The newest set is this one now.
+  // Makes a set of all ready models, which is then the newest set. `reference` may be null.
   std::unique_ptr<LiveModels> make_set(const SensorSpec& sensor, std::shared_ptr<ReferenceForce> reference);
-  // The set that made `snapshot`; null: none, or one of long ago.
+  // The set that made `snapshot`; null: the loop had no set yet.
   const PublishedSet* set_of(const LoopSnapshot& snapshot) const noexcept;
   const PublishedSet* newest_set() const noexcept { return sets_.empty() ? nullptr : &sets_.back(); }
-  // Which model of the newest set is active.
+  // Writes the active model of the newest set into `controls`.
   void write_selection(LoopControls& controls) const;
 
-  // The slots whose models are there and shown.
+  // The slots whose models are ready and not hidden.
   std::vector<std::size_t> ready_slots() const;
   const std::shared_ptr<const FittedModel>& model(std::size_t slot) const noexcept;  // null until ready
-  // All plans that are not removed, each with its model where there is one: for another session that starts
-  // from these models and fits none of them again.
+  // The plans of all slots that are neither removed nor failed, each with its model where it is ready. A next
+  // session that starts from them fits only the others.
   std::vector<SlotPlan> plans() const;
 
   std::size_t size() const noexcept;
   const ModelInfo& info(std::size_t slot) const noexcept;
   const std::vector<FeatureSpec>& features(std::size_t slot) const noexcept;
 
-  // The slot of the active model, as asked for; the force fades to it.
+  // The slot of the active model. The rendered force may still fade to it.
   std::size_t selected() const noexcept { return selected_; }
-  bool select(std::size_t slot);  // false, and ignored: not ready
-  // What models are compared with where there is no truth: the first direct interpolant; of files alone
-  // the first of several.
+  bool select(std::size_t slot);  // returns false and changes nothing unless the model is ready
+  // The model that serves as the reference where no true force is known: the first direct interpolant, or where all
+  // models are from files the first of at least two.
   std::optional<std::size_t> reference() const noexcept;
-  // Whether any is fitted here, to the material itself.
+  // Whether any model is fitted in this session, not read from a file.
   bool fits() const noexcept;
-  // It is a model of what is pressed, whatever its file says.
+  // Treats the model as one of this material, whatever its provenance.
   void claim(std::size_t slot) noexcept;
 
-  // Shows the models of these plans and hides all others but those of files; what is not there yet is
-  // fitted. What is active stays so if it is shown, else the first is.
+  // Shows the models of these plans, fits those that are missing and hides all others except models from files.
+  // The active model stays active if it is shown; else the first model becomes active.
   void use_plans(const std::vector<SlotPlan>& plans);
-  // Takes a model out for good; false, with a notice: it is the last one.
+  // Removes a model permanently. Returns false, with a notice, for the last model.
   bool remove(std::size_t slot);
-  // The slots whose models are gone since the last call: what is known of them is of no model any more.
+  // The slots whose models were removed or replaced since the last call. Discard all results of theirs.
   std::vector<std::size_t> read_freed();
-  // A name that another one has gets a number.
+  // Appends a number where another slot has the name.
   void rename(std::size_t slot, const std::string& name);
-  // Fits a model anew with so many centres, in the background; ignored for one that takes none.
+  // Fits a ready model again with this number of centres, in the background. Ignored unless `takes_centres`.
   void refit(std::size_t slot, int centres);
-  // Errors: not ready, as save_model.
+  // Errors: the model is not ready; those of save_model.
   Status save(std::size_t slot, const std::string& path) const;
-  // Greatest depth that all shown models were trained with, metres; infinite without any.
+  // The depth up to which all shown models were trained, m; infinite without models.
   double trained_depth_m() const noexcept;
-  // The longest memory of all shown models, s: filters that began that long ago have forgotten how.
+  // The longest relaxation time of all shown models, s.
   double longest_memory_s() const noexcept;
 
-  // Reads a model file into a new slot at once, in some milliseconds, tens of them for a direct fit; false, and
-  // a notice: it cannot.
+  // Reads a model file into a new slot. Blocks for some milliseconds, some tens for a direct fit. Returns false,
+  // with a notice, on failure.
   bool load_file(const std::string& path);
-  // Whether nothing that is shown is still to come.
+  // Whether no shown model is still to be fitted.
   bool all_settled() const noexcept;
 
  private:
@@ -153,7 +154,7 @@ class SessionModels {
   std::size_t selected_ = 0;
   bool user_chose_ = false;
   std::size_t next_job_ = 0;
-  std::vector<std::size_t> loaded_;  // since the last update, files
+  std::vector<std::size_t> loaded_;  // slots of files since the last update
   std::vector<std::size_t> freed_;   // see read_freed
 };
 

@@ -1,11 +1,11 @@
-// Every sample of a session into a recording file, not one lost.
+// Writes every sample of a session into a recording file.
 //
-// The loop puts samples into a ring (engine/live/live_tick.h); a thread of the recorder's own empties it
-// every 20 ms into a RecordingWriter; from the 1000th row on the file is there under its name, whole rows
-// at every moment. Time begins at 0; where a new stream begins (a replay that starts over, a seek) it goes
-// on kStreamGap_s later, by which the filters of whoever reads the file have forgotten what was before, as
-// the loop's had. Samples that the loop could not use (not finite, not later) or without a force are left out.
-// Thread guarantee: one thread, slow side, but for the loop's own.
+// The loop puts samples into a ring (engine/live/live_tick.h). The recorder's thread empties it every 20 ms into a
+// RecordingWriter and publishes whole rows to the disk about every 0.2 s. The ring holds half a minute at 1 kHz;
+// samples beyond are lost and counted. Time begins at 0. A new stream (the replay restarts, a seek) begins
+// kStreamGap_s after the last sample, so that features computed from the file forget the stream before, as the
+// loop's features did. Samples that the loop could not use (not finite, not later) or without a force are omitted.
+// Thread guarantee: one thread, slow side; beside it the recorder's own.
 #pragma once
 
 #include <atomic>
@@ -28,15 +28,15 @@ namespace palpate {
 
 struct RecordingStatus {
   bool active = false;
-  bool saving = false;  // stopped, on its way to the disk
+  bool saving = false;  // stopped, and not yet completely on the disk
   std::string path;
   std::uint64_t rows = 0;
-  double seconds = 0.0;  // of motion: gaps between streams do not count
+  double seconds = 0.0;  // duration without the gaps between streams
 };
 
 struct RecorderRequest {
   std::string path;
-  ReferenceKind force = ReferenceKind::truth;  // which of the sample's is written
+  ReferenceKind force = ReferenceKind::truth;  // the force that is written
   RecordingColumns columns;
   std::vector<std::string> comments;
   bool overwrite = false;
@@ -44,18 +44,17 @@ struct RecorderRequest {
 
 inline constexpr double kStreamGap_s = 30.0;
 
-// The time column: strictly increasing, whatever the device's clock does.
+// Computes the time column, which increases strictly, from device times.
 class RecordingTime {
  public:
-  // The time to write for a sample; nothing when it is not later than the last
-  // one of its stream.
+  // The time to write for a sample; empty when it is not later than the last one of its stream.
   std::optional<double> place(double time_s, bool restart) noexcept;
   double last_s() const noexcept { return last_s_; }
   double gaps_s() const noexcept { return gaps_s_; }
 
  private:
   double origin_s_ = 0.0;  // device time of the stream's first sample
-  double start_s_ = 0.0;   // where that stands in the file
+  double start_s_ = 0.0;   // time of that sample in the file
   double last_s_ = 0.0;
   double gaps_s_ = 0.0;
   bool started_ = false;
@@ -63,26 +62,26 @@ class RecordingTime {
 
 class SessionRecorder {
  public:
-  // `loop` outlives this; nobody else reads its samples.
+  // `loop` outlives this; no other object reads its samples.
   explicit SessionRecorder(HapticsLoop& loop);
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
   // Stops and waits until the file is on the disk.
   ~SessionRecorder();
 
-  // Then set LoopControls::recording to `number()`. Errors: a recording is being
-  // made or saved, the file exists or cannot be created, no thread.
+  // Starts a recording; then set LoopControls::recording to `number()`. Errors: a recording is
+  // running or being saved, the file exists or cannot be created, no thread.
   Status start(const RecorderRequest& request);
-  // Of the recording; 0: none is being made.
+  // Number of the recording that is running; 0: none.
   std::uint32_t number() const noexcept { return status().active ? number_ : 0; }
 
-  // Ends the recording with the samples that the loop has published by now; does not wait.
+  // Ends the recording with the samples that the loop has published so far; does not wait.
   void stop();
-  // Blocks until a recording that was stopped, or gave up, is on the disk or gone.
+  // Blocks until a recording that was stopped or has failed is finished.
   void wait();
 
   RecordingStatus status() const;
-  // What became of the recording, once, after it ended: by `stop`, or since the disk refused.
+  // The outcome of a recording, once, after it ended by `stop` or by a write error.
   std::optional<Notice> read_outcome();
 
  private:
@@ -109,8 +108,8 @@ class SessionRecorder {
   std::thread thread_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  bool stop_ = false;              // by mutex_; only the slow side changes it
-  std::optional<Notice> outcome_;  // by mutex_
+  bool stop_ = false;              // guarded by mutex_; only the slow side changes it
+  std::optional<Notice> outcome_;  // guarded by mutex_
   std::atomic<std::uint64_t> rows_{0};
   std::atomic<double> seconds_{0.0};
 };

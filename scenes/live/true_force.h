@@ -1,5 +1,5 @@
-// The true force of a scene's virtual material under the same tool: the reference of a session without a
-// force sensor. Not for a replayed recording, which was pressed into another block and carries its own.
+// The true force of a scene's virtual material under the same tool: the reference of a session without a force
+// sensor. A replayed recording has its own measured force instead.
 // Thread guarantee: as ReferenceForce; `step` is wait-free and allocates nothing.
 #pragma once
 
@@ -14,8 +14,8 @@ class TrueForce final : public ReferenceForce {
  public:
   explicit TrueForce(const Material& material) : block_(material.make_block()) {}
 
-  // The first step, and one with `restart`, finds the block fully relaxed under
-  // the tool: the state in which a model's filters begin as well.
+  // At the first step, and at one with `restart`, the block is fully relaxed under the tool. The filters of the
+  // models begin in the same state.
   double step(const TickSnapshot& snapshot, bool restart) noexcept override {
     if (restart || !started_) {
       block_->reset(snapshot.position_m);
@@ -23,7 +23,7 @@ class TrueForce final : public ReferenceForce {
       started_ = true;
       return block_->force_N();
     }
-    // A time that is not later changes nothing and gives the last force.
+    // A time that is not later leaves the block and its force unchanged.
     const double force_N = block_->step(snapshot.position_m, snapshot.velocity_m_per_s, snapshot.time_s - time_s_);
     if (snapshot.time_s > time_s_) time_s_ = snapshot.time_s;
     return force_N;

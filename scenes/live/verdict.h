@@ -1,6 +1,6 @@
-// The session's answer: which model to take, by the ranking that reports use too, whether a hand can notice its
-// error, and what it costs.
-// Thread guarantee: values; LiveJudge: one thread, and a thread of its own.
+// The verdict of a session: the recommended model (scenes/evaluation/ranking.h), whether a hand can notice its
+// error, and its computation time.
+// Thread guarantee: values; LiveJudge: one thread, beside its own background thread.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace palpate {
 class Comparison;
 class SessionModels;
 
-// A model that was judged on the same samples as the others.
+// Time and errors of one model; the errors of all are over the same samples.
 struct JudgedModel {
   std::size_t slot = 0;
   Timing tick;
@@ -25,27 +25,27 @@ struct JudgedModel {
 };
 
 struct Verdict {
-  std::optional<std::size_t> chosen;  // slot; nothing: `headline` says why there is none yet
-  std::vector<std::size_t> tied;      // slots that are not inferior, the chosen among them
-  bool noticeable = false;            // the 99 % error of the chosen is above one JND
+  std::optional<std::size_t> chosen;  // slot of the recommended model; empty: `headline` says why there is none yet
+  std::vector<std::size_t> tied;      // slots of all non-inferior models, including `chosen`
+  bool noticeable = false;            // the 99 % error of the chosen model exceeds one JND
   std::string headline;               // one line
-  std::string detail;                 // a second, smaller one; may be empty
+  std::string detail;                 // a second line; may be empty
 };
 
-// A second of contact makes a verdict.
+// Contact that a verdict needs at least.
 inline constexpr double kJudged_s = 1.0;
 
-// `off_from`: the model that the others are compared with, where there is no true force; empty: there is one.
-// `models`: for names and times. `judged`: one at least, all with samples.
+// `off_from`: name of the reference model; empty: the true force is known.
+// `models`: for names and times. `judged`: at least one, each with samples.
 Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models, const std::string& off_from);
 
-// "0.04 %" of the tick's millisecond.
+// The share of the tick's period of 1 ms, as "0.04 %".
 std::string tick_share(double tick_ns);
 
-// The evidence of a live session, resampled in the background from time to time.
+// Computes the Evidence of a live session in the background, every 2 s or, in a long session, after 10 % more contact.
 class LiveJudge {
  public:
-  // Once a frame.
+  // Call it once a frame.
   void update(const SessionModels& models, const Comparison& comparison, double now_s);
   const std::vector<JudgedModel>& judged() const noexcept { return judged_; }
   void forget();
@@ -53,7 +53,7 @@ class LiveJudge {
  private:
   std::vector<JudgedModel> judged_;
   std::future<std::vector<JudgedModel>> running_;
-  bool discard_ = false;  // what runs was forgotten meanwhile
+  bool discard_ = false;  // `forget` was called while the computation ran
   double next_s_ = 0.0;
 };
 
