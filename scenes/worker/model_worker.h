@@ -1,11 +1,11 @@
-// A thread that makes the models of a session ready, the quickest first: methods are fitted
-// to the recordings that are the material, or to what `palpate synth` writes of the scene's with the same
-// seed; the same bits as of `palpate fit`.
-// Asked for another number of centres than before (a slider), it chooses centres for the largest number
-// once; each number after that takes milliseconds (models/fit/nested_fit.h).
-// It runs at a lower priority than everything else. A fit is interrupted within some 20 ms, but for the
-// factorisation of the direct fit, which is one call into LAPACK.
-// Thread guarantee: one thread, slow side; nothing but the destructor waits for the worker.
+// A background thread that fits the models of a session, those of the least expected time first. The training set is
+// the scene's recordings, or the recording that `palpate synth` makes of its virtual material with the same seed.
+// The models are bit-identical to those of `palpate fit`.
+// When a method is fitted a second time with another number of centres (a slider), the worker selects centres for
+// kMostCentres once; every further number then takes milliseconds (models/fit/nested_fit.h).
+// The thread has a lower priority than all others. A fit is interrupted within some 20 ms, except during the
+// factorisation of the direct fit, which is one call to LAPACK.
+// Thread guarantee: one thread, slow side; only the destructor waits for the worker.
 #pragma once
 
 #include <atomic>
@@ -31,18 +31,17 @@
 namespace palpate {
 
 struct FinishedModel {
-  std::size_t job_id = 0;  // as asked for
+  std::size_t job_id = 0;
   SlotPlan plan;
-  std::shared_ptr<const FittedModel> model;  // null: `problem` says why
+  std::shared_ptr<const FittedModel> model;  // null: `problem` has the reason
   std::string problem;
-  Timing tick;  // a whole one of this model alone
+  Timing tick;  // a whole tick with this model alone
 };
 
-// A model that is there already.
+// Wraps a model that exists already, and measures its tick.
 FinishedModel finished_model(std::size_t job_id, const SlotPlan& plan, std::shared_ptr<const FittedModel> model);
 
-// For threads that must never hold up graphics or haptics: of this thread and those
-// that it will start.
+// Lowers the priority of this thread, and of those that it starts later, below graphics and haptics.
 void lower_thread_priority() noexcept;
 
 class ModelWorker {
@@ -50,35 +49,35 @@ class ModelWorker {
   ModelWorker(Scene scene, std::uint64_t seed);
   ModelWorker(const ModelWorker&) = delete;
   ModelWorker& operator=(const ModelWorker&) = delete;
-  // Interrupts what is being made and waits for the worker.
+  // Interrupts the running fit and waits for the worker.
   ~ModelWorker();
 
-  // The model of one plan, now and in this thread; before `start`. Errors: those of the fit; a scene without
-  // a material to fit to.
+  // Fits the model of one plan in the calling thread; call it before `start`. Errors: those of the fit; the scene has
+  // no material to fit to.
   Result<std::shared_ptr<const FittedModel>> make(const SlotPlan& plan);
 
-  // What is asked for before this is made the quickest first. Errors: no thread.
+  // Starts the thread. Jobs that were added before are sorted by expected time. Errors: no thread.
   Status start();
-  // One that is asked for again before it was begun is made once, as asked last. `at_once`: before all others.
+  // Adds a job. A job of the same id that has not begun is replaced. `at_once`: before all others.
   void add_job(std::size_t job_id, const SlotPlan& plan, bool at_once = false);
-  // What was finished since the last call.
+  // Returns and clears the models that were finished since the last call.
   std::vector<FinishedModel> read_finished();
 
   struct Progress {
     bool working = false;
     std::size_t job_id = 0;
-    double share = 0.0;  // of this one
+    double share = 0.0;  // of this job, 0..1
   };
   Progress progress() const;
 
-  // Interrupts the fit that runs; no other is begun. Does not wait.
+  // Interrupts the running fit and starts no other. Does not wait.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
 
  private:
   struct Job {
     std::size_t job_id = 0;
     SlotPlan plan;
-    double cost_s = 0.0;  // expected; below 0: at once
+    double cost_s = 0.0;  // expected time; below 0: at once
   };
   void work();  // until cancelled
   Result<ModelData> fit(const SlotPlan& plan);
@@ -90,12 +89,12 @@ class ModelWorker {
 
   Scene scene_;
   std::uint64_t seed_;
-  // The worker's own.
+  // Used by the worker's thread only.
   std::vector<MotionSource::Input> recordings_;
   std::optional<PreparedTraining> prepared_;
   std::optional<PreparedTraining> prepared_as_paper_;
-  std::map<const Method*, MethodFit> bases_;  // fitted already, for methods that start from one
-  // By method and recipe: empty from the first fit on, filled by the second.
+  std::map<const Method*, MethodFit> bases_;  // finished fits, from which other methods start
+  // By method and recipe. The first fit adds an empty entry, the second one fills it.
   std::map<std::pair<const Method*, bool>, std::optional<NestedFit>> nested_;
 
   std::thread thread_;
@@ -103,13 +102,13 @@ class ModelWorker {
   std::atomic<double> share_{0.0};
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  // By mutex_.
+  // Guarded by mutex_.
   std::deque<Job> jobs_;
   std::vector<FinishedModel> finished_;
   std::optional<std::size_t> working_on_;
 };
 
-// For programs without a word of models, at the beginning of main: models/linear/lapack.h.
+// Calls prepare_blas (models/linear/lapack.h), for programs that may not include models/. Call it first in main.
 void prepare_to_fit();
 
 }  // namespace palpate

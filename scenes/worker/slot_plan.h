@@ -1,5 +1,5 @@
-// What a session's models are made from, in the order of their slots.
-// Thread guarantee: slow side (looks at files).
+// Plans of a session's models: how each is fitted, or from which file it is read.
+// Thread guarantee: slow side (reads files).
 #pragma once
 
 #include <cstdint>
@@ -14,46 +14,47 @@
 namespace palpate {
 
 enum class ModelOrigin : std::uint8_t {
-  method,    // fitted to a recording of the scene's material
-  position,  // likewise, to the depth alone
+  method,    // fitted to the scene's material
+  position,  // likewise, with the depth as the only feature
   file,
 };
 
-// Up to which a model's number of centres is changed by hand.
+// Largest number of centres that a user can choose with the slider.
 inline constexpr int kMostCentres = 200;
 
 struct SlotPlan {
   ModelOrigin origin = ModelOrigin::method;
-  const Method* method = &kGreedyMethod;                // of a fit
+  const Method* method = &kGreedyMethod;                // unless the model is from a file
   std::string path;                                     // of a file
-  std::shared_ptr<const FittedModel> loaded = nullptr;  // of a file, which plan_slots reads
-  int centres = 0;                                      // of a method that takes them; 0: as many as it takes by itself
-  bool paper = false;                                   // by the paper's own recipe: 50 mN steps, rows weighted 1/f
+  std::shared_ptr<const FittedModel> loaded = nullptr;  // the model, if it exists already; plan_slots reads files
+  int centres = 0;                                      // of a method with that option; 0: the method's default
+  bool paper = false;                                   // the paper's recipe: samples every 50 mN, rows weighted 1/f
 };
 
-// A set of models to compare, by name.
+// A named set of models to compare.
 struct LineUp {
   const char* name;
   const char* help;  // one line
   std::vector<std::string> models;
 };
-// The first is the one to begin with.
+// All line-ups; the first is the default of a window.
 const std::vector<LineUp>& line_ups();
-// Null: there is none of that name.
+// Null when the name is unknown.
 const LineUp* find_line_up(const std::string& name);
 
-// What to call it until there is a model with a name of its own.
+// The name of a slot until its model is ready.
 std::string plan_name(const SlotPlan& plan);
-// What a model of the paper's recipe has behind its name.
+// Suffix of the name of a model that was fitted by the paper's recipe.
 inline constexpr const char* kPaperMark = " '09";
-// The method's name, or "position"; nothing for a file before it is read.
+// The method's name, or "position"; empty for a file.
 std::string plan_method(const SlotPlan& plan);
 
-// `models`: methods or model files as asked for; none: the scene's default. A method that takes centres may
-// say how many, "greedy-10", and "paper:" before it asks for the paper's recipe. Files are read here, so
-// that a broken one is known before anything starts. In a scene with a material a model of position alone
-// comes behind them when asked, and always the direct interpolant, the reference. Errors: neither a method
-// nor a file, a file that load_model refuses, a method in a scene without a material, more than kMaxModels.
+// Makes plans from `models`, names of methods or model files; empty: the scene's default models. A name may end in a
+// number of centres ("greedy-10") where the method has that option, and begin with "paper:" for the paper's recipe.
+// Model files are read. `position_only` adds a model with the depth as its only feature where the scene has a
+// material. The direct interpolant is always added as the reference, except where all models are files and the scene
+// has no virtual material. Errors: neither a method nor a file, a file that load_model refuses, a method in a scene
+// without a material, more than kMaxModels models.
 Result<std::vector<SlotPlan>> plan_slots(const Scene& scene, const std::vector<std::string>& models,
                                          bool position_only);
 
