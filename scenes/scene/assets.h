@@ -1,7 +1,7 @@
-// Where the files under assets/ are: scenes, models, shaders, fonts.
+// Finds the folder of the assets: scenes, models, shaders, fonts.
 //
-// In this order: PALPATE_ASSETS of the environment (nothing else is tried then), `../share/palpate` beside
-// the running executable's folder (an installed program), `../assets` (one in build/), the source tree.
+// If the environment variable PALPATE_ASSETS is set, only that folder is tried. Else, in this order, relative to the
+// executable's folder: `../share/palpate` (an installed program), `../assets` (a build folder); then the source tree.
 // Thread guarantee: slow side only (does I/O).
 #pragma once
 
@@ -12,10 +12,10 @@
 
 namespace palpate {
 
-// The assets folder. Errors: none of the places is a folder; names them all.
+// Errors: no folder has a subfolder scenes; lists the folders that were tried.
 Result<std::string> find_assets();
 
-// The same for given places, first folder wins.
+// The same for the given folders; returns the first that has a subfolder scenes.
 Result<std::string> first_assets_folder(const std::vector<std::string>& places);
 
 }  // namespace palpate

@@ -1,6 +1,6 @@
-// The file with a study's outcome (scenes/study/jnd_lines.h), which a scene names in place of its own line.
-// JSON: "format": "palpate-jnd", "version": 1, "offset_N" (above 0, up to 100) and
-// "weber_fraction" (0 to 1) of the conservative line, which is all that a scene uses.
+// Reads the JND line from the result file of a JND study (scenes/study/jnd_lines.h). A scene can name such a file.
+// JSON: "format": "palpate-jnd", "version": 1, "offset_N" (above 0, up to 100) and "weber_fraction" (0 to 1) of the
+// conservative line. "criterion", "subjects", "fitted" and "points" are allowed and ignored.
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
@@ -12,10 +12,10 @@
 
 namespace palpate {
 
-// Errors: not JSON, another format or version, a field missing or out of range; the
-// first one, as "path:line:column: found ..., expected ...".
+// Errors: not JSON, another format or version, an unknown or missing field, a value out of range; each as
+// "path:line:column: found ..., expected ...".
 Result<JndLine> parse_jnd_file(std::string_view text, const std::string& path);
-// And: not readable.
+// Errors: the file is not readable; those of parse_jnd_file.
 Result<JndLine> read_jnd_file(const std::string& path);
 
 }  // namespace palpate

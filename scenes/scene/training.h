@@ -1,5 +1,5 @@
-// What a scene asks of a fit, for the command line and the live session alike.
-// Thread guarantee: pure function.
+// The training request of a scene, for the command line and the live session.
+// Thread guarantee: pure functions.
 #pragma once
 
 #include "models/fit/fit.h"
@@ -7,11 +7,10 @@
 
 namespace palpate {
 
-// The scene's features and JND line; everything else as `palpate fit` has it by
-// default.
+// The scene's features and JND line; everything else is the default of `palpate fit`.
 TrainingRequest training_request(const Scene& scene);
 
-// The same for a model that knows the depth alone.
+// The same for a model with the depth as its only feature.
 TrainingRequest position_request(const Scene& scene);
 
 }  // namespace palpate

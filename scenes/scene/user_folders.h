@@ -1,6 +1,6 @@
-// Where a person's files belong, settings and what the window records, and the time in their names.
+// The user's folders for settings and data, and the time for file names.
 // Source: XDG Base Directory Specification 0.8.
-// Thread guarantee: pure but for the environment and the file system; slow side.
+// Thread guarantee: slow side; reads the environment and creates folders.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace palpate {
 
-// $XDG_CONFIG_HOME/palpate, else ~/.config/palpate; made when it is not there.
-// Errors: no home, or it cannot be made.
+// $XDG_CONFIG_HOME/palpate, else ~/.config/palpate. Creates the folder.
+// Errors: neither variable nor HOME is set; the folder cannot be created.
 Result<std::string> config_folder();
 
-// $XDG_DATA_HOME/palpate, else ~/.local/share/palpate; likewise. Recordings, figures
-// and files about faults go there.
+// $XDG_DATA_HOME/palpate, else ~/.local/share/palpate, for recordings, figures and fault files. Creates the folder.
+// Errors: as config_folder.
 Result<std::string> data_folder();
 
-// Now, in the machine's time zone, as strftime writes `format`: at most 63 bytes.
+// The local time now, formatted by strftime with `format`; empty beyond 63 bytes.
 std::string local_time_text(const char* format);
 
 }  // namespace palpate
