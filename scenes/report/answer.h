@@ -1,4 +1,4 @@
-// The answer of a report in words: made once, shown on the page, in report.json and on the terminal.
+// The answer of a report in words, which page, report.json and terminal show.
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -9,12 +9,12 @@
 
 namespace palpate {
 
-// A part of a sentence. A number names its model and figure, so that
+// A part of a sentence: text, a model's name, or a number. A number has its model and figure of merit, so that
 // tests/scenes/report/check_report.py can recompute it.
 struct Words {
   std::string text;
-  std::string model{};   // of a number, or of a name
-  std::string figure{};  // of a number: "within_jnd"
+  std::string model{};   // name of the model; empty for text
+  std::string figure{};  // figure of merit of a number, e.g. "within_jnd"; else empty
 };
 using Sentence = std::vector<Words>;
 
@@ -22,7 +22,7 @@ Sentence answer(const ReportData& data);
 std::string html_of(const Sentence& sentence);
 std::string plain_text_of(const Sentence& sentence);
 
-// Never more than it is: 99.996 % is 99.99 %.
+// Two decimals, rounded down: 99.996 % is "99.99 %".
 std::string percent(double share);
 
 }  // namespace palpate

@@ -12,7 +12,7 @@ Figure speed_figure(const ReportData& data);
 Figure worst_figure(const ReportData& data);
 Figure force_figure(const ReportData& data);
 
-// Its method's, in the window as well.
+// The colour of the model's method, which the window uses as well; grey for no force.
 Hue model_colour(const PlannedModel& plan);
 
 }  // namespace palpate

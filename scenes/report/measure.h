@@ -1,5 +1,5 @@
-// Every measurement of the report: fits, errors and times. What follows from them is choice.h's.
-// Thread guarantee: slow side; the fits start threads themselves.
+// The measurements of the report (fits, errors and times), and the choice of a model by them.
+// Thread guarantee: slow side; the fits start threads.
 #pragma once
 
 #include "engine/base/fit_control.h"
@@ -20,47 +20,47 @@ struct StretchRow {
   double time_s = 0.0;
   double measured_N = 0.0;
   bool in_contact = false;
-  std::vector<double> force_N;  // of the models, in their order
+  std::vector<double> force_N;  // one per model
 };
 
 struct WorstStretch {
   std::string recording;
-  double score = -1.0;  // mean squared error over the JND of the first model
+  double score = -1.0;  // mean of (error / JND)^2 of the first model
   std::vector<StretchRow> rows;
-  std::vector<std::size_t> models;  // of the report
+  std::vector<std::size_t> models;  // indices of ReportData::models; set by `measure`
 };
 
-// The kStretchSeconds with the largest mean squared error/JND of the first of `models` over
-// the samples in contact; the whole of a shorter recording. Up to kMaxModels models.
-// What came before `from_s` is replayed, but does not count.
+// The stretch of kStretchSeconds in which the first of `models` has the largest mean of (error / JND)^2 over the
+// samples in contact; of a shorter recording all of it. In a stretch that is mostly air the mean is over a quarter of
+// its samples. Up to kMaxModels models. Samples before `from_s` are replayed, but do not count.
 WorstStretch worst_stretch(const Recording& recording, const std::vector<ModelPointer>& models, const JndLine& jnd,
                            double from_s = -1e300);
 
-// A model over all folds; errors over the same samples as every other's.
+// A planned model over all folds. The errors of all models are over the same samples.
 struct ModelResult {
   PlannedModel plan;
   int size = 0;                              // centres, or nodes of the grid
   Evidence errors;                           // positions as recorded
-  ErrorSummary moved;                        // the surface of every test recording moved to the models'
-  double fit_seconds = 0.0;                  // mean over the folds, preparation left out
+  ErrorSummary moved;                        // with the surface offset of every test recording subtracted
+  double fit_seconds = 0.0;                  // mean over the folds, without the preparation
   ModelTiming time;                          // of the last fold's model, on all test recordings
-  std::shared_ptr<const FittedModel> model;  // likewise; null: no force
-  std::vector<std::string> same;             // further models of the plan that give the same forces
+  std::shared_ptr<const FittedModel> model;  // of the last fold; null: no force
+  std::vector<std::string> same;             // names of further planned models with the same forces
 };
 
-// A test recording whose surface the models find elsewhere.
+// A test recording with its estimated surface offset; 0: none.
 struct MovedSurface {
   std::string name;
   double offset_m = 0.0;
 };
 
-// Which model to use (choose.cpp).
+// The choice of a model. All numbers are indices of ReportData::models.
 struct Choice {
-  std::vector<std::size_t> candidates;  // one a method and recipe, indices of models
-  std::vector<std::size_t> qualified;   // of the candidates
-  std::size_t best = 0;                 // the smallest 99 % error of the candidates
+  std::vector<std::size_t> candidates;  // one per method and recipe
+  std::vector<std::size_t> qualified;   // non-inferior candidates
+  std::size_t best = 0;                 // the candidate with the smallest 99 % error
   std::size_t recommended = 0;
-  bool correction_off = false;  // all of this program's methods give the forces of the trend
+  bool correction_off = false;  // the correction is 0, so that all of this program's methods equal the trend
 };
 
 struct ReportData {
@@ -68,12 +68,12 @@ struct ReportData {
   JndLine jnd;
   bool quick = false;
   bool virtual_recordings = false;
-  int folds = 0;          // of a cross-validation; 0: test recordings
-  std::string tested_on;  // in words where there are no test recordings
+  int folds = 0;          // of a cross-validation; 0: there is one split
+  std::string tested_on;  // description of the test data where there are no test recordings
   std::vector<RecordingFacts> recordings;
   std::vector<MovedSurface> tested;  // every test recording
   NoiseFloor floor;                  // of all test recordings together
-  std::vector<ModelResult> models;   // the first always says 0 N; no two give the same forces
+  std::vector<ModelResult> models;   // the first is always 0 N; no two have the same forces
   Choice choice;
   WorstStretch worst;                         // of the recommended model
   std::vector<RecordingSurface> surfaces;     // of the training recordings
@@ -82,16 +82,14 @@ struct ReportData {
   std::vector<PartGain> gains;
 };
 
-// Errors: those of the recordings and the fits, with the recordings' names; interrupted.
-// The same recordings and plan give the same figures but for times. With several folds
-// every model is fitted once a fold and its errors are taken together.
+// Fits every planned model once per fold and pools its errors over the folds. The result is deterministic except for
+// times. Errors: those of the recordings and the fits, with the recordings' names; interrupted.
 Result<ReportData> measure(const RecordingSet& recordings, const Scene& scene, bool quick, const FitControl& control);
 
-// One size of every method and recipe, by the cross-validated error of the training, and of these the
-// one that rank() takes on the test.
+// The candidates are the main models of the plan; rank() recommends one of them by the test errors and times.
 Choice choose(const std::vector<ModelResult>& models);
-// What the first screen shows: no force and the candidates, of the recipe of 2009 only the method that the paper
-// recommends.
+// The models of the page's first table: no force and the candidates. Of the recipe of 2009 only greedy, which the
+// paper recommends, and the recommended model are among them.
 std::vector<std::size_t> headline_models(const ReportData& data);
 
 }  // namespace palpate

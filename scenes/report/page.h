@@ -1,4 +1,4 @@
-// The report's page from its data.
+// Makes the HTML page of a report.
 //
 // Thread guarantee: pure functions; make_page reads the template in the assets.
 #pragma once
@@ -15,8 +15,8 @@
 
 namespace palpate {
 
-// `origin`: what made it, in words; `tables`: those of make_tables; `figures`: drawn. Errors: the template is
-// missing, or asks for what is not there.
+// `origin`: command line, version and machine; `tables`: those of make_tables; `figures`: drawn already. Errors: the
+// template is missing, or has an unknown key.
 Result<std::string> make_page(const ReportData& data, const Sentence& answer, const std::string& origin,
                               const std::vector<Table>& tables, const std::vector<Figure>& figures);
 

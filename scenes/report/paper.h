@@ -1,11 +1,11 @@
-// The protocol of Hoever & Harders (2009) on virtual material, since the paper's own recordings are not public.
+// The protocol of Hoever & Harders (2009) on two virtual materials, because the paper's recordings are not public.
 //
-//   recordings  one to train and one to test, 41,499 and 45,272 samples at 1 kHz, with accelerometer
-//   sites       samples at steps of 50 mN; depth, velocity and two low-passed velocities, with the paper's relaxation
+//   recordings  one for training and one for the test, 41,499 and 45,272 samples at 1 kHz, with accelerometer
+//   sites       samples at steps of 50 mN; depth, velocity and two low-pass velocities, with the paper's relaxation
 //               times and with times fitted to the recording; rows scaled by 1/f
 //   methods     interpolation of all sites on an even 25x11x11x11 grid; 100 centres: random, kD-tree, greedy with 20
-//               and with 100 candidates a step
-//   errors      of the test's samples in contact, through the tick
+//               and with 100 candidates per step
+//   errors      of the samples in contact of the test, through the tick
 // Thread guarantee: slow side.
 #pragma once
 
@@ -20,14 +20,14 @@
 
 namespace palpate {
 
-// Errors of the samples of a range of forces.
+// Errors of the samples in a bin of the force (scenes/evaluation/error_figures.h).
 struct PaperBin {
   double force_N = 0.0;  // mean
   std::uint64_t count = 0;
-  double mean_N = 0.0;  // absolute error
+  double mean_N = 0.0;  // of the absolute error
   double std_N = 0.0;
   double max_N = 0.0;
-  double mean_relative = 0.0;  // over the force
+  double mean_relative = 0.0;  // of the absolute error / force
   double std_relative = 0.0;
   double max_relative = 0.0;
 };
@@ -41,28 +41,28 @@ struct PaperModel {
   std::vector<PaperBin> bins;
 };
 
-// Of one material and one pair of relaxation times.
+// The results for one material and one pair of relaxation times.
 struct PaperRun {
   std::string material;
-  bool fitted_times = false;
-  std::vector<double> times_s;
-  std::uint64_t trained = 0;  // samples
-  std::uint64_t tested = 0;
+  bool fitted_times = false;    // false: the paper's relaxation times
+  std::vector<double> times_s;  // relaxation times
+  std::uint64_t trained = 0;    // number of training samples
+  std::uint64_t tested = 0;     // number of test samples
   std::uint64_t sites = 0;
-  std::vector<PaperModel> models;  // the grid, random, kD-tree, greedy-20, greedy-100
+  std::vector<PaperModel> models;  // in the order of PaperMethod
 };
 enum PaperMethod : std::size_t { kGridOfAll, kRandomCentres, kTreeCentres, kGreedy20, kGreedy100, kPaperMethods };
 
-// Seconds of a fit, a row a number of sites; figure 8.
+// Time of a fit by the number of sites; figure 8.
 struct FitTimes {
   std::size_t sites = 0;
-  std::vector<double> seconds;  // a method
+  std::vector<double> seconds;  // in the order of PaperMethod
 };
-// Of a domain of so many dimensions; figure 2.
+// Time of the interpolant by the dimension of the domain; figure 2.
 struct DimensionTimes {
   std::size_t dimensions = 0;
   double solve_s = 0.0;
-  double grid_s = 0.0;  // 10 nodes a dimension
+  double grid_s = 0.0;  // evaluation on 10 nodes per dimension
 };
 
 struct PaperData {
@@ -72,28 +72,30 @@ struct PaperData {
   std::vector<DimensionTimes> by_dimension;
 };
 
-// `quick`: fewer samples, sites and dimensions, and one pair of times. Errors: the 50 mN steps grew; those of the fits;
-// interrupted.
+// `quick`: fewer samples, sites and dimensions, and only the paper's relaxation times. Errors: the reduction needed
+// steps above 50 mN; those of the fits; interrupted.
 Result<PaperData> measure_paper(bool quick, const FitControl& control);
 
-// A claim of the paper, what stands there, and what was found here, a text a run.
+// A claim of the paper, compared with the results.
 struct Claim {
   std::string claim;
-  std::string there;
-  std::vector<std::string> here;
-  std::vector<bool> reproduced;
-  std::string why;  // it is not, or what differs
+  std::string there;              // the result in the paper
+  std::vector<std::string> here;  // the result of each run; empty: not measured in that run
+  std::vector<bool> reproduced;   // for each run
+  std::string why;                // remark on a difference
 };
 std::vector<Claim> paper_claims(const PaperData& data);
 // "silicone", "silicone, fitted times".
 std::string run_name(const PaperRun& run);
 
-// Writes index.html, tables and figures 2 to 8 into `out`, which appears only when all is there. Returns a sentence.
+// Writes index.html, report.json, tables and figures 2 to 8 into `out`, which appears only when it is complete.
+// Returns how many claims were reproduced, as a sentence. Errors: those of ReportFolder::create, measure_paper and
+// draw_figures; interrupted.
 struct PaperRequest {
   bool quick = false;
   std::string out;
-  bool force = false;
-  std::string origin;  // what made it
+  bool force = false;  // replaces an existing folder
+  std::string origin;  // command line and version, for the page
 };
 Result<std::string> make_paper(const PaperRequest& request, const FitControl& control = {});
 

@@ -1,4 +1,4 @@
-// Which models a report fits.
+// The models that a report fits.
 //
 // Thread guarantee: pure functions.
 #pragma once
@@ -11,9 +11,9 @@
 
 namespace palpate {
 
-// nothing   a model that always says 0 N
-// trend     the viscoelastic trend alone, no centres
-// paper     the recipe of Hoever & Harders (2009), with two times fitted to the recordings
+// nothing   0 N, as a baseline
+// trend     the viscoelastic trend without centres
+// paper     the recipe of Hoever & Harders (2009), with two relaxation times fitted to the recordings
 // palpate   this program's defaults
 enum class Recipe { nothing, trend, paper, palpate };
 
@@ -21,10 +21,11 @@ struct PlannedModel {
   std::string name;  // "greedy-100", "2009-greedy-100"
   Recipe recipe = Recipe::palpate;
   MethodRequest request;
-  bool main = false;  // one a recipe and method: drawn against force, and a candidate
+  bool main = false;  // the default size of its recipe and method: a candidate, drawn in the figure of error by force
 };
 
-// No force first, then the main models, a method's base before it. `features`: of the scene.
+// No force first, then the main models, then other sizes. A method that starts from another method's fit (its base)
+// follows it. `features`: number of the scene's features.
 std::vector<PlannedModel> make_plan(bool quick, std::size_t features);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Figures and pages of a folder: drawn, and put into a template.
+// Draws the figures of a report folder and fills the templates of its pages.
 // Thread guarantee: slow side (does I/O, starts gnuplot).
 #pragma once
 
@@ -15,16 +15,16 @@ namespace palpate {
 struct Figure {
   Plot plot;
   std::string caption;  // plain text
-  std::string svg{};    // once it is drawn
+  std::string svg{};    // set by draw_figures
 };
 
-// Into figures/ of the folder; their svg is set. Errors: those of draw_plots.
+// Draws into the subfolder figures and sets `svg` of each figure. Errors: those of draw_plots and read_drawn.
 Status draw_figures(const ReportFolder& folder, std::vector<Figure>& figures);
 
 std::string figure_html(const Figure& figure);
 
-// assets/report/NAME with every {{key}} replaced by its value, and {{style}} by style.css. Errors: a template is
-// missing, or asks for what is not there.
+// Returns assets/report/NAME with every {{key}} replaced by its value, and {{style}} by style.css. Errors: a template
+// is missing, or has an unknown key.
 Result<std::string> fill_page(const std::string& name, std::map<std::string, std::string> values);
 
 }  // namespace palpate

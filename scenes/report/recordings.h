@@ -1,6 +1,6 @@
-// The recordings of a report, who is trained and tested on which, and whether what is tested on was trained
-// on: measured forces are compared bit by bit, for sensor noise makes them every recording's own.
-// Thread guarantee: slow side (does I/O, allocates).
+// Divides the recordings of a report into training and test data, and refuses test data that was trained on. Measured
+// forces are compared bit by bit, because sensor noise makes them unique to a recording.
+// Thread guarantee: slow side (allocates).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace palpate {
 using SharedRecording = std::shared_ptr<const Recording>;
 
 struct RecordingFacts {
-  std::string role;  // train, test, both
+  std::string role;  // "train", "test" or "both"
   std::string name;
   std::string content_hash;  // engine/recording/content_hash.h, hexadecimal
   std::uint64_t samples = 0;
@@ -25,52 +25,50 @@ struct RecordingFacts {
   double rate_Hz = 0.0;
   double deepest_m = 0.0;
   double largest_force_N = 0.0;
-  double force_noise_N = 0.0;  // white, standard deviation
+  double force_noise_N = 0.0;  // standard deviation of the white noise
   bool accelerometer = false;
 };
 
-// What models are fitted to, and what they are tested on then.
+// Training and test data of one fold.
 struct Split {
   std::vector<SharedRecording> train;
   std::vector<SharedRecording> tested;
-  double counted_from_s = -1e300;  // what came before is replayed too, for the material remembers
-  std::string words;               // what is tested on, where that was left out of the training
+  double counted_from_s = -1e300;  // earlier samples are replayed because the features have memory, but do not count
+  std::string words;               // description of the test data where it was split off the training data
 };
 
-// Tests a block at the end of a recording, which begins in the air where the tool is there near. Nothing is
-// tested where there is too little.
+// Splits off a block of up to 40 % at the end of a recording as test data. The block begins at the first sample in the
+// air, if one is within 10 % of the rows. A recording of fewer than 1000 rows gives an empty split.
 Split leave_out(const SharedRecording& training);
 
 struct RecordingSet {
-  std::vector<Split> folds;  // one, or k when there is no test recording
+  std::vector<Split> folds;  // several for a cross-validation
   std::vector<RecordingFacts> facts;
   bool virtual_recordings = false;
 };
 
-// A stretch of at least this many rows with the same forces, and this many different
-// ones among them, is no chance.
+// Equal forces in kLeakRows successive rows, with at least kLeakValues different values among them, are no coincidence.
 inline constexpr std::size_t kLeakRows = 50;
 inline constexpr std::size_t kLeakValues = 12;
 
 struct SharedStretch {
-  std::size_t first_row = 0;    // of `tested`
-  std::size_t trained_row = 0;  // of `trained`, likewise
-  std::size_t rows = 0;
+  std::size_t first_row = 0;    // in `tested`
+  std::size_t trained_row = 0;  // in `trained`
+  std::size_t rows = 0;         // 0: there is none
 };
 
-// The first stretch of `tested` whose forces stand in `trained` as well; one of 2 kLeakRows
-// and more is always found. rows == 0: none.
+// The first stretch that is found of `tested` whose forces occur in `trained`. Stretches of 2 kLeakRows and more are
+// found where every kLeakRows of their rows have kLeakValues different values.
 SharedStretch shared_stretch(const Recording& trained, const Recording& tested);
 
-// `all`: the first `trained` of them to train on, the others to test on; without others each is tested by
-// models of the rest. Errors: a stretch of a tested recording that was trained on, or all of it, by name and
-// rows.
+// The first `trained` recordings of `all` are training data, the others test data; without others, all pairs are
+// compared. Errors: a test recording shares a stretch with a training recording; names both and the rows.
 Status refuse_leakage(const std::vector<SharedRecording>& all, std::size_t trained);
 
-// Without any, the virtual silicone: seed 1 to train on, seed 2 to test on. Without a test
-// recording the others are divided into up to kMostFolds folds, each tested by models that were fitted to
-// the rest; of a single one a block at its end is left out. Recordings are ordered by name and content.
-// Errors: refuse_leakage's; no contact in a test recording; too short to leave a part out.
+// Without a training recording the virtual silicone is used: seed 1 for training, seed 2 for the test. Without a test
+// recording the training recordings are divided into up to kMostFolds folds for cross-validation, and a single one is
+// divided by leave_out. Recordings are sorted by name and content.
+// Errors: those of refuse_leakage; a test recording without contact; a single recording that is too short.
 inline constexpr std::size_t kMostFolds = 5;
 Result<RecordingSet> split_recordings(std::vector<SharedRecording> train, std::vector<SharedRecording> test);
 

@@ -13,19 +13,18 @@ namespace palpate {
 
 struct ReportRequest {
   Scene scene;
-  std::vector<SharedRecording> train;  // none: the virtual silicone
-  std::vector<SharedRecording> test;   // none: k-fold over `train`
-  bool quick = false;
+  std::vector<SharedRecording> train;  // empty: the virtual silicone
+  std::vector<SharedRecording> test;   // empty: see split_recordings
+  bool quick = false;                  // fewer models
   std::string out;
-  bool force = false;
+  bool force = false;  // replaces an earlier report in `out`
   std::string command_line;
   std::string version;
 };
 
-// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into
-// `request.out`, which appears only when all is there. Errors: gnuplot is missing; the
-// folder exists without `force`; those of split_recordings and the fits; interrupted. Returns the
-// sentence of the page, plain.
+// Writes index.html, report.json, tables/*.csv and figures/*.{svg,png,gp} into `request.out`, which appears only when
+// it is complete. Returns the answer as plain text. Errors: gnuplot is missing; those of ReportFolder::create,
+// split_recordings and measure; interrupted.
 Result<std::string> make_report(const ReportRequest& request, const FitControl& control = {});
 
 }  // namespace palpate

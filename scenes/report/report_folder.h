@@ -1,4 +1,4 @@
-// A folder that is either whole under its final name or not there at all.
+// A folder that appears under its final name only when it is complete.
 //
 // Thread guarantee: slow side (does I/O).
 #pragma once
@@ -12,20 +12,19 @@
 
 namespace palpate {
 
-// Files collect in a hidden folder beside `path`; `commit` renames it. Destroyed
-// without commit it leaves nothing.
+// Files are written into a hidden folder beside `path`, which `commit` renames. The destructor removes a folder that
+// was not committed.
 class ReportFolder {
  public:
-  // Errors: `path` exists and `overwrite` is false, or is not a folder; the folder
-  // above is missing or not writable; `path` exists and is no earlier report (has
-  // files but no report.json): it is never removed.
+  // Errors: `path` exists and `overwrite` is false, or it is not a folder, or it has files but no report.json and so
+  // is no earlier report; the parent folder is missing or not writable.
   static Result<ReportFolder> create(const std::string& path, bool overwrite);
 
-  // The whole of a file; its folder, one level deep, is made when missing.
+  // Writes a whole file and creates its subfolder where necessary.
   Status write(const std::string& name, std::string_view text) const;
   std::string path_of(const std::string& name) const { return temporary_->path() + "/" + name; }
 
-  // Under the final name now; an earlier report there is gone.
+  // Moves the folder to its final name and removes an earlier report there.
   Status commit();
 
  private:
