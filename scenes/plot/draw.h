@@ -1,4 +1,4 @@
-// Plots drawn into files by gnuplot, a program beside this one.
+// Draws plots into files with the external program gnuplot.
 // Thread guarantee: slow side; starts a process, does I/O.
 #pragma once
 
@@ -10,14 +10,14 @@
 
 namespace palpate {
 
-// A folder of its own in `parent`, gone with this object.
+// A temporary folder in `parent`, which the destructor removes.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::string& parent, const std::string& name = ".palpate-figures-");
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();
-  const std::string& path() const noexcept { return path_; }  // empty: there is none
+  const std::string& path() const noexcept { return path_; }  // empty: it could not be created
 
  private:
   std::string path_;
@@ -26,20 +26,21 @@ class ScratchFolder {
 // Errors: there is no gnuplot in PATH; says what to install.
 Status find_gnuplot();
 
-// Runs `script`, a name in `folder`, there and waits. Errors: it cannot be started or fails; with the first
-// line it said.
+// Runs gnuplot on the file `script` in `folder` and waits. Errors: it cannot be started or fails, with the first line
+// of its message.
 Status run_gnuplot(const std::string& folder, const std::string& script);
 
-// NAME.gp, NAME.svg and NAME.png of every plot in `folder`, which is there. Errors: gnuplot
-// is missing or fails; the disk refuses.
+// Writes NAME.gp, NAME.svg and NAME.png of every plot into `folder`, which exists. Errors: gnuplot is missing or
+// fails; a file cannot be written.
 Status draw_plots(const std::string& folder, const std::vector<Plot>& plots);
 
-// What was drawn into `file` of `folder`. Errors: nothing was.
+// The contents of `file` in `folder`. Errors: gnuplot wrote nothing.
 Result<std::string> read_drawn(const std::string& folder, const std::string& file);
 
-// One plot as the files `paths` of one folder, each of which ends in .svg or .png: all of them,
-// whole, or none. Errors: another ending; one exists and `overwrite` is false; as above.
+// Draws one plot into `paths`, files of one folder that end in .svg or .png. Nothing is written unless all could be
+// drawn; each file is whole. Errors: those of check_plot_path, draw_plots and read_drawn.
 Status draw_plot(const Plot& plot, const std::vector<std::string>& paths, bool overwrite);
+// Errors: `path` does not end in .svg or .png; it exists and `overwrite` is false.
 Status check_plot_path(const std::string& path, bool overwrite);
 
 }  // namespace palpate

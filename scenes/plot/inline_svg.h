@@ -1,4 +1,4 @@
-// A drawing of gnuplot's made ready to stand in an HTML page.
+// Converts an SVG drawing of gnuplot for inclusion in an HTML page.
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -7,12 +7,12 @@
 
 namespace palpate {
 
-// No prologue, no fixed size, ids made its own with `name`, and the neutral colours of
-// assets/figures/style.gp replaced by the page's variables (--ink, --muted, --grid, --band,
-// --paper), so that it follows light and dark. Empty for what is no SVG.
+// Removes the prologue and the fixed size, prefixes ids with `name`, and replaces the neutral colours of
+// assets/figures/style.gp by the page's CSS variables (--ink, --muted, --grid, --band, --paper), so that the drawing
+// follows the light or dark theme. Returns an empty string where `svg` is no SVG.
 std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title);
 
-// & < > " ' as entities.
+// Replaces & < > " ' by entities.
 std::string escape_html(std::string_view text);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Where things of a panel go: ranges and tics of its axes, names beside curves and lines, marks of what is cut.
+// Layout of a panel: ranges and tics of its axes, names beside curves and lines, marks where curves are cut off.
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -14,18 +14,18 @@ struct AxisRange {
   double high = 1.0;
 };
 
-// Of the x axis, or of the y axis when `vertical`: what is asked for, and else what the data and the named lines
-// have.
+// The range of the x axis, or of the y axis when `vertical`: the limits of the axis where they are given, else those
+// of the data and levels with a margin.
 AxisRange range_of(const Panel& panel, bool vertical);
 
-// Labelled values inside `range`, at least two and at most about `most`: of a logarithmic axis decades, with 2 and
-// 5 or more steps where decades are few; else multiples of 1, 2 or 5 times a power of ten.
+// Labelled values inside `range`, at least two and at most about `most`. On a logarithmic axis these are decades,
+// with steps such as 2 and 5 where there are few decades; else multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> tics_of(const Axis& axis, const AxisRange& range, std::size_t most);
 
-// Where `value` is on the axis, 0 to 1.
+// The position of `value` on the axis: 0 at its low end, 1 at its high end.
 double fraction_of(const Axis& axis, const AxisRange& range, double value);
 
-// A name beside a point, x and y as fractions of the panel.
+// A name beside a point; x and y are fractions of the panel.
 struct NameTag {
   std::string text;
   Hue colour = kInkColour;
@@ -34,12 +34,12 @@ struct NameTag {
   bool beside_panel = false;
 };
 
-// The names of levels and, where the panel asks for it, of its series: beside the panel for those that end at its
-// edge, else beside their last point. Moved up and down until no two overlap; `line`: the height of one over that of
-// the panel, `character`: the width of a letter over that of the panel.
+// The names of horizontal levels and, with `names_at_ends`, of the series: of a series of one point beside the point,
+// of all others beside the panel. They are moved up and down so that they do not overlap. `line`: height of a line of
+// text, `character`: width of a letter, both as fractions of the panel.
 std::vector<NameTag> name_tags(const Panel& panel, double line, double character);
 
-// A series of marks at the edge for each stretch of a line that leaves the axis as it was asked for.
+// Marks at the edge, one for each stretch of a line that exceeds the given limits of the y axis.
 std::vector<Series> cut_marks(const Panel& panel);
 
 }  // namespace palpate

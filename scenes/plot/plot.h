@@ -1,10 +1,9 @@
-// A figure as data: panels of series against two axes. Out comes one gnuplot script that
-// holds its own data and draws NAME.svg and NAME.png wherever it is run.
+// A figure as data: panels of series against two axes. plot_script converts it to one gnuplot script that contains
+// the data and draws NAME.svg and NAME.png in the folder where it is run.
 //
-// Names stand at the ends of curves where a panel asks for it, else in one legend above the panels, in their
-// colours; tics of logarithmic axes carry SI prefixes (300 mN, 2 us, 3 kN). What leaves an axis whose range was
-// given is marked at the edge (layout.h).
-// Type, tics and neutral colours: assets/figures/style.gp.
+// The names of series are in a legend above the panels, or with `names_at_ends` beside the curves. Tics of
+// logarithmic axes have SI prefixes (300 mN, 2 us, 3 kN). Lines that exceed a given limit of the y axis are marked at
+// the edge (layout.h). Fonts, tics and neutral colours are in assets/figures/style.gp.
 // Thread guarantee: value types and pure functions; plot_script reads the asset.
 #pragma once
 
@@ -18,7 +17,7 @@
 
 namespace palpate {
 
-// 0xRRGGBB; black is the ink of the page, light on dark.
+// 0xRRGGBB. Black stands for the ink colour of the page, which is light on a dark page.
 using Hue = std::uint32_t;
 inline constexpr Hue kInkColour = 0x000000;
 inline constexpr Hue kMutedColour = 0x6E6E6E;
@@ -30,7 +29,7 @@ enum class Mark {
   line,
   dashed,
   points,
-  hollow,        // points with the paper inside
+  hollow,        // points filled with the background colour
   curve,         // a line through points
   hollow_curve,  // likewise
   bars,          // points with bars from `low` to `high` and from `left` to `right`
@@ -40,7 +39,7 @@ enum class Mark {
   area,  // grey, from `low` to `high` at each x
 };
 
-// x and y; what bars and area go from and to. NaN: a gap; of bars: none.
+// A point, and the ends of its bars or area. A NaN in y and low is a gap in a line; a NaN end is no bar.
 struct PlotRow {
   double x = 0.0;
   double y = 0.0;
@@ -51,21 +50,21 @@ struct PlotRow {
 };
 
 struct Series {
-  std::string name;  // in the legend, once for all panels; empty: not there
+  std::string name;  // in the legend, once for all panels; empty: not in the legend
   Hue colour = kInkColour;
   Mark mark = Mark::line;
   std::vector<PlotRow> rows;
 };
 
 struct Axis {
-  std::string title;  // with the unit, but of a logarithmic axis with one, whose tics carry it
-  std::string unit;   // of a logarithmic axis: behind every tic, with a prefix; empty: plain numbers
+  std::string title;  // with the unit, except on a logarithmic axis with `unit`
+  std::string unit;   // for the tics of a logarithmic axis, which get a prefix; empty: plain numbers
   bool logarithmic = false;
-  double low = kNoValue;  // NaN: as the data have it
-  double high = kNoValue;
+  double low = kNoValue;   // NaN: from the data
+  double high = kNoValue;  // NaN: from the data
 };
 
-// A line across a panel, named on it.
+// A line across a panel with its name.
 struct Level {
   double value = 0.0;
   std::string text;
@@ -83,9 +82,9 @@ struct Panel {
 
 struct Plot {
   std::string name;     // of its files
-  int columns = 1;      // panels go row by row
-  double width = 1.0;   // over that of a page
-  double height = 1.0;  // of a row of panels, over the usual one
+  int columns = 1;      // panels are placed row by row
+  double width = 1.0;   // 1: 800 pixels
+  double height = 1.0;  // of a row of panels; 1: 230 pixels
   std::vector<Panel> panels;
 };
 
