@@ -1,7 +1,6 @@
-// A study session with a device: the haptics loop renders what the session
-// presents. No window, no drawing.
+// A study session with a device, without a window: the haptics loop renders the forces of the session.
 //
-// Thread guarantee: one thread (the window's) for everything here.
+// Thread guarantee: one thread (the window's).
 #pragma once
 
 #include <memory>
@@ -19,33 +18,32 @@ inline constexpr const char* kRehearsal =
 
 struct LiveStudyRequest {
   std::string device = "auto";
-  StudyHeader header;  // who, and by which procedure
-  std::string path;    // of the answers; taken up where it ends
+  StudyHeader header;  // subject and procedure
+  std::string path;    // of the study file; an existing one is resumed
   bool realtime = true;
 };
 
-// Whether this device, as a request names it, renders force: else a study with it is a
-// rehearsal. Opens it for a moment. Slow side.
+// Whether the device renders force to a person; else a study with it is a rehearsal. Opens and closes the device;
+// slow side.
 bool study_can_be_felt(const std::string& device);
 
 class LiveStudy {
  public:
-  // Errors: the device cannot be opened; the file is in use or of another study; a
-  // subject code that is none.
+  // Errors: the device cannot be opened; the file is in use or of another study; an invalid subject code; no thread.
   static Result<std::unique_ptr<LiveStudy>> open(const LiveStudyRequest& request);
   LiveStudy(const LiveStudy&) = delete;
   LiveStudy& operator=(const LiveStudy&) = delete;
-  // Lets the force go to zero.
+  // Ramps the force to zero.
   ~LiveStudy();
 
-  // Once a frame.
+  // Call it once a frame.
   void update();
 
   StudySession& session() noexcept { return *session_; }
   const LoopSnapshot& newest() const noexcept { return newest_; }
-  // Whether a hand can feel it; else this is a rehearsal.
+  // Whether the device renders force to a person; else this is a rehearsal.
   bool device_pushes() const noexcept { return session_->header().rendered; }
-  // What the device needs first, or what it is; may be empty.
+  // A fault of the device, else the next step of its zeroing, else its note; may be empty.
   std::string device_words() const;
   void start_zeroing() { device_->start_zeroing(); }
 

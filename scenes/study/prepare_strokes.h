@@ -1,18 +1,13 @@
-// From a recording and one or two models to the pair of strokes that a hand is to tell
-// apart.
+// Makes the pair of strokes for a discrimination study from a recording and one or two models.
 //
-// Every row of the recording goes through the tick that the live loop runs
-// (engine/tick/replay.h). What the models and the force sensor say is brought to one value
-// per ms and passed through the same zero-phase low-pass, 21 ms of a Hann window (half
-// the amplitude at 50 Hz): the sensor's noise is no force of the block, and told apart
-// it would be at once. Taken is the piece, as long as an interval (study_presenter.h), in
-// which the errors over the JND sum to most: the prediction is put to a hard test.
-// Left out is what a study may not present (4 N, 100 N/s) or a small motor does not bear
-// with the pauses (2.5 N, root mean square).
+// Every row of the recording goes through the tick of the live loop (engine/tick/replay.h). The forces of models and
+// sensor are resampled to 1 kHz and filtered with the same zero-phase low-pass, a Hann window of 21 ms (half the
+// amplitude at 45 Hz), because the noise of the sensor would make its stroke recognisable. Of all pieces of the length
+// of an interval (study_presenter.h), every 100 ms, the one with the largest sum of error / JND is chosen. Pieces above
+// 3.8 N, 90 N/s (the presenter's limits with a margin) or 2.5 N RMS (the heat of a small motor) are excluded.
 //
-// A still hand is given the force over time. It does not move the tool, so this tests
-// the discrimination of forces as the JND study does, whose thresholds the errors are
-// held against, and neither hand nor model answers to the other.
+// The force over time is rendered to a still hand. The hand does not influence it, so this tests the discrimination
+// of forces, as the JND study does.
 // Thread guarantee: slow side (fits models, does I/O, allocates).
 #pragma once
 
@@ -32,20 +27,19 @@ inline constexpr const char* kRecordedForce = "recorded force";
 
 struct StrokeRequest {
   Scene scene;
-  // Methods, fitted as the window and `palpate fit` do, or model files: the reference
-  // and the comparison. With one the recorded force is the reference; none: the first
-  // of the scene's, likewise.
+  // Methods, fitted as by `palpate fit`, or model files. Two: the reference and the comparison. One: the comparison
+  // with the recorded force as the reference. None: the first default model of the scene, as one.
   std::vector<std::string> models;
-  // The recording to render, none that a model was fitted to. Empty: a virtual one of
-  // the scene's material, seed 2.
+  // The recording to render; do not name one that a model was fitted to. Empty: a recording of the scene's virtual
+  // material with seed 2.
   std::string recording;
 };
 
-// Errors: more than two models; those of plan_slots, of the fits, of the recording; no
-// recording and no material; no stroke that can be presented.
+// Errors: more than two models; those of plan_slots, of the fits and of the recording; neither recording nor virtual
+// material; no piece within the limits.
 Result<std::shared_ptr<const StrokePair>> prepare_strokes(const StrokeRequest& request);
 
-// The same for models that are ready; `reference` null: the recorded force.
+// The same for ready models; `reference` null: the recorded force.
 Result<std::shared_ptr<const StrokePair>> strokes_of(const Recording& recording,
                                                      const std::shared_ptr<const ForceModel>& reference,
                                                      const std::shared_ptr<const ForceModel>& comparison,

@@ -1,19 +1,18 @@
-// From answers to thresholds: the psychometric functions of a subject and their JNDs.
+// Estimates the psychometric functions and JNDs of a subject from the answers.
 //
-// With x = (comparison - reference) / reference and o = +1 when the comparison came
-// second, -1 when it came first, the comparison is judged the larger with
-//   P(x, o) = lapse + (1 - 2 lapse) Phi(slope x + order_bias o)
-// a cumulative Gaussian with a lapse rate (Wichmann & Hill 2001, Perception &
-// Psychophysics 63(8), 1293-1313). Each reference force has its slope; the lapse rate
-// and what is added to whatever comes second, in multiples of the noise, belong to the
-// subject and are the same for all. There is no other shift: which of two forces is
-// "the reference" is nothing that a subject could know. (Four shifts and lapse rates
-// more, fitted to 80 answers each, made the JND 10 % too small and doubled its error.)
+// With x = (comparison - reference) / reference and o = +1 when the comparison came second, -1 when it came first, the
+// comparison is judged the larger with probability
+//   P(x, o) = lapse + (1 - 2 lapse) Phi(slope x + order_bias o),
+// a cumulative Gaussian with a lapse rate (Wichmann & Hill 2001, Perception & Psychophysics 63(8), 1293-1313). Each
+// reference force has its own slope. The lapse rate and the order bias, which favours the second force, are the same
+// for all reference forces of a subject. There is no other shift, because a subject cannot know which of two forces is
+// the reference. (A shift and a lapse rate for each reference force, fitted to 80 answers each, made the JND 10 % too
+// small and doubled its error.)
 //
-// The JND at a criterion c is half the distance between the comparisons that are
-// judged larger with probability c and 1 - c, lapses and order aside:
+// The JND at a criterion c is half the distance between the comparisons that are judged larger with probability c and
+// 1 - c, without lapses and order bias:
 //   JND = Phi^-1(c) reference / slope.
-// c = 0.75, half the interquartile distance; the paper does not state its own.
+// c = 0.75 gives half the interquartile distance; the paper does not state its criterion.
 // Thread guarantee: pure functions; slow side (they allocate).
 #pragma once
 
@@ -28,18 +27,17 @@ inline constexpr double kJndCriterion = 0.75;
 double normal_cdf(double z) noexcept;
 double normal_quantile(double probability) noexcept;
 
-// Answers to one kind of trial. Counts need not be whole: expected answers are
-// answers too.
+// The answers to all trials with the same stimuli. Counts may be fractional, for expected answers.
 struct AnswerCell {
-  std::size_t reference = 0;  // which reference force, from 0; at most kMostReferences
+  std::size_t reference = 0;  // index of the reference force, below kMostReferences
   double difference = 0.0;    // x
   bool comparison_first = false;
-  double judged_larger = 0.0;  // how often the comparison was
+  double judged_larger = 0.0;  // number of trials in which the comparison was judged the larger
   double trials = 0.0;
 };
 inline constexpr std::size_t kMostReferences = 8;
 
-// Adds answers to the cell of their kind, which is made when there is none yet.
+// Adds answers to the cell with the same stimuli (x within 1e-4), or appends a cell.
 void add_answers(std::vector<AnswerCell>& cells, const AnswerCell& answers);
 
 struct PsychometricFunction {
@@ -48,19 +46,19 @@ struct PsychometricFunction {
   double lapse = 0.0;  // 0 .. 0.06
 
   double at(double difference, bool comparison_first) const noexcept;
-  // Relative to the reference, at kJndCriterion.
+  // The JND over the reference, at kJndCriterion.
   double jnd() const noexcept { return normal_quantile(kJndCriterion) / slope; }
 };
 
 struct PsychometricFit {
   std::vector<PsychometricFunction> functions;  // of each reference force
-  // Whether the answers bound the slope on both sides: not when they are all right, or
-  // mere guesses. The slope is then an end of its range, 0.25 .. 40, or anywhere near.
+  // Whether the answers bound the slope on both sides. They do not when all are correct or all are guesses; the slope
+  // is then at or near an end of its range, 0.25 .. 40.
   std::vector<bool> determined;
 };
 
-// Maximum likelihood for `references` reference forces (1 .. kMostReferences) together;
-// the lapse rate to 0.01, at most 0.06.
+// Joint maximum likelihood for `references` reference forces (1 .. kMostReferences). The lapse rate is a multiple of
+// 0.01, at most 0.06.
 PsychometricFit fit_psychometric(const std::vector<AnswerCell>& cells, std::size_t references);
 
 }  // namespace palpate

@@ -1,16 +1,13 @@
-// Somebody who answers as a psychometric function says, to try the study on.
+// A simulated subject that answers by a psychometric function, to test the study.
 //
-// A force F is felt as F + s(F) n, n normal with variance 1, and the second of two
-// as a bias more; the larger is what feels larger. s is such that the JND at the
-// criterion 0.75 is the line JND(F) = offset + weber_fraction F when both forces are
-// felt alike: s(F) = JND(F) / (0.6745 sqrt(2)). Sometimes the subject misses a trial
-// and guesses.
+// A force F is perceived as F + s(F) n with n normal of variance 1; a bias is added to the second of two forces. The
+// subject answers with the larger perceived force. s(F) = JND(F) / (0.6745 sqrt(2)), so that the JND at the criterion
+// 0.75 is JND(F) = offset + weber_fraction F. In a share of the trials the subject guesses.
 //
-// Two strokes it tells apart at the moment at which what it was given differs most, in
-// multiples of its JND: it feels both there, as above, and has learned from the
-// reminder which of the two is the larger there. So it is right with the probability
+// Two strokes are compared at the tick at which they differ most in multiples of the JND. The subject perceives both
+// forces there, as above, and knows from the reminder which is the larger. It is correct with the probability
 //   Phi(|F1 - F2| / sqrt(s(F1)^2 + s(F2)^2)),
-// 75 % for one JND; nobody with this noise who attends to one moment does better.
+// 75 % for one JND, the optimum for an observer with this noise who attends to one tick.
 // Deterministic: the same seed gives the same answers.
 // Thread guarantee: one thread; slow side.
 #pragma once
@@ -26,8 +23,8 @@ namespace palpate {
 
 struct SubjectTraits {
   JndLine jnd;
-  double order_bias_jnd = 0.0;  // added to the second force, multiples of the JND
-  double lapse_rate = 0.0;      // 0 .. 0.5: missed trials are 2 x this, half of them wrong
+  double order_bias_jnd = 0.0;  // added to the second force, in multiples of the JND
+  double lapse_rate = 0.0;      // 0 .. 0.5; the subject guesses in a share of 2 x this, half of it wrong
 };
 
 class SimulatedSubject {
@@ -36,7 +33,7 @@ class SimulatedSubject {
       : traits_(traits), random_(seed, kStream) {}
 
   bool second_feels_larger(double first_N, double second_N) noexcept;
-  // Of two forces the second was the larger, of two strokes it was like the reminder.
+  // Whether the answer is "second": the larger of two forces, or the stroke that equals the reminder.
   bool answers_second(const Stimuli& stimuli) noexcept;
 
  private:
@@ -45,7 +42,7 @@ class SimulatedSubject {
   RandomStream random_;
 };
 
-// All answers of one subject, training included, to forces that were rendered as planned.
+// All answers of one subject, including training, to forces that are rendered exactly as planned.
 std::vector<StudyRecord> simulated_answers(const StudyHeader& header, const SubjectTraits& traits, std::uint64_t seed);
 
 }  // namespace palpate

@@ -8,15 +8,14 @@
 //   part,trial,reference_N,comparison_N,comparison_first,first_rendered_N,second_rendered_N,limited,answer,response_ms,device,rendered
 //   training,1,0.3,0.18,1,0.18,0.3,0,second,731,paddle,true
 //
-// With strokes (procedure discriminate) a line `# strokes {...}` stands behind the timing,
-// a StrokePair without its forces, as JSON; rows have two more columns before the device,
-// reminder_rendered_N and worst_N, and their forces are the strokes' means.
+// The procedure discriminate has a line `# strokes {...}` after the timing, a StrokePair without its forces as JSON.
+// Its rows have two more columns before the device, reminder_rendered_N and worst_N; their forces are the means of the
+// strokes.
 //
-// The consent's text is named by a checksum (FNV-1a), the time is the caller's word.
-// Nothing is written before the consent. A row is appended in one go and flushed to
-// the disk before the answer counts; a refused row is taken back. A last row without
-// its line end, from a power cut, was never confirmed: it is ignored and cut off.
-// While one StudyFile holds a file, a second is refused (flock).
+// The consent line has a checksum of the text (FNV-1a) and the time that the caller gives. No file exists before the
+// consent. A row is appended and synced to the disk before its answer counts; a row that fails is removed. A last row
+// without its line end, left by a power failure, was never confirmed: it is ignored and removed. While a StudyFile has
+// a file open, a second StudyFile is refused (flock).
 // Thread guarantee: one thread; slow side (does I/O).
 #pragma once
 
@@ -33,24 +32,25 @@ struct StudyData {
   StudyHeader header;
   std::string consent;  // "text 8c1f2a9d, 2024-05-06 10:20"
   std::vector<StudyRecord> records;
-  std::size_t whole_bytes = 0;  // up to the end of the last whole row
+  std::size_t whole_bytes = 0;  // up to the end of the last complete row
 };
 
-// Errors: anything unlike the above, as "path:line:column: found ..., expected ...".
+// Errors: the first deviation from this format, as "path:line:column: found ..., expected ...".
 Result<StudyData> parse_study(std::string_view text, const std::string& path);
+// Errors: the file is not readable; those of parse_study.
 Result<StudyData> read_study(const std::string& path);
 
-// The lines above the consent; the columns' names; one row, with its line end.
+// The lines above the consent; the names of the columns; one row with its line end.
 std::string study_header_text(const StudyHeader& header);
 std::string study_columns(const StudyHeader& header);
 std::string study_row(const StudyRecord& record, const StudyHeader& header);
-// Errors: no file; two of one subject.
+// Errors: no file; two files of one subject.
 Status check_subjects(const std::vector<StudyData>& files);
 
 class StudyFile final : public StudyStore {
  public:
-  // Takes up `path`, or makes it once there is consent. Errors: another session has
-  // it; not a study file, or of another subject or procedure; not readable.
+  // Resumes `path` if it exists; else `consent` creates it. Errors: another session has it open; it is not a study
+  // file, or of another subject, procedure or strokes; it is not readable.
   static Result<std::unique_ptr<StudyFile>> open(const std::string& path, const StudyHeader& header);
 
   StudyFile(const StudyFile&) = delete;
@@ -70,7 +70,7 @@ class StudyFile final : public StudyStore {
   std::string path_;
   StudyHeader header_;
   int descriptor_ = -1;
-  std::size_t size_ = 0;  // of what is confirmed
+  std::size_t size_ = 0;  // bytes of confirmed rows
   bool consented_ = false;
   std::vector<StudyRecord> records_;
 };

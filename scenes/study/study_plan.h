@@ -1,24 +1,19 @@
-// What a subject is given to compare, and in which order: constant stimuli, or two
-// strokes to tell apart. All of it is known before the first answer.
+// The stimuli of all trials of a subject and their order, which are fixed before the first answer: constant stimuli, or
+// the discrimination of two strokes.
 //
-// Constant stimuli: two-alternative forced choice without movement: a reference force and a
-// comparison force one after the other, "which was larger?". Method of constant
-// stimuli as in Hoever & Harders (2009), section 4.1: reference forces 0.3, 0.5,
-// 1.0 and 2.5 N, comparison forces from 60 % to 140 % of the reference in eight
-// steps (100 % is none: there is nothing to tell apart), each pair ten times: 320
-// trials. The order is drawn anew for each subject, and balanced: each pair comes
-// once in every 32 trials, five times with the comparison first and five times
-// second.
+// Constant stimuli: two-alternative forced choice (2AFC) without movement. A reference and a comparison force follow
+// each other; which was larger? Method of constant stimuli as in Hoever & Harders (2009), section 4.1: reference forces
+// 0.3, 0.5, 1.0 and 2.5 N; comparison forces from 60 % to 140 % of the reference in eight steps without 100 %; each
+// pair ten times: 320 trials. The order is random for each subject and balanced: each pair comes once in every 32
+// trials, five times with the comparison first and five times second.
 //
-// Two strokes: two-alternative forced choice with a reminder (M. J. Hautus, N. A.
-// Macmillan & C. D. Creelman 2022, Detection Theory: A User's Guide, 3rd ed., chapter
-// 7: "2AFCR"; the design of the duo-trio test with constant reference, ISO 10399): the
-// reference stroke, then reference and comparison in either order; which of the two was
-// like the first? Who uses the difference does as well as in 2AFC without a reminder, so
-// that d' = sqrt(2) Phi^-1(share correct) and one JND (criterion 0.75) is 75 % correct:
-// what the JND says can be held against it. A reminder is needed because strokes differ
-// in any way, not only in size. No feedback after the training.
-// Deterministic: the subject code alone decides.
+// Two strokes: 2AFC with a reminder ("2AFCR" in M. J. Hautus, N. A. Macmillan & C. D. Creelman 2022, Detection Theory:
+// A User's Guide, 3rd ed., chapter 7; the design of the duo-trio test with constant reference, ISO 10399). The
+// reference stroke is followed by reference and comparison in either order; which of the two was like the first? An
+// observer who uses the difference performs as in 2AFC without a reminder, so that d' = sqrt(2) Phi^-1(share correct),
+// and one JND (criterion 0.75) is 75 % correct. The reminder is necessary because strokes may differ in any way, not
+// only in size. There is no feedback after the training.
+// Deterministic: the order depends on the subject code only.
 // Thread guarantee: values and pure functions; slow side (they allocate).
 #pragma once
 
@@ -47,29 +42,29 @@ struct StudyTrial {
   bool operator==(const StudyTrial&) const = default;
 };
 
-// A comparison force to 0.1 mN, so that it is written as it is.
+// A comparison force, rounded to 0.1 mN as in the study file.
 double percent_of(double reference_N, double percent) noexcept;
 
-// A subject is known by a code, never by a name: one to three capital letters
-// and one to four digits, such as S01. Errors: anything else.
+// Subjects are anonymous: a code has one to three capital letters and one to four digits, such as S01. Errors: another
+// form.
 Status check_subject_code(const std::string& code);
 
-// How many trials with two strokes, and how many of them between two breaks; in each such
-// block the comparison comes first as often as second.
+// Number of trials with two strokes, and of trials between two breaks. In each block the comparison comes first as
+// often as second.
 inline constexpr std::size_t kDiscriminationTrials = 100;
 inline constexpr std::size_t kDiscriminationBlock = 20;
 
 struct StudyPlan {
   const StrokePair* strokes = nullptr;  // null: constant stimuli
-  std::vector<StudyTrial> training;     // easy ones, to learn the task
+  std::vector<StudyTrial> training;     // easy trials, to learn the task
   std::vector<StudyTrial> trials;
   std::size_t trials_per_block = 64;  // between two breaks: two repetitions of each pair
 
-  // What is presented in a trial, of the training or not.
+  // The stimuli of a trial of the training or of the study.
   Stimuli stimuli(const StudyTrial& trial, bool in_training) const;
 };
-// The trials of a subject; those with strokes, which outlive the plan, have the means of
-// their forces, and in the training the reference against half of it.
+// The trials of a subject. With `strokes`, which outlive the plan, the forces of a trial are the means of the strokes,
+// and the training compares the reference with half of it.
 StudyPlan plan_study(const std::string& code, const StrokePair* strokes);
 
 }  // namespace palpate

@@ -1,16 +1,13 @@
-// Two forces one after the other, exact to the tick; before them a third to compare
-// them with, when there is one.
+// Presents two forces one after the other with the accuracy of a tick, optionally after a third one as a reminder.
 //
 //   idle --present--> lead_in [-> reminder -> pause] -> first -> pause -> second
 //        -> finished --present--> ...
-//   any  --stop-----> stopped, for good
+//   any  --stop-----> stopped, permanently
 //
-// Time is counted in ticks of 1 ms, never read from a clock. Within an interval the
-// force, constant or one of a pair of strokes, is let in as half a cosine, held, and taken
-// away likewise; everywhere else it is zero, so that no force outlasts the one interval
-// whatever the slow side does. Behind it a ForceLimiter has the last word: 4 N at most,
-// 100 N/s at most, which also takes the force away gently (40 ms at most) when the
-// presentation is stopped in the middle.
+// Time is counted in ticks of 1 ms. Within an interval the force, constant or a stroke, is multiplied by a cosine ramp
+// at its beginning and end. Outside of the intervals it is zero, so that no force lasts longer than its interval,
+// whatever the slow side does. A ForceLimiter limits the result to 4 N and 100 N/s; it also ramps the force down within
+// 40 ms when a presentation is stopped.
 // Positive forces push towards the hand.
 // Thread guarantee: `tick` on the haptics thread, `stop` on any, both wait-free
 // and without allocation; the rest on one slow thread.
@@ -28,19 +25,18 @@ namespace palpate {
 inline constexpr double kStudyTick_s = 1e-3;
 inline constexpr double kLargestStudyForce_N = 4.0;
 inline constexpr double kFastestStudyForce_N_per_s = 100.0;
-// Of every presentation, in ticks. The ramp is so long that the limiter does not bend it:
-// 3.5 N x pi / 2 / 100 ms is 55 N/s.
+// Durations in ticks. The ramp stays below the limiter's slew rate: 3.5 N x pi / 2 / 100 ms = 55 N/s.
 inline constexpr std::uint32_t kLeadIn_ticks = 400;
 inline constexpr std::uint32_t kRamp_ticks = 100;
 inline constexpr std::uint32_t kHold_ticks = 900;
 inline constexpr std::uint32_t kPause_ticks = 500;
 inline constexpr std::uint32_t kInterval_ticks = 2 * kRamp_ticks + kHold_ticks;
 
-// How much of the force is let through at the tick of an interval.
+// The factor of the force at a tick of an interval, 0 to 1: cosine ramps at both ends, 1 between them.
 double interval_share(std::uint32_t tick) noexcept;
 
-// What an interval presents: so many newtons, or so many times a stroke, which has a force
-// for each tick of an interval and outlives the presentation.
+// The force of an interval: `size` in newtons, or `size` times a stroke. A stroke has one force per tick of an interval
+// and outlives the presentation.
 struct Stimulus {
   double size = 0.0;
   const std::vector<double>* stroke_N = nullptr;
@@ -48,7 +44,7 @@ struct Stimulus {
 struct Stimuli {
   Stimulus first;
   Stimulus second;
-  Stimulus reminder;  // a stroke, or none
+  Stimulus reminder;  // without a stroke there is no reminder
 };
 
 enum class PresentationPhase : std::uint8_t {
@@ -64,31 +60,30 @@ enum class PresentationPhase : std::uint8_t {
 };
 
 struct PresentationState {
-  std::uint64_t presentation = 0;  // which; 0: none yet
-  std::uint64_t tick = 0;          // since the beginning
-  std::uint64_t finished_at = 0;   // tick at which the second interval had ended
+  std::uint64_t presentation = 0;  // number of the presentation; 0: none yet
+  std::uint64_t tick = 0;          // since the presenter was made
+  std::uint64_t finished_at = 0;   // tick after the end of the second interval
   PresentationPhase phase = PresentationPhase::idle;
-  double force_N = 0.0;  // wanted now
-  // What was rendered: the mean over the held ticks.
+  double force_N = 0.0;  // returned by the last tick
+  // Means of the rendered force between the ramps.
   double first_rendered_N = 0.0;
   double second_rendered_N = 0.0;
   double reminder_rendered_N = 0.0;
-  double worst_N = 0.0;  // largest distance of what was rendered from what it should be
-  bool limited = false;  // a force of this presentation was held back
+  double worst_N = 0.0;  // largest |rendered - commanded force| in the intervals
+  bool limited = false;  // the limiter changed a force of this presentation
 };
 
 class StudyPresenter {
  public:
   StudyPresenter() noexcept : limiter_(kLimits) {}
 
-  // Slow side. Begins a presentation at the next tick (one that runs is given up);
-  // returns its number.
+  // Slow side. Begins a presentation at the next tick and cancels a running one. Returns its number.
   std::uint64_t present(const Stimuli& stimuli) noexcept;
   void stop() noexcept { stopped_.store(true, std::memory_order_release); }
   const PresentationState& newest() noexcept { return states_.newest(); }
 
-  // Haptics thread. `rendered_N`: what the device was sent for the force that the
-  // tick before returned, after whatever else limits it. Returns the force to send.
+  // Haptics thread. `rendered_N`: the force that the device received for the return value of the previous tick, after
+  // all other limits. Returns the force to render.
   double tick(double rendered_N) noexcept;
 
  private:
@@ -108,14 +103,14 @@ class StudyPresenter {
   TripleBuffer<Order> orders_;
   TripleBuffer<PresentationState> states_;
   std::atomic<bool> stopped_{false};
-  std::uint64_t ordered_ = 0;  // slow side's
+  std::uint64_t ordered_ = 0;  // slow side
 
-  // Haptics thread's.
+  // Haptics thread.
   ForceLimiter limiter_;
   Order order_;
   PresentationState state_;
   std::uint32_t in_phase_ = 0;                              // ticks since the phase began
-  PresentationPhase sent_phase_ = PresentationPhase::idle;  // of the force sent last
+  PresentationPhase sent_phase_ = PresentationPhase::idle;  // at the previous tick, as the following
   double sent_commanded_N_ = 0.0;
   bool sent_stimulus_ = false;
   bool sent_held_ = false;

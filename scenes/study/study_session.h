@@ -1,20 +1,17 @@
-// One subject's session: consent, training, trials, breaks, the end. A state
-// machine without window and without clock: time is what the ticks count.
+// One subject's session: consent, training, trials, breaks, the end. A state machine without window and clock; time is
+// counted in ticks of 1 ms.
 //
 //   consent -> ready -> presenting -> answering -> presenting ... -> rest -> ... -> done
 //                                         |  ^
-//                                      unsaved (the disk refused the answer)
-//   presenting -> ready (the device did not render what it should; the trial comes again)
+//                                      unsaved (the answer could not be stored)
+//   presenting -> ready (the device did not render the planned force; the trial is repeated)
 //   any of them -> aborted
 //
-// How to drive it: the haptics thread calls `next_force_N` once per ms and renders what it
-// returns. The slow thread calls `update` in every frame, draws `view`, and passes on
-// what the subject does. `ready` comes before the training, before the study proper,
-// and first of all when a session is resumed; a break lasts at least `rest` ticks. An
-// answer counts once the store has it: `answer` returns after that, or the session is
-// `unsaved` and goes no further until `retry` succeeds. An abort can so lose only an
-// answer that the disk has refused, and it tries once more.
-// Thread guarantee: `next_force_N` on the haptics thread, wait-free, no allocation; the rest
+// The haptics thread calls `next_force_N` once per ms and renders the result. The slow thread calls `update` in every
+// frame, draws `view`, and forwards the subject's input. The state is `ready` before the training, before the study
+// and when a session is resumed. A break lasts at least `rest_ticks`. `answer` stores the answer before it returns; if
+// that fails, the session is `unsaved` until `retry` succeeds. `abort` tries once more to store such an answer; no
+// other answer can be lost. Thread guarantee: `next_force_N` on the haptics thread, wait-free, no allocation; the rest
 // on one slow thread.
 #pragma once
 
@@ -31,22 +28,22 @@
 
 namespace palpate {
 
-// What a subject reads before anything else.
+// The information that a subject has to consent to.
 std::string study_consent_text(bool strokes);
 
 enum class StudyState : std::uint8_t { consent, ready, presenting, answering, unsaved, rest, done, aborted };
 
-// What to show.
+// Contents of the subject's screen.
 struct StudyView {
   StudyState state = StudyState::consent;
   bool training = false;
-  std::size_t answered = 0;   // of this part: training or study
-  std::size_t trials = 0;     // of this part
-  bool has_reminder = false;  // before the two forces comes one to compare with
-  bool reminder = false;      // it is presented now
+  std::size_t answered = 0;   // in this part: training or study
+  std::size_t trials = 0;     // in this part
+  bool has_reminder = false;  // a reminder precedes the two forces
+  bool reminder = false;      // the reminder is presented now
   int interval = 0;           // 1 or 2 while that force is presented, else 0
   std::uint64_t rest_ticks_left = 0;
-  bool has_feedback = false;  // in the training, after an answer
+  bool has_feedback = false;  // after an answer of the training
   bool was_correct = false;
   std::string message;  // one or two sentences for the subject
 };
@@ -55,24 +52,24 @@ class StudySession final : public ForceSource {
  public:
   static constexpr std::uint64_t kRest_ticks = 30000;
 
-  // Takes up where `store` ends. Errors: a code that is none, strokes that do not
-  // fill an interval, answers in the store that this plan did not ask for.
+  // Resumes after the last answer in `store`. Errors: an invalid subject code, strokes that do not fill an interval,
+  // stored answers that do not match the plan.
   static Result<std::unique_ptr<StudySession>> create(const StudyHeader& header, std::unique_ptr<StudyStore> store,
                                                       std::uint64_t rest_ticks = kRest_ticks);
 
-  // Slow thread. Calls that do not fit the state do nothing.
+  // Slow thread. Calls that do not fit the state have no effect.
   void accept_consent(const std::string& when);
-  void proceed();            // leaves `ready`, and `rest` when it has lasted
-  void update();             // takes in what the ticks did
-  void answer(bool second);  // it was the larger, or the one like the reminder
-  void retry();              // in `unsaved`
-  void abort();
+  void proceed();            // leaves `ready`, and `rest` after `rest_ticks`
+  void update();             // processes the ticks since the last call
+  void answer(bool second);  // whether the second was the larger, or like the reminder
+  void retry();              // leaves `unsaved`
+  void abort();              // from any state
 
   StudyView view();
   StudyState state() const noexcept { return state_; }
   const StudyHeader& header() const noexcept { return header_; }
   const StudyStore& store() const noexcept { return *store_; }
-  // What is being presented or asked about.
+  // The current trial.
   const StudyTrial& trial() const noexcept { return trial_; }
   bool training() const noexcept { return trained_ < plan_.training.size(); }
 
@@ -97,14 +94,14 @@ class StudySession final : public ForceSource {
   StudyPresenter presenter_;
 
   StudyState state_ = StudyState::consent;
-  std::size_t trained_ = 0;   // trials of the training that are answered
-  std::size_t answered_ = 0;  // of the study proper
+  std::size_t trained_ = 0;   // answered trials of the training
+  std::size_t answered_ = 0;  // answered trials of the study
   StudyTrial trial_;
-  StudyRecord record_;  // the answer at hand
+  StudyRecord record_;  // the last answer
   std::uint64_t presentation_ = 0;
   std::uint64_t rest_from_ = 0;
-  bool dropped_out_ = false;  // the device, in the last presentation
-  std::string problem_;       // why the disk refused
+  bool dropped_out_ = false;  // the device did not render the last presentation as planned
+  std::string problem_;       // error message of the store
 };
 
 }  // namespace palpate
