@@ -1,11 +1,11 @@
-// A block of virtual material with its memory, pressed along one direction. A law says what force a surface
-// at depth s meets at the end of a short sub-step, the surface having moved there evenly, and remembers
-// where it went. The rest is here: the surface never pulls. When the tool retracts faster than the material
-// follows, they separate, and the free surface comes back by itself, without a force, until it meets the
-// tool or is flat again; the memory goes on meanwhile. Sub-steps are 0.1 ms or less whatever the caller's
-// step, so that a motion gives the same force at every sampling rate.
-// Every law is passive: from its untouched state on, the work that was put in is never negative. Each
-// header says why. Force is positive when it pushes the tool out.
+// A block of virtual material with memory, pressed along one direction. A derived class is a material law: it
+// computes the force at the end of a short sub-step in which the surface moved to depth s at constant speed, and
+// keeps the state. This class handles contact. The surface never pulls: when the tool retracts faster than the
+// material follows, they separate, and the free surface recovers without force until it meets the tool or is flat;
+// the state of the law is integrated meanwhile. Sub-steps are at most 0.1 ms for every step of the caller, so that
+// the force is independent of the sampling rate.
+// Every law is passive: from the undeformed state on, the work done on the block is never negative. Each header
+// has the proof. Force is positive when it pushes the tool out.
 // Thread guarantee: one thread at a time; `step` is wait-free, allocates nothing and fits the haptic tick.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-// A Maxwell branch over one sub-step in which its spring is stretched evenly: exact,
+// The exact update of a Maxwell branch of stiffness K for a displacement ds at constant speed:
 //   F <- F decay + K ds gain
 struct MaxwellStep {
   MaxwellStep() = default;
@@ -30,22 +30,23 @@ class Block {
  public:
   virtual ~Block() = default;
 
-  // Moves the tool to `position_m`, where it has `velocity_m_per_s`, `dt_s` later; returns the force then,
-  // N, >= 0. In between position and velocity follow the cubic through both ends, in sub-steps of 0.1 ms or
-  // less (longer ones only when dt_s exceeds 0.1 s). Errors: an argument that is not finite, or dt_s <= 0,
+  // Moves the tool within `dt_s` to `position_m`, where it has the velocity `velocity_m_per_s`. Returns the force
+  // there, N, >= 0. Position and velocity follow the cubic Hermite polynomial between both ends, in sub-steps of at
+  // most 0.1 ms (longer ones only when dt_s exceeds 0.1 s). Errors: an argument that is not finite, or dt_s <= 0,
   // changes nothing and returns the last force.
   double step(double position_m, double velocity_m_per_s, double dt_s) noexcept;
 
-  // Puts the tool at `position_m` at rest with all memory gone.
+  // Puts the tool at rest at `position_m` with the material fully relaxed there. The force is 0 until the next step.
   void reset(double position_m = 0.0) noexcept;
 
   double force_N() const noexcept { return force_N_; }
-  // The tool's depth in contact, more when the tool has left a surface that still comes back.
+  // The depth of the tool in contact; larger than it while a free surface recovers.
   double surface_depth_m() const noexcept { return surface_m_; }
 
-  // What it holds when pressed to `depth_m` for a moment, half relaxed; rises with the depth. A hand aims by it.
+  // The force of a short press to `depth_m`, when the material is about half relaxed; rises with the depth. The
+  // simulated hand chooses its depth by it.
   virtual double held_force_N(double depth_m) const noexcept = 0;
-  // What it holds at `depth_m` when all has relaxed.
+  // The force at `depth_m` when the material is fully relaxed.
   virtual double relaxed_force_N(double depth_m) const noexcept = 0;
 
  protected:
@@ -53,27 +54,27 @@ class Block {
   Block(const Block&) = default;
   Block& operator=(const Block&) = default;
 
-  // Of the law, where the surface was at the end of the last sub-step.
+  // The depth of the surface at the end of the last sub-step.
   double last_surface_m() const noexcept { return surface_m_; }
   double substep_s() const noexcept { return substep_s_; }
 
-  // Far below any sensor; keeps a block that rests in free air from computing with denormal numbers.
+  // Smaller forces are set to 0, because denormal numbers are slow.
   static constexpr double kNoForce_N = 1e-30;
 
  private:
-  // The sub-step's length has changed.
+  // Called when the length of the sub-step has changed.
   virtual void prepare() noexcept {}
-  // A sub-step begins: what does not depend on where the surface goes.
+  // Called at the beginning of a sub-step, for all that does not depend on the next depth of the surface.
   virtual void begin_substep() noexcept {}
-  // The force on the tool when the surface goes to `surface_m` with it.
+  // The force on the tool if the surface moves with it to `surface_m`.
   virtual double contact_force_N(double surface_m, double rate_m_per_s) const noexcept = 0;
-  // The force that drives the surface back when no tool is there.
+  // The restoring force of a free surface if it moves to `surface_m`.
   virtual double free_force_N(double surface_m, double rate_m_per_s) const noexcept {
     return contact_force_N(surface_m, rate_m_per_s);
   }
-  // The surface has gone to `surface_m`; last_surface_m() is where it was.
+  // Updates the state for a move of the surface from last_surface_m() to `surface_m`.
   virtual void settle(double surface_m, bool touching) noexcept = 0;
-  // All memory gone, at rest at `surface_m`.
+  // Sets the state to fully relaxed at `surface_m`.
   virtual void forget(double surface_m) noexcept = 0;
 
   void substep(double position_m, double velocity_m_per_s) noexcept;

@@ -3,13 +3,13 @@
 //   e(s) = L0 - L(s),  L = sqrt(b^2 + (h - s)^2)
 // and a leg pushes back along itself,
 //   N = k e + z + f,  dz/dt = k_m de/dt - z / tau        rubber: a standard linear solid
-//   df = K_h de, held within +-mu k e                    its foot slides on the board, dry
+//   df = K_h de, clamped to +-mu k e                     dry friction of its foot on the board
 //   F = 2 N (h - s) / L + k_p s + c ds/dt + k_b max(0, s - s_b)^1.5
-// k_p is the skirt, which brings the dome back, c its damping, the last the floor that the
-// dome meets (Hertz). Beyond a peak the force falls although the press goes on, a click,
-// until the floor; the way back is another one, by z and f.
-// Passive: N does the work 2 N de, in springs, dashpots and a friction of which at most
-// f^2 / (2 K_h) is stored; the geometry makes no energy.
+// k_p is the skirt, which restores the dome, c its damping; the last term is the contact with
+// the floor (Hertz). Beyond a peak the force decreases with depth (the click) until the floor;
+// z and f cause hysteresis.
+// Passive: the work 2 N de goes into springs, dashpots and friction, which stores at most
+// f^2 / (2 K_h); the kinematics are lossless.
 // Source: von Mises (1923) (the truss); Bazant & Cedolin (2010), Stability of Structures,
 // section 4.4 (snap-through).
 #pragma once
@@ -35,8 +35,7 @@ class ButtonBlock final : public Block {
   static constexpr double kFloor_m = 0.005;               // s_b
   static constexpr double kFloor_N_per_m1_5 = 30000.0;    // k_b
 
-  // Where a hand aims: what the press met at most on its way there, for beyond the peak no
-  // force belongs to one depth.
+  // The largest force on the way to `depth_m`, because beyond the peak the force does not determine the depth.
   double held_force_N(double depth_m) const noexcept override {
     return rising_N(depth_m, kLeg_N_per_m + 0.5 * kLegBranch_N_per_m);
   }
@@ -67,22 +66,22 @@ class ButtonBlock final : public Block {
     return leg;
   }
   static double leg_length_m(double surface_m) noexcept { return std::hypot(kHalfSpan_m, kRise_m - surface_m); }
-  // Written so that nothing cancels, and a flat surface has exactly 0.
+  // e(s), in a form without cancellation that is exactly 0 for a flat surface.
   static double shortened_m(double surface_m) noexcept {
     return surface_m * (2.0 * kRise_m - surface_m) / (leg_length_m(0.0) + leg_length_m(surface_m));
   }
-  // What a force along each leg, the skirt and the floor are together.
+  // F for the force N along each leg.
   static double dome_N(double surface_m, double leg_N, double rate_m_per_s) noexcept {
     const double beyond_m = std::max(0.0, surface_m - kFloor_m);
     return 2.0 * leg_N * (kRise_m - surface_m) / leg_length_m(surface_m) + kSkirt_N_per_m * surface_m +
            kSkirt_Ns_per_m * rate_m_per_s + kFloor_N_per_m1_5 * beyond_m * std::sqrt(beyond_m);
   }
-  // Rises with the depth, over the valley as well.
+  // The static force up to the first peak; beyond it a rise of 1 N/m, or the force above the floor if it is larger.
   static double rising_N(double depth_m, double leg_N_per_m) noexcept {
     const auto at_rest_N = [&](double s) { return dome_N(s, leg_N_per_m * shortened_m(s), 0.0); };
     constexpr double kStep_m = 2e-5;
     constexpr double kLeast_N_per_m = 1.0;
-    double peak_m = 0.0;  // the first
+    double peak_m = 0.0;
     while (peak_m < kRise_m && at_rest_N(peak_m + kStep_m) > at_rest_N(peak_m)) peak_m += kStep_m;
     if (depth_m <= peak_m) return at_rest_N(depth_m);
     return std::max(at_rest_N(peak_m) + kLeast_N_per_m * (depth_m - peak_m),

@@ -1,17 +1,16 @@
-// A soft block that grips the probe: a neo-Hookean contact with weak relaxation,
-// and dry friction of the material around the probe's side. The side is a brush
-// of bristles that bend elastically and then slip (Dahl), as many as the probe
-// is deep, up to 4 mm:
+// A soft block that grips the probe: a neo-Hookean contact with weak relaxation, and dry
+// friction at the side of the probe, modelled by bristles that bend elastically and then
+// slip (Dahl). The number of bristles is proportional to the depth, up to 4 mm:
 //   F = E(s) + integral K(t - u) dE(s)/du du + F_c(s) z     never below 0
 //   dz/ds = (1 - z sgn(ds)) / x_p                            presliding, then slip
 //   F_c(s) = F_c min(1, s / d_c)
-// Going in, new bristles arrive unbent, so that F_c z does not change by them;
-// coming out, bristles leave with their share. The friction never exceeds what
-// pushes the other way: the probe is not held down. A surface without a probe has
-// none. F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm,
-// 12 kPa; K a box spectrum, 50 ms to 2 s.
-// Passive: V = F_c(s) x_p z^2 / 2 is stored at most, and
-// F_c z ds - dV >= z^2 F_c |ds| (in) or more (out).
+// On the way in new bristles are unbent and do not change F_c z; on the way out bristles
+// leave with their share of the force. Friction does not exceed the restoring force, so that
+// it cannot hold the probe down, and a free surface has none.
+// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm, 12 kPa; K is a box spectrum from
+// 50 ms to 2 s.
+// Passive: at most V = F_c(s) x_p z^2 / 2 is stored, and F_c z ds - dV >= z^2 F_c |ds| on the
+// way in, more on the way out.
 // Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)
 // (bristles, presliding); Okamura, Simone & O'Leary (2004) (friction of soft
 // tissue along a probe).
@@ -37,7 +36,7 @@ class FrictionBlock final : public HereditaryBlock {
 
   double elastic_force_N(double depth_m) const noexcept override { return kContact.force_N(depth_m); }
 
-  // F_c(depth), newtons: what friction can be at most.
+  // F_c(depth), newtons: the largest friction.
   static double friction_limit_N(double depth_m) noexcept { return kFriction_N * std::min(1.0, depth_m / kGripped_m); }
 
  private:
@@ -55,13 +54,13 @@ class FrictionBlock final : public HereditaryBlock {
     HereditaryBlock::forget(surface_m);
     bend_ = 0.0;
   }
-  // F_c(s) z when the probe goes on to `surface_m`, exact for each bristle.
+  // F_c(s) z after the probe has moved to `surface_m`, exact for each bristle.
   double friction_after_N(double surface_m) const noexcept {
     const double way_m = surface_m - last_surface_m();
     const double side = way_m < 0.0 ? -1.0 : 1.0;
     const double slipped = -std::expm1(-std::abs(way_m) / kPresliding_m);
     const double bend = bend_ + (side - bend_) * slipped;
-    // Those that arrive in this sub-step are unbent when they do.
+    // Bristles that are added in this sub-step are unbent.
     return bend * friction_limit_N(std::min(surface_m, last_surface_m()));
   }
 

@@ -1,5 +1,5 @@
-// The simulated hand (devices/virtual/hand_motion.h) that presses a virtual material, which it knows: it aims
-// at the depth that holds a force, the branches half relaxed.
+// The simulated hand (devices/virtual/hand_motion.h) that presses a known virtual material: it converts a target
+// force to a depth by Block::held_force_N.
 // Thread guarantee: as HandMotion.
 #pragma once
 
@@ -13,7 +13,6 @@ namespace palpate {
 
 class Hand final : public HandMotion {
  public:
-  // `material`: what it presses, to aim by force.
   Hand(const Material& material, const HandSettings& settings, std::uint64_t seed)
       : HandMotion(settings, seed), block_(material.make_block()) {}
 
@@ -28,7 +27,7 @@ class Hand final : public HandMotion {
   }
 
  private:
-  std::unique_ptr<const Block> block_;  // untouched, for what it would hold
+  std::unique_ptr<const Block> block_;  // for held_force_N only
 };
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
 // A block with an elastic response and a memory of it, quasi-linear viscoelasticity:
 //   F = E(s) + M,   M(t) = integral K(t - u) dE/du du,   K(t) = sum_i w_i exp(-t / tau_i),
-// with E the law's and 48 times evenly spaced in log tau, close enough that K is a continuous
-// spectrum to within 0.1 % between its ends; laws add to it what else they have. Each sub-step
-// is exact for an E that changes evenly:
+// with the elastic response E of the derived class and 48 times tau_i evenly spaced in log tau, which approximate
+// a continuous spectrum to within 0.1 % between its ends. Derived classes may add further forces. Each sub-step is
+// exact where E changes at a constant rate:
 //   M_i <- M_i exp(-h/tau_i) + w_i dE (1 - exp(-h/tau_i)) tau_i / h.
 // Passive for every E that rises with depth: see maxwell_block.h, with g_i = w_i E.
 // Source: Fung (1993), Biomechanics, section 7.6 (quasi-linear viscoelasticity).
@@ -28,8 +28,7 @@ class HereditaryBlock : public Block {
   double relaxed_force_N(double depth_m) const noexcept override { return elastic_force_N(depth_m); }
 
  protected:
-  // `density`: w per unit of ln tau, >= 0, at a time in seconds; from `shortest_s` to `longest_s`
-  // by the midpoint rule in ln tau.
+  // `density(time_s)`: w per unit of ln tau, >= 0, sampled from `shortest_s` to `longest_s` by the midpoint rule.
   template <typename Density>
   HereditaryBlock(double shortest_s, double longest_s, Density density) {
     const double spacing = std::log(longest_s / shortest_s) / static_cast<double>(kTimes);
@@ -40,7 +39,7 @@ class HereditaryBlock : public Block {
     }
   }
 
-  // `share` of E and all of the memory, should the surface go to `surface_m`.
+  // `share` x E + M after a move of the surface to `surface_m`.
   double hereditary_force_N(double surface_m, double share = 1.0) const noexcept {
     const double elastic_N = elastic_force_N(surface_m);
     return share * elastic_N + relaxed_N_ + gain_ * (elastic_N - elastic_N_);
@@ -66,8 +65,8 @@ class HereditaryBlock : public Block {
   std::array<double, kTimes> time_s_{}, weight_{}, decay_{}, kick_{}, memory_N_{};
   double total_weight_ = 0.0;  // K(0)
   double gain_ = 0.0;          // sum of kick_
-  double relaxed_N_ = 0.0;     // sum of memory_N_ when a sub-step's time has passed
-  double settled_N_ = 0.0;     // last change of E, which the next sub-step adds: one pass for both
+  double relaxed_N_ = 0.0;     // sum of memory_N_ after the decay of this sub-step
+  double settled_N_ = 0.0;     // last change of E, which the next sub-step adds to memory_N_
   double elastic_N_ = 0.0;     // E at the last surface
 };
 

@@ -1,16 +1,14 @@
-// A soft block with a stiff inclusion 6 mm down: a lump under the skin. The soft
-// top is a neo-Hookean contact that relaxes; once the tool has come as deep as
-// the inclusion, it meets it as well, and the inclusion floats on a support that
-// is a spring and a Maxwell branch (a standard linear solid), in series with it:
+// A soft block with a stiff inclusion at a depth of 6 mm, as a lump under the skin. The soft top is a neo-Hookean
+// contact that relaxes. Deeper than the inclusion the tool also presses on the inclusion, in series with its
+// support of a spring and a Maxwell branch (a standard linear solid):
 //   F   = E(s) + integral K(t - u) dE(s)/du du + F_i
 //   F_i = k_i max(0, s - g - y)^1.5                       Hertz, tool on inclusion
 //   F_i = k_s y + z,   dz/dt = k_m dy/dt - z / tau_m       the support, y its depth
-// K is a box spectrum, 20 ms to 4 s. y is solved for at the end of each sub-step
-// (implicit Euler with the exact Maxwell step).
-// Passive: springs, dashpots and a contact that only pushes, in series and beside
-// each other; implicit Euler only loses energy.
-// Source: Hertz (1882); Lin et al. (2009) (soft top); stiffness ratio of about
-// ten, as of breast tumours: Samani, Zubovits & Plewes (2007).
+// K is a box spectrum, 20 ms to 4 s. y is the solution at the end of each sub-step (implicit Euler with the exact
+// Maxwell step).
+// Passive: springs, dashpots and a contact that only pushes, in series and in parallel; implicit Euler dissipates.
+// Source: Hertz (1882); Lin et al. (2009) (soft top); Samani, Zubovits & Plewes (2007) (stiffness ratio of about
+// ten, as of breast tumours).
 #pragma once
 
 #include <algorithm>
@@ -66,7 +64,7 @@ class LayeredBlock final : public HereditaryBlock {
     branch_N_ = 0.0;
   }
 
-  // What a support of this stiffness holds at rest.
+  // The force of the inclusion at rest on a support of this stiffness.
   static double supported_N(double depth_m, double slope_N_per_m) noexcept {
     return slope_N_per_m * balance_m(depth_m, slope_N_per_m, 0.0, 0.0);
   }
@@ -75,11 +73,9 @@ class LayeredBlock final : public HereditaryBlock {
     return balance_m(surface_m, kSupport_N_per_m + branch_N_per_m,
                      branch_N_ * support_.decay - branch_N_per_m * inclusion_m_, inclusion_m_);
   }
-  // The y where k_i max(0, s - g - y)^1.5 = slope y + offset, by Newton's method.
-  // The left side falls and the right side rises with y, and their difference is
-  // convex: from below the root Newton overshoots at most to where the contact is
-  // open, which is bounded by s - g, and from there the next step is exact or from
-  // below.
+  // Solves k_i max(0, s - g - y)^1.5 = slope y + offset for y by Newton's method. The difference of both sides
+  // decreases with y and is convex, so that Newton steps approach the root from below; each is clamped to the range
+  // from the y of an open contact to s - g.
   static double balance_m(double surface_m, double slope_N_per_m, double offset_N, double guess_m) noexcept {
     constexpr int kNewtonSteps = 6;
     constexpr double kSolved_N = 1e-12;

@@ -1,5 +1,5 @@
-// The virtual materials by name. Each law stands in a file of its own, written from its own physics and
-// integrated in time; none shares anything with the models that are fitted to it.
+// The virtual materials by name. Each material law has its own header and is integrated in time; it shares no code
+// with the models that are fitted to it.
 #pragma once
 
 #include <memory>
@@ -14,19 +14,19 @@ namespace palpate {
 
 struct Material {
   std::string_view name;
-  std::string_view summary;           // one line for people
-  std::string_view relaxation_times;  // the true ones, for people
-  // A block that nobody has touched yet.
+  std::string_view summary;           // one line
+  std::string_view relaxation_times;  // the true ones, in words
+  // Makes an undeformed block.
   std::unique_ptr<Block> (*make_block)() = nullptr;
-  double recording_seconds = 41.499;  // length of a recording unless told otherwise
-  double force_range_N = 10.0;        // of the force cell that suits it
-  HandSettings hand{};                // the hand that presses it in a recording
+  double recording_seconds = 41.499;  // default length of a recording
+  double force_range_N = 10.0;        // default range of the force sensor
+  HandSettings hand{};                // default hand of a recording
 };
 
-// All materials, in the order in which they are listed to people.
+// All materials, in the order of lists.
 std::span<const Material> materials() noexcept;
 
-// The material of that name. Errors: unknown name; the message lists the known.
+// Errors: unknown name; lists the known names.
 Result<Material> find_material(std::string_view name);
 
 }  // namespace palpate

@@ -5,12 +5,11 @@
 //   V(s, v) = c s v (w + (1 - w) / (1 + |v| / v0))      viscosity, thinning with speed
 //   dF_b/dt = K_b(s) ds/dt - F_b / tau_b                Maxwell branches,
 //             K_b(s) = K_b0 + K_b1 s
-//   dF_h/dt = K_h ds/dt, held within +-mu E(s)          dry friction of cell walls
-// The trends that are fitted are made of the same elements, so that what a model
-// reaches here says little of foreign materials; it is what tests need that must
-// know the true relaxation times.
-// Passive: each F_b is g_b(s) - y_b with g_b' = K_b > 0 and y_b drawn towards
-// g_b, which can store and lose energy but not make any.
+//   dF_h/dt = K_h ds/dt, clamped to +-mu E(s)           dry friction of cell walls
+// The trend of the models has the same elements, so that the accuracy on these materials
+// does not generalise to others. They are for tests that need known relaxation times.
+// Passive: F_b = g_b(s) - y_b with g_b' = K_b > 0 and y_b relaxing towards g_b, which
+// stores and dissipates energy only.
 // Source: Hoever & Harders (2009), section 2.2 and eq. 1 (Maxwell branches);
 // Hunt & Crossley (1975) (damping that grows with depth).
 #pragma once
@@ -26,8 +25,7 @@ namespace palpate {
 
 inline constexpr std::size_t kMaximumBranches = 3;
 
-// One Maxwell branch: a spring that stiffens with depth, in series with a
-// dashpot that lets it relax.
+// One Maxwell branch: a spring that stiffens with depth, in series with a dashpot.
 struct RelaxationBranch {
   double relaxation_time_s = 1.0;         // tau_b > 0
   double stiffness_N_per_m = 0.0;         // K_b0 >= 0
@@ -39,7 +37,7 @@ struct MaxwellParameters {
   double elastic_quadratic_N_per_m2 = 0.0;  // k2
   double elastic_cubic_N_per_m3 = 0.0;      // k3
   double viscosity_Ns_per_m2 = 0.0;         // c: damping per metre of depth
-  double thick_fraction = 1.0;              // w, in 0..1: what is left at high speed
+  double thick_fraction = 1.0;              // w, in 0..1: share of the viscosity that remains at high speed
   double thinning_speed_m_per_s = 1.0;      // v0 > 0
   double friction_fraction = 0.0;           // mu >= 0, of the elastic force
   double friction_stiffness_N_per_m = 0.0;  // K_h >= 0
@@ -51,7 +49,7 @@ struct MaxwellParameters {
     return depth_m *
            (elastic_linear_N_per_m + depth_m * (elastic_quadratic_N_per_m2 + depth_m * elastic_cubic_N_per_m3));
   }
-  // g_b(depth): what branch b would hold had it not relaxed at all, newtons.
+  // g_b(depth): the force of branch b without relaxation, newtons.
   double unrelaxed_force_N(std::size_t branch, double depth_m) const noexcept {
     const RelaxationBranch& b = branches[branch];
     return depth_m * (b.stiffness_N_per_m + 0.5 * b.stiffness_slope_N_per_m2 * depth_m);
@@ -134,8 +132,7 @@ class MaxwellBlock final : public Block {
   }
   void forget(double) noexcept override { inner_ = {}; }
 
-  // After the surface has moved to `surface_m` within one sub-step, g_b changing evenly:
-  // exact for that path.
+  // The state after a move of the surface to `surface_m` within one sub-step, exact for a constant rate of g_b.
   Inner inner_at(double surface_m) const noexcept {
     Inner inner;
     for (std::size_t b = 0; b < material_.branch_count; ++b) {

@@ -2,11 +2,11 @@
 // a continuous spectrum of relaxation times,
 //   F = E(s) + integral K(t - u) dE(s)/du du,
 //   K(t) = c (E1(t / tau2) - E1(t / tau1)),
-// E the contact's law (sphere_contact.h) and K Fung's box spectrum: the same
-// weight c for every ln tau between tau1 and tau2. It has no relaxation time that
-// a fit could find, and d^1.5 at the surface, which no polynomial is.
-// Sphere of 10 mm radius; Young's modulus 25 kPa relaxed, as the softest
-// platinum-cured silicones; the force at once is 1.6 times the relaxed one.
+// where E is the contact law of sphere_contact.h and K is Fung's box spectrum: the same weight c for every ln tau
+// between tau1 and tau2. The material has no discrete relaxation times that a fit could identify, and E ~ d^1.5 at
+// the surface is no polynomial.
+// Sphere of 10 mm radius; relaxed Young's modulus 25 kPa, as the softest platinum-cured silicones. The instantaneous
+// force is 1.6 times the relaxed one.
 // Passive: see hereditary_block.h.
 // Source: Fung (1993), Biomechanics, section 7.6.
 #pragma once

@@ -1,15 +1,14 @@
-// A foam that softens below its deepest press and heals: the Mullins effect as
-// pseudo-elasticity, with a deepest depth that fades,
+// A foam that is softer at depths smaller than that of its deepest recent press, and heals:
+// the Mullins effect as pseudo-elasticity, with a deepest depth m that decays,
 //   F = eta(s, m) E(s) + integral K(t - u) dE(s)/du du,
 //   eta = 1 - r erf((W(m) - W(s)) / (w0 + beta W(m))),
-//   m = s while s is the deepest,  dm/dt = -(m - s) / tau_heal otherwise,
-// W the energy under E. A first press follows E; what comes after, up to the
-// deepest recent depth m, is softer by up to 15 %, and 6 s later mostly healed.
+//   m = s where s >= m,  dm/dt = -(m - s) / tau_heal otherwise,
+//   E(s) = k s^1.5 (1 + (s / s0)^2),  W(s) = integral_0^s E.
+// A first press follows E. A later press up to the depth m is softer by up to 15 %; the
+// softening decays with the time constant tau_heal = 6 s.
 // K is a weak box spectrum, 10 ms to 3 s.
-//   E(s) = k s^1.5 (1 + (s / s0)^2)
-// Passive: the stored energy V = integral_0^s eta E ds + U(m) with
-// U'(m) = -d/dm of that integral at s = m; pressing deeper pays for the damage
-// what healing may give back, at most.
+// Passive: the stored energy is V = integral_0^s eta E ds + U(m) with U'(m) = -d/dm of that
+// integral at s = m; healing releases at most the energy that a deeper press has stored.
 // Source: Mullins (1969); Ogden & Roxburgh (1999), eq. 3.9 (eta); Diani, Fayolle
 // & Gilormini (2009) (review; recovery with time).
 #pragma once
@@ -46,7 +45,7 @@ class SofteningBlock final : public HereditaryBlock {
   void begin_substep() noexcept override {
     HereditaryBlock::begin_substep();
     deepest_m_ = last_surface_m() + (deepest_m_ - last_surface_m()) * fade_;
-    if (deepest_m_ < 1e-12) deepest_m_ = 0.0;  // healed, to far below an atom
+    if (deepest_m_ < 1e-12) deepest_m_ = 0.0;  // healed
     deepest_J_ = elastic_energy_J(deepest_m_);
   }
   double contact_force_N(double surface_m, double) const noexcept override {

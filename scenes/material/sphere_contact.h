@@ -1,11 +1,9 @@
-// A rigid sphere pressed into a deep soft solid, at large strain: with the
-// contact radius a = sqrt(R d) of Hertz and the stretch lambda = 1 - 0.2 a / R
-// that stands for the strain under the sphere,
+// A rigid sphere pressed into a soft half-space at large strain: with the contact radius a = sqrt(R d) of Hertz and
+// the representative stretch lambda = 1 - 0.2 a / R under the sphere,
 //   F(d) = B a^2 (lambda^-2 - lambda) exp(b (lambda^2 + 2 / lambda - 3)).
-// b = 0 is a neo-Hookean solid, b > 0 Fung's, which stiffens as tissue does. For
-// small d it is Hertz, F = (16/9) E sqrt(R) d^1.5 with B = (80/27) E, and no
-// polynomial in d at any depth. Rises with d everywhere; below a stretch of 0.5,
-// deeper than six radii, the stretch stays there.
+// b = 0 is a neo-Hookean solid, b > 0 Fung's, which stiffens like tissue. For small d it is Hertz's law,
+// F = (16/9) E sqrt(R) d^1.5 with B = (80/27) E. F rises with d everywhere. The stretch is limited to at least 0.5,
+// which is reached at a depth of six radii.
 // Source: Lin, Dimitriadis & Horkay (2009), "Spherical indentation of soft matter
 // beyond the Hertzian regime", the neo-Hookean and Fung lines; Hertz (1882).
 // Thread guarantee: immutable; wait-free.

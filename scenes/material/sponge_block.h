@@ -1,22 +1,17 @@
-// A wet sponge under a flat tool: its skeleton carries some of the load and the
-// fluid in its pores the rest, until that has seeped out sideways from under the
-// tool. With the strain e = s / L of the column under the tool and the pore
-// pressure p(r, t) in it:
+// A wet sponge under a flat tool: the skeleton carries a part of the load and the pore fluid the rest, until the
+// fluid has drained radially from under the tool. With the strain e = s / L of the column under the tool and the pore
+// pressure p(r, t):
 //   F = A (sigma(e) + mean of p over the tool)
 //   dp/dt = M de/dt + (1 / r) d/dr (r k(e) M dp/dr),   p(a) = 0,  dp/dr(0) = 0
-//   sigma(e) = E e / (1 - e / e_d)                      open cells that close up
-//   k(e) = k0 exp(-b e)                                 permeability falls with strain
-// So the times over which the pressure drains, a^2 / (k M j_n^2) with j_n the
-// zeros of J0 (2.405, 5.52, ...), are a series, and a press of half the height
-// makes them twelve times longer. The pressure is integrated by finite volumes in 12 rings, implicit
-// Euler, k taken at the beginning of a sub-step.
-// L = 30 mm, a = 12 mm; E = 9 kPa, e_d = 0.8; M = 160 kPa; drains in 0.2 s when
-// uncompressed; b = 5.
-// Passive: A L (integral of sigma de + mean p^2 / (2 M)) is stored, and what seeps
-// only loses; implicit Euler loses more.
-// Source: Biot (1941); Mow, Kuei, Lai & Armstrong (1980) (biphasic theory);
-// Armstrong, Lai & Mow (1984) (radial drainage under a plate); Lai & Mow (1980)
-// (permeability and strain); Gibson & Ashby (1997) (foams close up).
+//   sigma(e) = E e / (1 - e / e_d)                      densification of open cells
+//   k(e) = k0 exp(-b e)                                 permeability decreases with strain
+// The drainage has a series of relaxation times a^2 / (k M j_n^2) with the zeros j_n of J0 (2.405, 5.52, ...), which
+// are twelve times longer at a strain of 0.5. The pressure is integrated by finite volumes in 12 rings with implicit
+// Euler; k is that of the beginning of a sub-step.
+// L = 30 mm, a = 12 mm; E = 9 kPa, e_d = 0.8; M = 160 kPa; longest time 0.2 s when uncompressed; b = 5.
+// Passive: A L (integral of sigma de + mean p^2 / (2 M)) is stored, drainage dissipates, and so does implicit Euler.
+// Source: Biot (1941); Mow, Kuei, Lai & Armstrong (1980) (biphasic theory); Armstrong, Lai & Mow (1984) (radial
+// drainage under a plate); Lai & Mow (1980) (permeability and strain); Gibson & Ashby (1997) (densification).
 #pragma once
 
 #include <algorithm>
@@ -39,14 +34,13 @@ class SpongeBlock final : public Block {
   static constexpr double kDiffusivity_m2_per_s = 1.25e-4;  // k0 M
   static constexpr double kPermeabilityFall = 5.0;          // b
 
-  // A press of some tenths of a second leaves in the pores about a tenth of what
-  // they would hold at once.
+  // After a press of some tenths of a second the pore pressure is about a tenth of its undrained value.
   double held_force_N(double depth_m) const noexcept override {
     return relaxed_force_N(depth_m) + 0.1 * kArea_m2 * kPore_Pa * depth_m / kHeight_m;
   }
-  // Of the skeleton.
+  // A sigma(e).
   double relaxed_force_N(double depth_m) const noexcept override {
-    constexpr double kMostClosed = 0.9;  // nearly: from here on it stiffens no more
+    constexpr double kMostClosed = 0.9;  // upper limit of e / e_d in the denominator
     const double strain = depth_m / kHeight_m;
     const double closed = std::min(kMostClosed, strain / kClosed_strain);
     return kArea_m2 * kSkeleton_Pa * strain / (1.0 - closed);
@@ -57,24 +51,23 @@ class SpongeBlock final : public Block {
   static constexpr double kArea_m2 = 3.14159265358979324 * kRadius_m * kRadius_m;
   static constexpr double kRingCount = static_cast<double>(kRings);
 
-  // The ring's share of the tool's area: rings are equally wide.
+  // The ring's share of the tool's area. Rings have equal width.
   static constexpr double ring_share(std::size_t ring) {
     return (2.0 * static_cast<double>(ring) + 1.0) / (kRingCount * kRingCount);
   }
-  // Over the outer edge of `ring`: diffusivity times perimeter over the distance of
-  // the pressures, per ring's width squared times 2 pi. At the rim the pressure 0
-  // is half a ring away.
+  // Conductance of the outer edge of `ring`: perimeter / distance of the pressures, over 2 pi. The boundary pressure
+  // 0 is only half a ring's width away.
   static constexpr double ring_edge(std::size_t ring) {
     const double outer = static_cast<double>(ring) + 1.0;
     return ring + 1 == kRings ? 2.0 * outer : outer;
   }
-  // Solves (I - h D) p = p_old + M de for any de: two right sides, one elimination.
+  // Solves (I - h D) p = p_old + M de for any de: one elimination with two right-hand sides.
   void begin_substep() noexcept override {
     const double strain = last_surface_m() / kHeight_m;
     const double width_m = kRadius_m / kRingCount;
     const double flow =
         substep_s() * kDiffusivity_m2_per_s * std::exp(-kPermeabilityFall * strain) / (width_m * width_m);
-    Rings above{};  // of the diagonal, divided by the pivot
+    Rings above{};  // upper diagonal, divided by the pivot
     double from_inside = 0.0, last_drained = 0.0, last_squeezed = 0.0;
     for (std::size_t i = 0; i < kRings; ++i) {
       const double volume = static_cast<double>(i) + 0.5;
@@ -109,8 +102,8 @@ class SpongeBlock final : public Block {
   void forget(double) noexcept override { pressure_Pa_.fill(0.0); }
 
   Rings pressure_Pa_{};
-  // At the end of the sub-step: pressure = drained_ + squeezed_ times the change
-  // of strain, and the same of the means over the tool.
+  // At the end of the sub-step pressure = drained_ + squeezed_ x change of strain, likewise for the means over the
+  // tool.
   Rings drained_Pa_{}, squeezed_Pa_{};
   double mean_drained_Pa_ = 0.0, mean_squeezed_Pa_ = 0.0;
 };

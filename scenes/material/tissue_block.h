@@ -1,13 +1,12 @@
-// Soft tissue under a sphere: an elasticity that stiffens exponentially and a
-// relaxation that follows a power law of time, without any time of its own,
+// Soft tissue under a sphere: an elastic response that stiffens exponentially, and relaxation by a power law of time,
+// which has no characteristic time,
 //   F = integral G(t - u) dE(s)/du du,  G(t) = (1 - p) + p (t / 1 s)^-alpha,
-// E the Fung contact of sphere_contact.h as it is 1 s after a step. The power law
-// is a spring-pot, a fractional derivative; it is integrated as the sum
+// where E is the Fung contact of sphere_contact.h, 1 s after a step. The power law is a spring-pot (a fractional
+// derivative) and is integrated as the spectrum
 //   t^-alpha = 1 / Gamma(alpha) integral tau^-alpha exp(-t / tau) dln tau
-// over tau from 0.1 ms to 1,000 s; slower parts do not relax within a recording
-// and are held, quicker ones are gone within a tick and are left out.
-// Sphere of 8 mm; 25 kPa and b = 3; alpha = 0.15, of the range of liver and
-// kidney (0.1 to 0.2).
+// for tau from 0.1 ms to 1,000 s. Slower parts do not relax within a recording and are treated as elastic; faster
+// parts relax within a tick and are omitted.
+// Sphere of 8 mm; 25 kPa and b = 3; alpha = 0.15, in the range of liver and kidney (0.1 to 0.2).
 // Passive: see hereditary_block.h.
 // Source: Kiss, Varghese & Hall (2004) (liver as a fractional solid); Nicolle,
 // Vezin & Palierne (2010) (kidney's power law); Lin et al. (2009) (contact).
@@ -35,7 +34,7 @@ class TissueBlock final : public HereditaryBlock {
   double relaxed_force_N(double depth_m) const noexcept override { return held_share_ * kContact.force_N(depth_m); }
 
  private:
-  // Of the power law, per unit of ln tau.
+  // The density of the power law, per unit of ln tau.
   static double density(double time_s) {
     return kFractionalShare * std::pow(time_s, -kExponent) / std::tgamma(kExponent);
   }
@@ -43,7 +42,7 @@ class TissueBlock final : public HereditaryBlock {
     return hereditary_force_N(surface_m, held_share_);
   }
 
-  // Of E: what never relaxes, and the integral of the density from the slowest time on.
+  // The elastic share of E: 1 - p plus the integral of the density beyond the longest time.
   double held_share_ = 1.0 - kFractionalShare + density(kLongest_s) / kExponent;
 };
 
