@@ -1,4 +1,4 @@
-// The checks of palpate check, as the verbs run them before they use recordings.
+// The checks of palpate check, which other verbs run before they use recordings.
 // Thread guarantee: slow side (does I/O).
 #pragma once
 
@@ -11,14 +11,13 @@
 
 namespace palpate::cli {
 
-// What the scene asks of a recording.
+// The JND line and the relaxation times of the scene.
 CheckRequest check_request(const Scene& scene);
 
-// What the check found, as palpate check prints it.
+// The output of palpate check.
 std::string check_text(const CheckedFile& file);
 
-// Reads and checks `paths`: an error for the first fatal finding, a line on stderr for
-// each warning.
+// Reads and checks `paths` and prints a line on stderr for each warning. Errors: a file cannot be read or is unusable.
 Result<std::vector<CheckedFile>> check_before_use(const std::vector<std::string>& paths, const CheckRequest& request);
 
 }  // namespace palpate::cli

@@ -1,4 +1,4 @@
-// What palpate fit prints of a fit.
+// The output of palpate fit.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace palpate::cli {
 
-// `sensor`: behind the share within the JND in training; `out`: the file that was written.
+// `sensor`: text that follows the share within the JND in training; `out`: the file that was written.
 void print_fit(const RecordingsFit& fitted, const std::string& sensor, const std::string& out);
 
 }  // namespace palpate::cli

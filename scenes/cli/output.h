@@ -1,4 +1,4 @@
-// What several verbs print alike.
+// Output that several verbs have in common.
 // Thread guarantee: slow side.
 #pragma once
 
@@ -10,14 +10,13 @@
 
 namespace palpate::cli {
 
-// As one object or array on stdout. A path need not be UTF-8; what cannot be said is replaced.
+// Prints to stdout. Bytes that are not UTF-8, as in paths, are replaced.
 void print_json(const nlohmann::ordered_json& json);
 
-// Rows of cells in columns as wide as their widest cell, to the right from the second on if
-// `numbers`, else to the left.
+// Prints rows of cells in aligned columns, left-aligned; with `numbers` all but the first are right-aligned.
 void print_table(const std::vector<std::vector<std::string>>& rows, bool numbers);
 
-// `out` must not be a file that is read, --force or not. `option`: what named it.
+// Errors: `out` is one of the files that are read. `option`: the option that named it, for the message.
 Status refuse_input_as_output(const std::string& out, const std::vector<std::string>& inputs,
                               const std::string& option);
 

@@ -1,5 +1,4 @@
-// How far a long job is, on stderr when that is a terminal, and whether the
-// user wants it to stop.
+// Progress of a long job on stderr, if that is a terminal, and the user's request to stop.
 //
 // Thread guarantee: one thread.
 #pragma once
@@ -11,8 +10,8 @@
 
 namespace palpate::cli {
 
-// While one exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP asks the job to stop instead of ending the
-// program, so that it can tidy up; the second ends it (signals.h). One at a time.
+// While a ProgressLine exists, the first Ctrl-C (SIGINT), SIGTERM or SIGHUP requests a stop instead of ending the
+// program; the second ends it (signals.h). There may be only one at a time.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string label);
@@ -20,7 +19,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
   ~ProgressLine();  // clears the line
 
-  // `fraction` done, 0..1. Returns false once the user interrupted: stop, leave no file.
+  // `fraction` done, 0..1. Returns false after an interrupt: stop, and leave no file.
   bool update(double fraction);
 
  private:
@@ -35,7 +34,7 @@ class ProgressLine {
   bool drawn_ = false;
 };
 
-// "label  37 %  12 s left"; the remaining time appears once it can be guessed (2 % and 1 s).
+// "label  37 %  12 s left"; the remaining time is shown after 2 % and 1 s.
 std::string progress_text(const std::string& label, double fraction, double elapsed_s);
 
 }  // namespace palpate::cli

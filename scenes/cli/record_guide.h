@@ -1,5 +1,5 @@
-// What to press next while a recording is made: the cells of depth and speed that `check`
-// counts, how long was held, how many small strokes there were, and one thing to do.
+// Advice on what to press next during a recording, by the measures of `check`: the coverage of cells of depth and
+// speed, the longest hold, and the number of small strokes.
 // Thread guarantee: slow side (reads the file that is being written).
 #pragma once
 
@@ -10,19 +10,19 @@
 
 namespace palpate::cli {
 
-// The next thing to do, from the slow to the fast; empty: nothing is missing.
-// `longest_relaxation_s`: of the scene, 0: none.
+// The next press: slow presses first, then fast ones, a hold, small strokes. Empty: nothing is missing.
+// `longest_relaxation_s`: of the scene; 0: none.
 std::string guide_advice(const RecordingMeasures& measures, double longest_relaxation_s);
 
-// The cells as lines of text, those visited marked.
+// The table of cells as lines of text, with the seconds in each.
 std::vector<std::string> guide_cells(const RecordingMeasures& measures, double surface_m);
 
 class RecordGuide {
  public:
   RecordGuide(std::string path, const CheckRequest& request);
 
-  // Every two seconds or, when a check takes long, ten times as seldom as it takes: what
-  // is new, if anything is. `now_s`: steady clock.
+  // Checks the file every two seconds, or less often so that checks take at most a tenth of the time. Returns the
+  // lines to print, none when nothing has changed. `now_s`: steady clock.
   std::vector<std::string> update(double now_s);
 
  private:
@@ -30,7 +30,7 @@ class RecordGuide {
   CheckRequest request_;
   double longest_relaxation_s_ = 0.0;
   double next_s_ = 0.0;
-  std::string told_;
+  std::string told_;  // the last advice and cells
 };
 
 }  // namespace palpate::cli

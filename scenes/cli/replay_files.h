@@ -1,4 +1,4 @@
-// What palpate replay reads and writes: models under names that tell them apart, FORCES.csv, a figure.
+// Input and output of palpate replay: models with unique names, FORCES.csv, a figure.
 // Thread guarantee: slow side (does I/O, starts gnuplot); one thread per object.
 #pragma once
 
@@ -16,17 +16,17 @@
 namespace palpate::cli {
 
 struct LoadedModel {
-  std::string name;  // distinct among the models of one run
+  std::string name;  // unique among the models of one run
   std::shared_ptr<const FittedModel> model;
 };
 
-// `names`: one for each file, or none; models that then have one name are named by
-// their files. Errors: too many models; a file that is no model, or a recording.
+// `names`: one for each file, or empty: the models' names, or the file names of models with equal names. Equal names
+// get the suffixes -2, -3 ... Errors: too many models; another number of names; a file that is no model.
 Result<std::vector<LoadedModel>> load_models(const std::vector<std::string>& paths,
                                              const std::vector<std::string>& names = {});
 
-// FORCES.csv, one row per sample: time_s, position_m, force_N, depth_m, each distinct feature of the models
-// once (those that share a name get the suffix -2, -3 ...), then "<model name>_N" per model.
+// FORCES.csv with one row per sample: time_s, position_m, force_N, depth_m, each distinct feature of the models (equal
+// names get the suffixes -2, -3 ...), then "<model name>_N" for each model.
 class ForcesFile {
  public:
   // Errors: as AtomicFile::create.
@@ -37,7 +37,7 @@ class ForcesFile {
 
  private:
   struct FeatureColumn {
-    std::size_t model;  // the first that has it
+    std::size_t model;  // the first with this feature
     std::size_t index;  // in that model's feature vector
   };
 
@@ -46,18 +46,18 @@ class ForcesFile {
   std::vector<FeatureColumn> columns_;
 };
 
-// `names` with -2, -3 ... behind those that came before, so that all differ.
+// `names` with suffixes -2, -3 ... for repeated names.
 std::vector<std::string> distinct_names(const std::vector<std::string>& names);
 
-// A replayed recording as a figure: the measured force, every model's difference from
-// it over the JND, and the error against the force.
+// A figure of a replayed recording: the measured force, every model's difference from it over the JND, and the error
+// against the force.
 class ReplayPlot {
  public:
   explicit ReplayPlot(const std::vector<LoadedModel>& models) : models_(models) {}
 
-  // Every row in time order; keeps 8 bytes a model and 32 more.
+  // Call it for every row in time order. Keeps about 50 bytes, and 4 for each model, in memory.
   void add(const RecordingRow& row, const TickSnapshot& snapshot);
-  // `errors`: of the same rows, one a model. Errors: those of draw_plot (scenes/plot/draw.h).
+  // `errors`: of the same rows, one per model. Errors: those of draw_plot (scenes/plot/draw.h).
   Status draw(const std::string& path, const std::string& recording, const std::vector<ErrorSummary>& errors,
               bool overwrite) const;
 
@@ -66,7 +66,7 @@ class ReplayPlot {
     double time_s;
     double measured_N;
     bool in_contact;
-    std::vector<float> over_jnd;  // a model: its difference from the measured force
+    std::vector<float> over_jnd;  // difference of each model from the measured force
   };
 
   const std::vector<LoadedModel>& models_;

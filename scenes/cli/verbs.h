@@ -1,6 +1,6 @@
-// The verbs of the headless program: one file each, which adds a subcommand and what to run when it was
-// chosen. A failed Status ends the program with one "error: ..." block on stderr and exit code 1. Wrong usage
-// that CLI11 cannot see for itself throws CLI::ValidationError, from the parsing or from the run: exit code 2.
+// The verbs (subcommands) of the headless program. Each has a source file, which adds the subcommand and the function
+// to run. A failed Status ends the program with one "error: ..." block on stderr and exit code 1. Wrong usage that
+// CLI11 does not detect throws CLI::ValidationError, during parsing or the run: exit code 2.
 #pragma once
 
 #include <CLI/CLI.hpp>
