@@ -1,10 +1,8 @@
-// A hand that explores by itself: slow presses, taps, pokes, holds, rests. It is
-// a mass on a spring and a damper (devices/virtual/hand_motion.h) and feels the rendered
-// force, which really pushes it back. It does not know the block: from what it
-// feels it learns how deep a force lies, as a person would.
+// A simulated hand that explores: slow presses, taps, pokes, holds, rests. It is a mass on a spring and a damper
+// (devices/virtual/hand_motion.h), which the rendered force pushes back. It does not know the block and estimates its
+// stiffness from the rendered force.
 //
-// Thread guarantee: as Device; deterministic: the same seed, times and forces
-// give the same samples.
+// Thread guarantee: as Device; deterministic: the same seed, times and forces give the same samples.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +13,30 @@
 
 namespace palpate {
 
-// A hand that learns the block's stiffness from what it feels.
+// A hand that estimates the block's stiffness from the force.
 class LearningHand final : public HandMotion {
  public:
   LearningHand(const HandSettings& settings, std::uint64_t seed) : HandMotion(settings, seed) {}
 
-  // The force that is felt at the present position, for `step_s`.
+  // Updates the estimate with the force at the present position, which lasted for `step_s`.
   void learn(double force_N, double step_s) noexcept;
 
  protected:
   double held_depth_m(double force_N) const noexcept override;
 
  private:
-  double stiffness_N_per_m_ = 800.0;  // secant, at the forces felt of late; a guess at first
+  double stiffness_N_per_m_ = 800.0;  // secant, low-pass filtered; the initial value is a guess
 };
 
-// What a simulated tool may be given.
+// Force limits of simulated tools.
 inline constexpr ForceLimits kSimulatedLimits{40.0, 5000.0, 0.3};
 
-// A simulated tool: time goes on between reads, 20 ms at most; a longer gap is a stall in
-// which nothing moved.
+// A simulated tool. Every read advances it by the time since the last one, at most by 20 ms.
 class SimulatedDevice : public Device {
  public:
   explicit SimulatedDevice(const char* name) : name_(name) {}
 
   const std::string& name() const noexcept final { return name_; }
-  // Exact up to these.
   SensorSpec sensor() const noexcept final;
   Holder holder() const noexcept final { return Holder::simulated; }
   ForceLimits limits() const noexcept final { return kSimulatedLimits; }
@@ -51,7 +47,7 @@ class SimulatedDevice : public Device {
   virtual double velocity_m_per_s() const noexcept = 0;
 
  protected:
-  // Haptics thread: against a constant force, in steps that keep it accurate.
+  // Haptics thread: integrates the motion over `gap_s` with a constant force, in sufficiently small steps.
   virtual void advance(double gap_s, double force_N) noexcept = 0;
   void start_at(double now_s) noexcept {
     now_s_ = now_s;
@@ -70,7 +66,7 @@ class HandDevice final : public SimulatedDevice {
   explicit HandDevice(std::uint64_t seed = 1, const HandSettings& settings = {})
       : SimulatedDevice("hand"), hand_(settings, seed) {}
 
-  // Haptics thread: see HandMotion::resume_at; `now_s` as for read.
+  // Haptics thread: see HandMotion::resume_at; `now_s`: steady clock.
   void resume_at(double position_m, double now_s) noexcept;
   double position_m() const noexcept override { return hand_.position_m(); }
   double velocity_m_per_s() const noexcept override { return hand_.velocity_m_per_s(); }

@@ -1,17 +1,15 @@
-// A virtual human hand that explores a block: slow presses with dwell, taps,
-// pokes, steps, steady contact with slow modulation, rests in the air.
+// The motion of a simulated hand that explores a block: slow presses with dwell, taps, pokes, steps, steady contact
+// with slow modulation, rests in the air.
 //
-// The hand aims along minimum-jerk segments (Flash & Hogan 1985)
+// The target of the hand follows minimum-jerk segments (Flash & Hogan 1985)
 //   aim(u) = a + (b - a) (10 u^3 - 15 u^4 + 6 u^5),  u in 0..1,
-// adds a tremor of 8 to 12 Hz to the aim, and is a mass on a spring behind it:
+// plus a tremor of 8 to 12 Hz. The hand is a mass that a spring and a damper couple to the target:
 //   m a = k (aim - x) + c (d aim/dt - v) - F
-// so that it gives way to the force F, as a hand does, and position, velocity
-// and acceleration are consistent and smooth. It aims by force: a target of
-// F newtons is the depth that holds F, plus F / k; what depth that is, whoever
-// owns the hand knows (a material) or learns (a device that feels the force).
-// The same seed moves the same way, whatever the length of the recording.
-// Thread guarantee: one thread at a time; `move` and `feel` are wait-free and
-// allocate nothing.
+// so that it yields to the force F, and position, velocity and acceleration are consistent. For a press of F newtons
+// the target is the depth at which the block holds F, plus F / k. A derived class knows that depth from the material or
+// estimates it from the force.
+// Deterministic: the same seed and forces give the same motion.
+// Thread guarantee: one thread at a time; `move` and `feel` are wait-free and allocate nothing.
 #pragma once
 
 #include <array>
@@ -27,11 +25,10 @@ struct HandSettings {
   double mass_kg = 0.12;             // finger, handle and tool
   double stiffness_N_per_m = 800.0;  // of the arm, well braced
   double damping_Ns_per_m = 14.0;    // 0.7 of critical in the air
-  double tremor_rms_m = 5e-5;        // of the aim
-  double strongest_press_N = 6.0;    // gestures aim at most for this
-  // What a block is known to: a hand that aims at nothing deeper, nor moves faster.
-  double deepest_m = 0.012;
-  double fastest_m_per_s = std::numeric_limits<double>::infinity();
+  double tremor_rms_m = 5e-5;
+  double strongest_press_N = 6.0;  // largest target force
+  double deepest_m = 0.012;        // largest depth that LearningHand assumes for a force
+  double fastest_m_per_s = std::numeric_limits<double>::infinity();  // largest speed of the target, without tremor
 };
 
 class HandMotion {
@@ -39,8 +36,8 @@ class HandMotion {
   HandMotion(const HandSettings& settings, std::uint64_t seed);
   virtual ~HandMotion() = default;
 
-  // Advances by `dt_s` (50 us or less keeps the integration accurate): first
-  // `move` to get the new position, then `feel` with the force there.
+  // Integrate one step of `dt_s`, at most 50 us for accuracy: first `move` for the new position, then `feel` with the
+  // force there.
   void move(double dt_s) noexcept;
   void feel(double force_N, double dt_s) noexcept;
 
@@ -48,12 +45,11 @@ class HandMotion {
   double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
   double acceleration_m_per_s2() const noexcept { return acceleration_m_per_s2_; }
 
-  // Takes the tool over at rest at `position_m`: back into the air, and on with
-  // the next gesture.
+  // Continues at rest at `position_m`, returns into the air and begins the next gesture.
   void resume_at(double position_m) noexcept;
 
  protected:
-  // The depth at which the block holds `force_N` when pressed for a moment.
+  // The depth at which the block holds `force_N` after a short press.
   virtual double held_depth_m(double force_N) const noexcept = 0;
 
  protected:
@@ -69,7 +65,7 @@ class HandMotion {
     double force_N = 0.0;
     double duration_s = 0.0;
   };
-  // A tremor component as a turning pointer: no cosine per step.
+  // A tremor component as a rotating vector, which needs no cosine per step.
   struct Tremor {
     double along = 0.0, across = 0.0, turn_cos = 1.0, turn_sin = 0.0, rate_rad_per_s = 0.0;
   };
@@ -81,12 +77,12 @@ class HandMotion {
   void plan_poke();
   void plan_steps();
   void plan_modulation();
-  // Both take braces, in which random numbers are drawn from left to right;
-  // the order of plain arguments is the compiler's choice.
+  // The arguments are structs because braces are evaluated from left to right, so that random numbers are drawn in a
+  // defined order.
   void go(Segment segment);
   void press(Press press) { go({aim_for(press.force_N), press.duration_s}); }
   void leave(double fastest_s, double slowest_s);
-  // A height over the block: lower for a slow hand, which would be on its way all the time.
+  // A random position in the air, nearer to the block where fastest_m_per_s is small.
   double air(double from_m, double to_m);
   void start_tremor(double dt_s);
   double aim_for(double force_N) const noexcept {

@@ -1,9 +1,7 @@
-// The mouse or the keyboard as a tool. What they set is a target; the tool is a
-// mass with the impedance of a hand, coupled to the target by a spring and a
-// damper:
-//   m a = k (y - x) + c (dy/dt - v) - F,   dy/dt = (target - y) / tau
-// so that the rendered force pushes it back from where the mouse points, and a
-// jump of the mouse is no jump of the tool.
+// A tool that is moved by mouse or keyboard. They set a target y0. The tool is a mass with the impedance of a hand,
+// coupled to the low-pass filtered target by a spring and a damper:
+//   m a = k (y - x) + c (dy/dt - v) - F,   dy/dt = (y0 - y) / tau
+// The rendered force F therefore pushes the tool back, and a jump of the mouse is no jump of the tool.
 #pragma once
 
 #include <atomic>
@@ -17,9 +15,9 @@ struct MouseSettings {
   double stiffness_N_per_m = 800.0;
   double damping_Ns_per_m = 14.0;
   double smoothing_time_s = 0.015;  // tau: two reports of a mouse at 125 Hz
-  double highest_m = -0.03;         // targets are kept between these
-  double deepest_m = 0.03;
-  double idle_time_s = 20.0;
+  double highest_m = -0.03;         // lower limit of targets
+  double deepest_m = 0.03;          // upper limit of targets
+  double idle_time_s = 20.0;        // see `idle`
 };
 
 class MouseDevice final : public SimulatedDevice, public ToolInput {
@@ -28,19 +26,18 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
 
   ToolInput* mouse() noexcept override { return this; }
 
-  // One thread, the window's; wait-free. `now_s`: steady clock. A target that is
-  // not finite is ignored.
+  // The window's thread only, wait-free. `now_s`: steady clock. A target that is not finite is ignored.
   void set_target(double position_m, double now_s) noexcept override;
-  // Likewise: moves the target, as a wheel or a key does.
+  // The same for a relative motion, by a wheel or a key.
   void nudge(double by_m, double now_s) noexcept override;
   void leave() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }
-  // Any thread, wait-free. Whether nothing was set for idle_time_s, or ever.
+  // Any thread, wait-free. Whether no target was set for idle_time_s, or since `leave`.
   bool idle(double now_s) const noexcept;
 
-  // Haptics thread: takes the tool over where it is.
+  // Haptics thread: continues from this position and velocity of the tool.
   void resume_at(double position_m, double velocity_m_per_s, double now_s) noexcept;
   double position_m() const noexcept override { return position_m_; }
   double velocity_m_per_s() const noexcept override { return velocity_m_per_s_; }
@@ -52,8 +49,8 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
   std::atomic<double> target_m_;
   std::atomic<double> last_input_s_;
   static_assert(std::atomic<double>::is_always_lock_free);
-  // Haptics thread's own.
-  double smooth_m_;
+  // Haptics thread only.
+  double smooth_m_;  // y
   double position_m_;
   double velocity_m_per_s_ = 0.0;
 };

@@ -1,9 +1,8 @@
-// A recording as a device: its samples at its own pace, over and over. It cannot
-// feel anything; its measured force is the reference for the models.
+// A recording as a device, which repeats its samples at their own pace. The rendered force has no effect on it; its
+// measured force is the reference for the models.
 //
-// Every row is handed over exactly once and unchanged but for the surface offset,
-// so a loop fed with it computes what engine/tick/replay.h computes, bit for bit. At
-// the end, after a seek and with another offset the stream restarts: the filters forget, as at the start of a replay.
+// Every row is delivered exactly once and unchanged except for the surface offset, so that the loop gives the same bits
+// as engine/tick/replay.h. After the end, a seek and a change of the offset the stream restarts: the filters are reset.
 #pragma once
 
 #include <atomic>
@@ -22,7 +21,7 @@ inline constexpr double kFastestReplay = 10.0;
 
 class ReplayDevice final : public Device, public ReplayControl {
  public:
-  // `recording`: as the reader accepts it; its sensor is identified here.
+  // `recording` satisfies the rules of the reader. The constructor identifies its sensor.
   explicit ReplayDevice(Recording recording);
 
   const std::string& name() const noexcept override { return name_; }
@@ -32,7 +31,7 @@ class ReplayDevice final : public Device, public ReplayControl {
   ForceLimits limits() const noexcept override { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double) noexcept override {}
-  // A recording that is paused or slow is not late.
+  // The samples of a paused or slow recording do not count as late.
   DeviceHealth health(double) noexcept override {
     DeviceHealth health;
     if (started_) health.sample_age_s = 0.0;
@@ -40,9 +39,8 @@ class ReplayDevice final : public Device, public ReplayControl {
   }
   ReplayControl* replay() noexcept override { return this; }
 
-  // Any thread, wait-free. `speed`: times the recording's own pace, kept between
-  // kSlowestReplay and kFastestReplay, ignored when not finite; `at_s`: from the
-  // beginning of the recording, kept inside it.
+  // Any thread, wait-free. `speed`: relative to the recording's pace, clamped to kSlowestReplay .. kFastestReplay;
+  // `at_s`: from the beginning of the recording, clamped to its duration. Values that are not finite are ignored.
   void pause(bool paused) noexcept override { paused_.store(paused, std::memory_order_relaxed); }
   void set_speed(double speed) noexcept override;
   void seek(double at_s) noexcept override;
@@ -67,17 +65,17 @@ class ReplayDevice final : public Device, public ReplayControl {
   double duration_s_ = 0.0;
   std::atomic<bool> paused_{false};
   std::atomic<double> speed_{1.0};
-  std::atomic<double> seek_s_{-1.0};  // below 0: none
-  std::atomic<int> rows_{0};          // to go by
+  std::atomic<double> seek_s_{-1.0};  // requested seek; below 0: none
+  std::atomic<int> rows_{0};          // requested steps
   std::atomic<double> shown_s_{0.0};
   std::atomic<double> surface_offset_m_{0.0};
   static_assert(std::atomic<double>::is_always_lock_free);
-  // Haptics thread's own.
+  // Haptics thread only.
   double playhead_s_ = 0.0;
   double now_s_ = 0.0;
-  double moved_m_ = 0.0;  // the offset of the stream
+  double moved_m_ = 0.0;  // surface offset of the present stream
   std::size_t next_ = 0;
-  int handed_over_ = 0;  // in this tick
+  int handed_over_ = 0;  // rows in this tick
   bool restart_ = true;
   bool started_ = false;
 };
