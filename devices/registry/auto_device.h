@@ -1,8 +1,7 @@
-// The hand by itself until somebody takes over with the mouse or a SpaceMouse, and
-// again once both have been idle for a while. The tool goes on from where the other
-// left it.
+// The simulated hand, until the user moves the mouse or a SpaceMouse, and again once both have been idle for
+// MouseSettings::idle_time_s. The tool continues from its last position.
 //
-// Thread guarantee: as Device; `mouse` is for the window's thread, see there.
+// Thread guarantee: as Device; `mouse` as ToolInput.
 #pragma once
 
 #include <atomic>
@@ -22,7 +21,7 @@ class AutoDevice final : public Device, public ToolInput {
   explicit AutoDevice(std::uint64_t seed = 1, const HandSettings& hand = {}, const MouseSettings& mouse = {})
       : hand_(seed, hand), mouse_(mouse) {}
 
-  // Before `open`. What to tell people, and a SpaceMouse if there is one.
+  // Call them before `open`: the text of `note`, and a SpaceMouse if there is one.
   void explain(std::string note) { note_ = std::move(note); }
   void use(std::unique_ptr<SpaceMouse> space_mouse) { space_mouse_ = std::move(space_mouse); }
 
@@ -39,7 +38,7 @@ class AutoDevice final : public Device, public ToolInput {
   void write(double force_N) noexcept override;
 
   ToolInput* mouse() noexcept override { return this; }
-  // Setting a target is taking over.
+  // A target stops the simulated hand.
   void set_target(double position_m, double now_s) noexcept override { mouse_.set_target(position_m, now_s); }
   void nudge(double by_m, double now_s) noexcept override { mouse_.nudge(by_m, now_s); }
   void leave() noexcept override { mouse_.leave(); }
