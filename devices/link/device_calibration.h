@@ -1,5 +1,4 @@
-// What one kind of device measures and bears: one JSON file per protocol, named
-// after it, in assets/devices/.
+// Calibration and limits of one kind of device: the JSON file of its protocol in assets/devices/.
 //
 // Thread guarantee: slow side only.
 #pragma once
@@ -14,29 +13,27 @@
 namespace palpate {
 
 struct DeviceCalibration {
-  const DeviceProtocol* protocol = nullptr;  // of a calibration that was read: never null
+  const DeviceProtocol* protocol = nullptr;  // not null once the file is read
   double counts_per_metre = 0.0;             // > 0
   double encoder_step_m = 0.0;               // 0: one count
-  // 1: counts grow into the block, -1: out of it. The force that pushes out of the
-  // block then is a command of the sign -direction: positive commands drive the
-  // counts up.
+  // 1: counts increase into the block, -1: out of it. A positive command always drives the counts up, so a force out
+  // of the block is a command of the sign -direction.
   double direction = 1.0;
-  // Of the tool while it is zeroed, or where an absolute device has its
-  // 0; negative: outside.
+  // Position of the tool while it is zeroed, or of the 0 of an absolute device; negative: outside of the block.
   double rest_position_m = 0.0;
-  double fastest_m_per_s = 0.0;  // of the tool; anything above is a jump of the encoder
-  // The rest is of devices that push.
-  double force_N_per_unit = 0.0;  // unit: see DeviceCommand
-  double stuck_after_s = 0.0;     // not a count for so long while pushing: the encoder is stuck
+  // The following are of devices that render force.
+  double fastest_m_per_s = 0.0;   // a faster motion is a fault of the encoder (a jump)
+  double force_N_per_unit = 0.0;  // see DeviceCommand::units
+  double stuck_after_s = 0.0;     // the encoder is stuck when no count changes for this time under force
   ForceLimits limits;             // stop_s keeps its default
 };
 
-// Of `protocol`, whose name the file carries as its kind. Errors: not JSON, or the first value that is missing, unknown
-// or out of range, with path:line:column, found, expected.
+// "kind" in the file must be the name of `protocol`. Errors: not JSON; a value that is missing, unknown or out of
+// range; each with path:line:column, found, expected.
 Result<DeviceCalibration> parse_calibration(std::string_view text, const std::string& path,
                                             const DeviceProtocol& protocol);
 
-// `folder`/<protocol's name>.json. Errors: as above; the file cannot be read.
+// Reads `folder`/<name of the protocol>.json. Errors: those of parse_calibration; the file cannot be read.
 Result<DeviceCalibration> read_calibration(const std::string& folder, const DeviceProtocol& protocol);
 
 }  // namespace palpate

@@ -1,13 +1,12 @@
-// When, on the host's clock, a device took a sample that carries the device's own time. The device's clock is a
-// straight line against the host's, and every report arrives late by its transport:
+// Converts the device's time of a sample to the host's clock. The device's clock is linear in the host's clock, and
+// every report arrives with a delay of the transport:
 //
 //   arrival - device time = a + b (device time) + delay,  delay >= 0
 //
 // The line is the highest one below all points of the last half second (the linear programme of Moon, Skelly &
-// Towsley, "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999). So jitter goes,
-// drift is followed whatever the rate of reports, and a delay that has become longer is part of the line half a
-// second later. Only the lowest point of each 50 ms enters.
-// Thread guarantee: one thread; wait-free, never throws.
+// Towsley, "Estimation and removal of clock skew from network delay measurements", INFOCOM 1999). This removes jitter
+// and follows drift at every rate of reports. A longer constant delay becomes part of the line after half a second.
+// Only the lowest point of each 50 ms is used. Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +19,7 @@ namespace palpate {
 
 class DeviceClock {
  public:
-  // The device's time wraps at 32 bits; `arrival_s` never decreases. Returns host seconds, at most `arrival_s`.
+  // `device_us` wraps at 32 bits; `arrival_s` is non-decreasing. Returns host seconds, at most `arrival_s`.
   double host_time_s(std::uint32_t device_us, double arrival_s) noexcept {
     if (started_) device_s_ += 1e-6 * static_cast<double>(static_cast<std::int32_t>(device_us - last_us_));
     last_us_ = device_us;
@@ -45,7 +44,7 @@ class DeviceClock {
   void restart() noexcept { *this = DeviceClock(); }
 
  private:
-  // A ceramic resonator is off by 0.5 % at most, and so is the host's clock while it is slewed.
+  // Well above the error of a ceramic resonator, 0.5 %, plus that of a host clock which is slewed, 0.5 %.
   static constexpr double kLargestDrift = 0.015;
   static constexpr double kSegment_s = 0.05;
   static constexpr std::size_t kSegments = 10;
@@ -59,7 +58,7 @@ class DeviceClock {
     return point.lag_s - level_s_ - drift_ * (point.device_s - middle_s_);
   }
 
-  // Of all slopes between two points the one whose line lies highest in the middle.
+  // Chooses among the slopes between two points that whose line is highest at the mean time.
   void fit() noexcept {
     const std::size_t count = std::min(count_, kSegments);
     middle_s_ = 0.0;

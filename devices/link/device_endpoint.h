@@ -1,10 +1,9 @@
-// The host's end of one HID device that pushes, without threads and without I/O:
-// a reader gives it reports, a writer asks it what to send, the haptics thread
-// moves the tool and the force. What is handed over goes through TripleBuffers.
+// The host's end of one device that renders force (HID or bridge), without threads and I/O. The reader thread gives it
+// reports, the writer thread fetches commands, the haptics thread reads samples and writes forces. The threads exchange
+// data by a TripleBuffer each way and an SpscRing of samples.
 //
-// The writer is the host's watchdog: when the haptics thread has not written for
-// kHapticsSilent_s it sends no force, and the heartbeat in a frame of the bridge
-// stands still, which stops the board as well.
+// The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
+// heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as well.
 #pragma once
 
 #include <array>
@@ -20,7 +19,7 @@
 
 namespace palpate {
 
-// What a reader knows beside the reports themselves.
+// The state of the stream and of the connection.
 struct LinkState {
   MonitorState monitor;
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
@@ -30,25 +29,25 @@ struct LinkState {
 class DeviceEndpoint final : public LinkListener {
  public:
   static constexpr double kHapticsSilent_s = 0.02;
-  // Without a written or a confirmed command for so long, the device hears nothing.
+  // A fault is reported when no command was written, or confirmed, for this time.
   static constexpr double kWriteStalled_s = 0.05;
-  // Nothing new to say: at least this often all the same.
+  // An unchanged command is repeated after this time.
   static constexpr double kRepeat_s = 0.005;
-  // Half a tick until a sample is used, half a period of the writer until the force is sent.
+  // Mean waiting time: half a tick until a sample is used, half a period of the writer until the force is sent.
   static constexpr double kWaits_s = 0.75e-3;
-  // A device that gives samples at its own rate hears of commands no more often than that, down to 100 Hz.
+  // A timed device gets one command per sample, but at least one in this time.
   static constexpr double kSlowestSample_s = 0.01;
 
   explicit DeviceEndpoint(const DeviceCalibration& calibration) noexcept;
 
-  // Reader thread, wait-free. `now_s`: steady clock, never back.
+  // Reader thread, wait-free. `now_s`: steady clock, non-decreasing.
   void connected(double now_s) noexcept override;
   void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
   void unplugged() noexcept override;
 
-  // Writer thread, wait-free. What to write now; nothing when there is no need.
+  // Writer thread, wait-free. The reports to write now; empty when none is due.
   OutReports next(double now_s) noexcept override;
-  // After it was written; `now_s`: when that was done.
+  // Call it after they were written, with the time then.
   void written(double now_s) noexcept override;
 
   // Haptics thread, wait-free; as Device.
@@ -76,28 +75,28 @@ class DeviceEndpoint final : public LinkListener {
 
   DeviceCalibration calibration_;
   std::atomic<bool> zeroing_asked_{false};
-  std::atomic<double> commanded_N_{0.0};  // last sent
+  std::atomic<double> commanded_N_{0.0};  // last command
   std::atomic<double> last_written_s_{0.0};
-  std::atomic<std::uint64_t> accepted_{0};            // samples
-  std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence
+  std::atomic<std::uint64_t> accepted_{0};            // number of accepted samples
+  std::array<std::atomic<double>, 256> sent_at_s_{};  // by sequence modulo 256
   static_assert(std::atomic<double>::is_always_lock_free);
   TripleBuffer<LinkState> state_;
   SpscRing<DeviceSample, 256> samples_;
   TripleBuffer<Command> command_;
-  // Reader thread's own.
+  // Reader thread only.
   StreamMonitor monitor_;
   LinkState link_;
   std::uint32_t streams_published_ = 0;
-  // Writer thread's own.
+  // Writer thread only.
   std::uint32_t sequence_ = 0;
   std::uint16_t last_heartbeat_ = 0;
   double last_beat_s_ = 0.0;
   double last_sent_s_ = -1.0;
-  std::uint64_t answered_ = 0;  // samples when a command was sent last
+  std::uint64_t answered_ = 0;  // accepted samples at the last command
   std::atomic<double> connected_at_s_{0.0};
-  // Haptics thread's own.
+  // Haptics thread only.
   Command next_command_;
-  bool began_ = false;  // a sample was read: the position is known
+  bool began_ = false;  // a sample was read, so that the position is known
 };
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
-// The threads between an open device and its user: one that reads whatever comes,
-// so that nothing queues up, and one that writes the newest command and forgets
-// those that it had no time for. Blocking I/O is theirs alone. A device that goes
-// away is looked for again until the link ends.
+// The threads between an open device and its listener: one reads all reports, so that none queue up; the other writes
+// the newest command and skips older ones. Only they do blocking I/O. A device that was unplugged is searched for and
+// opened again until the link ends.
 #pragma once
 
 #include <atomic>
@@ -16,7 +15,7 @@
 
 namespace palpate {
 
-// Who is told of a link's reports and asked what to write. `now_s`: steady clock.
+// Receives the reports of a link and gives the commands to write. `now_s`: steady clock.
 class LinkListener {
  public:
   virtual ~LinkListener() = default;
@@ -29,25 +28,25 @@ class LinkListener {
   virtual void written(double now_s) noexcept = 0;
 };
 
-// An open device and how to find it again.
+// An open device, its node and its protocol.
 struct OpenedDevice {
   DeviceNode info;
-  const DeviceProtocol* protocol = nullptr;  // of one that was opened: never null
+  const DeviceProtocol* protocol = nullptr;  // not null once it is open
   std::unique_ptr<DeviceConnection> connection;
   bool measures_force = false;
 };
 
-// The first device of one of `protocols` that can be opened; tries for half a second
-// when there is one that cannot, for udev may still be setting its permissions.
-// Slow side. Errors: none is plugged in (`none_found` is then set); those that are
-// cannot be opened, each with why.
+// Opens the first device of one of `protocols`. Where one is plugged in but cannot be opened, it tries for half a
+// second, because udev may still be setting the permissions.
+// Slow side. Errors: none is plugged in (then *none_found is true, else false); all that are plugged in cannot be
+// opened, with the reason for each.
 Result<OpenedDevice> open_first(DeviceBus& bus, const DeviceProtocols& protocols, bool* none_found = nullptr);
 
 class DeviceLink {
  public:
-  // Writes at most this often; a device gets a report every 1 ms.
+  // Period of the writer: half of that of the haptics thread.
   static constexpr std::int64_t kWritePeriod_ns = 500'000;
-  static constexpr double kLookAgain_s = 0.25;
+  static constexpr double kLookAgain_s = 0.25;  // between two searches for an unplugged device
 
   // `bus` and `listener` outlive this.
   DeviceLink(DeviceBus& bus, LinkListener& listener, OpenedDevice opened);
@@ -57,10 +56,10 @@ class DeviceLink {
 
   // Slow side. Errors: no thread.
   Status start();
-  // Slow side, blocking: ends the threads, then takes the force away.
+  // Slow side, blocking: ends the writer, sends the stop report, which removes the force, and ends the reader.
   void stop() noexcept;
 
-  // Slow side: "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
+  // Slow side: protocol, product, node and what it was tested on, e.g. "OpenFFBoard, one axis: FFBoard, /dev/hidraw7".
   std::string description() const;
 
  private:
@@ -75,7 +74,7 @@ class DeviceLink {
   LinkListener& listener_;
   DeviceNode info_;
   const DeviceProtocol& protocol_;
-  std::mutex mutex_;  // of connection_; neither thread is the haptics thread
+  std::mutex mutex_;  // guards connection_; the haptics thread never locks it
   std::shared_ptr<DeviceConnection> connection_;
   std::atomic<bool> stop_{false};
   std::thread reader_;

@@ -1,5 +1,5 @@
-// What the program knows of one protocol, as data and pure functions: bytes in, a reading out; a command in, bytes out.
-// A protocol is one file in devices/hid or devices/bridge; the link layer names none of them.
+// A device protocol as data and pure functions, which decode reports and encode commands. Each protocol is one file in
+// devices/hid or devices/bridge; the link layer does not depend on any of them.
 //
 // Thread guarantee: pure functions, any thread; wait-free, never throw, read
 // nothing beyond `size`.
@@ -19,7 +19,7 @@ inline constexpr std::size_t kLargestReport = 64;
 
 // One node of the bus.
 struct DeviceNode {
-  std::string path;  // of the node; empty: there is none
+  std::string path;  // empty: there is no node
   std::string product;
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
@@ -31,41 +31,40 @@ struct DeviceCommand {
   std::uint32_t sequence = 0;
   std::uint16_t heartbeat = 0;
   bool drive = false;
-  double units = 0.0;  // what one is, the protocol says
+  double units = 0.0;  // force in the units of the protocol
 };
 
-// Reports to write one after the other, as the connection wants them: of HID the report id first, 0 for none.
+// Reports to write one after the other. Those of HID begin with the report id, 0 for none.
 struct OutReports {
   std::array<std::array<std::uint8_t, kLargestReport + 1>, 4> bytes{};
   std::array<std::size_t, 4> sizes{};
   std::size_t count = 0;
 };
 
-// What each protocol was tried on, in words.
+// The test status of all protocols.
 inline constexpr const char* kTried = "on real hardware: no; on an emulated device: yes";
 
 struct DeviceProtocol {
-  const char* name;         // of its calibration file and in messages
-  const char* description;  // in words
-  // What it can do; each alone.
+  const char* name;         // in messages and of its calibration file
+  const char* description;  // a few words
+  // Independent capabilities.
   bool renders_force = false;
-  bool absolute = false;  // counts are nm from the surface on, units uN: nothing is zeroed
-  bool timed = false;     // reports have a sequence and a time and come at any rate; else arrival is all there is
-  bool confirms = false;  // reports say which command was obeyed last
+  bool absolute = false;  // counts are nm from the surface, units are uN; no zeroing is necessary
+  bool timed = false;     // reports have sequence and time, and any rate; else the time of arrival is used
+  bool confirms = false;  // reports have the sequence of the last command that was obeyed
 
   bool (*matches)(const DeviceNode& info) noexcept;
-  // `bytes` as the connection read them, a report id included where there is one; `reading` comes in its default state.
+  // `bytes`: a report as the connection read it, with a report id where there is one; `reading`: default-constructed.
   ReportVerdict (*decode)(const std::uint8_t* bytes, std::size_t size, DeviceReading& reading) noexcept;
-  // Once after opening.
+  // The reports to send once after opening.
   OutReports (*encode_start)() noexcept;
-  // In every cycle; also asks for the position where the device does not send it
-  // by itself.
+  // A command. It also requests the position where the device does not send it unasked.
   OutReports (*encode_command)(const DeviceCommand& command) noexcept;
-  // Takes the force away, whatever was sent before.
+  // Removes the force.
   OutReports (*encode_stop)() noexcept;
 };
 
-// None of them null.
+// No element is null.
 using DeviceProtocols = std::vector<const DeviceProtocol*>;
 
 }  // namespace palpate

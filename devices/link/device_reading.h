@@ -1,4 +1,4 @@
-// One reading of a device's position, whatever the transport brought it by.
+// One reading of a device's position, for all transports.
 // Thread guarantee: values.
 #pragma once
 
@@ -7,26 +7,26 @@
 
 namespace palpate {
 
-// What a decoder says of one report.
+// The result of decoding one report.
 enum class ReportVerdict : std::uint8_t {
   position,       // a reading with the position
-  nothing,        // valid, but not about the position
+  nothing,        // valid, but without a position
   corrupt,        // length, checksum or content is wrong
-  wrong_version,  // of the protocol; DeviceReading::version has the one found
+  wrong_version,  // another version of the protocol, see DeviceReading::version
 };
 
 struct DeviceReading {
   std::int32_t counts = 0;
-  // Of a device that numbers and times its reports.
+  // Of a timed protocol.
   std::uint32_t sequence = 0;
   std::uint32_t time_us = 0;
-  std::uint32_t confirmed = 0;  // of the host's command that it obeyed last
+  std::uint32_t confirmed = 0;  // sequence of the last command that the device obeyed
   std::uint8_t version = 0;
   double measured_N = std::numeric_limits<double>::quiet_NaN();  // of a force sensor; NaN: none
-  bool grip = false;
-  bool driving = false;    // the device says that its motor is on
-  bool stopped = false;    // by the device's own watchdog: it did not hear the host
-  bool own_fault = false;  // the device says that it has one
+  bool grip = false;                                             // the switch on the handle is held
+  bool driving = false;                                          // the motor is on
+  bool stopped = false;    // the device's watchdog has stopped the motor because the host was silent
+  bool own_fault = false;  // the device reports a fault
 };
 
 }  // namespace palpate

@@ -1,34 +1,32 @@
-// The last report of every open device when a signal ends the program: no force.
-// No handler covers SIGKILL, a power cut or a hung system. A device whose host falls
-// silent takes its force away by itself, as far as its firmware lives:
-//   bridge       50 ms after the last valid frame or beat of the haptics thread
-//   OpenFFBoard  50 ms after the host last started its effect anew (protocol/openffboard.cpp)
-//   SpaceMouse   has no force
-// Nothing here covers firmware that hangs while its motor is driven.
+// Sends the stop report to every open device when a signal ends the program. This does not cover SIGKILL, a power
+// failure or a hung system. When the host is silent, working firmware removes the force:
+//   bridge       50 ms after the last valid frame or change of the heartbeat
+//   OpenFFBoard  50 ms after the host last restarted its effect (devices/hid/openffboard.cpp)
+//   SpaceMouse   renders no force
+// Firmware that hangs while it drives the motor is not covered.
 #pragma once
 
 #include "devices/link/device_protocol.h"
 
 namespace palpate {
 
-// Slow side. `descriptor` stays open until `unregister_device_stop`; `reports` are
-// written to it as they are. Returns the slot, -1 when all eight are taken.
+// Slow side. `reports` are written to `descriptor`, which stays open until `unregister_device_stop`. Returns the slot;
+// -1 when all eight are in use.
 int register_device_stop(int descriptor, const OutReports& reports) noexcept;
 // Slow side. -1 is ignored.
 void unregister_device_stop(int slot) noexcept;
 
-// Around every report that may carry a force, in any thread; wait-free. False: a signal
-// ends the program, nothing but the stop may be written any more, and the write counts
-// as refused. Otherwise `end_force_write` follows.
+// Call them around every write of a report that may have a force. Any thread, wait-free. False: a signal is ending the
+// program; do not write, and report the write as failed. Else call `end_force_write` afterwards.
 bool begin_force_write() noexcept;
 void end_force_write() noexcept;
 
-// Async-signal-safe: lets writes that are under way finish (20 ms at most), lets no
-// other begin, then writes all registered reports: nothing comes after them.
+// Async-signal-safe: blocks new force writes, waits for running ones (at most 20 ms), then writes all registered
+// reports as the last ones.
 void stop_all_devices() noexcept;
 
-// Slow side, any number of times: owns the signals (signals.h), and all devices stop
-// before one of them ends the program. Opening a device that pushes calls it.
+// Slow side, may be called repeatedly: handles the signals (signals.h) so that all devices stop before one of them ends
+// the program. LinkedDevice::open calls it.
 void stop_devices_on_signals() noexcept;
 
 }  // namespace palpate

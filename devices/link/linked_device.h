@@ -1,9 +1,9 @@
-// A haptic device on a USB port: a DeviceEndpoint with the threads that serve it.
+// A haptic device on a bus (USB HID or the bridge): a DeviceEndpoint and its threads.
 //
-// The tool does not move and nothing pushes until the device was zeroed: bring
-// the tool to its marked rest position (rest_position_m of the calibration), call
-// `start_zeroing`, hold it still; `health` says how far it is, zeroing_words what
-// to do. The same after the device was unplugged, jumped or started again.
+// A device with an incremental encoder gives neither samples nor force until it is zeroed: bring the tool to its marked
+// rest position (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the
+// progress, zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its
+// encoder jumped or was stuck.
 //
 // Thread guarantee: as Device.
 #pragma once
@@ -19,9 +19,9 @@ namespace palpate {
 
 class LinkedDevice final : public Device {
  public:
-  // `bus` outlives this; `opened` is of the calibration's protocol, which renders force.
+  // `bus` outlives this; `opened` has the calibration's protocol, which renders force.
   LinkedDevice(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened);
-  // With a bus of its own; `name`: as --device has it.
+  // The same with an owned bus; `name`: as in --device.
   LinkedDevice(std::unique_ptr<DeviceBus> bus, const DeviceCalibration& calibration, OpenedDevice opened,
                std::string name);
   ~LinkedDevice() override { close(); }
@@ -38,7 +38,7 @@ class LinkedDevice final : public Device {
   void write(double force_N) noexcept override { endpoint_.write(force_N); }
   DeviceHealth health(double now_s) noexcept override { return endpoint_.health(now_s); }
   void start_zeroing() noexcept override { endpoint_.start_zeroing(); }
-  // Which device on which node.
+  // See DeviceLink::description.
   std::string note() const override { return link_.description(); }
 
  private:

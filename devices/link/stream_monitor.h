@@ -1,20 +1,19 @@
-// Follows the stream of readings of one device, whatever the transport: where the
-// tool is, since when it is known, and what is wrong with the stream. Pure: no
-// clock, no thread, no decoding.
+// Monitors the readings of one device, for all transports: position, zeroing and faults. It has no clock and no thread,
+// and does not decode.
 //
-//   a report that fails its decoder                       kCorrupt
-//   a sequence number that goes back                      kOutOfOrder
-//   reports that waited in a queue (device time, or four
-//   within kTogether_s)                                   kBurst
-//   a step faster than the device, or a hand, can move    kJump
-//   sequence numbers that begin anew                      kReset
-//   no count in `stuck_after_s` in spite of kPushing_N    kStuck
-//   a device that stopped by its watchdog                 kWriteStalled
-// Reports that do not come at all are found by their age, by
-// whoever reads the device. A
-// fault that leaves the position known lasts kHold_s after its last occurrence;
-// one that loses it, until the device was zeroed; a device that knows its position by
-// itself does not lose it. A faulty report is never used.
+//   the decoder refuses a report                                          kCorrupt, kWrongFirmware
+//   a sequence number decreases                                           kOutOfOrder
+//   timed: a sample is older than late_after_s                            kLate
+//   reports waited in a queue (timed: a late sample within kTogether_s of
+//   the one before; else four reports within kTogether_s)                 kBurst
+//   a step is faster than the device or a hand can move                   kJump
+//   sequence numbers or the device's time start again                     kReset
+//   no count changes within `stuck_after_s` at kPushing_N or more         kStuck
+//   the device's watchdog has stopped it                                  kWriteStalled
+//   the device reports a fault                                            kOwn
+// Missing reports are detected by DeviceEndpoint::health. A fault that does not affect the position lasts kHold_s after
+// its last occurrence. A fault that loses the position of an incremental encoder (kJump, kReset, kStuck) lasts until
+// the device is zeroed. A reading that is corrupt, out of order or late is not used.
 //
 // Thread guarantee: one thread; wait-free, never throws.
 #pragma once
@@ -31,25 +30,25 @@ struct MonitorSettings {
   bool absolute = false, timed = false;  // as DeviceProtocol
   double counts_per_metre = 1.0;
   double fastest_m_per_s = 5.0;
-  double encoder_step_m = 0.0;  // a step of the sensor, where it is more than a count
-  double stale_after_s = 0.01;  // the least of late_after_s
+  double encoder_step_m = 0.0;  // a step of the sensor, where it is larger than a count
+  double stale_after_s = 0.01;  // smallest late_after_s
   double stuck_after_s = 0.5;
 };
 
-// What is known after a report; handed to the haptics thread as a whole.
+// The state after a report. The haptics thread gets a copy of it.
 struct MonitorState {
-  std::uint64_t samples = 0;   // accepted so far; 0: none
-  std::int64_t counts = 0;     // unwrapped, of the newest accepted
+  std::uint64_t samples = 0;   // number of accepted samples
+  std::int64_t counts = 0;     // of the newest accepted sample, unwrapped
   double sample_time_s = 0.0;  // host clock, strictly increasing
-  double zero_counts = 0.0;
+  double zero_counts = 0.0;    // counts at the rest position
   double transient_until_s = 0.0;
-  double confirmed_at_s = 0.0;  // when `confirmed` last went on
-  std::uint32_t confirmed = 0;
+  double confirmed_at_s = 0.0;  // time of the last change of `confirmed`
+  std::uint32_t confirmed = 0;  // sequence of the last confirmed command
   std::uint32_t transient = 0;  // device_fault, until transient_until_s
-  std::uint32_t lost = 0;       // device_fault, until zeroed
-  std::uint32_t streams = 0;    // begun so far: at a zeroing, or where the position is found again
-  double interval_s = 0.0;      // between samples, of the last ten or so
-  double late_after_s = 0.0;    // age of a sample that is too old, see StreamMonitor
+  std::uint32_t lost = 0;       // device_fault, until the device is zeroed
+  std::uint32_t streams = 0;    // number of streams; one begins when the position becomes known or jumps
+  double interval_s = 0.0;      // between samples, averaged over about ten
+  double late_after_s = 0.0;    // largest age of a sample, see kLateIntervals
   double measured_N = std::numeric_limits<double>::quiet_NaN();
   Zeroing zeroing = Zeroing::needed;
   float zeroing_progress = 0.0F;
@@ -61,30 +60,28 @@ class StreamMonitor {
   static constexpr double kHold_s = 0.1;
   static constexpr double kTogether_s = 0.5e-3;
   static constexpr double kPushing_N = 0.2;
-  // From one sample to the next the speed grows by less: 50 N, a hand and a motor together, on 50 g. So 5 mm within
-  // 1 ms are a glitch, however fast the device may be in the long run.
+  // Largest acceleration: 50 N of hand and motor together on 50 g. A motion of 5 mm within 1 ms from rest is therefore
+  // a fault even where fastest_m_per_s allows it.
   static constexpr double kQuickest_m_per_s2 = 1000.0;
-  // The tool has to rest for as long, within kRest_m, to be zeroed.
+  // For zeroing the tool has to rest within kRest_m for this time.
   static constexpr double kZeroing_s = 0.2;
   static constexpr double kRest_m = 0.5e-3;
-  // As many readings in order among themselves that were expected earlier: the device
-  // counts anew.
+  // The device was restarted when so many successive readings are in order but before the last accepted sequence.
   static constexpr int kStartedAgain = 8;
-  // A sample is late when it is older than five intervals, 10 ms at least (the calibration's stale_after_s) and
-  // 100 ms at most; a stream that was late is on time again when its samples are half as old.
+  // A sample of a timed stream is late when it is older than kLateIntervals intervals, clamped to stale_after_s ..
+  // kLongestSilence_s. After a late sample the limit is half of that.
   static constexpr double kLateIntervals = 5.0;
   static constexpr double kLongestSilence_s = 0.1;
   static constexpr double kOnTimeAgain = 0.5;
-  // A timed stream begins anew after kLongestSilence_s without a usable reading and where its clock was set back. The
-  // readings of its first kSettling_s only set the clock, for they may have waited in a queue.
+  // A new timed stream begins after kLongestSilence_s without a usable reading, or when the device's clock was set
+  // back. The readings of its first kSettling_s only fit the clock, because they may have waited in a queue.
   static constexpr double kSettling_s = 0.05;
 
   explicit StreamMonitor(const MonitorSettings& settings) noexcept;
 
-  // A report that came at `now_s`, never earlier than the one before, as its decoder
-  // read it; `force_N`: what the device was told to push with.
+  // Processes a decoded report that arrived at `now_s` (non-decreasing). `force_N`: the commanded force.
   void update(ReportVerdict verdict, const DeviceReading& reading, double now_s, double force_N) noexcept;
-  // The device is gone; what comes next comes from another start of it.
+  // The device was unplugged; the next report begins a new stream.
   void unplugged() noexcept;
   void start_zeroing() noexcept;
 
@@ -108,11 +105,11 @@ class StreamMonitor {
   DeviceReading last_;
   std::uint32_t refused_ = 0;  // sequence of the last reading that was out of order
   int refused_in_order_ = 0;
-  bool connected_ = false;                     // a report was accepted since the start or since unplugging
-  double first_s_ = -1.0;                      // of a device that knows its position: the first reading since
+  bool connected_ = false;                     // a reading was accepted since the present stream began
+  double first_s_ = -1.0;                      // arrival of the first reading of a new timed stream; below 0: none
   double read_time_s_ = 0.0;                   // of the present reading
-  double speed_ = 0.0;                         // counts a second, of the last step
-  double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three reports, newest first
+  double speed_ = 0.0;                         // counts per second, of the last step
+  double arrivals_s_[3] = {-1e9, -1e9, -1e9};  // of the last three readings, newest first
   double still_since_s_ = 0.0;
   bool late_ = false;
   double zeroing_since_s_ = -1.0;  // below 0: not begun
