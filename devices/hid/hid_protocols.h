@@ -1,5 +1,5 @@
-// The protocols on a USB port that the program speaks. A new one is a file here and two lines below (and its
-// calibration in assets/devices/). Thread guarantee: slow side.
+// The supported USB HID protocols. To add one, add a source file here, two lines below, and a calibration in
+// assets/devices/. Thread guarantee: slow side.
 #pragma once
 
 #include <array>
@@ -13,21 +13,21 @@ namespace palpate {
 extern const DeviceProtocol kOpenFfBoardProtocol;
 extern const DeviceProtocol kSpaceMouseProtocol;
 
-// A node has the ids of one of them at most.
+// A node matches at most one of them.
 inline constexpr std::array kHidProtocols = {
     &kOpenFfBoardProtocol,
     &kSpaceMouseProtocol,
 };
 
-// The protocol that `node` needs, by its ids; null: nothing that the program knows.
+// The protocol of `node`, by its ids; null: unknown.
 const DeviceProtocol* hid_protocol_of(const DeviceNode& node);
 
-// For `palpate devices`: every node, what it would be used as, and why not.
+// For `palpate devices`: whether a node is supported and can be opened.
 struct HidDiagnosis {
   DeviceNode node;
-  const DeviceProtocol* protocol = nullptr;  // null: it cannot be used
-  std::string use;                           // in words
-  std::string problem;                       // with what to do; empty: it can be used, or is none of ours
+  const DeviceProtocol* protocol = nullptr;  // null: it is not supported or cannot be opened
+  std::string use;                           // description of the protocol
+  std::string problem;                       // why it cannot be opened and what to do; else empty
 };
 std::vector<HidDiagnosis> diagnose(DeviceBus& bus);
 

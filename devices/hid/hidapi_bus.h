@@ -1,9 +1,8 @@
-// The real bus: libhidapi over hidraw.
+// The USB HID bus of this machine: libhidapi over hidraw.
 //
-// Each device is opened three times: once for the thread that reads and once for
-// the one that writes, because a handle of hidapi keeps its last error unguarded;
-// and once plainly, to hold the lock that keeps a second program from pushing
-// the same tool, and for the last report when a signal ends the program.
+// Each device is opened three times: once for the reading and once for the writing thread, because a handle of hidapi
+// stores its last error without a lock; and once as a file, which holds the lock against a second program and takes the
+// stop report when a signal ends the program.
 #pragma once
 
 #include "devices/link/device_bus.h"
@@ -12,23 +11,21 @@ namespace palpate {
 
 class HidapiBus final : public DeviceBus {
  public:
-  // `wait_ms`: how long a read waits for a report; -1: until one comes (an emulated
-  // node of umockdev can only be read so).
+  // `wait_ms`: longest wait of a read; -1: unlimited, which emulated nodes of umockdev need.
   explicit HidapiBus(int wait_ms = 50) noexcept : wait_ms_(wait_ms) {}
 
   std::vector<DeviceNode> list() override;
-  // Errors: no node, no permission (with the udev rule), in use by another program,
-  // or what the system says.
+  // Errors: no node, no permission (names the udev rule), in use by another program, or the system's message.
   Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode& info) override;
 
  private:
   int wait_ms_;
 };
 
-// The one of the program. Slow side, any thread.
+// The bus of this program. Slow side, any thread.
 DeviceBus& system_hid_bus();
 
-// What to do about an errno of opening a hidraw node, in words.
+// The message for an errno of opening a hidraw node, with what to do.
 std::string open_error_words(const std::string& path, int error_number);
 
 }  // namespace palpate

@@ -1,10 +1,8 @@
-// A 3Dconnexion SpaceMouse: pushing its cap down moves the tool into the block.
-// Input only, no force is felt in the hand; the tool itself is the mass of the
-// MouseDevice, which the force pushes back.
+// A 3Dconnexion SpaceMouse: pushing its cap down moves the tool into the block. It renders no force to the hand; the
+// force acts on the simulated mass of a MouseDevice.
 //
-// It reports at 60 to 125 Hz, and nothing while it rests. Each new value is
-// reached on a straight line over the interval of the last two reports, so that
-// the tool moves at every tick; that costs one interval of delay.
+// It reports at 60 to 125 Hz, and not at all at rest. The target is interpolated linearly from one value to the next
+// over the last interval of reports, so that it moves at every tick. This adds a delay of one interval.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +18,13 @@
 
 namespace palpate {
 
-// From reports to a position at any time. No thread of its own.
+// Converts reports to a target position at any time.
 class SpaceMouseAxis final : public LinkListener {
  public:
-  // Between reports; longer is a rest.
+  // Limits of the interval between reports.
   static constexpr double kShortest_s = 0.004;
   static constexpr double kLongest_s = 0.02;
-  // Nearer to 0 than this the cap is not touched.
+  // Smaller deflections count as 0.
   static constexpr int kDeadCounts = 8;
 
   explicit SpaceMouseAxis(const DeviceCalibration& calibration) noexcept : calibration_(calibration) {}
@@ -35,13 +33,13 @@ class SpaceMouseAxis final : public LinkListener {
   void connected(double) noexcept override;
   void report_arrived(const std::uint8_t* bytes, std::size_t size, double now_s) noexcept override;
   void unplugged() noexcept override;
-  // Writer thread: nothing is ever written.
+  // Writer thread. Nothing is written to a SpaceMouse.
   OutReports next(double) noexcept override { return {}; }
   void written(double) noexcept override {}
 
-  // Haptics thread, wait-free; `now_s` increasing. Where the cap wants the tool.
+  // Haptics thread, wait-free; `now_s` increasing. The target position of the tool.
   double target_m(double now_s) noexcept;
-  // Haptics thread, wait-free. Moves the tool if the cap did since the last call.
+  // Haptics thread, wait-free. Sets the target of `tool` if it has changed since the last call.
   void drive(MouseDevice& tool, double now_s) noexcept;
   DeviceHealth health(double now_s) noexcept;
 
@@ -57,17 +55,17 @@ class SpaceMouseAxis final : public LinkListener {
 
   DeviceCalibration calibration_;
   TripleBuffer<Deflection> newest_;
-  Deflection deflection_;  // reader thread's own
-  // Haptics thread's own: on the way from one value to the next.
+  Deflection deflection_;  // reader thread only
+  // Haptics thread only: the interpolation.
   std::uint64_t seen_ = 0;
   double from_counts_ = 0.0, to_counts_ = 0.0, since_s_ = 0.0, over_s_ = kShortest_s;
   double last_target_m_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-// The cap and its threads.
+// A SpaceMouseAxis with its threads.
 class SpaceMouse {
  public:
-  // As LinkedDevice.
+  // `bus` outlives this.
   SpaceMouse(DeviceBus& bus, const DeviceCalibration& calibration, OpenedDevice opened);
   Status start() { return link_.start(); }
   void stop() noexcept { link_.stop(); }
