@@ -1,5 +1,4 @@
-// The device behind one `bridge:` target as a bus with that one device: every report that
-// it reads is a frame, found in the stream of bytes.
+// A bus with one device, that of a `bridge:` target. Its reports are the frames in the byte stream.
 // Thread guarantee: as DeviceBus.
 #pragma once
 
@@ -14,7 +13,7 @@
 
 namespace palpate {
 
-// A count is 1 nm, a unit 1 uN towards growing positions. Of reports that BridgeReports found.
+// A count is 1 nm, a unit 1 uN towards increasing positions. Decodes reports of BridgeReports.
 extern const DeviceProtocol kBridgeProtocol;
 
 class BridgeConnection final : public DeviceConnection {
@@ -22,12 +21,12 @@ class BridgeConnection final : public DeviceConnection {
   explicit BridgeConnection(std::unique_ptr<ByteStream> stream) : stream_(std::move(stream)) {}
   ~BridgeConnection() override;
 
-  // Reports as BridgeReports finds them.
+  // Reads one report, see BridgeReports.
   int read(std::uint8_t* bytes, std::size_t capacity) noexcept override;
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept override;
   void stop_with(const OutReports& reports) noexcept override;
 
-  // Before the first frame: what came instead, as text; why the stream ended.
+  // The first bytes that arrived before any frame, where they are text; else empty.
   std::string garbage() const;
   std::string end_words() noexcept { return stream_->end_words(); }
 
@@ -37,7 +36,7 @@ class BridgeConnection final : public DeviceConnection {
   std::uint8_t bytes_[4096] = {};
   const std::uint8_t* next_ = bytes_;
   const std::uint8_t* end_ = bytes_;
-  std::uint8_t first_[80] = {};  // bytes, until there was a frame
+  std::uint8_t first_[80] = {};  // first bytes, until there is a frame
   std::size_t first_count_ = 0;
   int stop_slot_ = -1;
 };
@@ -50,9 +49,9 @@ class BridgeBus final : public DeviceBus {
   // Does not wait for a frame.
   Result<std::unique_ptr<DeviceConnection>> open(const DeviceNode&) override;
 
-  // The first time: waits for the first frames, for a board that resets when its port is
-  // opened takes two seconds. Errors: those of ByteStream; silence, another version, text
-  // or noise instead of frames, a program that ended.
+  // Opens the device and waits for its first eight frames, up to 4 s (20 s for a program), because a board that resets
+  // when its port is opened takes two seconds. Errors: those of ByteStream; no or too few frames, another version, text
+  // instead of frames, a program that ended; interrupted.
   Result<OpenedDevice> open_and_identify();
 
  private:
@@ -60,9 +59,9 @@ class BridgeBus final : public DeviceBus {
   DeviceNode info_;
 };
 
-// Moves nothing: drives with no force, falls silent, and lets the device show by its
-// status that its watchdog stopped it, for frames that do not come and for a heartbeat
-// that stands still. Text with what was measured; errors: what it did not show.
+// Tests the watchdog of a device without force: it drives with force 0, then stops the frames, later only the
+// heartbeat. Each time the status of the device must report the stop within 100 ms. Returns the measurements as text.
+// Errors: those of open_and_identify; the requirement that was not met.
 Result<std::string> test_bridge(const std::string& target);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// The reports of a device of the bridge in its stream of bytes: a frame, whose checksum is right; one byte where bytes
-// between frames were none; the first four of a frame of another version. What is found here is not checked again.
+// Divides the byte stream of a bridge device into reports: a frame with a valid checksum; a report of one byte where
+// bytes between frames belong to no frame; the first four bytes of a frame of another version.
 // Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 
@@ -13,11 +13,12 @@ namespace palpate {
 
 class BridgeReports {
  public:
-  // Takes bytes from `at` on until a report of at most kDeviceBytes is in `report`. Its size; 0: all were taken.
+  // Consumes bytes from `at` until `report` has a report of at most kDeviceBytes. Returns its size; 0: all bytes were
+  // consumed without one.
   int next(const std::uint8_t*& at, const std::uint8_t* end, std::uint8_t* report) noexcept {
     bool found = std::exchange(frame_waits_, false);
     while (!found && at != end) found = finder_.add(*at++);
-    // What a stream begins with may be the rest of a frame.
+    // The stream may begin within a frame, so bytes before the first frame are no gap.
     const bool gap = any_frame_ && finder_.skipped() != skipped_;
     skipped_ = finder_.skipped();
     any_frame_ = any_frame_ || found;
@@ -41,9 +42,9 @@ class BridgeReports {
 
  private:
   bridge::FrameFinder<bridge::kDeviceBytes, bridge::kFromDevice> finder_;
-  std::uint32_t skipped_ = 0;  // of which a report was made
+  std::uint32_t skipped_ = 0;  // skipped bytes that were reported
   bool any_frame_ = false;
-  bool frame_waits_ = false;  // behind a gap that was reported first
+  bool frame_waits_ = false;  // a frame follows the gap that was reported
 };
 
 }  // namespace palpate

@@ -1,7 +1,6 @@
-// One open byte stream in both directions: a serial line, a socket, a child program's
-// standard input and output. Opening waits at most kConnect_ms; reading and writing
-// never longer than they are told.
-// Thread guarantee: slow side; `read` belongs to one thread and `write` to one.
+// An open bidirectional byte stream: a serial line, a socket, or a child program's standard input and output.
+// Connecting waits at most kConnect_ms for each address; `read` waits as long as its argument says, `write` not at all.
+// Thread guarantee: slow side; one thread may call `read` and another one `write`.
 #pragma once
 
 #include <cstddef>
@@ -17,20 +16,20 @@ class ByteStream {
  public:
   static constexpr int kConnect_ms = 3000;
 
-  // Errors: why not, and what to do.
+  // Errors: it cannot be opened; with the reason and what to do.
   static Result<std::unique_ptr<ByteStream>> open(const BridgeTarget& target);
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
   // Ends a child program: SIGTERM, half a second later SIGKILL.
   ~ByteStream();
 
-  // Bytes that came within `wait_ms`; 0: none; below 0: the other end is gone.
+  // Returns the number of bytes that arrived within `wait_ms`; 0: none; below 0: the other end is gone.
   int read(std::uint8_t* bytes, std::size_t capacity, int wait_ms) noexcept;
-  // All of them or, when the other end takes none, none: what was taken of a piece goes
-  // first the next time, so that pieces stay whole. False: not taken.
+  // Writes at most 64 bytes, all or none. If the system takes only a part, the next call sends the rest first, so that
+  // frames stay whole. False: nothing was written.
   bool write(const std::uint8_t* bytes, std::size_t size) noexcept;
   int descriptor() const noexcept { return descriptor_; }
-  // Why `read` ended: "the program ended with exit code 3".
+  // Why the stream ended: "the program ended with exit code 3".
   std::string end_words() noexcept;
 
  private:
