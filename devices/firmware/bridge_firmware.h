@@ -1,9 +1,9 @@
-// The firmware of a board that speaks devices/README.md#bridge, without the hardware:
-// hapkit.cpp gives it an ATmega328P, paddle.ino a Teensy, the tests a simulated board.
+// The hardware-independent firmware of a board for the bridge protocol (devices/README.md#bridge). hapkit.cpp uses it
+// on an ATmega328P, paddle.ino on a Teensy, the tests on a simulated board.
 //
-// A frame without drive, or with it and newer than the last, is obeyed. The motor stops by
-// itself when there was no such frame, or no new heartbeat, for HostWatch::kSilent_us, until
-// there is, and as long as motor or sensor has a fault. Thread guarantee: one thread.
+// A frame is obeyed when its drive flag is 0 or its sequence is newer than the last one. The motor is off after
+// HostWatch::kSilent_us without such a frame or without a new heartbeat, until both return, and while motor or sensor
+// has a fault. Thread guarantee: one thread.
 #pragma once
 
 #ifndef ARDUINO  // a sketch includes the files of its folder itself
@@ -17,17 +17,17 @@ namespace bridge {
 //   uint32_t now_us();                                   wraps
 //   bool receive(uint8_t& byte);                         false: none
 //   bool sample(uint32_t& time_us, int32_t& position_nm, int32_t& force_uN);
-//                                                        true: a new one, at its rate
+//                                                        true: there is a new sample
 //   uint8_t condition();                                 kMotorFault, kSensorFault, kGrip
 //   void push(int32_t force_uN);                         positive: out of the block
 //   void send(const uint8_t* frame);                     kDeviceBytes
 template <typename Board>
 class Firmware {
  public:
-  // `most_uN`: what the motor bears.
+  // `most_uN`: largest force of the motor.
   Firmware(Board& board, int32_t most_uN) : board_(board), most_uN_(most_uN), host_(board.now_us()) { board_.push(0); }
 
-  // As often as possible.
+  // Call it as often as possible.
   void loop() {
     condition_ = board_.condition();
     uint8_t byte = 0;

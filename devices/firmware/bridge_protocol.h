@@ -1,8 +1,8 @@
-// The frames between Palpate and any device that speaks `bridge:`, version 1. Both ends
-// include this file; devices/README.md#bridge has the byte offsets.
+// The frames of the bridge protocol, version 1. Host and firmware include this file; devices/README.md#bridge has the
+// byte offsets.
 //
-// C++11 without a library beyond stdint. All numbers are little-endian whatever the
-// machine. Thread guarantee: pure functions and values, wait-free, never throw.
+// C++11 with no library but stdint. All numbers are little-endian on every machine.
+// Thread guarantee: pure functions and values, wait-free, never throw.
 #pragma once
 
 #ifndef ARDUINO  // a sketch includes the files of its folder itself
@@ -17,31 +17,31 @@ constexpr uint8_t kFromDevice = 0x49;  // 'I'
 constexpr uint8_t kFromHost = 0x4F;    // 'O'
 constexpr unsigned kDeviceBytes = 28;
 constexpr unsigned kHostBytes = 20;
-constexpr int32_t kNoForce = -2147483647 - 1;  // the device measures none
+constexpr int32_t kNoForce = -2147483647 - 1;  // the device has no force sensor
 
 // Status of the device, bits.
 constexpr uint8_t kDriving = 1;
-constexpr uint8_t kStopped = 2;  // by its watchdog; until a valid frame comes
+constexpr uint8_t kStopped = 2;  // its watchdog has stopped the motor; until the next valid frame
 constexpr uint8_t kMotorFault = 4;
 constexpr uint8_t kSensorFault = 8;
 constexpr uint8_t kGrip = 16;
 constexpr uint8_t kKnownStatus = 31;
 
-constexpr uint8_t kDrive = 1;  // flag of the host; without it the force counts as 0
+constexpr uint8_t kDrive = 1;  // flag of the host; without it the force is 0
 
 struct FromDevice {
-  uint32_t sequence;    // one more for each frame
+  uint32_t sequence;    // incremented by one per frame
   uint32_t time_us;     // of the sample, device clock, wraps
-  int32_t position_nm;  // grows inward
-  int32_t force_uN;     // measured, positive outward; kNoForce
+  int32_t position_nm;  // increases inward
+  int32_t force_uN;     // measured, positive outward; or kNoForce
   uint8_t status;
   uint16_t confirmed;  // low half of the sequence of the last valid frame from the host
 };
 
 struct FromHost {
   uint32_t sequence;
-  int32_t force_uN;    // on the tool, positive pushes it out
-  uint16_t heartbeat;  // one more for each tick of the haptics thread
+  int32_t force_uN;    // on the tool, positive outward
+  uint16_t heartbeat;  // incremented by one per tick of the haptics thread
   uint8_t flags;
 };
 
@@ -77,7 +77,7 @@ inline void encode(const FromHost& out, uint8_t* frame) {
   wire::write32(frame + 16, wire::crc32(frame, 16));
 }
 
-// Of frames that FrameFinder found. False: a bit that is not known is set.
+// Decode frames of FrameFinder. False: an unknown bit is set.
 inline bool decode(const uint8_t* frame, FromDevice& in) {
   in.sequence = wire::read32(frame + 4);
   in.time_us = wire::read32(frame + 8);
@@ -96,13 +96,12 @@ inline bool decode(const uint8_t* frame, FromHost& out) {
   return (out.flags & ~kDrive) == 0 && frame[15] == 0;
 }
 
-// Finds the frames of one kind in a stream of bytes, whatever lies between them: a frame
-// is what begins with the magic, the version and the kind and ends with its checksum. No
-// byte of a false beginning is lost for the next one.
+// Finds the frames of one kind in a byte stream. A frame begins with magic bytes, version and kind and ends with its
+// checksum. After a false beginning the search continues at its second byte.
 template <unsigned kBytes, uint8_t kKind>
 class FrameFinder {
  public:
-  // True: `frame` holds the next one, until the next call.
+  // True: `frame` is complete, until the next call.
   bool add(uint8_t byte) {
     bytes_[count_++] = byte;
     while (count_ > 0) {
@@ -120,11 +119,11 @@ class FrameFinder {
     return false;
   }
   const uint8_t* frame() const { return bytes_; }
-  uint32_t skipped() const { return skipped_; }             // bytes that were in no frame, wraps
-  uint8_t other_version() const { return other_version_; }  // seen last, 0: none
+  uint32_t skipped() const { return skipped_; }             // number of bytes outside of frames, wraps
+  uint8_t other_version() const { return other_version_; }  // last other version that was found; 0: none
 
  private:
-  // The kind comes behind the version, which is judged only with it.
+  // The version is checked only when the kind, which follows it, is right.
   bool may_be_frame() {
     if (bytes_[0] != 0x50 || (count_ > 1 && bytes_[1] != 0x42) || (count_ > 3 && bytes_[3] != kKind)) return false;
     if (count_ < 4 || bytes_[2] == kVersion) return true;

@@ -1,7 +1,6 @@
-// What boards and HID reports have in common: little-endian numbers, a checksum, and the time after which a silent host
-// no longer counts.
+// Common parts of firmware and HID reports: little-endian numbers, a checksum, and the watchdog for a silent host.
 //
-// C++11 without a library beyond stdint, so that an Arduino compiles it.
+// C++11 with no library but stdint, so that it compiles for an Arduino.
 // Thread guarantee: pure functions and values, wait-free, never throw.
 #pragma once
 
@@ -10,8 +9,8 @@
 namespace palpate {
 namespace wire {
 
-// CRC-32 of IEEE 802.3: reflected, polynomial 0xEDB88320, begins and ends inverted. Half a
-// byte at a time: a table that an 8-bit board can hold, four times as fast as bit by bit.
+// CRC-32 of IEEE 802.3: reflected polynomial 0xEDB88320, initial value and result inverted. It processes half a byte at
+// a time: the table fits an 8-bit board, and it is four times as fast as bit by bit.
 inline uint32_t crc32(const uint8_t* bytes, unsigned count) {
   static const uint32_t kNibbles[16] = {0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
                                         0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
@@ -40,17 +39,17 @@ inline void write32(uint8_t* at, uint32_t value) {
 // Whether `a` comes after `b` on a counter that wraps.
 inline bool later(uint32_t a, uint32_t b) { return static_cast<int32_t>(a - b) > 0; }
 
-// A board's watch over its host: whether a command may be obeyed, and since when there
-// was none. `drive` is obeyed only when its sequence is later than the last one's; a
-// command without it always, so that stopping works and a host may start again.
+// A board's watchdog: decides whether a command may be obeyed, and whether the host is silent. A command with `drive`
+// is obeyed only when its sequence is later than the last one; a command without it is always obeyed, so that stopping
+// works and a host may restart.
 class HostWatch {
  public:
-  // No valid command, or no new heartbeat, for as long: no current.
+  // The host is silent after this time without a valid command or without a new heartbeat.
   static constexpr uint32_t kSilent_us = 50000;
 
   explicit HostWatch(uint32_t now_us) : valid_us_(now_us), beat_us_(now_us) {}
 
-  // A valid command. False: it is old, and must not be obeyed.
+  // Call it for each valid command. False: the command is old and must not be obeyed.
   bool accept(uint32_t now_us, uint32_t sequence, uint16_t heartbeat, bool drive) {
     if (drive && !any_sequence_ && !later(sequence, sequence_)) return false;
     if (!heard_ || heartbeat != heartbeat_) beat_us_ = now_us;
@@ -64,8 +63,8 @@ class HostWatch {
 
   bool silent(uint32_t now_us) const { return now_us - valid_us_ >= kSilent_us || now_us - beat_us_ >= kSilent_us; }
   uint32_t sequence() const { return sequence_; }  // of the last accepted command
-  bool heard() const { return heard_; }            // ever
-  // Another host may begin with any sequence; its heartbeat has to move all the same.
+  bool heard() const { return heard_; }            // whether any command was accepted
+  // Accepts any sequence next, for a restarted host. A new heartbeat is still required.
   void forget() { any_sequence_ = true; }
 
  private:

@@ -1,6 +1,6 @@
-// A haptic paddle on a Teensy 3.x or 4.x: an encoder, a motor behind an H bridge, a switch
-// on the handle. Pins and figures are those of one paddle: set them to yours, and never try
-// it first with a hand on the handle. In the Arduino IDE; Encoder comes with Teensyduino.
+// A haptic paddle on a Teensy 3.x or 4.x: an encoder, a motor with an H bridge, a switch on the handle. Pins and
+// constants are those of one paddle: set them to yours, and do the first test without a hand on the handle. For the
+// Arduino IDE; the library Encoder is part of Teensyduino.
 #pragma once
 
 #include <Encoder.h>
@@ -24,7 +24,7 @@ class TeensyPaddle {
   }
   uint32_t now_us() { return micros(); }
   int32_t counts() { return encoder_.read(); }
-  // A plain quadrature encoder cannot tell its faults.
+  // A quadrature encoder cannot report faults.
   uint8_t condition() {
     return (digitalRead(kMotorFaultPin) == LOW ? palpate::bridge::kMotorFault : 0) |
            (digitalRead(kGripPin) == LOW ? palpate::bridge::kGrip : 0);
