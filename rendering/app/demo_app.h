@@ -1,5 +1,5 @@
-// The window program without its command line: a session, a window, and one
-// frame after the other. Keys and mouse are demo_input.h, files demo_files.h.
+// The window program without its command line: a session, a window, and the work of a frame. demo_input.h has keys and
+// mouse, demo_files.h files.
 //
 // Thread guarantee: main thread only.
 #pragma once
@@ -28,10 +28,10 @@ namespace palpate {
 struct DemoRequest {
   SessionRequest session;
   WindowRequest window;
-  bool exhibit = false;  // a game for visitors in place of the panel
+  bool exhibit = false;  // shows a game for visitors instead of the panel
   ExhibitTimes exhibit_times;
-  std::string settings_file;            // empty: nothing is remembered
-  std::vector<std::string> recordings;  // offered to be trained or tested on
+  std::string settings_file;            // empty: settings are neither read nor saved
+  std::vector<std::string> recordings;  // the window asks whether to train or to test on them
 };
 
 class DemoApp {
@@ -42,31 +42,29 @@ class DemoApp {
   DemoApp& operator=(const DemoApp&) = delete;
   ~DemoApp();
 
-  // Events, session, picture, panel; shows it and waits for the next frame's time.
+  // Processes events, updates the session, draws and shows a frame, and waits for the next one.
   void frame();
   bool closing() const noexcept;
   void close();
-  // Why it ended by itself: no session could be opened any more, and there is none.
+  // An error when the program closes by itself because no session could be opened.
   const Status& outcome() const noexcept { return outcome_; }
-  // Draws the present state once more and saves it.
+  // Draws the present state again and saves it.
   Status screenshot(const std::string& path, bool overwrite);
 
   LiveSession& session() noexcept { return *session_; }
   ViewState& view() noexcept { return view_; }
-  const WindowView& shown() const noexcept { return shown_; }  // in the last frame
+  const WindowView& shown() const noexcept { return shown_; }  // of the last frame
   const Exhibit& exhibit() const noexcept { return exhibit_; }
   const BlockView& blocks() const noexcept { return *blocks_; }
   const FrameFigures& frames() const noexcept { return frames_; }
   const std::vector<Toast>& toasts() const noexcept { return toasts_; }
   Window& window() noexcept { return *window_; }
 
-  // What events do; GLFW's callbacks call them. A key counts even when it was
-  // pressed and let go within a frame. `action`: of GLFW.
-  // Model files (.json) are loaded; all else is offered to be trained or tested on, as
-  // recordings or as other programs' tables.
+  // GLFW's callbacks call these. Dropped files: see DemoFiles::open. A key counts even when it was pressed and released
+  // within a frame. `action`: of GLFW.
   void drop_files(const std::vector<std::string>& paths);
   void handle_key_event(int key, int action, int modifiers);
-  // All that can be asked for, a row each; an exhibit has buttons of its own.
+  // The table of commands. An exhibit has its own buttons.
   std::vector<WindowCommand>& commands() noexcept { return commands_; }
 
  private:
@@ -87,16 +85,16 @@ class DemoApp {
   void draw_blocks();
   void count_frame(double now_s);
   std::vector<BlockPose> block_poses() const;
-  std::vector<BlockPose> true_poses() const;  // not deeper than they are
+  std::vector<BlockPose> true_poses() const;  // without the exaggeration of dents
   BlockPose model_pose(std::size_t slot, BlockPose pose) const;
   BlockPose reference_pose(BlockPose pose) const;
   SceneArea scene_area() const;
   Status set_up_exhibit(const ExhibitTimes& times);
   void notify(std::string text, bool problem);
   void look();
-  // Another session in place of this one, after this frame.
+  // Replace the session after this frame.
   void use_material(const std::string& scene, const std::vector<std::string>& recordings, const std::string& device);
-  void use_device(const std::string& device);  // for the same models
+  void use_device(const std::string& device);  // keeps the models
   void start_offer();
   void use_line_up(const LineUp& line_up);
   void reopen(const SessionRequest& request);
@@ -104,7 +102,7 @@ class DemoApp {
   void next_reference();
   void next_dead_man();
 
-  // What lies on the window goes before it.
+  // Declared first, because the members that draw into it have to be destroyed before it.
   std::unique_ptr<Window> window_;
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<BlockView> blocks_;
@@ -118,19 +116,19 @@ class DemoApp {
   DemoInput input_;
   DemoFiles files_{view_, [this](std::string text, bool problem) { notify(std::move(text), problem); }};
   SessionRequest request_;
-  std::string first_device_;            // as the program was asked for it
-  std::optional<SessionRequest> next_;  // what to go on with after this frame
+  std::string first_device_;            // of the command line
+  std::optional<SessionRequest> next_;  // the session to open after this frame
   FrameFigures frames_;
   Resolution resolution_;
   std::vector<Toast> toasts_;
   std::vector<WindowCommand> commands_;
   double frame_began_s_ = 0.0;
-  double frame_s_ = 0.0;       // since the frame before, at most a tenth of a second
-  double last_frame_s_ = 0.0;  // its end
+  double frame_s_ = 0.0;       // time since the frame before, at most 0.1 s
+  double last_frame_s_ = 0.0;  // end of the last frame
   double second_began_s_ = 0.0;
   std::uint64_t frames_this_second_ = 0;
   std::size_t blocks_framed_ = 1;
-  bool leaving_ = false;  // an exhibit's only way out
+  bool leaving_ = false;  // `close` was called; an exhibit ends only by it
   Status outcome_;
 };
 

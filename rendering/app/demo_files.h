@@ -1,7 +1,7 @@
-// What the window does with files and devices: its settings, what is dropped and what is
-// saved. Whatever comes of it is told by `notify`.
+// The window's work with files and devices: settings, dropped files, saved files, the list of devices. `notify` reports
+// the results.
 //
-// Thread guarantee: main thread only; slow work goes on beside it.
+// Thread guarantee: main thread only; slow work runs in the background.
 #pragma once
 
 #include <functional>
@@ -25,41 +25,41 @@ class DemoFiles {
  public:
   using Notify = std::function<void(std::string text, bool problem)>;
   using Read = std::function<Result<RecordingOffer>(const std::string& path, const std::string& folder)>;
-  // `view` outlives this. `read`: any thread, blocks.
+  // `view` outlives this. `read` is called in a background thread and may block.
   DemoFiles(ViewState& view, Notify notify, Read read = offer_recording)
       : view_(view), notify_(std::move(notify)), read_(std::move(read)) {}
 
-  // Of this file; empty: nothing is remembered.
+  // Reads the settings from `file`; empty: settings are neither read nor saved.
   void use_settings(const std::string& file);
   void save_settings(const LiveSession& session, const CameraTurn& camera);
 
-  // Once a frame: what has been read, found or recorded meanwhile.
+  // Call it once a frame: processes finished background work and recordings.
   void update(const LiveSession& session);
-  // A model (.json) is loaded; all else is offered to be trained or tested on, as a
-  // recording or as another program's table.
+  // Loads a model (.json), or calls `offer` for any other file.
   void open(const std::string& path, LiveSession& session);
+  // Reads a recording or another program's table in the background, then asks whether to train or to test on it.
   void offer(const std::string& path);
   void record(LiveSession& session);
   void save_curves(const LiveSession& session, const WindowView& shown, const CurveColumns& columns);
   void save_model(const LiveSession& session);
   void look_for_devices();
-  // For the host of an exhibit.
+  // Appends to the log file of the exhibit.
   static void write_to_log(const std::string& text);
 
  private:
-  void remember(const std::string& path);  // as opened of late
-  // Where files go; empty, and told: nowhere.
+  void remember(const std::string& path);  // adds it to the recent files
+  // The user's data folder; empty, after a notice, where there is none.
   std::string folder();
 
   ViewState& view_;
   Notify notify_;
   Read read_;
   std::string settings_file_;
-  std::future<Result<RecordingOffer>> arriving_;    // a file that is read
+  std::future<Result<RecordingOffer>> arriving_;    // the file that is being read
   std::string reading_;                             // its path
-  std::vector<std::string> waiting_;                // to be read after it
-  std::future<std::vector<DeviceChoice>> looking_;  // for devices
-  std::future<Notice> drawing_;                     // a figure of the curves
+  std::vector<std::string> waiting_;                // files to read after it
+  std::future<std::vector<DeviceChoice>> looking_;  // the search for devices
+  std::future<Notice> drawing_;                     // the figure of the curves that is being drawn
   std::string recording_;                           // the file that is being recorded; empty: none
 };
 

@@ -1,5 +1,4 @@
-// Keyboard and mouse of the window: keys run rows of the table of commands, the mouse
-// moves the tool and the view.
+// Keyboard and mouse of the window: keys run commands, the mouse moves the tool and the camera.
 //
 // Thread guarantee: main thread only.
 #pragma once
@@ -13,31 +12,33 @@ namespace palpate {
 struct KeyPress {
   int key = 0;  // GLFW's
   int modifiers = 0;
-  bool again = false;  // the keyboard repeats it
+  bool again = false;  // repeated by the keyboard
 };
 
-// Where the tool rests in the air while nobody presses.
+// Position of the tool in the air after the mouse has left the picture.
 inline constexpr double kRest_m = -0.008;
 
-// As deep as there are data, and softly a little beyond.
+// Limits a depth smoothly to 8 % beyond the depth up to which the models were trained.
 double limited_depth_m(const LiveSession& session, double requested_m);
-// So far in; a mouse only.
+// Moves the tool inwards by `by_m`; no effect on a device that is no ToolInput.
 void nudge_tool(const LiveSession& session, double by_m);
 
 class DemoInput {
  public:
-  // A key counts even when it was pressed and let go within a frame. `action`: of GLFW.
+  // A key counts even when it was pressed and released within a frame. `action`: of GLFW.
   void add_key(int key, int action, int modifiers);
-  // Since the last call.
+  // Returns and clears the keys that were pressed since the last call.
   std::vector<KeyPress> take_keys();
+  // Forgets all keys.
   void let_go();
-  // Those that are held; `replays`: those of a replay too.
+  // Runs the commands whose keys are held, or were pressed. `replays`: a recording is replayed, see
+  // WindowCommand::replay.
   void run_held(const std::vector<WindowCommand>& commands, bool replays) const;
   static void run(const KeyPress& press, const std::vector<WindowCommand>& commands, bool replays);
 
-  // Inside a frame: its end forgets the wheel.
+  // Stores the motion of the wheel; call it within a frame, because ImGui clears it at the end.
   void keep_wheel();
-  // Whether the mouse has just left the picture, and the tool let go.
+  // Returns whether the mouse has just left the picture, so that the tool was lifted.
   bool handle_mouse(LiveSession& session, const WindowView& shown, BlockView& blocks, const ViewState& view,
                     const SceneArea& area);
 

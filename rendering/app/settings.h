@@ -1,5 +1,5 @@
-// What the window remembers between runs (Settings in view_state.h), as a small JSON file in
-// the user's configuration folder.
+// The settings that the window keeps between runs (Settings in view_state.h), in a JSON file in the user's
+// configuration folder.
 // Thread guarantee: slow side; does I/O.
 #pragma once
 
@@ -10,8 +10,7 @@
 
 namespace palpate {
 
-// A file that is not there gives the defaults, and so does a field that is not there or
-// not possible: settings are no data. Errors: a file that is there and is no JSON.
+// A missing file, and a missing or invalid field, give the defaults. Errors: the file is no JSON object.
 Result<Settings> read_settings(const std::string& path);
 Status write_settings(const std::string& path, const Settings& settings);
 

@@ -1,4 +1,4 @@
-// What --stats writes: how the loop, the picture and the models did, as JSON.
+// The JSON file of --stats: figures of the loop, the graphics and the models.
 // Thread guarantee: the window's thread.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-// The keys are those of the contract: haptics, graphics, models, faults.
+// The keys are haptics, graphics, models, verdict, faults, scene, device and reference.
 std::string stats_text(const LiveSession& session, const WindowView& shown, const FrameFigures& frames);
 
 }  // namespace palpate

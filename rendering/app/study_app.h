@@ -1,10 +1,8 @@
-// The window of the studies, the JND (--scene jnd_study) and two strokes to tell apart
-// (--discriminate): who takes part, then one screen after the other, in words that a
-// subject reads at a glance.
+// The window of the studies: the JND (--scene jnd_study) and the discrimination of two strokes (--discriminate). It
+// asks for the subject code and then shows the screens of the session.
 //
-// Every button has a key; Esc ends the session at any time, and what was answered
-// is kept. No curve and no number that could be an answer is shown before the end.
-// Thread guarantee: main thread only.
+// Every button has a key. Esc ends the session at any time; the answers are kept. Nothing that could reveal an answer
+// is shown before the end. Thread guarantee: main thread only.
 #pragma once
 
 #include <memory>
@@ -23,7 +21,7 @@ struct StudyRequest {
   std::string device = "auto";
   WindowRequest window;
   bool realtime = true;
-  std::shared_ptr<const StrokePair> strokes;  // to tell apart; null: the JND study
+  std::shared_ptr<const StrokePair> strokes;  // of the discrimination; null: the JND study
 };
 
 class StudyApp {
@@ -38,8 +36,8 @@ class StudyApp {
   bool closing() const noexcept;
   Status screenshot(const std::string& path, bool overwrite);
 
-  // What the entry screen does: opens or takes up study-CODE.csv, or with strokes
-  // discriminate-CODE.csv, in this folder. Trouble is shown there.
+  // Creates or resumes study-CODE.csv, or with strokes discriminate-CODE.csv, in the working directory. The entry
+  // screen shows errors, see `problem`.
   void begin(const std::string& code);
   void press_key(int key) { typed_.push_back({key, '\0'}); }
   void type(char letter) { typed_.push_back({0, letter}); }
@@ -67,8 +65,8 @@ class StudyApp {
   std::unique_ptr<LiveStudy> study_;
   std::unique_ptr<UiContext> ui_;
   UiStyle style_;
-  // Keys and letters since the last frame, in order: Enter comes after the code. (A text
-  // field of Dear ImGui loses it now and then when frames are slow.)
+  // Keys and letters since the last frame, in order. (A text field of Dear ImGui sometimes loses the Enter after the
+  // code when frames are slow.)
   struct Typed {
     int key = 0;
     char letter = '\0';
@@ -76,7 +74,7 @@ class StudyApp {
   std::vector<Typed> typed_;
   std::string code_;
   std::string problem_;
-  bool can_be_felt_ = false;  // the device renders force
+  bool can_be_felt_ = false;  // the device renders force to a person
 };
 
 }  // namespace palpate

@@ -1,5 +1,4 @@
-// The operating system's window with an OpenGL 3.3 core context, and the pace of
-// its frames.
+// The operating system's window with an OpenGL 3.3 core context, and its frame rate.
 //
 // Thread guarantee: main thread only (GLFW).
 #pragma once
@@ -19,24 +18,23 @@ struct WindowRequest {
   int width = 1280;
   int height = 720;
   bool fullscreen = false;
-  Rgb empty{0.08F, 0.09F, 0.10F};  // its colour until the first picture
+  Rgb empty{0.08F, 0.09F, 0.10F};  // colour until the first frame
 };
 
-// What is drawn into.
+// Sizes of the framebuffer.
 struct Framebuffer {
   int width = 0;  // pixels
   int height = 0;
-  float content_scale = 1.0F;  // how much larger than usual the display wants its contents
-  int window_width = 0;        // the same in the window's own units
+  float content_scale = 1.0F;  // scale factor of the display for its contents
+  int window_width = 0;        // window units
   int window_height = 0;
 };
 
 class Window {
  public:
-  // Whether there is a display at all; cheap, before anything else starts. Errors:
-  // there is none.
+  // Checks for a display; fast. Call it first. Errors: there is none.
   static Status find_display();
-  // After `find_display`. Errors, in one sentence: no OpenGL 3.3.
+  // Call it after `find_display`. Errors: no window with OpenGL 3.3.
   static Result<std::unique_ptr<Window>> open(const WindowRequest& request);
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -45,11 +43,9 @@ class Window {
   GLFWwindow* handle() const noexcept { return window_; }
   Framebuffer framebuffer() const noexcept;
   UiSize ui_size() const noexcept;
-  // Shows what was drawn and waits until the next frame is due: the display's own
-  // pace where the driver waits for it, else 60 Hz.
+  // Shows the frame and waits for the next one: for the display where the driver does so, else at 60 Hz.
   void show_frame();
-  // Likewise, and saves it as a PNG file, whole or not at all. Errors: it exists and
-  // `overwrite` is false; the disk refuses.
+  // Saves the frame as a PNG file and shows it. Errors: the file exists and `overwrite` is false; it cannot be written.
   Status save_frame(const std::string& path, bool overwrite);
 
  private:
