@@ -1,4 +1,4 @@
-// Curves of the columns of a plot over time.
+// Draws the columns of a plot over time as curves.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
@@ -10,25 +10,25 @@
 
 namespace palpate {
 
-// x of the plot is the columns' time less `zero_s`.
+// x of the plot is loop time - `zero_s`.
 struct CurvePainter {
   const LivePlot& plot;
   const std::vector<CurveColumn>& columns;
   double zero_s = 0.0;
 
-  // A curve between two values of a column, the same for a line; NaN interrupts it.
+  // A curve through the range between two values of each column. A NaN interrupts it.
   template <typename Low, typename High>
   void curve(ImU32 colour, float thickness, Low low, High high) const;
   template <typename Value>
   void curve(ImU32 colour, float thickness, Value value) const {
     curve(colour, thickness, value, value);
   }
-  // The reference with one JND to either side.
+  // The reference -/+ one JND.
   void jnd_band(ImU32 colour) const;
-  // Between two values of a column; NaN interrupts it.
+  // Fills the area between two values of each column. A NaN interrupts it.
   template <typename Low, typename High>
   void band(ImU32 colour, Low low, High high) const;
-  // Along the upper edge: a tick for a missed deadline, a triangle for a fault.
+  // Marks at the upper edge: a line for missed deadlines, a triangle for a fault.
   void troubles(ImU32 late, ImU32 alarm, float size_px) const;
 };
 
@@ -71,7 +71,7 @@ void CurvePainter::curve(ImU32 colour, float thickness, Low low, High high) cons
     const float x = plot.x_px(column.tick.loop_time_s - zero_s);
     const float y_low = plot.y_px(bottom);
     const float y_high = plot.y_px(top);
-    // In the direction of travel: a line that turns on the spot has no width there.
+    // The nearer end first, because a polyline that reverses its direction has no width there.
     const bool falling = !points.empty() && y_low - points.back().y > points.back().y - y_high;
     points.emplace_back(x, falling ? y_high : y_low);
     if (y_low - y_high > 1.5F) points.emplace_back(x, falling ? y_low : y_high);

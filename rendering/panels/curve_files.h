@@ -1,4 +1,4 @@
-// What the curves show, as files: a figure, which gnuplot draws, and a table (CSV).
+// The curves of the panel as files: a figure (gnuplot) and a table (CSV).
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -17,7 +17,7 @@ struct CurveModel {
   Hue colour = kInkColour;
 };
 
-// What both say of themselves.
+// Description of the data.
 struct CurveSource {
   std::string scene;
   std::string device;
@@ -27,12 +27,11 @@ struct CurveSource {
   std::vector<CurveModel> models;
 };
 
-// Force with the JND band above, difference in JND below: of every column of the screen one
-// tick, the same for all curves, and a row of the table.
+// Two panels: force with the JND band, and difference in JND. Every point is the tick of a column (CurveColumn::tick).
 Plot curve_plot(const CurveColumns& columns, const CurveSource& source, double from_s, double to_s);
 
-// Every tick between the two loop times: time_s,depth_m,reference,reference_N,rendered_N
-// and one column a model, "<name>_N"; a force that is not there is an empty field.
+// Every tick between the two loop times with the columns time_s,depth_m,reference,reference_N,rendered_N and
+// "<name>_N" for each model. A missing force is an empty field.
 std::string curve_csv(const ForceHistory& history, const CurveSource& source, double from_s, double to_s);
 
 }  // namespace palpate

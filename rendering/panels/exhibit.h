@@ -1,16 +1,15 @@
-// --kiosk: an exhibit in place of the panel; scenes/live/exhibit_game.h has its rules.
+// --kiosk: an exhibit instead of the panel; scenes/live/exhibit_game.h has its rules.
 //
-//   attract   the hand presses two blocks by itself, the difference is drawn; one
-//             sentence invites
-//   guess     what the computer of this round remembers; would a hand notice?
-//   press     15 s: one stroke on both blocks, the difference is drawn as it grows
-//   reveal    both forces in the band where they differed most, and one sentence
-//   score     the visitor's own, and one sentence to take home
+//   attract   the simulated hand presses two blocks, the difference is drawn, and a sentence invites to play
+//   guess     a description of the model of this round; would a hand notice a difference?
+//   press     mode "seen": 15 s with one stroke on both blocks and a live plot of the difference;
+//             mode "felt": the visitor compares two blocks and answers
+//   reveal    the result, and both forces where they differed most
+//   score     the visitor's score and a summary
 //
-// Buttons, touch and keys do the same; each button shows its key. Nobody "feels" without
-// a force device. The tool is out of the block whenever nothing is to be pressed. A
-// minute without a movement, the last quarter of it counted down: all is forgotten. The
-// day's tally and the loop's health are the host's, behind Ctrl+Shift+T.
+// Buttons, touch and keys are equivalent; each button shows its key. The tool is kept out of the block in all other
+// screens than attract and press. After `stay_s` without a movement, the last `warn_s` of which are counted down, the
+// exhibit starts again. Ctrl+Shift+T shows the day's tally and the loop's health to the host.
 // Thread guarantee: the window's thread.
 #pragma once
 
@@ -33,46 +32,46 @@ namespace palpate {
 
 struct ExhibitTimes {
   double press_s = ExhibitGame::kPress_s;
-  double stay_s = 60.0;  // without a movement
-  double warn_s = 15.0;  // of these, counted down
+  double stay_s = 60.0;  // time without a movement until the exhibit starts again
+  double warn_s = 15.0;  // countdown at the end of it
 };
 
 class Exhibit {
  public:
   explicit Exhibit(std::uint64_t seed) : game_(seed) {}
-  // `languages`: at least one. `tally_folder`: a file for each day; empty: not kept.
+  // `languages`: at least one. `tally_folder`: it gets a tally file per day; empty: no tally is stored.
   void set_up(std::vector<ExhibitWords> languages, const std::string& tally_folder, const ExhibitTimes& times);
 
-  // Once a frame: visitors come and go. Whether the last one has just left.
+  // Call it once a frame. Returns whether the visitor has just left, so that the exhibit started again.
   bool update(LiveSession& session, ViewState& view);
-  // A key of GLFW.
+  // `key`: of GLFW.
   void press_key(int key, const LiveSession& session);
   void show_host(bool shown) noexcept { host_ = shown; }
   bool shows_host() const noexcept { return host_; }
-  // The tool out of the block.
+  // Moves the tool out of the block.
   static void let_go(LiveSession& session);
-  // Beside the picture, and the names at its blocks.
+  // Draws the screen in the panel's area, and the names at the blocks.
   void draw(const LiveSession& session, const WindowView& shown, const BlockView& blocks, const UiStyle& style,
             const WindowLayout& layout);
 
   const ExhibitGame& game() const noexcept { return game_; }
   const ExhibitTrace& attract_trace() const noexcept { return trace_; }
   const ExhibitTally& tally() const noexcept { return tally_; }
-  // Where the buttons of the last frame are, by the key that does the same.
+  // Positions of the buttons of the last frame, by their keys.
   const std::map<std::string, ImVec2>& buttons() const noexcept { return buttons_; }
   // The sentences of the last frame, from the top.
   const std::vector<std::string>& said() const noexcept { return said_; }
 
  private:
-  struct Canvas;  // what all screens of a frame share
+  struct Canvas;  // common data of all screens of a frame
   void forget(LiveSession& session, ViewState& view);
   void read_ticks(const LiveSession& session);
   void note_device(const LiveSession& session);
   void note_result();
-  std::string tally_path() const;  // of today; empty: not kept
+  std::string tally_path() const;  // today's file; empty: no tally is stored
   void leave_reveal() { game_.go_on(); }
   void begin(const LiveSession& session);
-  // The pair on the screen; null: nothing to compare yet.
+  // The pair on the screen; null: too few models are ready.
   const ExhibitRound* pair() const noexcept;
   void draw_attract(const Canvas& canvas);
   void draw_guess(const Canvas& canvas);
@@ -97,8 +96,8 @@ class Exhibit {
 
   ExhibitGame game_;
   ExhibitTimes times_;
-  std::optional<ExhibitRound> shown_;  // in attract mode
-  ExhibitTrace trace_;                 // likewise
+  std::optional<ExhibitRound> shown_;  // in the state attract
+  ExhibitTrace trace_;                 // in the state attract
   std::vector<ExhibitWords> languages_{1};
   std::size_t language_ = 0;
   std::string tally_folder_;
@@ -107,9 +106,9 @@ class Exhibit {
   std::vector<std::string> said_;
   bool host_ = false;
   bool visitor_ = false;
-  double moved_s_ = -1e9;     // loop time at which somebody last did something
-  double seen_s_ = 0.0;       // loop time of the last tick that was taken in
-  double device_at_m_ = 0.0;  // where a device's tool was when it last moved
+  double moved_s_ = -1e9;     // loop time of the visitor's last action
+  double seen_s_ = 0.0;       // loop time of the last processed tick
+  double device_at_m_ = 0.0;  // position of the device's tool at its last movement
   bool noted_ = false;        // the result of this round is in the tally
 };
 

@@ -1,4 +1,4 @@
-// Where the parts of the window are. A pure function of its size.
+// Layout of the window, a pure function of its size.
 #pragma once
 
 #include <imgui.h>
@@ -19,7 +19,7 @@ struct WindowLayout {
   SceneArea panel;
 };
 
-// The panel beside the scene; below it in a window that is hardly wider than high.
+// The panel is beside the scene; below it where the width is less than 1.1 times the height.
 WindowLayout lay_out(const ImVec2& window);
 
 }  // namespace palpate

@@ -1,5 +1,4 @@
-// The parts of the overlay over the picture that have files of their own. Internal to
-// rendering/panels.
+// The parts of the overlay (scene_overlay.h). Internal to rendering/panels.
 #pragma once
 
 #include <imgui.h>
@@ -25,42 +24,41 @@ inline void text_at(ImFont* font, const ImVec2& at, ImU32 colour, const std::str
   ImGui::GetBackgroundDrawList()->AddText(font, height_of(font), at, colour, text.c_str(), nullptr, wrap);
 }
 
-// Behind text of that place and size, on `list`: a plate with a margin, and at its left a
-// stripe of a colour, where one is given.
+// Draws a plate with a margin behind text at `at` of `size`, optionally with a coloured stripe at its left.
 void draw_plate(ImDrawList& list, const ImVec2& at, const ImVec2& size, const ImVec2& margin, ImU32 colour,
                 std::optional<Rgb> stripe = std::nullopt);
 
-// The verdict, large, below the title; its lower edge.
+// `lift` below: height of other parts at the lower edge of `area`.
+// Draws the verdict below the title. Returns the y of its lower edge.
 float draw_headline(const WindowView& shown, const UiStyle& style, const SceneArea& area);
-// Over the blocks, and above what lies at the lower edge, so high.
+// Draws the names of the blocks.
 void draw_labels(const WindowView& shown, const BlockView& blocks, const UiStyle& style, const SceneArea& area,
                  float lift);
-// From the lower edge up to the big number's top, which stands so far above that edge.
+// The height of draw_big_number plus `lift`.
 float big_number_height(const UiStyle& style, float lift);
-// The error of the active model as one number, in words, and the scale that its
-// colour is from; so far above the lower edge.
+// Draws the error of the active model as a large number with its description, and the colour scale of errors.
 void draw_big_number(const WindowView& shown, const UiStyle& style, const SceneArea& area, float lift);
 
-// What can be opened in a folder: its folders ("name/"), then its files.
+// The entries of a folder that can be opened: its folders ("name/"), then its files.
 std::vector<std::string> pickable_files(const std::string& folder);
 
 inline constexpr auto kDialog = ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove;
-// The next window: in the middle, and never larger than the whole.
+// Places the next ImGui window in the middle and limits its size.
 void begin_in_the_middle();
 
-// Windows in the middle.
+// Dialogs in the middle.
 void draw_device_words(LiveSession& session, const UiStyle& style, const SceneArea& area);
 void draw_help(ViewState& view, const UiStyle& style, const std::vector<WindowCommand>& commands);
 void draw_file_picker(ViewState& view, const OverlayActions& actions);
-// `in_use`: the device that the session has, which nothing else can open.
+// `in_use`: the device of the session, which cannot be opened a second time.
 void draw_device_list(ViewState& view, const std::string& in_use, const OverlayActions& actions);
 void draw_scene_list(const LiveSession& session, ViewState& view, const OverlayActions& actions);
-// How things are shown and compared: every choice with its state.
+// Choices of the display and the comparison.
 void draw_view_list(LiveSession& session, ViewState& view, const OverlayActions& actions);
-// What to do with recordings: which to train on, which to test on.
+// Asks which recordings to train and to test on.
 void draw_offer(ViewState& view, const OverlayActions& actions);
-// Notices, from `top_px` down.
+// Draws notices from `top_px` downwards.
 void draw_toasts(const std::vector<Toast>& toasts, const UiStyle& style, const SceneArea& area, float top_px);
 void draw_data_warning(const ModelsView& models, const UiStyle& style, const SceneArea& area, float top_px);
 

@@ -1,6 +1,5 @@
-// The panel at the right: curves, models, errors, the loop's health. One pair of
-// files and one view (window_view.h) for each part; every one draws at the cursor of
-// the current ImGui window.
+// The panel beside the 3-D view: curves, models, errors, the loop's health. Each part has a pair of files, reads a view
+// of window_view.h, and draws at the cursor of the current ImGui window.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
@@ -14,7 +13,7 @@ namespace palpate {
 
 class SidePanel {
  public:
-  // Into a window at `area`.
+  // Draws an ImGui window at `area`.
   void draw(LiveSession& session, const WindowView& shown, ViewState& view, const UiStyle& style,
             const FrameFigures& frames, const SceneArea& area);
   const CurveColumns& columns() const noexcept { return curves_.columns(); }

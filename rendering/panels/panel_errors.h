@@ -1,4 +1,4 @@
-// The panel's plot below the table: what a tick of each model costs against its error; or the error against the
+// The panel's plot below the table: the error of each model against the time of its tick, or the error against the
 // force in bins.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
@@ -8,10 +8,10 @@
 
 namespace palpate {
 
-// The number is the table's "99 %" column, the time its "ns".
+// The 99 % error against the time of a tick, the columns "99 %" and "ns" of the table.
 void draw_verdict(const ModelsView& models, const UiStyle& style, float height);
 
-// Mean and spread in bins, largest, and the JND.
+// Mean + standard deviation and maximum of the error in each bin of the force, and the JND.
 void draw_error_bins(const ModelsView& models, const UiStyle& style, float height);
 
 }  // namespace palpate

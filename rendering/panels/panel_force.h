@@ -1,5 +1,5 @@
-// The panel's curves: force against time with the JND band, beside it force against depth, and below them how
-// far every model is from the reference: the difference in a band of constant height, or its mean over 50 ms.
+// The panel's curves: force against time with the JND band, force against depth, and the difference of every model
+// from the reference in JND, per tick or as its mean over 50 ms.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
@@ -18,7 +18,7 @@ class ForceCurves {
   const CurveColumns& columns() const noexcept { return curves_; }
 
  private:
-  struct Drawing;  // what all plots of a frame share
+  struct Drawing;  // common data of all plots of a frame
   Drawing begin(const WindowView& shown, ViewState& view, const UiStyle& style);
   void draw_force(const Drawing& drawing, const ImVec2& size);
   void draw_loops(const Drawing& drawing, const ImVec2& size);
@@ -29,9 +29,9 @@ class ForceCurves {
   void finish_plot(const Drawing& drawing, const LivePlot& plot, float (*value)(const CurveColumn&, std::size_t),
                    const char* unit);
   CurveColumns curves_;
-  double force_scale_N_ = 1.0;  // of the force plots, eases
-  double error_scale_ = 2.0;    // of the error plot
-  bool hovered_ = false;        // in this frame
+  double force_scale_N_ = 1.0;  // upper end of the force axes; changes gradually
+  double error_scale_ = 2.0;    // upper end of the error axis; changes gradually
+  bool hovered_ = false;        // the mouse is over a plot in this frame
 };
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// The panel's lowest part: how the loop and the device are.
-// Thread guarantee: the window's thread, inside a frame; the words need no window.
+// The lowest part of the panel: the state of the loop and the device.
+// Thread guarantee: the window's thread, inside a frame; functions that return text need no window.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@
 
 namespace palpate {
 
-// What the quiet line says; `problem` when it is not quiet.
+// The status line of the loop.
 struct HealthWords {
   std::string text;
   bool problem = false;
-  bool past = false;  // over, shown until the user has seen it (LiveSession::reset_figures)
+  bool past = false;  // a past alarm that is not acknowledged (LiveSession::reset_figures)
 };
-// `recent_fps`: frames in the last second; 0: not known.
+// `recent_fps`: frames in the last second; 0: unknown.
 HealthWords health_words(const HealthView& health, double recent_fps);
-// Age of the sample, round trip and heat, of a device that has them; else empty.
+// Age of the sample, rate, round trip, stiffness limit and heat of a real device; else empty.
 std::string device_line(const HealthView& health);
 
-// What draw_health takes of the panel's height, at most as a rule.
+// Estimated height of draw_health.
 float health_height(const HealthView& health, const ViewState& view);
 void draw_health(const HealthView& health, ViewState& view, const UiStyle& style, const FrameFigures& frames);
 

@@ -1,4 +1,4 @@
-// Small parts that several panels use, at the cursor of the current ImGui window.
+// Small parts of several panels. They draw at the cursor of the current ImGui window.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,21 @@
 
 namespace palpate {
 
-// The colour of a model: of its method, another shade for each further one of it.
+// The colour of a model's method, in another shade for each further model of that method.
 Rgb slot_colour(const ModelsView& models, std::size_t slot, Theme theme);
-// The mark of a model: filled, or hollow for the recipe of 2009.
+// Draws the mark of a model: a disc, hollow for the recipe of the paper (2009).
 void draw_mark(ImDrawList& list, const ImVec2& middle, float radius, bool paper, ImU32 colour, const UiStyle& style);
 
-// The beginning of `text` that fits into `room` pixels, ending in "..." where it is cut.
+// `text`, cut at a blank and with "..." at its end where it is wider than `room` pixels.
 std::string fitting(const std::string& text, float room);
-// "33,275"
+// With thousands separators: "33,275".
 std::string grouped(std::uint64_t count);
-// An error over the JND.
+// An error over the JND with two or three digits.
 std::string jnd_text(double error_over_jnd);
-// Second-rank words on the rest of the line; cut where they do not fit, and then whole
-// in a tooltip.
+// Draws secondary text on the rest of the line. Where it does not fit it is cut, and a tooltip has all of it.
 void quiet_words(const std::string& text);
 void section_title(const UiStyle& style, const char* title);
-// A tooltip for the item before, below it or above it, never over it.
+// A tooltip for the last item, below or above it.
 void tip(const char* text);
 
 }  // namespace palpate

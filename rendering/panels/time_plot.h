@@ -1,4 +1,4 @@
-// A plot over time as an instrument: the mouse reads values, zooms, goes back and forth.
+// Mouse control of a plot over time: reading of values, zoom, scrolling.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
@@ -11,10 +11,9 @@
 
 namespace palpate {
 
-// x of the plot: seconds since `time.zero_s`.
-// Wheel: back in time. Drag: shows what was dragged over, standing still. Double click:
-// runs again. Draws what is dragged over, and the time under the mouse. Whether the
-// mouse is over it.
+// x of the plot is in seconds since `time.zero_s`. The wheel pauses and scrolls; a drag zooms to its range and pauses;
+// a double click resumes. Draws the range of the drag and the time under the mouse. Returns whether the mouse is over
+// the plot.
 bool handle_time_plot(const LivePlot& plot, const UiStyle& style, const ForceHistory& history, CurveTime& time,
                       double end_s);
 
@@ -22,16 +21,16 @@ struct Reading {
   std::string text;
   Rgb colour{0.0F};
 };
-// Beside the time under the mouse, on the plot that the mouse is over.
+// Draws a box with readings beside the time under the mouse, if the mouse is over the plot.
 void draw_readings(const LivePlot& plot, const UiStyle& style, const CurveTime& time,
                    const std::vector<Reading>& readings);
 
 struct CurveLabel {
   std::string text;
   Rgb colour{0.0F};
-  float y_px = 0.0F;  // where its curve ends
+  float y_px = 0.0F;  // end of its curve
 };
-// Inside the frame, where the curve ends.
+// Draws the label inside the frame at the end of the curve.
 void draw_label(const LivePlot& plot, const CurveLabel& label);
 
 }  // namespace palpate

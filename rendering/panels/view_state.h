@@ -1,4 +1,4 @@
-// What the person at the window has set, and what the window knows of itself.
+// The state of the window: the user's settings, dialogs, the time that the curves show, figures of the frames.
 // Thread guarantee: values of the window's thread.
 #pragma once
 
@@ -16,25 +16,25 @@
 
 namespace palpate {
 
-inline constexpr double kShown_s = 10.0;       // of the curves at a time, as long as nobody zooms
-inline constexpr double kLeastShown_s = 0.02;  // of the curves, zoomed in
+inline constexpr double kShown_s = 10.0;       // time span of the curves without zoom
+inline constexpr double kLeastShown_s = 0.02;  // smallest time span of the curves
 
-inline constexpr float kSmallestText = 0.8F;  // times the usual size
+inline constexpr float kSmallestText = 0.8F;  // factor on the size of text
 inline constexpr float kLargestText = 1.6F;
 
 // The part of the time that the curves show.
 struct CurveTime {
-  double zero_s = 0.0;  // loop time at which the axes' time begins
+  double zero_s = 0.0;  // loop time of the axes' 0
   double shown_s = kShown_s;
-  // Curves stand still, and end so long before.
+  // Paused curves end at paused_at_s (loop time) - scrolled_back_s.
   bool paused = false;
-  double paused_at_s = 0.0;  // loop time
+  double paused_at_s = 0.0;
   double scrolled_back_s = 0.0;
-  // Loop time under the mouse, and where it began to drag; NaN: nothing of that.
+  // Loop time under the mouse, and at the beginning of a drag; NaN: none.
   double hover_s = std::numeric_limits<double>::quiet_NaN();
   double drag_from_s = std::numeric_limits<double>::quiet_NaN();
 
-  // The loop time at the right edge of the curves; `now_s` while they run.
+  // Loop time at the right edge of the curves; `now_s` unless paused.
   double end_s(double now_s) const noexcept { return paused ? paused_at_s - scrolled_back_s : now_s; }
   void pause(double at_s) noexcept;
   void run() noexcept {
@@ -42,76 +42,76 @@ struct CurveTime {
     scrolled_back_s = 0.0;
     shown_s = kShown_s;
   }
-  // Stops and shows what lies between two times, in either order.
+  // Pauses and shows the range between two times, in either order.
   void zoom(double one_s, double other_s) noexcept;
-  // While paused; not beyond `oldest_s`, the first there is.
+  // Scrolls paused curves back by `by_s`, at most to `oldest_s`.
   void scroll_back(double by_s, double oldest_s) noexcept;
 };
 
-// The table of models: what it is sorted by, and the name that is being typed.
+// State of the table of models.
 struct TableState {
-  int column = -1;  // none: in the order in which they were asked for
+  int column = -1;  // the column that it is sorted by; -1: by slot
   bool rising = false;
-  std::array<char, 64> name{};
+  std::array<char, 64> name{};  // the name that is being typed
 };
 
-// A recording that somebody gave, and what it is to be.
+// A recording that the user opened, and its role.
 struct OfferedRecording {
   enum class Role : std::uint8_t { train, test, none };
   std::string path;
-  std::vector<std::string> words;  // how another program's table was understood
+  std::vector<std::string> words;  // columns and guesses of an import
   Role role = Role::train;
 };
 
-// Recordings that wait for an answer: which to train on, which to test on.
+// Recordings whose roles the user has to confirm.
 struct Offer {
   std::vector<OfferedRecording> recordings;
-  std::string problem;  // why a file is none
+  std::string problem;  // why a file could not be read
   bool any() const noexcept { return !recordings.empty() || !problem.empty(); }
-  // Of several the last one is the test, until somebody says otherwise.
+  // Adds a recording. Of several the last one becomes the test.
   void add(OfferedRecording recording);
   std::vector<std::string> training() const;
   std::string test() const;           // empty: none
-  void make_test(std::size_t index);  // and no other
+  void make_test(std::size_t index);  // makes it the only test
 };
 
-// The file that is looked for.
+// State of the dialog that opens files.
 struct FilePicker {
-  std::string folder;              // empty: not yet
-  std::vector<std::string> files;  // in it
-  std::array<char, 512> path{};    // that is typed
+  std::string folder;              // empty: the dialog is closed
+  std::vector<std::string> files;  // in `folder`
+  std::array<char, 512> path{};    // the path that is being typed
 };
 
-// What outlives a run: how things are shown, never what is shown.
+// Settings that are kept between runs.
 struct Settings {
   Theme theme = Theme::light;
   std::size_t block_count = 4;      // 1, 2 or 4
-  bool difference = true;           // below the force: of every tick, in the band; else its mean over 50 ms
-  float text_size = 1.0F;           // times the usual
+  bool difference = true;           // the lower curves show the difference of every tick; else its mean over 50 ms
+  float text_size = 1.0F;           // factor
   std::string line_up;              // empty: the default
   std::vector<std::string> recent;  // files that were opened, the newest first
   CameraTurn camera;
 };
 
-// Windows over the picture, and what is in them.
+// Dialogs over the picture and their contents.
 struct Dialogs {
   bool help = false;
   bool file_list = false;   // files to open
   bool scene_list = false;  // scenes to choose from
   bool device_list = false;
-  bool view_list = false;  // how things are shown
+  bool view_list = false;  // choices of the display
   Offer offer;
   FilePicker picker;
-  std::vector<DeviceChoice> devices;  // empty: not looked for yet
+  std::vector<DeviceChoice> devices;  // empty: no search has finished
 
   bool any() const noexcept { return help || file_list || scene_list || device_list || view_list || offer.any(); }
 };
 
-// What an exhibit asks of the picture.
+// The exhibit's control of the picture.
 struct ExhibitState {
   bool on = false;
-  bool blind = false;         // which model is active is a secret
-  bool tool_is_held = false;  // out of the block, whatever the mouse does
+  bool blind = false;         // hides which model is active
+  bool tool_is_held = false;  // keeps the tool out of the block; the mouse has no effect
 };
 
 struct ViewState {
@@ -120,23 +120,23 @@ struct ViewState {
   ExhibitState exhibit;
   CurveTime time;
   TableState table;
-  bool feel = false;                                   // the force in the hand is scaled
+  bool feel = false;                                   // shows the sliders that scale the rendered force
   bool exaggerated = false;                            // arrows show ten times the difference
-  bool centres_together = true;                        // the slider moves all models that have centres
-  int requested_centres = 0;                           // of the slider, as long as it is held
-  bool details = false;                                // of the loop, faults
-  bool has_pressed = false;                            // the person at the mouse knows how
-  std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse: its curves are named
-  bool verdict = true;                                 // speed against error; else the error against the force
+  bool centres_together = true;                        // the slider of centres refits all models that have centres
+  int requested_centres = 0;                           // last value of that slider
+  bool details = false;                                // shows the figures and faults of the loop
+  bool has_pressed = false;                            // the user has pressed a block, so that the hint is hidden
+  std::size_t pointed = static_cast<std::size_t>(-1);  // slot of the row under the mouse; its curves are labelled
+  bool verdict = true;                                 // plots error against time of a tick; else error against force
 };
 
-// How long frames take, and how many came in the last second.
+// Frame times and frame rate.
 struct FrameFigures {
-  TimeHistogram times;  // from one frame's end to the next
+  TimeHistogram times;  // from the end of one frame to that of the next
   std::uint64_t frames = 0;
   double seconds = 0.0;
   double recent_fps = 0.0;
-  float picture_scale = 1.0F;  // of the pixels a side of the 3-D view, see Resolution
+  float picture_scale = 1.0F;  // see Resolution::scale
 };
 
 struct Toast {

@@ -1,5 +1,5 @@
-// What the window can be asked for. One table of these rows (rendering/app/
-// demo_commands.cpp) is where keys, buttons, tooltips and the list of keys come from.
+// A command of the window. Keys, buttons, tooltips and the list of keys come from one table of commands
+// (rendering/app/demo_commands.cpp).
 // Thread guarantee: values of the window's thread.
 #pragma once
 
@@ -13,31 +13,31 @@ namespace palpate {
 
 struct WindowCommand {
   enum class When : std::uint8_t {
-    pressed,   // once
-    repeated,  // and again as long as the keyboard repeats it
-    held,      // in every frame
+    pressed,   // once for each press
+    repeated,  // also when the keyboard repeats the key
+    held,      // in every frame while the key is held
   };
-  std::vector<int> keys{};                 // GLFW's, any of them; none: `shown` says what does it
-  std::string shown{};                     // in the list, in place of the keys' own names
-  std::string label{};                     // of its button or its row in the menu; empty: none
+  std::vector<int> keys{};                 // of GLFW, any of them; empty: `shown` describes the input
+  std::string shown{};                     // replaces the names of the keys in the list
+  std::string label{};                     // of its button or menu item; empty: none
   std::string help{};                      // one line
-  std::function<void(std::size_t)> run{};  // which of the keys; 0 for the button
+  std::function<void(std::size_t)> run{};  // the argument is the index in `keys`; 0 for the button
   When when = When::pressed;
-  bool control = false;        // together with Ctrl
-  bool bar = false;            // a button of its own; else, with a label, a row of the menu
-  bool replay = false;         // only while a recording is replayed, with the button in its bar
-  std::function<bool()> on{};  // whether it is in force, which its button shows
-  std::string label_on{};      // then, where it is another
+  bool control = false;        // with Ctrl
+  bool bar = false;            // has a button; else, with a label, a menu item
+  bool replay = false;         // available only during a replay; its button is in the bar of the replay
+  std::function<bool()> on{};  // whether it is switched on, which its button shows
+  std::string label_on{};      // label while it is switched on; empty: `label`
 };
 
-// "Space", "H": the name of a key of GLFW that stands in the table.
+// The name of a key of GLFW that occurs in the table: "Space", "H".
 std::string key_name(int key);
-// How the list of keys and tooltips call it: "Ctrl+Q", "H, /".
+// The keys in the list and in tooltips: "Ctrl+Q", "H, /".
 std::string shown_keys(const WindowCommand& command);
-// The button's text as it is now.
+// The present label.
 const std::string& shown_label(const WindowCommand& command);
 
-// Its button with its tooltip, at the cursor; whether it was pressed.
+// Draws the button with its tooltip at the cursor. Returns whether it was pressed.
 bool command_button(const WindowCommand& command);
 
 }  // namespace palpate

@@ -1,6 +1,5 @@
-// What the window shows in a frame, as plain data: made once a frame from the session, and then read by the
-// blocks, the words over them, the panels and the exhibit alike, so that they tell one story. A panel's
-// sentences are tested without a session, a thread or a device.
+// The contents of a frame as plain data. It is made once a frame from the session, so that blocks, overlay, panels and
+// exhibit are consistent, and the texts can be tested without a session.
 // Thread guarantee: values of the window's thread.
 #pragma once
 
@@ -24,10 +23,10 @@ namespace palpate {
 
 class LiveSession;
 
-// In place of a slot: the block of what the models are compared with.
+// Instead of a slot: the block of a reference that is no model.
 inline constexpr std::size_t kReferenceBlock = static_cast<std::size_t>(-1);
 
-// A slot: its model and how it does.
+// A slot: its model and its errors.
 struct ModelView : ModelInfo, ModelFigures {};
 
 // The models in the order of their slots.
@@ -36,58 +35,58 @@ struct ModelsView {
   std::size_t selected = 0;
   bool in_contact = false;
   bool compared = true;                     // there is a reference
-  std::size_t reference = kReferenceBlock;  // the slot of it, where it is a model
-  std::string off_from = "the material";    // what errors are off from, in few words
-  std::string counted;                      // over which samples errors are, in words
-  bool knows_this = false;                  // the recording that is replayed is one of the training
+  std::size_t reference = kReferenceBlock;  // its slot, if it is a model
+  std::string off_from = "the material";    // the reference in few words
+  std::string counted;                      // see counted_words
+  bool knows_this = false;                  // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
   // The last tick that the curves show.
   HistoryPoint now;
   bool any_now = false;
 
-  // The slots that are not hidden, in order: what keys and tables count.
+  // The slots that are not hidden, in order. Keys and tables number them.
   std::vector<std::size_t> listed() const;
-  // 1 for the first of them.
+  // The number of a listed slot, from 1.
   std::size_t number_of(std::size_t slot) const;
-  // The active model; null: none is ready.
+  // The active model; null unless it is ready.
   const ModelView* active() const noexcept;
-  // Whether the active model is used where nothing was recorded.
+  // Whether the active model is in contact outside its training domain, except in a replay of training data.
   bool out_of_domain() const noexcept;
 };
 
 struct HealthView {
   LoopStatistics loop;
   RtStatus scheduling;
-  double missed_of_late = 0.0;  // share of deadlines, over some ten seconds
+  double missed_of_late = 0.0;  // see FaultLog
   double now_s = 0.0;           // loop time
   std::vector<FaultEvent> faults;
-  std::vector<std::string> alarms;  // not yet seen by the user
+  std::vector<std::string> alarms;  // not acknowledged yet
   std::string device_name;
   DeviceHealth device;
-  double heat_share = 0.0;                      // of the motor's thermal budget
+  double heat_share = 0.0;                      // see LoopSnapshot
   double stiffness_share = 1.0, late_ms = 0.0;  // see LoopSnapshot
 };
 
 struct WindowView {
-  std::uint64_t number = 0;  // of all that were made so far
+  std::uint64_t number = 0;  // number of the view, from 1
   ModelsView models;
   HealthView health;
-  // What the blocks show: slots, in order, the active one and the verdict's always among them; of several the
-  // last is the reference's own (kReferenceBlock), where that is no model.
+  // The slots of the blocks, ascending: the active model, then that of the verdict, then others, as far as there is
+  // room. With several blocks the last one is kReferenceBlock where the reference is no model.
   std::vector<std::size_t> stage;
-  std::string reference_block;  // its name
+  std::string reference_block;  // name of the block of the reference
   std::string reference_words;
   double reference_N = std::numeric_limits<double>::quiet_NaN();
-  double usual_force_N = 0.0;  // the axis holds it always, so that it does not jump
+  double usual_force_N = 0.0;  // the axes always include these two
   double usual_depth_m = 0.0;
-  const ForceHistory* history = nullptr;  // of the session; never null when made from one
+  const ForceHistory* history = nullptr;  // of the session; not null in a result of window_view
 };
 
 WindowView window_view(const LiveSession& session, const ViewState& view);
 HealthView health_view(const LiveSession& session);
 
-// Over which samples errors are counted, since when, and what is left out, in words.
+// The samples that the errors are over, since when, and what is excluded, in words.
 std::string counted_words(const LiveSession& session);
 
 }  // namespace palpate
