@@ -1,4 +1,4 @@
-// The picture: one to four blocks on a table, each under the same probe. Knows no model and no session.
+// The 3-D view: one to four blocks on a table, each with a probe. It depends on neither models nor session.
 //
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
@@ -21,49 +21,47 @@
 
 namespace palpate {
 
-// One block as it is now.
+// The state of one block and its probe.
 struct BlockPose {
   float tool_m = 0.0F;  // position of the tip, positive inside
   float dent_m = 0.0F;
   float error_over_jnd = 0.0F;
   float force_N = 0.0F;
   Rgb arrow{0.0F};
-  bool chosen = false;      // the active model
-  bool shows_error = true;  // the dent shows the error's colour
+  bool chosen = false;      // the active model, marked by a rail
+  bool shows_error = true;  // the dent has the colour of the error
 };
-// How much deeper than they are presses are drawn; the window says so.
+// Factor by which depths are exaggerated; the window's title says so.
 inline constexpr float kDeeperDents = 2.0F;
 
 class BlockView {
  public:
-  // `smoothing`: none, as suits the renderer of the OpenGL context. Errors: a shader is missing or is not taken by
-  // the driver.
+  // `smoothing`: empty: chosen for the renderer of the OpenGL context. Errors: a shader is missing or does not compile.
   static Result<std::unique_ptr<BlockView>> create(const Scene& scene, std::optional<Smoothing> smoothing = {});
 
-  // `blocks`: 1 to 4. Fills the viewport; `scale`: with so many of its pixels a side, see SmoothTarget.
+  // Draws 1 to 4 blocks into the viewport. `scale`: see SmoothTarget::begin.
   void draw(const std::vector<BlockPose>& blocks, const Viewport& viewport, Theme theme, float scale = 1.0F);
   bool filters_edges() const noexcept { return smooth_.filters(); }
 
   Camera& camera() noexcept { return camera_; }
-  // Frames so many blocks; eases there unless `at_once`.
+  // Frames `count` blocks, with a transition unless `at_once`.
   void show(std::size_t count, bool at_once);
 
-  // Middle of block `index` of `count` on the table, top at y = 0.
+  // Middle of the top of block `index` of `count`, at y = 0.
   glm::vec3 place(std::size_t index, std::size_t count) const;
-  // A point of block `index`, relative to the middle of its top, in the
-  // viewport's pixels, y down.
+  // Pixel position (y down) in a viewport of `size` of a point relative to the middle of the top of block `index`.
   glm::vec2 on_screen(std::size_t index, std::size_t count, const glm::vec3& point, const glm::vec2& size) const;
-  // How far the tool moves inwards for a pixel downwards, metres.
+  // Motion of the tool inwards per pixel downwards, m.
   float depth_per_pixel(std::size_t index, std::size_t count, const glm::vec2& size) const;
   const BlockGeometry& geometry() const noexcept { return geometry_; }
 
  private:
-  // The bodies of one block, as fine as they are seen.
+  // The meshes of one block and its probe, at one level of detail.
   struct Bodies {
     Bodies(const BlockGeometry& block, float dome_m, const Detail& detail);
     GpuMesh top, sides, ball, sensor, handle, shaft, tip, rail;
   };
-  // What a picture of all that stands still depends on.
+  // All that the picture of the static parts depends on.
   struct Still {
     glm::mat4 view_projection{0.0F};
     int width = 0, height = 0;
@@ -74,7 +72,7 @@ class BlockView {
 
   BlockView(const Scene& scene, Shader block, Shader solid, Shader table, std::optional<EdgeFilter> edges);
   float arrow_length_m(const BlockPose& pose) const;
-  glm::vec3 arrow_foot() const;  // beside the middle of a block
+  glm::vec3 arrow_foot() const;  // relative to the middle of a block's top
   const Bodies& bodies(std::size_t count, const Viewport& viewport) const;
   bool refresh_still(std::size_t count, const Bodies& bodies, Theme theme);
   void draw_all_still(std::size_t count, const Bodies& bodies, Theme theme) const;
@@ -87,13 +85,13 @@ class BlockView {
   void begin_block(const DentShape& dent, const glm::vec3& place) const;
 
   BlockGeometry geometry_;
-  float dome_m_;  // rises so far over its block, whose own top lies below the undisturbed one
+  float dome_m_;  // height of a dome over its block, whose flat top is lower by it
   Finish finish_;
   Rgb block_colour_;
   Rgb tool_colour_;
-  float size_m_;  // of what the camera frames for one block
+  float size_m_;  // size of one block with its probe, for the camera
   float arrow_m_per_N_;
-  float arrow_width_;  // times the usual
+  float arrow_width_;  // factor
   Shader block_shader_, solid_shader_, table_shader_;
   Bodies fine_, coarse_;
   GpuMesh square_;

@@ -1,5 +1,4 @@
-// A camera that orbits a point above the table, with limits, and eases to where
-// it is asked to go.
+// A camera that orbits a point above the table within limits and moves smoothly to its target.
 // Thread guarantee: value type.
 #pragma once
 
@@ -9,8 +8,7 @@
 
 namespace palpate {
 
-// How a person has turned a camera away from where it was put: what outlives a change
-// of what is framed.
+// The user's rotation and zoom relative to the framed view. It is kept when another view is framed.
 struct CameraTurn {
   float yaw_rad = 0.0F;
   float pitch_rad = 0.0F;
@@ -20,17 +18,17 @@ struct CameraTurn {
 
 class Camera {
  public:
-  // To see blocks that together reach `radius_m` from the middle, from so far to
-  // the right of the front. `at_once`: without easing.
+  // Frames blocks within `radius_m` of the middle, seen from `yaw_rad` to the right of the front. `at_once`: without
+  // a transition.
   void frame(float radius_m, float yaw_rad, bool at_once);
   void orbit(float yaw_rad, float pitch_rad);
-  // Factor on the distance: below 1 nearer.
+  // Multiplies the distance by `factor`.
   void zoom(float factor);
-  // Back to where it was put.
+  // Back to the framed view.
   void go_home() { turn({}); }
   CameraTurn turned() const noexcept { return turn_; }
   void turn(const CameraTurn& turn);
-  // Eases, over about 0.2 s.
+  // Moves towards the target, with a time constant of 0.12 s.
   void advance(float seconds);
 
   glm::vec3 eye() const;
@@ -44,16 +42,15 @@ class Camera {
     float distance_m = 0.4F;
     bool operator==(const Pose&) const = default;
   };
-  void aim();  // at `framed_`, turned
+  void aim();  // computes `target_` from `framed_` and `turn_`
   Pose now_;
   Pose target_;
-  Pose framed_;  // as put
+  Pose framed_;
   CameraTurn turn_;
   float radius_m_ = 0.1F;
 };
 
-// Where `world` is in a viewport of `size` pixels, y down; behind the eye: far
-// outside.
+// The position of `world` in a viewport of `size` pixels, y down; far outside when it is behind the camera.
 glm::vec2 project(const glm::mat4& view_projection, const glm::vec3& world, const glm::vec2& size);
 
 }  // namespace palpate

@@ -1,6 +1,5 @@
-// Triangles in memory and on the graphics card.
-// Thread guarantee: building is pure; GpuMesh belongs to the thread of the
-// OpenGL context.
+// Triangle meshes in memory and on the graphics card.
+// Thread guarantee: functions are pure; GpuMesh belongs to the thread of the OpenGL context.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +19,25 @@ struct Mesh {
   std::vector<std::uint32_t> triangles;  // three indices each, counter-clockwise from outside
 };
 
-// How finely bodies are made: few triangles where they are small on the screen, for
-// where the processor draws, a triangle costs as much as a hundred pixels.
+// Level of detail. Small bodies have few triangles, because a triangle costs a software renderer as much as a hundred
+// pixels.
 struct Detail {
   int corner;  // steps around each corner of a block
   int side;    // points on each of its sides, between the corners
   int rings;   // on its top
-  int fillet;  // steps over its edge
+  int fillet;  // steps over its rounded edge
   int around;  // sides of a body of revolution
 };
 inline constexpr Detail kFine{10, 6, 24, 6, 28};
 inline constexpr Detail kCoarse{5, 4, 14, 3, 16};
 
-// The flat top of a block with rounded corners and edges, at y = 0 around the y axis;
-// its rings lie denser towards the middle, where it is pressed. And all the rest of it.
+// The flat top of a block with rounded corners and edges, at y = 0 around the y axis. Its rings are denser towards the
+// middle, where it is pressed.
 Mesh block_top(const glm::vec2& size_m, const Detail& detail);
+// The rounded edge and the sides of that block.
 Mesh block_sides(const glm::vec2& size_m, float height_m, const Detail& detail);
 
-// A low rail on the ground, y = 0, around such a block and so far from it; lit as if it lay.
+// A low rail around such a block, with a gap, on the ground y = 0. Its normals point upwards.
 Mesh rail_mesh(const glm::vec2& size_m, float gap_m, float height_m, const Detail& detail);
 
 // A body of revolution around y: `profile` has (radius, y) from bottom to top.

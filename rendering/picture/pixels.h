@@ -1,4 +1,4 @@
-// What is drawn into before it comes to the window: colour and depth of a picture.
+// A framebuffer object with colour and depth.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
@@ -6,16 +6,16 @@ namespace palpate {
 
 class Pixels {
  public:
-  // `samples`: of every pixel; 0: the pixel itself, and its colour is a texture.
+  // `samples` per pixel; 0: no multisampling, so that `colour` is a plain texture.
   explicit Pixels(int samples) : samples_(samples) {}
   Pixels(const Pixels&) = delete;
   Pixels& operator=(const Pixels&) = delete;
   ~Pixels() { release(); }
 
-  // Draws into them from here on; what was in them is kept as long as their size is.
-  // False: the driver refuses, and nothing has changed.
+  // Makes it the target of drawing. The contents are kept unless the size changes. False: the driver refuses; the
+  // contents are lost.
   bool draw_into(int width, int height);
-  // All of them, sized to all of `other`'s.
+  // Copies colour and depth into `other`, scaled to its size, and makes `other` the target of drawing.
   void copy_to(const Pixels& other) const;
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }

@@ -1,4 +1,4 @@
-// How many pixels of the picture are drawn where the processor draws: fewer while frames are late.
+// Adapts the resolution of the 3-D view for a software renderer: it is reduced while frames are late.
 // Thread guarantee: value type.
 #pragma once
 
@@ -6,16 +6,16 @@ namespace palpate {
 
 class Resolution {
  public:
-  static constexpr float kLeast = 0.67F;  // of the pixels a side
+  static constexpr float kLeast = 0.67F;  // smallest `scale`
 
-  // What a frame took, without the wait for the next one to be due.
+  // Adds the computation time of a frame, without the wait for the next one.
   void add(double busy_s) noexcept;
-  float scale() const noexcept;
+  float scale() const noexcept;  // share of the pixels per side, kLeast to 1
 
  private:
-  int step_ = 0;  // below the full resolution
+  int step_ = 0;  // 0: full resolution
   int frames_ = 0;
-  int good_ = 0;  // seconds in a row that leave room for more pixels
+  int good_ = 0;  // successive periods of 60 frames in which the next larger resolution would fit
   double busy_s_ = 0.0;
 };
 

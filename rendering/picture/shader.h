@@ -1,4 +1,4 @@
-// A pair of shaders from assets/shaders, compiled and linked.
+// A shader program from assets/shaders.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
@@ -15,8 +15,8 @@ namespace palpate {
 
 class Shader {
  public:
-  // Reads `vertex`.vert and `fragment`.frag in `folder`, each behind the text of `parts`, of which the first begins
-  // every shader. Errors: no such file; what the driver says against it.
+  // Compiles and links `vertex`.vert and `fragment`.frag in `folder`, each preceded by the text of the files
+  // `parts`.glsl. Errors: a file cannot be read; the driver does not compile or link it, with its message.
   static Result<Shader> load(const std::string& folder, const std::string& vertex, const std::string& fragment,
                              const std::vector<std::string>& parts = {"common"});
   Shader(Shader&& other) noexcept;
@@ -24,7 +24,7 @@ class Shader {
   ~Shader();
 
   void use() const;
-  // Of the shader in use; a uniform that does not exist is ignored, as OpenGL has it.
+  // Set a uniform of the shader in use. A uniform that does not exist is ignored.
   void set(const char* name, float value) const;
   void set(const char* name, int value) const;
   void set(const char* name, const glm::vec2& value) const;

@@ -1,7 +1,6 @@
-// The picture with smooth edges, for itself alone: text and curves have smooth edges of their own.
-// A graphics card takes several samples a pixel. Where the processor draws, each sample costs as much as a pixel: there
-// the edges of the finished picture are filtered (assets/shaders/edges.frag), what stands still is drawn
-// once, and a picture of fewer pixels is enlarged.
+// Antialiasing of the 3-D view; text and curves have their own. A graphics card uses multisampling. With a software
+// renderer each sample would cost as much as a pixel: there the edges of the finished picture are filtered
+// (assets/shaders/edges.frag), static parts are drawn once, and the picture may have fewer pixels and is enlarged.
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
@@ -13,14 +12,14 @@
 
 namespace palpate {
 
-// In pixels of the framebuffer, from its lower left corner.
+// In pixels of the framebuffer; the origin is the lower left corner.
 struct Viewport {
   int x = 0, y = 0, width = 0, height = 0;
   bool operator==(const Viewport&) const = default;
 };
 
 enum class Smoothing { samples, filter };
-// Of the renderer that OpenGL names: the filter where it is a program.
+// For the renderer's name of OpenGL: the filter for a software renderer, else multisampling.
 Smoothing smoothing_for(std::string_view renderer) noexcept;
 
 struct EdgeFilter {
@@ -29,24 +28,25 @@ struct EdgeFilter {
 
 class SmoothTarget {
  public:
-  // `filter`: none for several samples a pixel.
+  // `filter`: empty for multisampling.
   explicit SmoothTarget(std::optional<EdgeFilter> filter);
   SmoothTarget(const SmoothTarget&) = delete;
   SmoothTarget& operator=(const SmoothTarget&) = delete;
   ~SmoothTarget();
 
   bool filters() const noexcept { return filter_.has_value(); }
-  // Of what is drawn into after `begin`, pixels.
+  // Size of the picture after `begin`, pixels.
   int width() const noexcept { return pixels_.width(); }
   int height() const noexcept { return pixels_.height(); }
-  // What follows is drawn for that part of the window, at `scale` of its pixels a side, 0..1, where edges are
-  // filtered. Where the driver refuses, straight into the window.
+  // Begins the picture for a part of the window. With the filter it has `scale` (0..1) times the pixels per side. Where
+  // the driver refuses, drawing goes directly into the window.
   void begin(const Viewport& viewport, float scale);
-  // What follows stands still, and is kept for `use_still`. False: it is not, draw it always.
+  // Begins the static part, which is kept for `use_still`. False: the driver refuses; draw the static part in each
+  // frame.
   bool begin_still();
-  // What stood still is in the picture, colour and depth, and what follows comes on top.
+  // Copies colour and depth of the static part into the picture. The next draws go on top of it.
   void use_still();
-  // Onto the window, which is drawn to again.
+  // Copies the picture to the window and makes the window the target again.
   void end();
 
  private:
@@ -56,7 +56,7 @@ class SmoothTarget {
   Viewport viewport_;
   Pixels pixels_, still_, smoothed_;
   bool refused_ = false;
-  unsigned no_vertices_ = 0;  // three corners need no buffer
+  unsigned no_vertices_ = 0;  // vertex array without buffers, for a triangle
 };
 
 }  // namespace palpate
