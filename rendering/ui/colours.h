@@ -1,6 +1,6 @@
-// Every colour that has a meaning, once: methods, reference, JND scale, themes.
-// Sources: Okabe & Ito (2008) for the methods; the scale ends in a green of viridis
-// (van der Walt & Smith 2015, CC0).
+// All colours with a meaning: methods, reference, error scale, themes.
+// Sources: Okabe & Ito (2008) for the methods; the error scale ends in a green of viridis (van der Walt & Smith 2015,
+// CC0).
 // Thread guarantee: pure functions.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-using Rgb = glm::vec3;  // 0..1, as on the screen (sRGB)
+using Rgb = glm::vec3;  // 0..1, sRGB
 
 enum class Theme { light, dark };
 
@@ -20,29 +20,29 @@ struct Palette {
   Rgb panel;
   Rgb raised;  // controls
   Rgb text;
-  Rgb quiet;  // second-rank text, axes
+  Rgb quiet;  // secondary text, axes
   Rgb grid;
   Rgb band;    // the JND band
-  Rgb fault;   // red, for nothing else
+  Rgb fault;   // red, used for faults only
   Rgb rubber;  // the probe's handle
 };
 const Palette& palette(Theme theme) noexcept;
 
-// Ratio of luminances as WCAG 2 defines it, 1 to 21.
+// Contrast ratio of WCAG 2, 1 to 21.
 double contrast(const Rgb& a, const Rgb& b) noexcept;
-// What carries a meaning has at least this much against what is behind it (WCAG 2.1, 1.4.11).
+// Smallest contrast of a colour with a meaning to its background (WCAG 2.1, 1.4.11).
 inline constexpr double kLeastContrast = 3.0;
 
-// Of a fitting method (scenes/scene/scene.h), lighter or darker where the theme asks for it; one without a hue is
-// black or white, and so is what is not known.
+// The colour of a method (method_rgb in scenes/scene/scene.h), changed as far as the contrast requires. Methods without
+// a hue and unknown names are black, or white in the dark theme.
 Rgb method_colour(std::string_view method, Theme theme);
-// Of the `which`-th model of one method, 0 for the first: another shade of it.
+// A shade of it for the `which`-th model of the method, from 0.
 Rgb method_colour(std::string_view method, Theme theme, std::size_t which);
 // The measured or true force.
 inline constexpr Rgb kReferenceColour{0.0F, 0.62F, 0.45F};
 
-// Error over the JND: from 0 to 1 an even scale from nearly white to green, above it
-// magenta, which neither the scale nor any block has.
+// Error over the JND: a perceptually uniform scale from nearly white (0) to green (1), and magenta above 1, which
+// neither the scale nor any block contains.
 Rgb error_colour(double error_over_jnd) noexcept;
 inline constexpr Rgb kAboveJndColour{0.93F, 0.10F, 0.55F};
 

@@ -1,4 +1,4 @@
-// A frame with axes on an ImDrawList, and what is drawn into it.
+// A plot with axes on an ImDrawList.
 // Thread guarantee: the window's thread, inside a frame.
 #pragma once
 
@@ -16,23 +16,23 @@ struct Range {
   double to = 1.0;
 };
 
-// The step of 1, 2 or 5 times a power of ten that gives at most `most` intervals.
+// The smallest step of 1, 2 or 5 times a power of ten that gives at most `most` intervals.
 double tick_step(double span, int most) noexcept;
-// The next such number of "1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten" at or above.
+// Rounds up to the next 1, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for values <= 0.
 double round_up(double value) noexcept;
 
 struct PlotAxes {
   Range x, y;
-  const char* x_unit = "";  // these end the last label
+  const char* x_unit = "";  // appended to the last label
   const char* y_unit = "";
   bool x_numbers = false;   // whether to label the x axis
-  float right_room = 0.6F;  // for labels beside the frame, in heights of a line
-  bool decades = false;     // the values are logarithms; the numbers are not
+  float right_room = 0.6F;  // margin for labels beside the frame, in line heights
+  bool decades = false;     // values are decimal logarithms; labels are not
 };
 
 class LivePlot {
  public:
-  // Takes `size` at the cursor and draws frame, grid and numbers.
+  // Reserves `size` at the cursor, draws grid and labels, and begins to clip to the frame.
   LivePlot(const UiStyle& style, const ImVec2& size, const PlotAxes& axes);
   // Ends the clipping.
   ~LivePlot();
@@ -51,14 +51,14 @@ class LivePlot {
   ImDrawList& list() const noexcept { return *list_; }
 
   void line(const std::vector<ImVec2>& points, ImU32 colour, float thickness) const;
-  // Between two curves over the same places, no seams.
+  // Fills the area between two curves with the same x values.
   void band(const std::vector<ImVec2>& upper, const std::vector<ImVec2>& lower, ImU32 colour) const;
   void level(double y, ImU32 colour, float thickness) const;
-  // Text inside the frame; `x`, `y` 0..1 from the upper left.
+  // Text inside the frame; `x`, `y`: 0..1 from the upper left corner.
   void caption(const std::string& text, float x, float y, ImU32 colour) const;
 
  private:
-  double shown(double value) const noexcept;  // by a number on an axis
+  double shown(double value) const noexcept;  // the number of a label
   void draw_y_axis() const;
   void draw_x_axis() const;
 

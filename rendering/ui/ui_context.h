@@ -1,4 +1,4 @@
-// Dear ImGui on a window, from its first frame to its last.
+// The context of Dear ImGui for a window.
 // Thread guarantee: the window's thread.
 #pragma once
 
@@ -8,7 +8,7 @@ namespace palpate {
 
 class UiContext {
  public:
-  // Callbacks that the window has by now are called as well.
+  // Set callbacks of the window before: ImGui calls them after its own.
   explicit UiContext(GLFWwindow* window);
   UiContext(const UiContext&) = delete;
   UiContext& operator=(const UiContext&) = delete;

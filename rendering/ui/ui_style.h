@@ -18,18 +18,18 @@ inline ImVec4 paint(const Rgb& colour, float alpha = 1.0F) { return {colour.r, c
 // Height of a line, in the window's units. (ImFont::FontSize is in pixels.)
 inline float height_of(const ImFont* font) { return font->FontSize * font->Scale; }
 
-// The window, and how the display wants its contents.
+// Size of the window and scale factors of the display.
 struct UiSize {
   float width = 1280.0F;  // in the window's units
   float height = 720.0F;
-  float content_scale = 1.0F;    // of the display: pixels for a pixel of a usual one
-  float pixels_per_unit = 1.0F;  // of the framebuffer
+  float content_scale = 1.0F;    // scale factor of the display for its contents
+  float pixels_per_unit = 1.0F;  // pixels of the framebuffer per unit of the window
 };
 
-// Units of the window for one pixel of the 1080-line design: follows the size that the
-// window has to the eye, so that a display with twice the pixels shows the same text.
+// Window units per pixel of the design, which has 1080 lines, times the factor `larger`. Text has the same physical
+// size on displays of different resolution.
 float ui_scale(const UiSize& size, float larger) noexcept;
-// How much larger text is for people who stand.
+// Factor `larger` for exhibits and studies, which are read from a distance.
 inline constexpr float kExhibitText = 1.5F;
 
 struct Fonts {
@@ -38,18 +38,17 @@ struct Fonts {
   ImFont* big = nullptr;
 };
 
-// The font file that is used; empty: none was found, and a plain built-in one is.
+// The font file that is used; empty: none was found, so that the built-in font is used.
 std::string find_font();
 
 class UiStyle {
  public:
-  // Before each frame. Rebuilds the fonts when the scale has changed; sets all colours
-  // when the theme has.
+  // Call it before each frame. Rebuilds the fonts when the scale has changed, and sets the colours when the theme has
+  // changed.
   void update(const UiSize& size, float larger, Theme theme);
 
   const Fonts& fonts() const noexcept { return fonts_; }
-  // As ui_scale has it.
-  float scale() const noexcept { return scale_; }
+  float scale() const noexcept { return scale_; }  // of ui_scale
   Theme theme() const noexcept { return theme_; }
   const Palette& colours() const noexcept { return palette(theme_); }
 
