@@ -1,5 +1,4 @@
 // Calibration and limits of one kind of device: the JSON file of its protocol in assets/devices/.
-//
 // Thread guarantee: slow side only.
 #pragma once
 

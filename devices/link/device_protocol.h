@@ -1,8 +1,6 @@
 // A device protocol as data and pure functions, which decode reports and encode commands. Each protocol is one file in
 // devices/hid or devices/bridge; the link layer does not depend on any of them.
-//
-// Thread guarantee: pure functions, any thread; wait-free, never throw, read
-// nothing beyond `size`.
+// Thread guarantee: pure functions, any thread; wait-free, never throw, read nothing beyond `size`.
 #pragma once
 
 #include <array>

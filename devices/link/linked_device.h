@@ -4,7 +4,6 @@
 // rest position (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the
 // progress, zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its
 // encoder jumped or was stuck.
-//
 // Thread guarantee: as Device.
 #pragma once
 

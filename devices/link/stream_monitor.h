@@ -14,7 +14,6 @@
 // Missing reports are detected by DeviceEndpoint::health. A fault that does not affect the position lasts kHold_s after
 // its last occurrence. A fault that loses the position of an incremental encoder (kJump, kReset, kStuck) lasts until
 // the device is zeroed. A reading that is corrupt, out of order or late is not used.
-//
 // Thread guarantee: one thread; wait-free, never throws.
 #pragma once
 

@@ -1,6 +1,5 @@
 // The simulated hand, until the user moves the mouse or a SpaceMouse, and again once both have been idle for
 // MouseSettings::idle_time_s. The tool continues from its last position.
-//
 // Thread guarantee: as Device; `mouse` as ToolInput.
 #pragma once
 
