@@ -1,5 +1,4 @@
 // Progress of a long job on stderr, if that is a terminal, and the user's request to stop.
-//
 // Thread guarantee: one thread.
 #pragma once
 

@@ -19,8 +19,7 @@ inline constexpr double kBinWidth_jnd = 2.0;
 // Bounds the memory where the JND line is flat. The last bin holds all larger forces.
 inline constexpr std::size_t kMaximumForceBins = 2000;
 
-// Errors of the samples with force_from_N <= measured force < force_to_N.
-// A bin without samples has 0 for every error.
+// Errors of the samples with force_from_N <= measured force < force_to_N. A bin without samples has 0 for every error.
 struct ForceBin {
   double force_from_N = 0.0;
   double force_to_N = 0.0;

@@ -1,7 +1,6 @@
-// Evaluates models on one recording through the tick of the live loop, kMaxModels at a time. Errors are computed
-// twice: with the positions as recorded, and with a surface offset subtracted from every position. The offset is
-// estimated for each model (models/surface/surface_search.h), or once for all models. With the offset, contact is
-// determined anew.
+// Evaluates models on one recording through the tick of the live loop, kMaxModels at a time. Errors are computed twice:
+// with the positions as recorded, and with a surface offset subtracted from every position. The offset is estimated for
+// each model (models/surface/surface_search.h), or once for all models. With the offset, contact is determined anew.
 // Thread guarantee: slow side; one thread per call.
 #pragma once
 

@@ -5,13 +5,11 @@
 //   N = k e + z + f,  dz/dt = k_m de/dt - z / tau        rubber: a standard linear solid
 //   df = K_h de, clamped to +-mu k e                     dry friction of its foot on the board
 //   F = 2 N (h - s) / L + k_p s + c ds/dt + k_b max(0, s - s_b)^1.5
-// k_p is the skirt, which restores the dome, c its damping; the last term is the contact with
-// the floor (Hertz). Beyond a peak the force decreases with depth (the click) until the floor;
-// z and f cause hysteresis.
+// k_p is the skirt, which restores the dome, c its damping; the last term is the contact with the floor (Hertz). Beyond
+// a peak the force decreases with depth (the click) until the floor; z and f cause hysteresis.
 // Passive: the work 2 N de goes into springs, dashpots and friction, which stores at most
 // f^2 / (2 K_h); the kinematics are lossless.
-// Source: von Mises (1923) (the truss); Bazant & Cedolin (2010), Stability of Structures,
-// section 4.4 (snap-through).
+// Source: von Mises (1923) (the truss); Bazant & Cedolin (2010), Stability of Structures, section 4.4 (snap-through).
 #pragma once
 
 #include <algorithm>

@@ -7,13 +7,11 @@
 // On the way in new bristles are unbent and do not change F_c z; on the way out bristles
 // leave with their share of the force. Friction does not exceed the restoring force, so that
 // it cannot hold the probe down, and a free surface has none.
-// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm, 12 kPa; K is a box spectrum from
-// 50 ms to 2 s.
+// F_c = 0.35 N, x_p = 0.1 mm, d_c = 4 mm; sphere of 10 mm, 12 kPa; K is a box spectrum from 50 ms to 2 s.
 // Passive: at most V = F_c(s) x_p z^2 / 2 is stored, and F_c z ds - dV >= z^2 F_c |ds| on the
 // way in, more on the way out.
 // Source: Dahl (1968); Canudas de Wit, Olsson, Astrom & Lischinsky (1995)
-// (bristles, presliding); Okamura, Simone & O'Leary (2004) (friction of soft
-// tissue along a probe).
+// (bristles, presliding); Okamura, Simone & O'Leary (2004) (friction of soft tissue along a probe).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // The report's figures as plots (scenes/plot/plot.h) with captions.
-//
 // Thread guarantee: pure functions.
 #pragma once
 

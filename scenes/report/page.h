@@ -1,5 +1,4 @@
 // Makes the HTML page of a report.
-//
 // Thread guarantee: pure functions; make_page reads the template in the assets.
 #pragma once
 

@@ -1,5 +1,4 @@
 // The models that a report fits.
-//
 // Thread guarantee: pure functions.
 #pragma once
 

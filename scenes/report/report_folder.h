@@ -1,5 +1,4 @@
 // A folder that appears under its final name only when it is complete.
-//
 // Thread guarantee: slow side (does I/O).
 #pragma once
 

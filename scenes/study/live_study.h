@@ -1,5 +1,4 @@
 // A study session with a device, without a window: the haptics loop renders the forces of the session.
-//
 // Thread guarantee: one thread (the window's).
 #pragma once
 
