@@ -1,6 +1,5 @@
 // The window program without its command line: a session, a window, and the work of a frame. demo_input.h has keys and
 // mouse, demo_files.h files.
-//
 // Thread guarantee: main thread only.
 #pragma once
 

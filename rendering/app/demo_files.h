@@ -1,6 +1,5 @@
 // The window's work with files and devices: settings, dropped files, saved files, the list of devices. `notify` reports
 // the results.
-//
 // Thread guarantee: main thread only; slow work runs in the background.
 #pragma once
 

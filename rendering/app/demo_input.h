@@ -1,5 +1,4 @@
 // Keyboard and mouse of the window: keys run commands, the mouse moves the tool and the camera.
-//
 // Thread guarantee: main thread only.
 #pragma once
 

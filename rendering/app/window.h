@@ -1,5 +1,4 @@
 // The operating system's window with an OpenGL 3.3 core context, and its frame rate.
-//
 // Thread guarantee: main thread only (GLFW).
 #pragma once
 

@@ -1,5 +1,4 @@
 // The 3-D view: one to four blocks on a table, each with a probe. It depends on neither models nor session.
-//
 // Thread guarantee: the thread of the OpenGL context.
 #pragma once
 
