@@ -1,6 +1,5 @@
 // The hardware-independent firmware of a board for the bridge protocol (devices/README.md#bridge). hapkit.cpp uses it
 // on an ATmega328P, paddle.ino on a Teensy, the tests on a simulated board.
-//
 // A frame is obeyed when its drive flag is 0 or its sequence is newer than the last one. The motor is off after
 // HostWatch::kSilent_us without such a frame or without a new heartbeat, until both return, and while motor or sensor
 // has a fault. Thread guarantee: one thread.

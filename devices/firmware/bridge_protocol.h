@@ -1,6 +1,5 @@
 // The frames of the bridge protocol, version 1. Host and firmware include this file; devices/README.md#bridge has the
 // byte offsets.
-//
 // C++11 with no library but stdint. All numbers are little-endian on every machine.
 // Thread guarantee: pure functions and values, wait-free, never throw.
 #pragma once

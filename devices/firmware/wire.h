@@ -1,5 +1,4 @@
 // Common parts of firmware and HID reports: little-endian numbers, a checksum, and the watchdog for a silent host.
-//
 // C++11 with no library but stdint, so that it compiles for an Arduino.
 // Thread guarantee: pure functions and values, wait-free, never throw.
 #pragma once

@@ -1,6 +1,5 @@
 // A 3Dconnexion SpaceMouse: pushing its cap down moves the tool into the block. It renders no force to the hand; the
 // force acts on the simulated mass of a MouseDevice.
-//
 // It reports at 60 to 125 Hz, and not at all at rest. The target is interpolated linearly from one value to the next
 // over the last interval of reports, so that it moves at every tick. This adds a delay of one interval.
 #pragma once

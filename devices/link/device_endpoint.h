@@ -1,7 +1,6 @@
 // The host's end of one device that renders force (HID or bridge), without threads and I/O. The reader thread gives it
 // reports, the writer thread fetches commands, the haptics thread reads samples and writes forces. The threads exchange
 // data by a TripleBuffer each way and an SpscRing of samples.
-//
 // The writer is a watchdog: when the haptics thread has not written for kHapticsSilent_s, the writer sends force 0. The
 // heartbeat in the frames of the bridge then stops, so that the board's watchdog acts as well.
 #pragma once

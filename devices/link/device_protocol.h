@@ -15,7 +15,6 @@ namespace palpate {
 
 inline constexpr std::size_t kLargestReport = 64;
 
-// One node of the bus.
 struct DeviceNode {
   std::string path;  // empty: there is no node
   std::string product;

@@ -1,5 +1,4 @@
 // A haptic device on a bus (USB HID or the bridge): a DeviceEndpoint and its threads.
-//
 // A device with an incremental encoder gives neither samples nor force until it is zeroed: bring the tool to its marked
 // rest position (rest_position_m of the calibration), call `start_zeroing` and hold it still. `health` has the
 // progress, zeroing_words the next step. Zeroing is necessary again after the device was unplugged or restarted, or its

@@ -1,6 +1,5 @@
 // The motion of a simulated hand that explores a block: slow presses with dwell, taps, pokes, steps, steady contact
 // with slow modulation, rests in the air.
-//
 // The target of the hand follows minimum-jerk segments (Flash & Hogan 1985)
 //   aim(u) = a + (b - a) (10 u^3 - 15 u^4 + 6 u^5),  u in 0..1,
 // plus a tremor of 8 to 12 Hz. The hand is a mass that a spring and a damper couple to the target:

@@ -1,6 +1,5 @@
 // A recording as a device, which repeats its samples at their own pace. The rendered force has no effect on it; its
 // measured force is the reference for the models.
-//
 // Every row is delivered exactly once and unchanged except for the surface offset, so that the loop gives the same bits
 // as engine/tick/replay.h. After the end, a seek and a change of the offset the stream restarts: the filters are reset.
 #pragma once
