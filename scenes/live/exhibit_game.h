@@ -61,7 +61,6 @@ class ExhibitTrace {
   std::size_t largest_at_ = 0;
 };
 
-// A model that is ready.
 struct ExhibitModel {
   std::size_t slot = 0;
   std::string method;  // "position": a model with the depth as its only feature

@@ -83,7 +83,6 @@ class LiveSession {
   const LoopSnapshot& newest() const noexcept { return newest_; }
   const HapticsLoop& loop() const noexcept { return *loop_; }
 
-  // Models.
   const SessionModels& models() const noexcept { return models_; }
   void select(std::size_t slot);  // makes the slot's model the active one; ignored unless it is ready
   bool load_file(const std::string& path) { return models_.load_file(path); }

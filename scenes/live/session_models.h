@@ -1,5 +1,4 @@
 // The models of a session, and the sets of models that are published to the haptics loop.
-//
 // Every model has a slot, numbered in the order of the requests. The worker fits the models, those of the least
 // expected time first, and a model joins the next set when it is ready. A new model reuses the slot of a removed one.
 // Thread guarantee: one thread; only the destructor waits for the worker.

@@ -42,7 +42,8 @@ Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels
 // The share of the tick's period of 1 ms, as "0.04 %".
 std::string tick_share(double tick_ns);
 
-// Computes the Evidence of a live session in the background, every 2 s or, in a long session, after 10 % more contact.
+// Computes the Evidence of a live session in the background, every 2 s or, if that is longer, every tenth of the
+// duration of contact so far.
 class LiveJudge {
  public:
   // Call it once a frame.

@@ -1,6 +1,5 @@
 // A figure as data: panels of series against two axes. plot_script converts it to one gnuplot script that contains
 // the data and draws NAME.svg and NAME.png in the folder where it is run.
-//
 // The names of series are in a legend above the panels, or with `names_at_ends` beside the curves. Tics of
 // logarithmic axes have SI prefixes (300 mN, 2 us, 3 kN). Lines that exceed a given limit of the y axis are marked at
 // the edge (layout.h). Fonts, tics and neutral colours are in assets/figures/style.gp.

@@ -29,7 +29,6 @@ struct TableColumn {
 // Text, a count, or a number. A number that is not finite becomes an empty cell, null in JSON, a dash on the page.
 using TableCell = nlohmann::ordered_json;
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
-// Scales of columns.
 inline constexpr double kInPercent = 100.0;
 inline constexpr double kInMilli = 1e3;
 

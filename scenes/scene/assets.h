@@ -1,5 +1,4 @@
 // Finds the folder of the assets: scenes, models, shaders, fonts.
-//
 // If the environment variable PALPATE_ASSETS is set, only that folder is tried. Else, in this order, relative to the
 // executable's folder: `../share/palpate` (an installed program), `../assets` (a build folder); then the source tree.
 // Thread guarantee: slow side only (does I/O).

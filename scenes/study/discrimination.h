@@ -1,5 +1,4 @@
 // Analysis of the discrimination of two strokes: share of correct answers, and agreement with the predicted error.
-//
 // Chance is 50 %. The interval of the share correct is that of E. B. Wilson (1927), Journal of the American
 // Statistical Association 22, 209-212. One JND is kJndCriterion, 75 % correct: the strokes differ by less than the JND
 // when the whole interval is below 75 %, by more when it is above; else there are too few answers. The prediction is

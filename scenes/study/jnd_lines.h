@@ -1,5 +1,4 @@
 // The result of a study: a line through JNDs, and its file.
-//
 // As in Hoever & Harders (2009), section 4.1 and figure 3, a line is fitted to the JNDs over the reference force by
 // least squares with equal weights, and then shifted down until no point is below it. A model error below that
 // conservative line is below every measured threshold.

@@ -1,11 +1,9 @@
 // Makes the pair of strokes for a discrimination study from a recording and one or two models.
-//
 // Every row of the recording goes through the tick of the live loop (engine/tick/replay.h). The forces of models and
 // sensor are resampled to 1 kHz and filtered with the same zero-phase low-pass, a Hann window of 21 ms (half the
 // amplitude at 45 Hz), because the noise of the sensor would make its stroke recognisable. Of all pieces of the length
 // of an interval (study_presenter.h), every 100 ms, the one with the largest sum of error / JND is chosen. Pieces above
 // 3.8 N, 90 N/s (the presenter's limits with a margin) or 2.5 N RMS (the heat of a small motor) are excluded.
-//
 // The force over time is rendered to a still hand. The hand does not influence it, so this tests the discrimination
 // of forces, as the JND study does.
 // Thread guarantee: slow side (fits models, does I/O, allocates).

@@ -1,5 +1,4 @@
 // Estimates the psychometric functions and JNDs of a subject from the answers.
-//
 // With x = (comparison - reference) / reference and o = +1 when the comparison came second, -1 when it came first, the
 // comparison is judged the larger with probability
 //   P(x, o) = lapse + (1 - 2 lapse) Phi(slope x + order_bias o),
@@ -8,7 +7,6 @@
 // for all reference forces of a subject. There is no other shift, because a subject cannot know which of two forces is
 // the reference. (A shift and a lapse rate for each reference force, fitted to 80 answers each, made the JND 10 % too
 // small and doubled its error.)
-//
 // The JND at a criterion c is half the distance between the comparisons that are judged larger with probability c and
 // 1 - c, without lapses and order bias:
 //   JND = Phi^-1(c) reference / slope.

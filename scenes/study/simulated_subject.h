@@ -1,9 +1,7 @@
 // A simulated subject that answers by a psychometric function, to test the study.
-//
 // A force F is perceived as F + s(F) n with n normal of variance 1; a bias is added to the second of two forces. The
 // subject answers with the larger perceived force. s(F) = JND(F) / (0.6745 sqrt(2)), so that the JND at the criterion
 // 0.75 is JND(F) = offset + weber_fraction F. In a share of the trials the subject guesses.
-//
 // Two strokes are compared at the tick at which they differ most in multiples of the JND. The subject perceives both
 // forces there, as above, and knows from the reminder which is the larger. It is correct with the probability
 //   Phi(|F1 - F2| / sqrt(s(F1)^2 + s(F2)^2)),

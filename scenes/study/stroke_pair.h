@@ -1,5 +1,4 @@
 // One recorded stroke as rendered by two models, or by a model and the recorded force, for a discrimination study.
-//
 // Each has one force for each tick of an interval, rounded to 0.1 mN. prepare_strokes.h makes them.
 // Thread guarantee: value type.
 #pragma once

@@ -1,5 +1,4 @@
 // Computes the JND line from the answers of all subjects.
-//
 // JNDs are estimated per subject and reference force by maximum likelihood (psychometrics.h), then averaged over the
 // subjects as in the paper. The means are the points of the line (scenes/study/jnd_lines.h). Differences and
 // references are the rendered ones, not the planned ones. Excluded are training, rehearsals, and trials in which the

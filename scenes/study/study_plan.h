@@ -1,6 +1,5 @@
 // The stimuli of all trials of a subject and their order, which are fixed before the first answer: constant stimuli, or
 // the discrimination of two strokes.
-//
 // Constant stimuli: two-alternative forced choice (2AFC) without movement. A reference and a comparison force follow
 // each other; which was larger? Method of constant stimuli as in Hoever & Harders (2009), section 4.1: reference forces
 // 0.3, 0.5, 1.0 and 2.5 N; comparison forces from 60 % to 140 % of the reference in eight steps without 100 %; each

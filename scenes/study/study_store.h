@@ -27,7 +27,6 @@ struct StudyHeader {
   const char* procedure() const noexcept { return strokes != nullptr ? "discriminate" : "constant"; }
 };
 
-// One answered trial.
 struct StudyRecord {
   bool training = false;
   std::size_t number = 1;  // from 1, counted separately for training and study

@@ -3,7 +3,7 @@
 // The models are bit-identical to those of `palpate fit`.
 // When a method is fitted a second time with another number of centres (a slider), the worker selects centres for
 // kMostCentres once; every further number then takes milliseconds (models/fit/nested_fit.h).
-// The thread has a lower priority than all others. A fit is interrupted within some 20 ms, except during the
+// The thread has a lower priority than graphics and haptics. A fit is interrupted within some 20 ms, except during the
 // factorisation of the direct fit, which is one call to LAPACK.
 // Thread guarantee: one thread, slow side; only the destructor waits for the worker.
 #pragma once
