@@ -17,7 +17,6 @@ struct CurveModel {
   Hue colour = kInkColour;
 };
 
-// Description of the data.
 struct CurveSource {
   std::string scene;
   std::string device;

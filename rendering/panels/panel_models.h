@@ -22,7 +22,6 @@ std::vector<int> shown_columns(float room, float (*width)(int column));
 
 // The text of a row without figures: "waits", "fits 40 %", "failed".
 std::string waiting_words(const ModelInfo& slot);
-// The tooltip of a row.
 std::string name_tip(const ModelsView& models, std::size_t slot);
 
 }  // namespace palpate

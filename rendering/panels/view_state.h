@@ -48,7 +48,6 @@ struct CurveTime {
   void scroll_back(double by_s, double oldest_s) noexcept;
 };
 
-// State of the table of models.
 struct TableState {
   int column = -1;  // the column that it is sorted by; -1: by slot
   bool rising = false;
@@ -75,7 +74,6 @@ struct Offer {
   void make_test(std::size_t index);  // makes it the only test
 };
 
-// State of the dialog that opens files.
 struct FilePicker {
   std::string folder;              // empty: the dialog is closed
   std::vector<std::string> files;  // in `folder`
@@ -93,7 +91,6 @@ struct Settings {
   CameraTurn camera;
 };
 
-// Dialogs over the picture and their contents.
 struct Dialogs {
   bool help = false;
   bool file_list = false;   // files to open
@@ -130,7 +127,6 @@ struct ViewState {
   bool verdict = true;                                 // plots error against time of a tick; else error against force
 };
 
-// Frame times and frame rate.
 struct FrameFigures {
   TimeHistogram times;  // from the end of one frame to that of the next
   std::uint64_t frames = 0;

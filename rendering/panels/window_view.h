@@ -29,7 +29,6 @@ inline constexpr std::size_t kReferenceBlock = static_cast<std::size_t>(-1);
 // A slot: its model and its errors.
 struct ModelView : ModelInfo, ModelFigures {};
 
-// The models in the order of their slots.
 struct ModelsView {
   std::vector<ModelView> slots;
   std::size_t selected = 0;
