@@ -231,7 +231,7 @@ void Checker::check_lag() {
   // Without an onset a lag cannot be told from the material's memory.
   if (!surface_.free_air) return;
   const Located lag = find_force_lag(rows, noise_N_);
-  if (lag.not_zero && !lag.told) {
+  if (lag.not_zero && !lag.identified) {
     surface_.standard_error_m = HUGE_VAL;
     surface_.offset_m = 0.0;
     add("lag_unknown", Severity::note, 0.0,
@@ -247,9 +247,9 @@ void Checker::check_lag() {
 }
 
 void Checker::check_surface() {
-  check_.surface_told = surface_.told();
+  check_.surface_identified = surface_.identified();
   check_.surface_offset_m = surface_.offset_m;
-  if (!surface_.told()) {
+  if (!surface_.identified()) {
     add("surface_unknown", Severity::note, 0.0,
         surface_.free_air ? "where force begins cannot be told; depth counts from position 0"
                           : "the tool never leaves the material for certain: where its surface lies cannot be told; "

@@ -45,17 +45,18 @@ class Search {
     // Outside of the range, where recordings do not overlap, a cost at 0 says nothing.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
-    found.told = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
+    found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
     if (range_.blur > 0.0) {
-      found.told = found.told && certainly_worse(best_.at - range_.blur) && certainly_worse(best_.at + range_.blur);
+      found.identified =
+          found.identified && certainly_worse(best_.at - range_.blur) && certainly_worse(best_.at + range_.blur);
       half += range_.blur;
       found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
     if (found.not_zero && zero_counts && range_.imitated && !is_certainly_worse(zero.costs, best_.costs))
-      found.told = false;
-    if (!found.told) found.standard_error = kUnknownError;
-    if (found.told && found.not_zero) found.at = best_.at;
+      found.identified = false;
+    if (!found.identified) found.standard_error = kUnknownError;
+    if (found.identified && found.not_zero) found.at = best_.at;
     found.minimum_at = best_.at;
     found.minimum = best_.costs;
     return found;
@@ -169,7 +170,7 @@ Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange&
 }
 
 Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N) {
-  if (!shift.told || !shift.not_zero || !(most_N > 0.0)) return shift;
+  if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
   // J is convex in the offset of the force, but for Huber's bound: one valley.
   double low_N = -most_N;
   double high_N = most_N;
@@ -185,7 +186,7 @@ Located unless_force_offset(Located shift, const std::function<BlockCosts(double
   }
   const double offset_N = 0.5 * (low_N + high_N);
   if (!is_as_good(cost(offset_N), shift.minimum)) return shift;
-  shift.told = false;
+  shift.identified = false;
   shift.at = 0.0;
   shift.standard_error = kUnknownError;
   shift.force_offset_N = offset_N;

@@ -24,7 +24,7 @@ struct Located {
   double at = 0.0;              // the offset; 0 if not identified or not significantly different from 0
   bool not_zero = false;        // the minimum differs from 0, identified or not
   double standard_error = 0.0;  // infinite if not identified
-  bool told = false;            // identified
+  bool identified = false;      // identified
   double cost = 0.0;            // J at the minimum, and at 0
   double cost_at_zero = 0.0;
   double minimum_at = 0.0;  // the minimum, identified or not, and its blocks

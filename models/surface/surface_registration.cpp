@@ -95,13 +95,13 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
 // Where force begins at the same place in both, as each shows by itself, a shift is the
 // material's doing: two speeds look like one.
 Located unless_onsets_agree(Located place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
-  if (!own.told() || !first.told()) return place;
+  if (!own.identified() || !first.identified()) return place;
   const double apart_m = own.raw_offset_m - first.raw_offset_m;
   const double error_m = std::hypot(own.law_error_m, first.law_error_m);
   const double off_m = std::abs(place.at - apart_m);
   if (std::abs(apart_m) <= std::max(kLeastOffset_m, kSignificantErrors * error_m) &&
       off_m > kSignificantErrors * std::hypot(error_m, place.standard_error)) {
-    place.told = true;
+    place.identified = true;
     place.standard_error = error_m;
     place.at = 0.0;
   }
@@ -116,7 +116,7 @@ void place_all(std::vector<Member>& members, double force_noise_N, const FitCont
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return members[a].way_m() > members[b].way_m(); });
   Member& first = members[order.front()];
-  first.place.told = true;
+  first.place.identified = true;
   double low_m = first.low_m;
   double high_m = first.high_m;
   CommonFit fit(low_m, high_m, force_noise_N);
@@ -124,7 +124,7 @@ void place_all(std::vector<Member>& members, double force_noise_N, const FitCont
   for (std::size_t k = 1; k < order.size() && control.may_continue(0.0); ++k) {
     Member& member = members[order[k]];
     member.place = unless_onsets_agree(place_of(fit, member, low_m, high_m), member.own, first.own);
-    if (!member.place.told) continue;
+    if (!member.place.identified) continue;
     fit.add(member.rows, member.place.at);
     low_m = std::min(low_m, member.low_m - member.place.at);
     high_m = std::max(high_m, member.high_m - member.place.at);
@@ -142,9 +142,10 @@ double common_shift_m(const std::vector<Member>& members) {
   double best_m = 0.0;
   double least_m = std::numeric_limits<double>::infinity();
   for (const Member& candidate : members) {
-    if (!candidate.place.told) continue;
+    if (!candidate.place.identified) continue;
     double away_m = 0.0;
-    for (const Member& one : members) away_m += one.place.told ? std::abs(one.place.at - candidate.place.at) : 0.0;
+    for (const Member& one : members)
+      away_m += one.place.identified ? std::abs(one.place.at - candidate.place.at) : 0.0;
     if (away_m > least_m + kLeastOffset_m) continue;
     least_m = std::min(least_m, away_m);
     best_m = candidate.place.at;
@@ -159,7 +160,7 @@ double common_surface_m(const std::vector<Member>& members, const std::vector<Re
   double weights = 0.0;
   for (std::size_t r = 0; r < members.size(); ++r) {
     const SurfaceEstimate& own = members[r].own;
-    if (!own.told()) continue;
+    if (!own.identified()) continue;
     const double weight = 1.0 / (own.standard_error_m * own.standard_error_m);
     sum += weight * (own.raw_offset_m - surfaces[r].offset_m);
     weights += weight;
@@ -205,7 +206,7 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   for (const Member& member : members) {
     RegisteredSurface one{0.0, kUnknownError, member.own.force_zero_N};
     if (members.size() == 1) one.standard_error_m = member.own.standard_error_m;
-    if (member.place.told) {
+    if (member.place.identified) {
       one.standard_error_m = member.place.standard_error;
       if (!unmoved(member, shift_m)) one.offset_m = member.place.at - shift_m;
     }

@@ -59,7 +59,7 @@ Located locate_surface(const std::vector<SurfaceRow>& rows,
         return costs;
       },
       {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m, kWidestSurface_m});
-  if (!shift.told || !shift.not_zero) return shift;
+  if (!shift.identified || !shift.not_zero) return shift;
   std::vector<ForceErrors> unmoved;
   double most_N = 0.0;
   for (const auto& model : models) {

@@ -97,9 +97,9 @@ Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent
   const double force_N = (y - slope * x) / n;
   const double variance = std::max(0.0, yy - force_N * y - slope * xy) / (n - 2.0);
   const double felt_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
-  const bool told = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
+  const bool identified = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
   const double out_m = force_N / slope;
-  return told && out_m < extent.depth_m ? -out_m : 0.0;
+  return identified && out_m < extent.depth_m ? -out_m : 0.0;
 }
 
 }  // namespace palpate

@@ -26,7 +26,7 @@ TEST(ForceLag, FindsALateForce) {
   for (const auto& [material, late_s] :
        {std::pair{"silicone", 8e-3}, std::pair{"foam", 30e-3}, std::pair{"stiff", -10e-3}}) {
     const Located found = lag_of(material, late_s);
-    EXPECT_TRUE(found.told) << material;
+    EXPECT_TRUE(found.identified) << material;
     EXPECT_NEAR(found.at, late_s, 2e-3) << material;
   }
 }

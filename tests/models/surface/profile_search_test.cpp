@@ -20,14 +20,14 @@ BlockCosts bowl(double x, double at, double floor) {
 
 TEST(ProfileSearch, FindsThePlaceThatAllBlocksAgreeOn) {
   const Located found = locate([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
-  EXPECT_TRUE(found.told);
+  EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 7.3, 0.01);
   EXPECT_LT(found.standard_error, 0.2);
 }
 
 TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
   const Located found = locate([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
-  EXPECT_TRUE(found.told);
+  EXPECT_TRUE(found.identified);
   EXPECT_EQ(found.at, 0.0);
 }
 
@@ -37,7 +37,7 @@ TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
   SearchRange imitated = kRange;
   imitated.imitated = true;
   const Located found = locate([](double x) { return bowl(x, 0.05, 1.0); }, imitated);
-  EXPECT_FALSE(found.told);
+  EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
   EXPECT_NEAR(locate([](double x) { return bowl(x, 7.3, 0.01); }, imitated).at, 7.3, 0.01);
 }
@@ -56,20 +56,20 @@ TEST(ProfileSearch, ABlurIsPartOfTheError) {
 TEST(ProfileSearch, ZeroOutsideOfTheRangeSaysNothing) {
   const auto apart = [](double x) { return x == 0.0 ? BlockCosts(10, 0.0) : bowl(x, 5.0, 0.01); };
   const Located found = locate(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
-  EXPECT_TRUE(found.told);
+  EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 5.0, 0.01);
 }
 
 TEST(ProfileSearch, AnOptimumAtTheEdgeIsNotTold) {
   const Located found = locate([](double x) { return bowl(x, 14.0, 0.01); }, kRange);
-  EXPECT_FALSE(found.told);
+  EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
 }
 
 TEST(ProfileSearch, TwoPlacesAsGoodAreNotTold) {
   const auto two = [](double x) { return bowl(std::abs(x), 5.0, 0.01); };
   const Located found = locate(two, kRange);
-  EXPECT_FALSE(found.told);
+  EXPECT_FALSE(found.identified);
   EXPECT_TRUE(found.not_zero);
 }
 
@@ -79,7 +79,7 @@ TEST(ProfileSearch, WhatOneBlockAloneSaysIsNotTold) {
     costs[3] += (x - 5.0) * (x - 5.0);
     return costs;
   };
-  EXPECT_FALSE(locate(lone, kRange).told);
+  EXPECT_FALSE(locate(lone, kRange).identified);
 }
 
 // A gap of hours used to make every cost NaN, and the search ended the program.
@@ -89,7 +89,7 @@ TEST(ProfileSearch, EndsWhateverTheCostFunctionReturns) {
   for (const BlockCosts& costs : {BlockCosts(10, nan), BlockCosts(10, infinity), BlockCosts(10, -infinity),
                                   BlockCosts(10, 1e308), BlockCosts(10, 0.0), BlockCosts{}}) {
     const Located found = locate([&](double) { return costs; }, kRange);
-    EXPECT_FALSE(found.told);
+    EXPECT_FALSE(found.identified);
     EXPECT_EQ(found.at, 0.0);
   }
 }
@@ -103,23 +103,23 @@ TEST(ProfileSearch, WithoutARangeNothingIsTold) {
   const auto any = [](double x) { return bowl(x, 1.0, 0.01); };
   for (const SearchRange& range : {SearchRange{1.0, 1.0, 0.5, 1e-3, 1.0}, SearchRange{2.0, -2.0, 0.5, 1e-3, 1.0},
                                    SearchRange{-1.0, 1.0, 0.0, 1e-3, 1.0}, SearchRange{std::nan(""), 1.0, 0.1, 1e-3}}) {
-    EXPECT_FALSE(locate(any, range).told);
+    EXPECT_FALSE(locate(any, range).identified);
   }
 }
 
 // Forces of a straight spring: a shift of 1 is an offset of the force of 3.
 TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
   const Located shift = locate([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
-  ASSERT_TRUE(shift.told);
+  ASSERT_TRUE(shift.identified);
   const Located both = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 0.01); }, 10.0);
-  EXPECT_FALSE(both.told);
+  EXPECT_FALSE(both.identified);
   EXPECT_EQ(both.at, 0.0);
   EXPECT_NEAR(both.minimum_at, 1.0, 0.01);
   EXPECT_NEAR(both.force_offset_N, 3.0, 0.05);
   const Located only = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 9.0); }, 10.0);
-  EXPECT_TRUE(only.told);
+  EXPECT_TRUE(only.identified);
   EXPECT_EQ(only.at, shift.at);
   EXPECT_EQ(only.force_offset_N, 0.0);
 }
