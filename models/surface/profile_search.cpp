@@ -35,7 +35,7 @@ class Search {
     scan();
     const Place zero = place(0.0);
     if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
-          return !is_certainly_worse(zero.costs, one.costs);
+          return !is_significantly_worse(zero.costs, one.costs);
         })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
     }
@@ -47,13 +47,13 @@ class Search {
     double half = kSignificantErrors * found.standard_error;
     found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
     if (range_.blur > 0.0) {
-      found.identified =
-          found.identified && certainly_worse(best_.at - range_.blur) && certainly_worse(best_.at + range_.blur);
+      found.identified = found.identified && significantly_worse(best_.at - range_.blur) &&
+                         significantly_worse(best_.at + range_.blur);
       half += range_.blur;
       found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.imitated && !is_certainly_worse(zero.costs, best_.costs))
+    if (found.not_zero && zero_counts && range_.imitated && !is_significantly_worse(zero.costs, best_.costs))
       found.identified = false;
     if (!found.identified) found.standard_error = kUnknownError;
     if (found.identified && found.not_zero) found.at = best_.at;
@@ -95,7 +95,7 @@ class Search {
     best_ = *std::min_element(bottoms.begin(), bottoms.end(),
                               [](const Place& a, const Place& b) { return sum(a.costs) < sum(b.costs); });
     alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Place& one) {
-      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_certainly_worse(one.costs, best_.costs);
+      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
     });
   }
 
@@ -126,7 +126,7 @@ class Search {
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
 
-  bool certainly_worse(double at) const { return is_certainly_worse(place(at).costs, best_.costs); }
+  bool significantly_worse(double at) const { return is_significantly_worse(place(at).costs, best_.costs); }
 
   // Quenouille (1956), Tukey (1958): a block left out at a time.
   double jackknife_error() const {
@@ -185,7 +185,7 @@ Located unless_force_offset(Located shift, const std::function<BlockCosts(double
     }
   }
   const double offset_N = 0.5 * (low_N + high_N);
-  if (!is_as_good(cost(offset_N), shift.minimum)) return shift;
+  if (!is_within_one_standard_error(cost(offset_N), shift.minimum)) return shift;
   shift.identified = false;
   shift.at = 0.0;
   shift.standard_error = kUnknownError;
