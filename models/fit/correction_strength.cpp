@@ -162,7 +162,7 @@ class LeftOutFits {
 
 // Rows that count: not deeper than every row of the other folds.
 std::vector<char> inside_depth(const StrengthInput& input) {
-  const LeftOutRows& rows = input.rows;
+  const CrossValidationRows& rows = input.rows;
   std::vector<double> deepest_m(static_cast<std::size_t>(input.folds), 0.0);
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     double& deepest = deepest_m[static_cast<std::size_t>(rows.fold[i])];
@@ -195,7 +195,7 @@ std::vector<FoldErrors> errors_of(const std::vector<Variant>& variants) {
 
 }  // namespace
 
-double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h) {
+double cross_validated_force_N(const StrengthInput& input, std::size_t i, double trust, double h) {
   const double limit = input.correction_limit_N;
   const auto row = static_cast<Eigen::Index>(i);
   const double force_N = input.rows.trend_N(row, input.rows.fold[i]) + trust * std::clamp(h, -limit, limit);
@@ -209,7 +209,7 @@ double trust_at_distance(double distance, double inner_radius, double outer_radi
   return t * t * (3.0 - 2.0 * t);
 }
 
-void find_distances(LeftOutRows& rows, int folds) {
+void find_distances(CrossValidationRows& rows, int folds) {
   rows.distance.assign(rows.fold.size(), std::numeric_limits<double>::infinity());
   parallel_for(folds, [&](int fold) {
     std::vector<Eigen::Index> others;
@@ -230,7 +230,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   StrengthChoice choice;
   choice.inner_radius = input.least_radius;
   choice.strength = 0.0;
-  const LeftOutRows& rows = input.rows;
+  const CrossValidationRows& rows = input.rows;
   if (rows.fold.size() < 2 || input.folds < 2) return choice;
   const BlasThreads one_thread(1);
   const LeftOutFits fits(input);
@@ -242,7 +242,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
       const auto row = static_cast<Eigen::Index>(i);
       const double trust =
           strength > 0.0 ? trust_at_distance(rows.distance[i], radius, input.outer_to_inner * radius) : 0.0;
-      const double force_N = left_out_force_N(input, i, trust, strength * h(row));
+      const double force_N = cross_validated_force_N(input, i, trust, strength * h(row));
       const double error = input.jnd.error_over_jnd(force_N, rows.force_N(row));
       variant.errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
     }

@@ -25,7 +25,7 @@
 namespace palpate {
 
 // Rows in contact in ascending order of their folds; each is predicted from the other folds.
-struct LeftOutRows {
+struct CrossValidationRows {
   Eigen::MatrixXd points;   // normalised features, one column a row
   Eigen::VectorXd force_N;  // measured
   Eigen::VectorXd depth_m;
@@ -37,7 +37,7 @@ struct LeftOutRows {
 };
 
 struct StrengthInput {
-  const LeftOutRows& rows;
+  const CrossValidationRows& rows;
   int folds = 0;
   KernelKind kernel = KernelKind::cubic;
   JndLine jnd;
@@ -48,7 +48,7 @@ struct StrengthInput {
 };
 
 // The prediction of one row by a model fitted without its fold.
-struct LeftOutPrediction {
+struct CrossValidationPrediction {
   double error_N = 0.0;  // absolute error of the force
   double measured_N = 0.0;
   double predicted_N = 0.0;
@@ -64,11 +64,11 @@ struct StrengthChoice {
 };
 
 // The force at row `i` without its fold, as FittedModel computes it. `trust`: g; `h`: strength times correction, N.
-double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h);
+double cross_validated_force_N(const StrengthInput& input, std::size_t i, double trust, double h);
 // The trust g at a distance: 1 up to the inner radius, 0 from the outer one, a cubic step between.
 double trust_at_distance(double distance, double inner_radius, double outer_radius);
 // Sets `distance` of the rows.
-void find_distances(LeftOutRows& rows, int folds);
+void find_distances(CrossValidationRows& rows, int folds);
 
 StrengthChoice choose_strength(const StrengthInput& input);
 
