@@ -1,7 +1,7 @@
 // Selects strength, smoothing and reach of the correction by cross-validation.
 //
 // A correction h of the residual of the trend helps only as far as other strokes have the same residual. For each fold
-// (models/training/fold_dealer.h), h is fitted to the rows of the others, by penalised least squares on up to 200
+// (models/training/fold_assignment.h), h is fitted to the rows of the others, by penalised least squares on up to 200
 // random centres,
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by

@@ -257,7 +257,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
       extent->lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
   const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
                              is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
-  source.deal(dealer_for(source, *extent));
+  source.assign_folds(fold_assignment_for(source, *extent));
   const Given given{source, request, *extent, problem};
   FeatureList list = request.list;
   // The paper's recipe has the scene's features, whatever the recordings would support.

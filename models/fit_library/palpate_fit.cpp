@@ -19,7 +19,7 @@
 #include "models/library/error_text.h"
 #include "models/library/handles.h"
 #include "models/model/file/model_io.h"
-#include "models/training/fold_dealer.h"
+#include "models/training/fold_assignment.h"
 #include "models/training/training_extent.h"
 
 struct palpate_recording {
@@ -162,7 +162,7 @@ Result<Recording> recording_of(std::string name, std::size_t n, const double* ti
 }
 
 // The folds of samples that come recording by recording.
-int deal(std::size_t n, const double* depth_m, const int* recording, int* fold) {
+int assign_folds(std::size_t n, const double* depth_m, const int* recording, int* fold) {
   const auto recording_of = [&](std::size_t i) { return recording == nullptr ? 0 : recording[i]; };
   std::vector<MotionRow> rows(n);
   TrainingExtent extent;
@@ -180,9 +180,9 @@ int deal(std::size_t n, const double* depth_m, const int* recording, int* fold) 
     if (row.first || !(depth_m[i - 1] > 0.0)) row.stroke = static_cast<int>(++extent.strokes);
     ++extent.contact_samples;
   }
-  FoldDealer dealer(recordings, extent.strokes, extent.contact_samples, extent.turns_round());
-  for (std::size_t i = 0; i < n; ++i) fold[i] = dealer.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
-  return dealer.folds();
+  FoldAssignment assignment(recordings, extent.strokes, extent.contact_samples, extent.turns_round());
+  for (std::size_t i = 0; i < n; ++i) fold[i] = assignment.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
+  return assignment.folds();
 }
 
 }  // namespace
@@ -305,5 +305,5 @@ int palpate_fit(const char* const* recordings, size_t recording_count, const pal
 
 int palpate_folds(size_t n, const double* depth_m, const int* recording, int* fold) {
   if (depth_m == nullptr || fold == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](Place) { return palpate::library::deal(n, depth_m, recording, fold); });
+  return guarded<int>(-1, {}, [&](Place) { return palpate::library::assign_folds(n, depth_m, recording, fold); });
 }

@@ -65,8 +65,8 @@ constexpr std::size_t kLongestStretch = 16384;
 // Rows moved by their recording's correction, contacts counted as they are then.
 class CorrectedRows {
  public:
-  CorrectedRows(const std::vector<RowCorrection>& corrections, const std::optional<FoldDealer>& dealer)
-      : corrections_(corrections), dealer_(dealer) {}
+  CorrectedRows(const std::vector<RowCorrection>& corrections, const std::optional<FoldAssignment>& assignment)
+      : corrections_(corrections), assignment_(assignment) {}
 
   // Visits the rows that `recorded` completes: it itself, or, with a lag, those whose force
   // comes with it. False when a visit says so.
@@ -110,12 +110,12 @@ class CorrectedRows {
     if (in_contact && (recorded.first || !was_in_contact_)) ++stroke_;
     was_in_contact_ = in_contact;
     row_.stroke = stroke_;
-    if (dealer_) row_.fold = dealer_->next(row_.recording, stroke_, in_contact);
+    if (assignment_) row_.fold = assignment_->next(row_.recording, stroke_, in_contact);
     return row_;
   }
 
   const std::vector<RowCorrection>& corrections_;
-  std::optional<FoldDealer> dealer_;
+  std::optional<FoldAssignment> assignment_;
   std::deque<MotionRow> waiting_;
   std::deque<std::pair<double, double>> forces_;  // s, N
   bool first_ = true;
@@ -204,7 +204,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
     if (Status status = load(control, fraction); !status) return status;
   }
   std::size_t seen = 0;
-  CorrectedRows corrected(corrections_, dealer_);
+  CorrectedRows corrected(corrections_, assignment_);
   for (const OneRecording& one : recordings_) {
     for (const MotionRow& row : one.rows) {
       if (!corrected.feed(row, visit)) return interrupted();

@@ -16,7 +16,7 @@ constexpr double kLeastWayOut = 0.1;
 
 bool TrainingExtent::turns_round() const { return way_out_m > kLeastWayOut * way_in_m; }
 
-FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent) {
+FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
   return {source.names().size(), extent.strokes, extent.contact_samples, extent.turns_round()};
 }
 

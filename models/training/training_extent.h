@@ -7,7 +7,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
-#include "models/training/fold_dealer.h"
+#include "models/training/fold_assignment.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
@@ -28,7 +28,7 @@ struct TrainingExtent {
   bool turns_round() const;
 };
 
-FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent);
+FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent);
 
 // Errors: those of the source; interrupted.
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);

@@ -1,4 +1,4 @@
-#include "models/training/fold_dealer.h"
+#include "models/training/fold_assignment.h"
 
 #include <gtest/gtest.h>
 
@@ -7,33 +7,33 @@
 namespace palpate {
 namespace {
 
-TEST(FoldDealer, WholeRecordingsFromThreeOn) {
-  FoldDealer dealer(4, 9, 900);
-  EXPECT_EQ(dealer.folds(), 4);
+TEST(FoldAssignment, WholeRecordingsFromThreeOn) {
+  FoldAssignment assignment(4, 9, 900);
+  EXPECT_EQ(assignment.folds(), 4);
   for (int recording = 0; recording < 4; ++recording) {
-    for (int i = 0; i < 50; ++i) EXPECT_EQ(dealer.next(recording, 2 * recording + i / 25, true), recording);
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(assignment.next(recording, 2 * recording + i / 25, true), recording);
   }
 }
 
-TEST(FoldDealer, ShortStrokesStayWhole) {
-  FoldDealer dealer(1, 20, 2000);
-  EXPECT_EQ(dealer.folds(), 5);
+TEST(FoldAssignment, ShortStrokesStayWhole) {
+  FoldAssignment assignment(1, 20, 2000);
+  EXPECT_EQ(assignment.folds(), 5);
   for (int stroke = 1; stroke <= 20; ++stroke) {
     std::set<int> folds;
-    for (int i = 0; i < 100; ++i) folds.insert(dealer.next(0, stroke, true));
+    for (int i = 0; i < 100; ++i) folds.insert(assignment.next(0, stroke, true));
     EXPECT_EQ(folds.size(), 1U) << stroke;
     EXPECT_EQ(*folds.begin(), (stroke - 1) % 5);
   }
 }
 
-TEST(FoldDealer, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
+TEST(FoldAssignment, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
   for (const bool turns_round : {true, false}) {
-    FoldDealer dealer(1, 1, 1000, turns_round);
+    FoldAssignment assignment(1, 1, 1000, turns_round);
     std::set<int> folds;
     int changes = 0;
     int last = 0;
     for (int i = 0; i < 1000; ++i) {
-      const int fold = dealer.next(0, 1, true);
+      const int fold = assignment.next(0, 1, true);
       folds.insert(fold);
       changes += fold != last ? 1 : 0;
       last = fold;
@@ -43,9 +43,9 @@ TEST(FoldDealer, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
   }
 }
 
-TEST(FoldDealer, FreeAirDoesNotChangeTheDeal) {
-  FoldDealer with_air(1, 8, 80);
-  FoldDealer without(1, 8, 80);
+TEST(FoldAssignment, FreeAirDoesNotChangeTheDeal) {
+  FoldAssignment with_air(1, 8, 80);
+  FoldAssignment without(1, 8, 80);
   for (int stroke = 1; stroke <= 8; ++stroke) {
     for (int i = 0; i < 30; ++i) with_air.next(0, stroke, false);
     for (int i = 0; i < 10; ++i) EXPECT_EQ(with_air.next(0, stroke, true), without.next(0, stroke, true));
