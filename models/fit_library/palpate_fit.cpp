@@ -175,12 +175,13 @@ int assign_folds(std::size_t n, const double* depth_m, const int* recording, int
     recordings += row.first ? 1 : 0;
     row.stroke = static_cast<int>(extent.strokes);
     if (!row.first)
-      (depth_m[i] > depth_m[i - 1] ? extent.way_in_m : extent.way_out_m) += std::abs(depth_m[i] - depth_m[i - 1]);
+      (depth_m[i] > depth_m[i - 1] ? extent.loading_path_m : extent.unloading_path_m) +=
+          std::abs(depth_m[i] - depth_m[i - 1]);
     if (!(depth_m[i] > 0.0)) continue;
     if (row.first || !(depth_m[i - 1] > 0.0)) row.stroke = static_cast<int>(++extent.strokes);
     ++extent.contact_samples;
   }
-  FoldAssignment assignment(recordings, extent.strokes, extent.contact_samples, extent.turns_round());
+  FoldAssignment assignment(recordings, extent.strokes, extent.contact_samples, extent.has_unloading());
   for (std::size_t i = 0; i < n; ++i) fold[i] = assignment.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
   return assignment.folds();
 }

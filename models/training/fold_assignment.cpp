@@ -15,10 +15,10 @@ constexpr std::size_t kPiecesOneWay = 50;
 }  // namespace
 
 FoldAssignment::FoldAssignment(std::size_t recordings, std::size_t strokes, std::size_t contact_samples,
-                               bool turns_round)
+                               bool has_unloading)
     : folds_(0),
       by_recording_(recordings >= kFewestRecordings),
-      longest_piece_(contact_samples / (turns_round ? kPieces : kPiecesOneWay) + 1) {
+      longest_piece_(contact_samples / (has_unloading ? kPieces : kPiecesOneWay) + 1) {
   const std::size_t pieces = by_recording_ ? recordings : std::max(strokes, kStrokeFolds);
   folds_ = static_cast<int>(std::min(pieces, by_recording_ ? static_cast<std::size_t>(kMaximumFolds) : kStrokeFolds));
 }

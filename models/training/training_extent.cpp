@@ -10,14 +10,14 @@ namespace palpate {
 namespace {
 
 // Of the way in: with less way out in contact the tool never turns round.
-constexpr double kLeastWayOut = 0.1;
+constexpr double kLeastUnloading = 0.1;
 
 }  // namespace
 
-bool TrainingExtent::turns_round() const { return way_out_m > kLeastWayOut * way_in_m; }
+bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
 
 FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
-  return {source.names().size(), extent.strokes, extent.contact_samples, extent.turns_round()};
+  return {source.names().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
 }
 
 namespace {
@@ -53,7 +53,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
           count += 1.0;
           extent.strokes = static_cast<std::size_t>(row.stroke);
           const double way_m = row.motion.position_m - last_m;
-          if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
+          if (!row.first) (way_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(way_m);
         }
         last_m = row.motion.position_m;
         if (row.first) {

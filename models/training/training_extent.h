@@ -19,13 +19,13 @@ struct TrainingExtent {
   double rms_velocity_m_per_s = 0.0;  // in contact
   std::size_t contact_samples = 0;
   std::size_t strokes = 0;
-  double way_in_m = 0.0;   // path of the tool in contact, loading
-  double way_out_m = 0.0;  // the same, unloading
-  double sample_s = 0.0;   // mean sampling period
+  double loading_path_m = 0.0;    // path of the tool in contact, loading
+  double unloading_path_m = 0.0;  // the same, unloading
+  double sample_s = 0.0;          // mean sampling period
   double longest_recording_s = 0.0;
 
   // Whether the recordings contain unloading in contact.
-  bool turns_round() const;
+  bool has_unloading() const;
 };
 
 FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent);

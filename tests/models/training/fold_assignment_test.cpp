@@ -27,8 +27,8 @@ TEST(FoldAssignment, ShortStrokesStayWhole) {
 }
 
 TEST(FoldAssignment, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
-  for (const bool turns_round : {true, false}) {
-    FoldAssignment assignment(1, 1, 1000, turns_round);
+  for (const bool has_unloading : {true, false}) {
+    FoldAssignment assignment(1, 1, 1000, has_unloading);
     std::set<int> folds;
     int changes = 0;
     int last = 0;
@@ -39,7 +39,7 @@ TEST(FoldAssignment, OneLongStrokeIsCutIntoPiecesOfEveryFold) {
       last = fold;
     }
     EXPECT_EQ(folds.size(), 5U);
-    EXPECT_EQ(changes, turns_round ? 9 : 47) << "10 pieces, or 48 of 21 samples";
+    EXPECT_EQ(changes, has_unloading ? 9 : 47) << "10 pieces, or 48 of 21 samples";
   }
 }
 
