@@ -230,7 +230,7 @@ void Checker::check_lag() {
   }
   // Without an onset a lag cannot be told from the material's memory.
   if (!surface_.free_air) return;
-  const Located lag = find_force_lag(rows, noise_N_);
+  const OffsetEstimate lag = find_force_lag(rows, noise_N_);
   if (lag.not_zero && !lag.identified) {
     surface_.standard_error_m = HUGE_VAL;
     surface_.offset_m = 0.0;

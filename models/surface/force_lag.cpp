@@ -36,9 +36,9 @@ std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
 
 }  // namespace
 
-Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N) {
+OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N) {
   const std::vector<SurfaceRow> some = first_rows(rows);
-  Located none;
+  OffsetEstimate none;
   none.standard_error = std::numeric_limits<double>::infinity();
   if (some.size() < 100) return none;
   const double step_s = (some.back().sample.time_s - some.front().sample.time_s) / static_cast<double>(some.size() - 1);

@@ -29,7 +29,7 @@ class Search {
  public:
   Search(const std::function<BlockCosts(double)>& cost, const SearchRange& range) : cost_(cost), range_(range) {}
 
-  Located run() {
+  OffsetEstimate run() {
     if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans))
       return {0.0, false, kUnknownError};
     scan();
@@ -41,7 +41,7 @@ class Search {
     }
     refine_valleys();
     look_around();
-    Located found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
+    OffsetEstimate found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
     // Outside of the range, where recordings do not overlap, a cost at 0 says nothing.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
@@ -165,11 +165,11 @@ class Search {
 
 }  // namespace
 
-Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
+OffsetEstimate locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
   return Search(cost, range).run();
 }
 
-Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N) {
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N) {
   if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
   // J is convex in the offset of the force, but for Huber's bound: one valley.
   double low_N = -most_N;

@@ -20,7 +20,7 @@ namespace palpate {
 
 using BlockCosts = std::vector<double>;
 
-struct Located {
+struct OffsetEstimate {
   double at = 0.0;              // the offset; 0 if not identified or not significantly different from 0
   bool not_zero = false;        // the minimum differs from 0, identified or not
   double standard_error = 0.0;  // infinite if not identified
@@ -44,11 +44,11 @@ struct SearchRange {
 };
 
 // The minimum of `cost` in `range`. Not identified where the range is empty.
-Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
+OffsetEstimate locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
 
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
 // -most_N to most_N exceeds that of the shift by at most one standard error (acceptance.h). If so, the shift is not
 // identified. `cost`: J by blocks for a force offset in N.
-Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N);
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N);
 
 }  // namespace palpate

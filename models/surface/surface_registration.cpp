@@ -35,7 +35,7 @@ struct Member {
   SurfaceEstimate own;
   double low_m = 0.0;
   double high_m = 0.0;
-  Located place;
+  OffsetEstimate place;
 
   double way_m() const { return high_m - low_m; }
 };
@@ -45,7 +45,7 @@ double common_lag_s(const std::vector<std::vector<SurfaceRow>>& recordings, doub
   std::vector<double> lags_s;
   for (const auto& rows : recordings) {
     if (!find_free_air(rows, force_noise_N).found) continue;
-    const Located lag = find_force_lag(rows, force_noise_N);
+    const OffsetEstimate lag = find_force_lag(rows, force_noise_N);
     if (lag.at != 0.0) lags_s.push_back(lag.at);
   }
   if (lags_s.empty() || 2 * lags_s.size() < recordings.size()) return 0.0;
@@ -74,12 +74,12 @@ double largest_force_N(const std::vector<SurfaceRow>& rows) {
 }
 
 // Where `member` lies to those in `fit`, which go from `low_m` to `high_m`.
-Located place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
+OffsetEstimate place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
   const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
   const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
-  const Located place = locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
+  const OffsetEstimate place = locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
   // Recordings that do not overlap as recorded agree with any offset of the force.
   if (from_m > 0.0 || to_m < 0.0) return place;
   std::vector<SurfaceRow> rows = member.rows;
@@ -94,7 +94,7 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
 
 // Where force begins at the same place in both, as each shows by itself, a shift is the
 // material's doing: two speeds look like one.
-Located unless_onsets_agree(Located place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
+OffsetEstimate unless_onsets_agree(OffsetEstimate place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
   if (!own.identified() || !first.identified()) return place;
   const double apart_m = own.raw_offset_m - first.raw_offset_m;
   const double error_m = std::hypot(own.law_error_m, first.law_error_m);

@@ -40,9 +40,9 @@ void add_costs(const ForceErrors& errors, double force_offset_N, const std::vect
 
 }  // namespace
 
-Located locate_surface(const std::vector<SurfaceRow>& rows,
-                       const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
-  Located nowhere;
+OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
+                              const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
+  OffsetEstimate nowhere;
   nowhere.standard_error = kUnknownError;
   if (rows.empty() || models.empty()) return nowhere;
   const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
@@ -52,7 +52,7 @@ Located locate_surface(const std::vector<SurfaceRow>& rows,
   const double way_m = high->motion.position_m - low->motion.position_m;
   const double reach_m = std::max({way_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
   const std::vector<std::size_t> blocks = blocks_by_way(rows, CommonFit::kBlocks);
-  const Located shift = locate(
+  const OffsetEstimate shift = locate(
       [&](double offset_m) {
         BlockCosts costs(CommonFit::kBlocks, 0.0);
         for (const auto& model : models) add_costs(errors_of(*model, rows, offset_m), 0.0, rows, blocks, jnd, costs);

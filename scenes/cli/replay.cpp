@@ -38,7 +38,7 @@ struct ReplayedModel {
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
   PredictedErrors predicted;
-  Located surface;
+  OffsetEstimate surface;
   ModelTiming time;
 };
 
@@ -161,7 +161,7 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
 // Two explanations that the recording does not distinguish, for the first model that has them.
 std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const Located& surface = replayed.models[i].surface;
+    const OffsetEstimate& surface = replayed.models[i].surface;
     if (surface.force_offset_N == 0.0) continue;
     char text[320];
     std::snprintf(text, sizeof text,

@@ -58,7 +58,7 @@ struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
   PredictedErrors predicted;  // with the surface moved
-  Located surface;            // identified or not
+  OffsetEstimate surface;     // identified or not
 };
 
 struct RecordingEvaluation {

@@ -19,14 +19,14 @@ BlockCosts bowl(double x, double at, double floor) {
 }
 
 TEST(ProfileSearch, FindsThePlaceThatAllBlocksAgreeOn) {
-  const Located found = locate([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
+  const OffsetEstimate found = locate([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
   EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 7.3, 0.01);
   EXPECT_LT(found.standard_error, 0.2);
 }
 
 TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
-  const Located found = locate([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
+  const OffsetEstimate found = locate([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
   EXPECT_TRUE(found.identified);
   EXPECT_EQ(found.at, 0.0);
 }
@@ -36,7 +36,7 @@ TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
 TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
   SearchRange imitated = kRange;
   imitated.imitated = true;
-  const Located found = locate([](double x) { return bowl(x, 0.05, 1.0); }, imitated);
+  const OffsetEstimate found = locate([](double x) { return bowl(x, 0.05, 1.0); }, imitated);
   EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
   EXPECT_NEAR(locate([](double x) { return bowl(x, 7.3, 0.01); }, imitated).at, 7.3, 0.01);
@@ -55,20 +55,20 @@ TEST(ProfileSearch, ABlurIsPartOfTheError) {
 // Recordings that do not overlap as recorded fit any way.
 TEST(ProfileSearch, ZeroOutsideOfTheRangeSaysNothing) {
   const auto apart = [](double x) { return x == 0.0 ? BlockCosts(10, 0.0) : bowl(x, 5.0, 0.01); };
-  const Located found = locate(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
+  const OffsetEstimate found = locate(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
   EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 5.0, 0.01);
 }
 
 TEST(ProfileSearch, AnOptimumAtTheEdgeIsNotTold) {
-  const Located found = locate([](double x) { return bowl(x, 14.0, 0.01); }, kRange);
+  const OffsetEstimate found = locate([](double x) { return bowl(x, 14.0, 0.01); }, kRange);
   EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
 }
 
 TEST(ProfileSearch, TwoPlacesAsGoodAreNotTold) {
   const auto two = [](double x) { return bowl(std::abs(x), 5.0, 0.01); };
-  const Located found = locate(two, kRange);
+  const OffsetEstimate found = locate(two, kRange);
   EXPECT_FALSE(found.identified);
   EXPECT_TRUE(found.not_zero);
 }
@@ -88,7 +88,7 @@ TEST(ProfileSearch, EndsWhateverTheCostFunctionReturns) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const BlockCosts& costs : {BlockCosts(10, nan), BlockCosts(10, infinity), BlockCosts(10, -infinity),
                                   BlockCosts(10, 1e308), BlockCosts(10, 0.0), BlockCosts{}}) {
-    const Located found = locate([&](double) { return costs; }, kRange);
+    const OffsetEstimate found = locate([&](double) { return costs; }, kRange);
     EXPECT_FALSE(found.identified);
     EXPECT_EQ(found.at, 0.0);
   }
@@ -109,15 +109,15 @@ TEST(ProfileSearch, WithoutARangeNothingIsTold) {
 
 // Forces of a straight spring: a shift of 1 is an offset of the force of 3.
 TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
-  const Located shift = locate([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
+  const OffsetEstimate shift = locate([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
   ASSERT_TRUE(shift.identified);
-  const Located both = unless_force_offset(
+  const OffsetEstimate both = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 0.01); }, 10.0);
   EXPECT_FALSE(both.identified);
   EXPECT_EQ(both.at, 0.0);
   EXPECT_NEAR(both.minimum_at, 1.0, 0.01);
   EXPECT_NEAR(both.force_offset_N, 3.0, 0.05);
-  const Located only = unless_force_offset(
+  const OffsetEstimate only = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 9.0); }, 10.0);
   EXPECT_TRUE(only.identified);
   EXPECT_EQ(only.at, shift.at);
