@@ -34,7 +34,7 @@ class Search {
       return {0.0, false, kUnknownError};
     scan();
     const Place zero = place(0.0);
-    if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
+    if (range_.systematic_effect > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
           return !is_significantly_worse(zero.costs, one.costs);
         })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
@@ -46,14 +46,15 @@ class Search {
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
     found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
-    if (range_.blur > 0.0) {
-      found.identified = found.identified && significantly_worse(best_.at - range_.blur) &&
-                         significantly_worse(best_.at + range_.blur);
-      half += range_.blur;
-      found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
+    if (range_.systematic_effect > 0.0) {
+      found.identified = found.identified && significantly_worse(best_.at - range_.systematic_effect) &&
+                         significantly_worse(best_.at + range_.systematic_effect);
+      half += range_.systematic_effect;
+      found.standard_error = std::max(found.standard_error, range_.systematic_effect / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.imitated && !is_significantly_worse(zero.costs, best_.costs))
+    if (found.not_zero && zero_counts && range_.has_systematic_effect &&
+        !is_significantly_worse(zero.costs, best_.costs))
       found.identified = false;
     if (!found.identified) found.standard_error = kUnknownError;
     if (found.identified && found.not_zero) found.at = best_.at;

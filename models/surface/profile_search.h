@@ -8,9 +8,8 @@
 // (acceptance.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
 // An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
 // blocks, and a jackknife does not see it. In such a case the offset is identified only if 0 is significantly worse.
-// If the effect reaches as far as `blur`, the costs at `blur` on either side must be significantly worse, too, and 0
-// must be further away by `blur`.
-// Thread guarantee: slow side, pure.
+// If the effect reaches as far as `systematic_effect`, the costs at `systematic_effect` on either side must be
+// significantly worse, too, and 0 must be further away by `systematic_effect`. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <functional>
@@ -38,9 +37,9 @@ struct SearchRange {
   double high = 0.0;
   double coarse_step = 0.0;
   double fine_step = 0.0;
-  double widest = 0.0;    // limit of two standard errors
-  bool imitated = false;  // the material has an effect that looks like an offset
-  double blur = 0.0;      // 0, or the size of that effect
+  double widest = 0.0;                 // limit of two standard errors
+  bool has_systematic_effect = false;  // the material has an effect that looks like an offset
+  double systematic_effect = 0.0;      // 0, or the size of that effect
 };
 
 // The minimum of `cost` in `range`. Not identified where the range is empty.

@@ -34,19 +34,19 @@ TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
 // All blocks err alike where the material imitates a shift: the jackknife says 0.05 +- 0.02, but
 // no block is better for it by more than its own noise.
 TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
-  SearchRange imitated = kRange;
-  imitated.imitated = true;
-  const OffsetEstimate found = locate([](double x) { return bowl(x, 0.05, 1.0); }, imitated);
+  SearchRange with_effect = kRange;
+  with_effect.has_systematic_effect = true;
+  const OffsetEstimate found = locate([](double x) { return bowl(x, 0.05, 1.0); }, with_effect);
   EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
-  EXPECT_NEAR(locate([](double x) { return bowl(x, 7.3, 0.01); }, imitated).at, 7.3, 0.01);
+  EXPECT_NEAR(locate([](double x) { return bowl(x, 7.3, 0.01); }, with_effect).at, 7.3, 0.01);
 }
 
 TEST(ProfileSearch, ABlurIsPartOfTheError) {
-  SearchRange blurred = kRange;
-  blurred.imitated = true;
-  blurred.blur = 1.0;
-  const auto at = [&](double place) { return locate([=](double x) { return bowl(x, place, 0.01); }, blurred); };
+  SearchRange with_effect = kRange;
+  with_effect.has_systematic_effect = true;
+  with_effect.systematic_effect = 1.0;
+  const auto at = [&](double place) { return locate([=](double x) { return bowl(x, place, 0.01); }, with_effect); };
   EXPECT_EQ(at(0.9).at, 0.0);
   EXPECT_NEAR(at(3.0).at, 3.0, 0.01);
   EXPECT_GE(at(3.0).standard_error, 0.5);
