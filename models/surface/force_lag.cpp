@@ -49,8 +49,8 @@ OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_
   if (!(high->motion.position_m > low->motion.position_m)) return none;
   if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
   const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
-  return locate([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
-                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kToldLag_s, true, kToldLag_s});
+  return estimate_offset([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
+                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kToldLag_s, true, kToldLag_s});
 }
 
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {

@@ -166,7 +166,7 @@ class Search {
 
 }  // namespace
 
-OffsetEstimate locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
+OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
   return Search(cost, range).run();
 }
 

@@ -43,7 +43,7 @@ struct SearchRange {
 };
 
 // The minimum of `cost` in `range`. Not identified where the range is empty.
-OffsetEstimate locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
+OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
 
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
 // -most_N to most_N exceeds that of the shift by at most one standard error (acceptance.h). If so, the shift is not

@@ -79,7 +79,8 @@ OffsetEstimate place_of(const CommonFit& fit, const Member& member, double low_m
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
   const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
-  const OffsetEstimate place = locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
+  const OffsetEstimate place =
+      estimate_offset([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
   // Recordings that do not overlap as recorded agree with any offset of the force.
   if (from_m > 0.0 || to_m < 0.0) return place;
   std::vector<SurfaceRow> rows = member.rows;

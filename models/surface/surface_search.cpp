@@ -52,7 +52,7 @@ OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
   const double way_m = high->motion.position_m - low->motion.position_m;
   const double reach_m = std::max({way_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
   const std::vector<std::size_t> blocks = blocks_by_way(rows, CommonFit::kBlocks);
-  const OffsetEstimate shift = locate(
+  const OffsetEstimate shift = estimate_offset(
       [&](double offset_m) {
         BlockCosts costs(CommonFit::kBlocks, 0.0);
         for (const auto& model : models) add_costs(errors_of(*model, rows, offset_m), 0.0, rows, blocks, jnd, costs);
