@@ -237,7 +237,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (request.surface == Surface::automatic) {
-    const auto beginning_m = find_beginning(source, *extent, request.jnd, control);
+    const auto beginning_m = find_preload_surface(source, *extent, request.jnd, control);
     if (!beginning_m) return beginning_m.error();
     if (*beginning_m != 0.0) {
       source.shift(*beginning_m);

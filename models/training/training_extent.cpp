@@ -78,8 +78,8 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   return extent;
 }
 
-Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
-                              const FitControl& control) {
+Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                                    const FitControl& control) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth and force
   const Status status = source.for_each(
       [&](const MotionRow& row) {

@@ -38,7 +38,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
 // surface is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard
 // errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
 // Errors: those of the source; interrupted.
-Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
-                              const FitControl& control);
+Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                                    const FitControl& control);
 
 }  // namespace palpate

@@ -42,7 +42,7 @@ double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) 
   }
   MotionSource source({{"", std::make_shared<const Recording>(recording)}});
   const auto extent = measure_extent(source, {});
-  const auto beginning_m = find_beginning(source, *extent, {}, {});
+  const auto beginning_m = find_preload_surface(source, *extent, {}, {});
   return beginning_m.ok() ? *beginning_m : 1.0;
 }
 
