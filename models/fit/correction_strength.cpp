@@ -275,8 +275,8 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.smoothing = chosen->smoothing;
   choice.strength = chosen->strength;
   choice.inner_radius = chosen->inner_radius;
-  choice.trend_error_over_jnd = none.errors.typical();
-  choice.error_over_jnd = chosen->errors.typical();
+  choice.trend_error_over_jnd = none.errors.rms_at_mean_score();
+  choice.error_over_jnd = chosen->errors.rms_at_mean_score();
   return choice;
 }
 

@@ -59,7 +59,7 @@ struct StrengthChoice {
   double smoothing = 0.0;
   double strength = 1.0;
   double inner_radius = 0.0;
-  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::typical), without the correction
+  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::rms_at_mean_score), without the correction
   double error_over_jnd = 0.0;        // the same, with the correction
 };
 

@@ -173,8 +173,8 @@ void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendR
       if (!std::binary_search(group.columns.begin(), group.columns.end(), column)) others.push_back(column);
     }
     const bool taken = (x(group.columns).array() > 0.0).any();
-    prepared.gains.push_back(
-        {group.name, taken, with_all.errors.typical(), regression.cross_validate(others).errors.typical()});
+    prepared.gains.push_back({group.name, taken, with_all.errors.rms_at_mean_score(),
+                              regression.cross_validate(others).errors.rms_at_mean_score()});
   }
   std::stable_partition(prepared.gains.begin(), prepared.gains.end(), [](const PartGain& one) { return one.taken; });
 }

@@ -39,8 +39,8 @@ struct Tried {
   std::size_t best() const { return simplest_adequate(errors); }
   // The lowest error of the laws from the first to before the last.
   double lowest_error(std::size_t first, std::size_t last) const {
-    double lowest = errors[first].typical();
-    for (std::size_t i = first + 1; i < last; ++i) lowest = std::min(lowest, errors[i].typical());
+    double lowest = errors[first].rms_at_mean_score();
+    for (std::size_t i = first + 1; i < last; ++i) lowest = std::min(lowest, errors[i].rms_at_mean_score());
     return lowest;
   }
 };
@@ -106,7 +106,8 @@ Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& l
   if (Status status = search.add(surface, {}, true); !status) return status.error();
   const std::size_t found = surface.best();
   const bool lags = found == 1;
-  gains.push_back({"surface that lags", lags, surface.errors[1].typical(), surface.errors[0].typical()});
+  gains.push_back(
+      {"surface that lags", lags, surface.errors[1].rms_at_mean_score(), surface.errors[0].rms_at_mean_score()});
 
   Tried slower{{surface.laws[found]}, {surface.errors[found]}};
   for (const double slowing : kSlowings) {
@@ -115,9 +116,10 @@ Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& l
     }
   }
   const std::size_t chosen = slower.best();
-  gains.push_back({"slower when deeper", chosen != 0,
-                   chosen != 0 ? slower.errors[chosen].typical() : slower.lowest_error(1, slower.errors.size()),
-                   slower.errors[0].typical()});
+  gains.push_back(
+      {"slower when deeper", chosen != 0,
+       chosen != 0 ? slower.errors[chosen].rms_at_mean_score() : slower.lowest_error(1, slower.errors.size()),
+       slower.errors[0].rms_at_mean_score()});
   FeatureList result = list;
   result.slowing = slower.laws[chosen].slowing;
   result.surface = std::move(slower.laws[chosen].surface);

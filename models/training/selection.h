@@ -31,7 +31,7 @@ struct FoldErrors {
   // Root mean square over all samples, in JND.
   double rms() const;
   // sqrt(exp(mean score) - kUnnoticed_jnd^2), in JND: the RMS error of a fold whose score is the mean score.
-  double typical() const;
+  double rms_at_mean_score() const;
 
   std::vector<double> squares;  // by fold, in JND^2
   std::vector<double> counts;   // samples
