@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/fit/decide_strength.h"
+#include "models/fit/select_strength.h"
 
 namespace palpate {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "models/fit/decide_strength.h"
 #include "models/fit/methods.h"
+#include "models/fit/select_strength.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/solve/penalised_weights.h"

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
+#include "models/fit/select_strength.h"
 #include "models/surface/surface_registration.h"
 #include "models/training/relaxation_times.h"
 #include "models/training/training_extent.h"
@@ -223,7 +223,7 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   common.upper = prepared.set.normalisation.upper;
   common.jnd = request.jnd;
   make_sites(prepared, request);
-  if (!papers) decide_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
+  if (!papers) select_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
   return {};
 }
 

@@ -55,7 +55,7 @@ Result<double> choose_smoothing(const Sites& sites, KernelKind kernel) {
 }
 
 Result<double> smoothing_of(const Sites& sites, KernelKind kernel) {
-  if (is_smoothing_decided(sites, kernel)) return *sites.smoothing;
+  if (is_smoothing_selected(sites, kernel)) return *sites.smoothing;
   return choose_smoothing(sites, kernel);
 }
 

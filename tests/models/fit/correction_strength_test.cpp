@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "models/fit/decide_strength.h"
+#include "models/fit/select_strength.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "models/fit/decide_strength.h"
+#include "models/fit/select_strength.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,7 +111,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPredi
   return bound;
 }
 
-void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
+void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
                      const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes) {
   ModelData& common = prepared.common;
   prepared.left_out = left_out_rows(common, rows, row_features, left_out, problem);

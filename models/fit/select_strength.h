@@ -21,7 +21,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPredi
 // Selects the strength for `prepared`, whose normalisation, sites and cover are set, and stores the rows for
 // `cross_validate`. `row_features`: features x rows, SI. `left_out`: the trends without each fold. `strokes`: total of
 // all recordings.
-void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
+void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
                      const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes);
 
 // The cross-validated errors of a method: it is fitted without each fold, to at most 1500 rows, and corrects the trend
