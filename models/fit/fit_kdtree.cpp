@@ -168,8 +168,8 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
   const auto add = [&](Eigen::Index leaf) {
     const auto place = static_cast<std::size_t>(leaf);
     of_leaf.resize(std::max(of_leaf.size(), place + 1));
-    of_leaf[place] = sequence.stays.size();
-    sequence.stays.push_back({leaf, tree.leaf_count(), 0});
+    of_leaf[place] = sequence.memberships.size();
+    sequence.memberships.push_back({leaf, tree.leaf_count(), 0});
     sequence.pool.col(static_cast<Eigen::Index>(of_leaf[place])) = tree.barycentre(leaf);
   };
   add(0);
@@ -182,13 +182,13 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
     const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
     if (lower < 0) break;
     const Eigen::Index upper = tree.leaf_count() - 1;
-    sequence.stays[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
-    const auto before = static_cast<Eigen::Index>(sequence.stays.size());
+    sequence.memberships[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
+    const auto before = static_cast<Eigen::Index>(sequence.memberships.size());
     add(lower);
     add(upper);
     fit.set(sequence.pool.middleCols(before, 2), {lower, upper});
   }
-  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.stays.size()));
+  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.memberships.size()));
   sequence.most = request.centres > 0 ? tree.leaf_count() : 0;
   if (sequence.most < request.centres) sequence.shortage = "no leaf can be split further";
   return sequence;
