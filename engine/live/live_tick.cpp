@@ -241,13 +241,13 @@ Impedance LiveTick::impedance() const noexcept {
 }
 
 double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) noexcept {
-  const double late_s = snapshot_.device.late_s;
-  stability_.update(late_s > kInTick_s ? late_s : kInTick_s, step_s);
+  const double lag_s = snapshot_.device.lag_s;
+  stability_.update(lag_s > kInTick_s ? lag_s : kInTick_s, step_s);
   const Impedance model = impedance();
   const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
   const ForceScale limited = bounded_ ? wanted.limited(stability_, model) : unbounded;
   snapshot_.stiffness_share = static_cast<float>(limited.stiffness / unbounded.stiffness);
-  snapshot_.late_ms = static_cast<float>(1e3 * stability_.late_s());
+  snapshot_.lag_ms = static_cast<float>(1e3 * stability_.lag_s());
   const TickSnapshot& tick = snapshot_.tick;
   return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
 }
@@ -277,7 +277,7 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
   const double hold_s = std::max(kHapticTick_s, snapshot_.device.interval_s);
-  const PassivityController::Loop loop{std::max(0.0, stability_.late_s() - 0.5 * hold_s),
+  const PassivityController::Loop loop{std::max(0.0, stability_.lag_s() - 0.5 * hold_s),
                                        std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
                                        hold_s};
   return passivity_.apply(commanded_N,

@@ -65,8 +65,8 @@ struct HealthView {
   std::vector<std::string> alarms;  // not yet seen by the user
   std::string device_name;
   DeviceHealth device;
-  double heat_share = 0.0;                      // of the motor's thermal budget
-  double stiffness_share = 1.0, late_ms = 0.0;  // see LoopSnapshot
+  double heat_share = 0.0;                     // of the motor's thermal budget
+  double stiffness_share = 1.0, lag_ms = 0.0;  // see LoopSnapshot
 };
 
 struct WindowView {
