@@ -61,11 +61,11 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   const double felt_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kHapticTick_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
-    return less(commanded_N, 0.0);
+    return reduced(commanded_N, 0.0);
   }
-  if (tool.other_material) {
+  if (tool.model_changing) {
     begin_at(tool.depth_m);
-    return less(commanded_N, less_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
+    return reduced(commanded_N, reduction_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
   }
   const double half_play_m = 0.5 * play_m_;
   const double depth_m = std::clamp(depth_m_, tool.depth_m - half_play_m, tool.depth_m + half_play_m);
@@ -85,16 +85,16 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   }
   depth_m_ = depth_m;
   const double out_m_per_s = -tool.velocity_m_per_s;
-  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return less(commanded_N, 0.0);
+  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return reduced(commanded_N, 0.0);
   const double damping_Ns_per_m =
       std::min(loop.damping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * std::max(step_s, loop.hold_s)));
-  return less(commanded_N, damping_Ns_per_m * out_m_per_s);
+  return reduced(commanded_N, damping_Ns_per_m * out_m_per_s);
 }
 
-double PassivityController::less(double commanded_N, double less_N) noexcept {
-  less_N_ = less_N;
-  if (less_N == 0.0) return commanded_N;
-  return commanded_N > less_N ? commanded_N - less_N : std::min(commanded_N, 0.0);
+double PassivityController::reduced(double commanded_N, double reduction_N) noexcept {
+  reduction_N_ = reduction_N;
+  if (reduction_N == 0.0) return commanded_N;
+  return commanded_N > reduction_N ? commanded_N - reduction_N : std::min(commanded_N, 0.0);
 }
 
 }  // namespace palpate
