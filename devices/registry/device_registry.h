@@ -16,7 +16,7 @@ namespace palpate {
 struct DeviceDescription {
   std::string name;     // as --device takes it
   std::string summary;  // one line
-  Holder holder = Holder::nobody;
+  Holder holder = Holder::none;
   std::string problem;  // why it cannot be opened here and what to do; empty: it can
 };
 

@@ -68,7 +68,7 @@ class ReplayControl {
 };
 
 // The holder of the tool, on whom the written force acts.
-enum class Holder { nobody, simulated, person };
+enum class Holder { none, simulated, person };
 
 class Device {
  public:
