@@ -42,7 +42,7 @@ class AutoDevice final : public Device, public ToolInput {
   // Setting a target is taking over.
   void set_target(double position_m, double now_s) noexcept override { mouse_.set_target(position_m, now_s); }
   void nudge(double by_m, double now_s) noexcept override { mouse_.nudge(by_m, now_s); }
-  void leave() noexcept override { mouse_.leave(); }
+  void release() noexcept override { mouse_.release(); }
   // Any thread, wait-free.
   bool hand_is_exploring() const noexcept override { return exploring_.load(std::memory_order_relaxed); }
 

@@ -33,7 +33,7 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
   void set_target(double position_m, double now_s) noexcept override;
   // Likewise: moves the target, as a wheel or a key does.
   void nudge(double by_m, double now_s) noexcept override;
-  void leave() noexcept override;
+  void release() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }

@@ -41,7 +41,7 @@ class ToolInput {
   virtual void set_target(double position_m, double now_s) noexcept = 0;
   virtual void nudge(double by_m, double now_s) noexcept = 0;
   // The user no longer moves the tool.
-  virtual void leave() noexcept = 0;
+  virtual void release() noexcept = 0;
   // Whether the tool moves by itself until the user moves it.
   virtual bool hand_is_exploring() const noexcept = 0;
 };

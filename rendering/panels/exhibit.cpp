@@ -151,7 +151,7 @@ void Exhibit::forget(LiveSession& session, ViewState& view) {
   language_ = 0;
   host_ = false;
   session.reset_figures();
-  if (session.mouse() != nullptr) session.mouse()->leave();
+  if (session.mouse() != nullptr) session.mouse()->release();
   view.time.run();
 }
 

@@ -107,7 +107,7 @@ TEST(AutoDevice, GivesWayToTheMouseAndComesBack) {
   device.mouse()->set_target(-2e-3, 40.0);
   run(40000, 41000);
   EXPECT_FALSE(device.hand_is_exploring());
-  device.mouse()->leave();
+  device.mouse()->release();
   run(41000, 42000);
   EXPECT_TRUE(device.hand_is_exploring()) << "at once, when it is said";
 }
