@@ -26,7 +26,7 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
  public:
   explicit MouseDevice(const MouseSettings& settings = {});
 
-  ToolInput* mouse() noexcept override { return this; }
+  ToolInput* tool_input() noexcept override { return this; }
 
   // One thread, the window's; wait-free. `now_s`: steady clock. A target that is
   // not finite is ignored.

@@ -104,7 +104,7 @@ class Device {
   virtual std::string note() const { return {}; }
 
   // Slow side: further interfaces of this device, valid during its lifetime; null: not available.
-  virtual ToolInput* mouse() noexcept { return nullptr; }
+  virtual ToolInput* tool_input() noexcept { return nullptr; }
   virtual ReplayControl* replay() noexcept { return nullptr; }
 };
 

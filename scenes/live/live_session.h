@@ -126,7 +126,7 @@ class LiveSession {
   bool renders_force() const noexcept;                // that a person feels
   void start_zeroing() { device_->start_zeroing(); }  // the tool is at its rest position
   // What it can be asked for beside: null when it cannot.
-  ToolInput* mouse() const noexcept { return device_->mouse(); }
+  ToolInput* tool_input() const noexcept { return device_->tool_input(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
   // Where the surface of a recording is for the models. Errors so far are forgotten with every change.
   const ReplayTest& replay_test() const noexcept { return test_; }
