@@ -7,8 +7,7 @@ namespace {
 
 constexpr std::size_t kFewestRecordings = 3;
 constexpr std::size_t kStrokeFolds = 5;
-// Pieces of one long stroke: two for every fold, so that a fold is never one
-// phase of it alone.
+// The number of pieces of one long stroke, two for each fold, so that no fold consists of a single phase.
 constexpr std::size_t kPieces = 10;
 constexpr std::size_t kPiecesOneWay = 50;
 

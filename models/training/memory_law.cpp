@@ -11,14 +11,14 @@ namespace {
 
 // At the greatest depth a relaxation time is exp(slowing) times that at the surface: 0.2 to 20.
 constexpr std::array kSlowings{0.75, -0.75, 1.5, -1.5, 2.25, 3.0};
-// Where the surface is depends on the branches, and these on where it is.
+// The surface depends on the branches and the branches on the surface: a fixed-point iteration.
 constexpr int kSurfacePasses = 2;
 // The filters are exact for steps of any length, and a hand moves little in 4 ms.
 constexpr double kSearchStep_s = 3.9e-3;
 constexpr std::size_t kSearchedTimes = 8;
 constexpr std::size_t kSearchedBristles = 2;
 
-// At most `most` of the values, evenly.
+// At most `most` of the values, evenly spaced by index.
 std::vector<double> evenly(const std::vector<double>& values, std::size_t most) {
   if (values.size() <= most) return values;
   std::vector<double> few;
@@ -37,7 +37,7 @@ struct Tried {
   std::vector<FoldErrors> errors{};
 
   std::size_t best() const { return simplest_adequate(errors); }
-  // The lowest error of the laws from the first to before the last.
+  // The lowest error of the laws `first` to `last` - 1.
   double lowest_error(std::size_t first, std::size_t last) const {
     double lowest = errors[first].rms_at_mean_score();
     for (std::size_t i = first + 1; i < last; ++i) lowest = std::min(lowest, errors[i].rms_at_mean_score());
@@ -55,7 +55,7 @@ class LawSearch {
     list_.creep_times_s = evenly(list.creep_times_s, kSearchedBristles);
   }
 
-  // Adds the law to those tried. With `lags` the surface is searched from that of the law, which may have none.
+  // Adds a law to those tried. With `lags` the surface is iterated, starting at that of the law, which may be none.
   Status add(Tried& tried, Law law, bool lags) const {
     for (int pass = 0; pass < (lags ? kSurfacePasses : 1); ++pass) {
       FeatureList list = list_;
@@ -67,7 +67,7 @@ class LawSearch {
       ColumnList columns = regression.all_columns();
       if (pass + 1 == (lags ? kSurfacePasses : 1)) tried.errors.push_back(regression.cross_validate(columns).errors);
       if (!lags) break;
-      columns.resize(rows->first_stop());  // friction and creep hold no surface back
+      columns.resize(rows->first_stop());  // friction and creep do not make the surface lag
       law.surface = surface_of(*rows, regression.solve(columns));
     }
     tried.laws.push_back(std::move(law));

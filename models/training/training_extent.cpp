@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// Of the way in: with less way out in contact the tool never turns round.
+// An unloading path below this share of the loading path counts as none.
 constexpr double kLeastUnloading = 0.1;
 
 }  // namespace
@@ -22,10 +22,11 @@ FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExt
 
 namespace {
 
-// Forces below the JND at rest are a pull where there are so many, down to a certain one.
+// The material pulls if at least kLeastPulls samples and a share of kPullShare have a force below -JND(0), and the
+// lowest force is certain (certain_force_N).
 constexpr double kLeastPulls = 10.0;
 constexpr double kPullShare = 1e-3;
-// Of the greatest depth: less than a tenth of the first piece of the trend's elastic response.
+// A share of the greatest depth: a third of the first piece of the trend's elastic response.
 constexpr double kShallow = 0.01;
 
 }  // namespace
