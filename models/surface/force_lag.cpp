@@ -9,13 +9,13 @@ namespace palpate {
 namespace {
 
 constexpr double kMostLag_s = 0.05;
-constexpr double kCoarse_s = 0.005;  // of lags, and between rows
+constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
 constexpr double kFine_s = 0.2e-3;
 
-// Strokes at different speeds tell a lag from memory; one press alone does not.
+// Strokes at different speeds distinguish a lag from memory; one press does not.
 constexpr int kLeastStrokes = 3;
 
-// How often the tool goes in past the middle of its way.
+// Counts how often the tool passes the middle of its range inwards.
 int strokes_of(const std::vector<SurfaceRow>& rows, double middle_m) {
   int strokes = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -24,7 +24,7 @@ int strokes_of(const std::vector<SurfaceRow>& rows, double middle_m) {
   return strokes;
 }
 
-// The first rows, not closer together than is of use.
+// The first kSearchRows rows with at least kCoarse_s between them.
 std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
   std::vector<SurfaceRow> kept;
   for (const SurfaceRow& row : rows) {

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kMostValleys = 4;
 constexpr double kMostScans = 1e6;
-constexpr int kForceSteps = 16;  // to a thousandth of the largest
+constexpr int kForceSteps = 16;  // resolve a thousandth of the largest
 constexpr double kGolden = 0.6180339887498949;
 constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
-// In place of a cost that is not a number: worse than any other, and sums of it stay finite.
+// Replaces a cost that is not finite: worse than any other, and sums of it stay finite.
 constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
@@ -42,7 +42,7 @@ class Search {
     refine_valleys();
     look_around();
     OffsetEstimate found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
-    // Outside of the range, where recordings do not overlap, a cost at 0 says nothing.
+    // If 0 is outside of the range, recordings do not overlap there and the cost at 0 has no meaning.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
     found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
@@ -100,7 +100,7 @@ class Search {
     });
   }
 
-  // Places ever further from the best, for where it lies when a block is left out.
+  // Adds offsets at growing distances from the best, for the minima of the jackknife.
   void look_around() {
     for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
       for (const double at : {best_.at - step, best_.at + step}) {
@@ -110,8 +110,7 @@ class Search {
     std::sort(scanned_.begin(), scanned_.end(), [](const Place& a, const Place& b) { return a.at < b.at; });
   }
 
-  // Where the cost without one block has its minimum: the best place seen and a parabola
-  // through it and its neighbours.
+  // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
   double best_without(std::size_t block) const {
     const auto cost = [&](std::size_t i) { return sum(scanned_[i].costs) - scanned_[i].costs[block]; };
     std::size_t best = 0;
@@ -129,7 +128,7 @@ class Search {
 
   bool significantly_worse(double at) const { return is_significantly_worse(place(at).costs, best_.costs); }
 
-  // Quenouille (1956), Tukey (1958): a block left out at a time.
+  // The jackknife of Quenouille (1956) and Tukey (1958), with one block left out at a time.
   double jackknife_error() const {
     const std::size_t count = best_.costs.size();
     std::vector<double> places;
@@ -172,7 +171,7 @@ OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, co
 
 OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N) {
   if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
-  // J is convex in the offset of the force, but for Huber's bound: one valley.
+  // J, a sum of Huber's losses, has one minimum over the force offset.
   double low_N = -most_N;
   double high_N = most_N;
   const auto total = [&](double offset_N) { return sum(cost(offset_N)); };
