@@ -12,10 +12,10 @@
 namespace palpate {
 namespace {
 
-// More tell the same.
+// More rows give the same selection.
 constexpr std::size_t kLeftOutRows = 5000;
-// One or two presses say nothing of how the next differs: 5 % of the force, as two
-// specimens of a cast silicone do (Dawood et al. 2026).
+// One or two presses do not show how the next one differs. The bound is then at least 5 % of the force, the difference
+// between two specimens of a cast silicone (Dawood et al. 2026).
 constexpr std::size_t kFewPresses = 3;
 constexpr double kLeastPerForce = 0.05;
 
@@ -48,7 +48,7 @@ CrossValidationRows left_out_rows(const ModelData& common, const TrendRows& rows
 constexpr std::size_t kFewest = 50;
 constexpr double kHeld = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
-constexpr double kLeastShape_N = 1e-3;      // something is left to multiply
+constexpr double kLeastShape_N = 1e-3;      // above 0, so that the factor enlarges it
 
 constexpr Eigen::Index kLeftOutSites = 1500;  // a tenth of a second for each fold
 
@@ -59,7 +59,7 @@ StrengthInput strength_input(const PreparedTraining& prepared) {
   return input;
 }
 
-// What a correction is fitted to without a fold: what the trend without it leaves over.
+// The sites of a correction without a fold. The targets are the residuals of the trend without that fold.
 Sites sites_without(const PreparedTraining& prepared, int fold) {
   const CrossValidationRows& rows = *prepared.left_out;
   std::vector<Eigen::Index> others;
@@ -100,7 +100,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPredi
   for (const CrossValidationPrediction& one : predictions) {
     ratios.push_back(one.error_N / bound.at(one.predicted_N, beyond(one)));
   }
-  // The smallest that holds ceil((n + 1) 97.5 %) of them.
+  // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
   const auto n = static_cast<double>(ratios.size());
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
