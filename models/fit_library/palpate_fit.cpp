@@ -27,14 +27,14 @@ struct palpate_recording {
   std::vector<bool> left_out{};
 };
 
-// A row of the interface is a row of a recording.
+// A row of the interface has the layout of a row of a recording.
 static_assert(sizeof(palpate_row) == sizeof(palpate::RecordingRow) &&
               offsetof(palpate_row, acceleration_m_per_s2) == offsetof(palpate::RecordingRow, acceleration_m_per_s2));
 
 namespace palpate::library {
 namespace {
 
-// The features of Hoever & Harders (2009) as a candidate beside those that the recordings support.
+// The scene of fits without a scene file: the features of Hoever & Harders (2009).
 constexpr const char* kSceneFeatures = "depth,velocity,lowpass_velocity:0.17,lowpass_velocity:1.27";
 
 Status import_to(const std::string& table, const std::string& recording, bool overwrite) {
@@ -108,7 +108,7 @@ CheckRequest check_of(const TrainingRequest& scene) {
   return request;
 }
 
-// `check`: the checked recordings for a request.
+// `check`: returns the checked recordings for a request.
 template <typename Check>
 Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check& check) {
   const auto began = std::chrono::steady_clock::now();
@@ -161,7 +161,7 @@ Result<Recording> recording_of(std::string name, std::size_t n, const double* ti
                fault->text};
 }
 
-// The folds of samples that come recording by recording.
+// Assigns samples, which are in order of recordings, to folds; returns the number of folds.
 int assign_folds(std::size_t n, const double* depth_m, const int* recording, int* fold) {
   const auto recording_of = [&](std::size_t i) { return recording == nullptr ? 0 : recording[i]; };
   std::vector<MotionRow> rows(n);
