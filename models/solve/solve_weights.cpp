@@ -16,8 +16,9 @@
 namespace palpate {
 namespace {
 
-// With this many sites for each unknown, plain least squares is used. On virtual silicone the most likely smoothing,
-// that of a function through all sites, triples the error of 100 centres; with few sites it reduces it by two points.
+// With this many sites for each unknown and no selected smoothing, plain least squares is used. On virtual silicone the
+// most likely smoothing, that of a function through all sites, triples the error of 100 centres; with few sites it
+// reduces it by two points.
 constexpr Eigen::Index kSitesEach = 10;
 
 // The rows are reduced in two halves, one thread each. The number is fixed, so that the result does not depend on the
