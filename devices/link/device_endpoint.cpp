@@ -144,7 +144,7 @@ bool DeviceEndpoint::stalled(const LinkState& link, double now_s) const noexcept
 
 // A round trip contains the wait for the next sample, on the mean half the time for which a force is held. A device
 // that confirms nothing is on USB, which takes a frame of 1 ms each way.
-double DeviceEndpoint::late_s(const LinkState& link) const noexcept {
+double DeviceEndpoint::lag_s(const LinkState& link) const noexcept {
   const double round_trip_s = link.round_trip_s > 0.0 ? link.round_trip_s : 2e-3;
   return kWaits_s + round_trip_s + 0.5 * std::max(0.0, 1e-3 - link.monitor.interval_s);
 }
@@ -168,7 +168,7 @@ DeviceHealth DeviceEndpoint::health(double now_s) noexcept {
   health.zeroing_progress = state.zeroing_progress;
   health.grip_held = state.grip;
   health.round_trip_s = link.round_trip_s;
-  health.late_s = late_s(link);
+  health.lag_s = lag_s(link);
   return health;
 }
 

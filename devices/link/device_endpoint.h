@@ -68,7 +68,7 @@ class DeviceEndpoint final : public LinkListener {
 
   DeviceCommand command_for(double force_N) noexcept;
   double position_m(const MonitorState& state) const noexcept;
-  double late_s(const LinkState& link) const noexcept;
+  double lag_s(const LinkState& link) const noexcept;
   bool stalled(const LinkState& state, double now_s) const noexcept;
   void publish_sample() noexcept;
 

@@ -36,11 +36,11 @@ class AutoDevice final : public Device, public ToolInput {
   bool read(double now_s, DeviceSample& sample) noexcept override;
   void write(double force_N) noexcept override;
 
-  ToolInput* mouse() noexcept override { return this; }
+  ToolInput* tool_input() noexcept override { return this; }
   // A target stops the simulated hand.
   void set_target(double position_m, double now_s) noexcept override { mouse_.set_target(position_m, now_s); }
   void nudge(double by_m, double now_s) noexcept override { mouse_.nudge(by_m, now_s); }
-  void leave() noexcept override { mouse_.leave(); }
+  void release() noexcept override { mouse_.release(); }
   // Any thread, wait-free.
   bool hand_is_exploring() const noexcept override { return exploring_.load(std::memory_order_relaxed); }
 

@@ -113,7 +113,7 @@ const std::vector<DeviceEntry>& device_entries() {
       {{"hand", "a simulated hand that explores by itself and feels the force", Holder::simulated, ""}, make_hand},
       {{"mouse", "mouse or keyboard, coupled to the tool by a spring and a damper", Holder::simulated, ""}, make_mouse},
       {{"hid", "a haptic device on a USB port, or a SpaceMouse without force", Holder::person, ""}, make_hid},
-      {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", Holder::nobody, ""},
+      {{"replay:FILE", "a recording at its own pace, over and over; its force is the reference", Holder::none, ""},
        make_replay},
       {{"bridge:TARGET", "any device: /dev/TTY[,BAUD], unix:PATH, tcp:HOST:PORT, exec:COMMAND", Holder::person, ""},
        make_bridge},

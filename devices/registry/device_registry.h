@@ -16,7 +16,7 @@ namespace palpate {
 struct DeviceDescription {
   std::string name;     // as in --device
   std::string summary;  // one line
-  Holder holder = Holder::nobody;
+  Holder holder = Holder::none;
   std::string problem;  // why it cannot be opened and what to do; empty: it can be opened
 };
 

@@ -29,7 +29,7 @@ void MouseDevice::set_target(double position_m, double now_s) noexcept {
 
 void MouseDevice::nudge(double by_m, double now_s) noexcept { set_target(target_m() + by_m, now_s); }
 
-void MouseDevice::leave() noexcept {
+void MouseDevice::release() noexcept {
   last_input_s_.store(-std::numeric_limits<double>::infinity(), std::memory_order_relaxed);
 }
 

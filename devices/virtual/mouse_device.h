@@ -24,13 +24,13 @@ class MouseDevice final : public SimulatedDevice, public ToolInput {
  public:
   explicit MouseDevice(const MouseSettings& settings = {});
 
-  ToolInput* mouse() noexcept override { return this; }
+  ToolInput* tool_input() noexcept override { return this; }
 
   // The window's thread only, wait-free. `now_s`: steady clock. A target that is not finite is ignored.
   void set_target(double position_m, double now_s) noexcept override;
   // The same for a relative motion, by a wheel or a key.
   void nudge(double by_m, double now_s) noexcept override;
-  void leave() noexcept override;
+  void release() noexcept override;
   bool hand_is_exploring() const noexcept override { return false; }
   // Any thread, wait-free.
   double target_m() const noexcept { return target_m_.load(std::memory_order_relaxed); }

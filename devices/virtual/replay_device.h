@@ -25,7 +25,7 @@ class ReplayDevice final : public Device, public ReplayControl {
 
   const std::string& name() const noexcept override { return name_; }
   SensorSpec sensor() const noexcept override { return sensor_; }
-  Holder holder() const noexcept override { return Holder::nobody; }
+  Holder holder() const noexcept override { return Holder::none; }
   bool measures_force() const noexcept override { return true; }
   ForceLimits limits() const noexcept override { return kSimulatedLimits; }
   bool read(double now_s, DeviceSample& sample) noexcept override;

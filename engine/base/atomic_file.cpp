@@ -22,8 +22,8 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// Same folder as the final file, so that the rename cannot cross disks; the
-// clock beside the pid tells apart processes of two containers that share it.
+// The temporary file is in the folder of the final one, so that the rename cannot cross disks. The clock distinguishes
+// processes with the same pid in two containers that share the folder.
 std::string temporary_name_in(const std::string& folder) {
   static std::atomic<unsigned> counter{0};
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
@@ -37,7 +37,7 @@ std::string words_for(int error_number) { return std::generic_category().message
 
 Error already_exists(const std::string& path) { return Error{path + " exists; pass --force to replace it"}; }
 
-// What stands under the final name already, if anything, that forbids writing.
+// Checks whether something that exists under the final name forbids writing.
 Status check_target(const std::string& path, bool overwrite) {
   if (path.empty()) return Error{"the name of the output file is empty"};
   struct stat status {};
@@ -62,9 +62,8 @@ Error cannot_create(const std::string& path, const std::string& folder, int erro
   return Error{start + words_for(error_number)};
 }
 
-// Renames without replacing, in one step of the kernel, so that a file which
-// appears in the last moment survives. Not every file system knows the flag;
-// a hard link refuses an existing name as well. Returns an errno, 0 if done.
+// Renames without replacing, atomically, so that a file that appears in the last moment survives. On file systems
+// without the flag a hard link is used, which also refuses an existing name. Returns an errno, 0 if done.
 int rename_without_replacing(const char* from, const char* to) {
   if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
@@ -73,7 +72,7 @@ int rename_without_replacing(const char* from, const char* to) {
   return 0;
 }
 
-// The link by which the kernel shows an open file, the only way to name one without a name.
+// The path of an open file in /proc, the only path of a file without a name.
 std::string link_to(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
 
 }  // namespace
@@ -146,7 +145,7 @@ void AtomicFile::flush() {
 void AtomicFile::write(std::string_view text) {
   if (descriptor_ < 0 || error_number_ != 0) return;
   buffer_.append(text);
-  // Once it is published, only whole pieces go out.
+  // After publishing, text is only written by `publish` and `commit`, in complete pieces.
   if (buffer_.size() >= kFlushBytes && !published_) flush();
 }
 
@@ -173,7 +172,7 @@ Status AtomicFile::take_name() {
   return {};
 }
 
-// Why nothing can be written any more: what the disk refused, else that all is done.
+// The reason why nothing can be written any more: an earlier error, otherwise that the file is closed.
 Status AtomicFile::closed() const {
   if (error_number_ != 0) return failure(error_number_);
   return Error{"cannot write " + path_ + ": it is closed already"};

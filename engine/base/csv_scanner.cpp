@@ -47,8 +47,7 @@ std::string escaped(unsigned char byte) {
   return {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
 }
 
-// C0 controls and DEL, and the C1 controls (U+0080 to U+009F), which a terminal
-// may obey as well.
+// C0 controls and DEL, and the C1 controls (U+0080 to U+009F), which a terminal may execute, too.
 bool is_control(std::string_view sequence) {
   const auto lead = static_cast<unsigned char>(sequence[0]);
   if (sequence.size() == 1) return lead < 0x20 || lead == 0x7F;
@@ -96,7 +95,7 @@ bool LineScanner::fail(std::size_t column, const std::string& text) {
   return false;
 }
 
-// Moves what is left to the front and reads behind it.
+// Moves the rest of the buffer to the front and reads more behind it.
 bool LineScanner::refill() {
   if (begin_ > 0) {
     std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
@@ -218,7 +217,7 @@ std::string printable(std::string_view text, std::size_t limit) {
 }
 
 const char* parse_number(const char* begin, const char* end, double& value) {
-  // from_chars takes no '+'; "+-1" must stay wrong.
+  // from_chars does not accept '+'; "+-1" must remain an error.
   if (begin != end && *begin == '+' && ++begin != end && *begin == '-') return nullptr;
   const auto parsed = std::from_chars(begin, end, value);
   return parsed.ec == std::errc() && std::isfinite(value) ? parsed.ptr : nullptr;

@@ -21,7 +21,7 @@ void parallel_for(int count, const std::function<void(int part)>& work) {
     try {
       helpers.emplace_back(take_parts);
     } catch (const std::system_error&) {
-      break;  // no more threads to be had: this one does the rest
+      break;  // the system has no more threads: this one does the rest
     }
   }
   take_parts();

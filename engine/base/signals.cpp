@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<int, 10> kSignals = {SIGINT,  SIGTERM, SIGHUP, SIGQUIT, SIGPIPE,
                                           SIGSEGV, SIGBUS,  SIGFPE, SIGILL,  SIGABRT};
-// The first of them may be asked to wait.
+// The first of them may be requests to stop that the program handles itself.
 constexpr std::size_t kRequests = 3;
 
 struct sigaction before[kSignals.size()];
@@ -22,7 +22,7 @@ std::atomic<int> requested_by{0};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<StopForces>::is_always_lock_free,
               "read by a signal handler");
 
-// Whether the signal is a first request that somebody listens to.
+// Whether the signal is a first request to stop and the program listens for it.
 bool is_taken_as_request(std::size_t index, int number) noexcept {
   int none = 0;
   return index < kRequests && listening.load() && requested_by.compare_exchange_strong(none, number);
@@ -35,7 +35,7 @@ void pass_on(std::size_t index, int number, siginfo_t* info, void* context) noex
   } else if (earlier.sa_handler != SIG_DFL) {
     earlier.sa_handler(number);
   } else {
-    // Comes again, or happens again, when this handler returns.
+    // The signal is delivered again, or its fault occurs again, when this handler returns.
     sigaction(number, &earlier, nullptr);
     raise(number);
   }
@@ -60,7 +60,7 @@ void own(std::size_t index) noexcept {
   before[index] = current;
   struct sigaction action {};
   action.sa_sigaction = on_signal;
-  // A file that is being read when a request comes is not cut short.
+  // SA_RESTART: a request does not interrupt the reading of a file.
   action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_RESTART;
   sigfillset(&action.sa_mask);
   sigaction(kSignals[index], &action, nullptr);

@@ -38,7 +38,7 @@ std::string three_digits(double value) {
   if (value == 0.0) return "0";
   const double size = std::abs(value);
   if (size >= 1e7 || size < 1e-4) return formatted(value, std::chars_format::scientific, 2);
-  // Rounded first, so that 9.999 has as many digits as the 10.0 it becomes.
+  // Rounded first, so that 9.999 has as many digits as 10.0.
   const double magnitude = std::pow(10.0, std::floor(std::log10(size)) - 2.0);
   const double rounded = std::round(value / magnitude) * magnitude;
   const int decimals = 2 - static_cast<int>(std::floor(std::log10(std::abs(rounded)) + 1e-12));
@@ -48,7 +48,7 @@ std::string three_digits(double value) {
 std::string at_most_three_decimals(double value) {
   if (!std::isfinite(value)) return "–";
   const double size = std::abs(value);
-  // What rounds to the next power of ten has a digit more before the point.
+  // A value that rounds to the next power of ten has one digit more before the point.
   return fixed(value, size < 0.9995 ? 3 : size < 9.995 ? 2 : size < 99.95 ? 1 : 0);
 }
 

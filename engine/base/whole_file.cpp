@@ -15,8 +15,7 @@ Result<int> open_plain_file(const std::string& path, const std::string& expected
     return Error{path + ": found " + found + ", expected " + expected + "; " + advice};
   };
   struct stat status {};
-  // The question comes before the opening, which can do things to a device; non-blocking,
-  // should a pipe have taken the file's place meanwhile.
+  // stat comes first, because opening can affect a device. O_NONBLOCK, in case a pipe has replaced the file meanwhile.
   const bool exists = ::stat(path.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) return wrong("a folder", "name a file in it");
   if (exists && !S_ISREG(status.st_mode)) return wrong("a pipe or a device", "save it to a file first");

@@ -9,9 +9,8 @@
 namespace palpate {
 namespace {
 
-// What each role is called. A column whose whole name is one of the words claims its
-// role most strongly, then one that has it among its words, then one that has it
-// inside a word (German compounds: "Standardkraft").
+// The words of each role. The claim of a column to a role is strongest if its whole name is one of the words, weaker if
+// one of its words is, and weakest if a word contains one (German compounds: "Standardkraft").
 constexpr std::string_view kTimeWords =
     "time t zeit temps timestamp stamp seconds secs elapsed x_value millis micros clock uhrzeit pruefzeit "
     "testzeit zeitstempel datetime tiempo \xE6\x97\xB6\xE9\x97\xB4";
@@ -23,13 +22,13 @@ constexpr std::string_view kPositionWords =
 constexpr std::string_view kForceWords =
     "force f kraft load last fn fx fy fz charge loadcell newton effort fuerza carga "
     "\xE5\x8A\x9B \xE8\xBD\xBD\xE8\x8D\xB7 \xE8\x8D\xB7\xE9\x87\x8D";
-// Columns that are something else, whatever other word stands in their name.
+// Words of columns that have none of these roles, whatever other word is in the name.
 constexpr std::string_view kOtherWords =
     "torque moment temperature temp voltage current status velocity speed geschwindigkeit acceleration accel "
     "stress strain spannung dehnung seq index id frame cycle zyklus tx ty tz mx my mz comment rate volt "
     "orientation";
-// Second choice: what was asked for and not measured, what is not the raw value.
-// Times that begin anew: "Cycle Elapsed Time" beside "Total Time".
+// Words of columns that are a second choice: commanded and not measured values, raw values, and times that restart
+// ("Cycle Elapsed Time" beside "Total Time").
 constexpr std::string_view kSecondWords = "target desired setpoint soll sollwert command cmd reference raw cycle";
 
 constexpr std::string_view kVelocityWords = "velocity speed geschwindigkeit vitesse velocidad";
@@ -38,9 +37,9 @@ constexpr int kWholeName = 6;
 constexpr int kOneWord = 4;
 constexpr int kInsideWord = 2;
 constexpr int kRightUnit = 3;
-constexpr int kSecondChoice = 3;  // taken off
+constexpr int kSecondChoice = 3;  // subtracted
 
-// Lower case, umlauts and accents as plain letters.
+// Returns lower case, with umlauts and accents as plain letters.
 std::string plain_name(std::string_view text) {
   std::string plain = lower_ascii(text);
   constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kLetters = {{{"\xC3\xBC", "ue"},
@@ -84,14 +83,14 @@ bool any_word_in(std::string_view list, const std::vector<std::string>& words) {
 }
 
 int name_claim(std::string_view list, const std::string& name, const std::vector<std::string>& words) {
-  // An axis alone may be anything along it.
+  // The name of an axis alone may be any quantity along it.
   if (is_word_of(list, name)) return name == "x" || name == "y" || name == "z" ? kOneWord : kWholeName;
   if (any_word_in(list, words)) return kOneWord;
   while (!list.empty()) {
     const std::string_view known = list.substr(0, list.find(' '));
     list.remove_prefix(std::min(known.size() + 1, list.size()));
     for (const std::string& word : words) {
-      // Shorter ones stand in words that have nothing to do with them.
+      // Shorter words are parts of unrelated words.
       if (known.size() >= 3 && word.size() > known.size() && (word.starts_with(known) || word.ends_with(known))) {
         return kInsideWord;
       }
@@ -110,22 +109,22 @@ std::array<int, kRoles> claims_of(const ForeignColumn& column) {
   const auto& unit = column.parts.unit;
   for (std::size_t role = 0; role < kRoles; ++role) {
     if (unit) claims[role] = static_cast<std::size_t>(unit->quantity) == role ? claims[role] + kRightUnit : 0;
-    // A bracketed unit that none of the three has: "Weg [%]".
+    // A unit in brackets that belongs to no role: "Weg [%]".
     const bool volts = role == 2 && volts_of(column.parts.foreign_unit) > 0.0;
     if (!column.parts.foreign_unit.empty() && !volts) claims[role] = 0;
     if (claims[role] > 0 && any_word_in(kSecondWords, words)) claims[role] = std::max(1, claims[role] - kSecondChoice);
   }
   if (column.constant) claims[0] = 0;
-  // What a column is called most clearly, that it is.
+  // Only the strongest claims of a column count.
   const int strongest = *std::max_element(claims.begin(), claims.end());
   for (int& claim : claims) claim = claim < strongest ? 0 : claim;
-  // A word of the force beats the axis beside it ("force.x"); a word of anything else beats all.
+  // A word for force excludes the axis beside it ("force.x"); a word for another quantity excludes all roles.
   if (claims[2] > 0 && !unit) claims[1] = 0;
   if (any_word_in(kOtherWords, words) && !unit) claims = {};
   return claims;
 }
 
-// Metres per second in one of `text`, such as "mm/s"; 0: no velocity.
+// The factor of a unit such as "mm/s" to m/s; 0 if `text` is no unit of velocity.
 double velocity_unit(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string_view::npos) return 0.0;
@@ -139,7 +138,7 @@ std::string flag_for(std::size_t role, const std::string& what) {
   return std::string("--columns ") + kRoleNames[role] + "=" + what;
 }
 
-// A name with blanks needs quotes in a shell, so the number is given then.
+// The name of a column for a shell. A name that needs quotes is replaced by the number of the column.
 std::string shell_name(const std::vector<ForeignColumn>& columns, std::size_t index) {
   const std::string& header = columns[index].header;
   const bool plain = header.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-") ==

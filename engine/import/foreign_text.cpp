@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// As much as decides about the encoding; names of columns stand at the beginning.
+// Bytes that determine the encoding; the names of the columns are at the beginning.
 constexpr std::size_t kEncodingSampleBytes = 64 * 1024;
 
 void append_utf8(std::string& out, unsigned code) {
@@ -71,7 +71,7 @@ Result<ForeignText> decode_foreign_text(std::string bytes, const std::string& la
   if (big_endian || bytes.starts_with("\xFF\xFE")) {
     foreign = {decode_utf16(std::string_view(bytes).substr(2), big_endian), TextEncoding::utf16};
   } else if (!is_utf8(sample, bad_offset) && (sample.size() == bytes.size() || bad_offset + 4 <= sample.size())) {
-    // A sequence that the end of the sample cuts would be no fault.
+    // A sequence that is cut by the end of the sample is not an error.
     foreign.encoding = TextEncoding::latin1;
     for (const char c : bytes) append_utf8(foreign.text, static_cast<unsigned char>(c));
   } else {

@@ -13,9 +13,9 @@
 namespace palpate {
 namespace {
 
-// Steps beyond this are a clock that passed midnight.
+// A larger backward step is a clock that passed midnight.
 constexpr std::int64_t kHalfDay_s = 43200;
-// Of the first rows, to see what unit the time is in.
+// The first rows, from which the unit of time is determined.
 constexpr std::size_t kTimeUnitRows = 200;
 constexpr double kVelocitySlope = 0.2;
 constexpr auto kNoColumn = static_cast<std::size_t>(-1);
@@ -34,7 +34,7 @@ class Importer {
   Error fail_at(std::uint64_t line, const std::string& text) const {
     return Error{label_ + ":" + std::to_string(line) + ": " + text};
   }
-  // ' "Weg [mm]"' for a message, empty without a header.
+  // The quoted name for a message, such as ' "Weg [mm]"'; empty without a header.
   std::string quoted_name(std::size_t role) const {
     if (table_.layout.names.empty()) return {};
     return std::string(" \"").append(printable(header_[index_[role]].header)).append("\"");
@@ -74,7 +74,7 @@ class Importer {
   double last_time_s_ = 0.0;
   std::int64_t midnights_ = 0;
   std::uint64_t repeated_ = 0;
-  bool own_time_ = false;  // beside a given rate
+  bool own_time_ = false;  // the file has times besides a given rate
   std::optional<VelocityColumn> velocity_;
 };
 
@@ -85,8 +85,8 @@ const Unit* requested_unit(const ImportRequest& request, Quantity quantity) {
   return nullptr;
 }
 
-// LabVIEW's text files say above the table what their columns are in, and how far apart
-// the rows are where the table has no times.
+// Text files of LabVIEW have the units of the columns above the table and, if the table has no times, the interval of
+// the rows.
 void Importer::read_labview_head() {
   std::string_view head = text_.substr(0, table_.layout.data_offset);
   std::vector<std::string_view> fields;
@@ -124,7 +124,7 @@ Status Importer::find_columns() {
   }
   mark_constant_columns();
   auto choice = choose_columns(header_, request_.columns, has_header, true);
-  // With a rate the file's own times serve to compare.
+  // With a given rate the times of the file are only compared with it.
   if (request_.rate_Hz && !choice) choice = choose_columns(header_, request_.columns, has_header, false);
   if (!choice) return fail(choice.error().message);
   velocity_ = has_header ? find_velocity(header_) : std::nullopt;
@@ -151,7 +151,7 @@ void Importer::mark_constant_columns() {
   for (std::size_t i = 0; i < header_.size(); ++i) header_[i].constant = rows > 1 && !changes[i];
 }
 
-// Position and force: what the user says, then the header.
+// The unit of position or force: that of the user, otherwise that of the header.
 Status Importer::find_unit_of(std::size_t role) {
   const Quantity quantity = static_cast<Quantity>(role);
   const auto& column = header_[index_[role]];
@@ -189,8 +189,7 @@ bool Importer::parse_time(std::string_view field, TableTime& time) const {
   return clock_ ? parse_clock_time(field, time) : parse_number_time(field, table_.layout.decimal, time);
 }
 
-// A clock, a unit from the header or the user, or the only unit in which the rate is
-// that of a recording.
+// The times are those of a clock, have a unit from the header or the user, or are in the only unit with a valid rate.
 Status Importer::find_time_unit() {
   std::string_view rest = text_.substr(table_.layout.data_offset);
   std::vector<double> steps;
@@ -245,7 +244,7 @@ Status Importer::find_time_unit() {
   return {};
 }
 
-// The fields that are wanted, empty where they are missing.
+// Splits off the fields of the roles, empty where they are missing.
 void Importer::split(std::string_view line) {
   split_table_fields(line, table_.layout.delimiter, row_);
   for (std::size_t i = 0; i < kRoles; ++i) fields_[i] = index_[i] < row_.size() ? row_[index_[i]] : std::string_view();
@@ -269,14 +268,14 @@ bool Importer::parse_row(std::string_view line, TableTime& time, RecordingRow& r
   return true;
 }
 
-// A line that should have been a row: there are digits where its numbers should be.
+// Whether a line is a damaged row: the fields of its numbers contain digits.
 bool Importer::is_bad_row(std::string_view line) {
   split(line);
   constexpr const char* kDigits = "0123456789";
   return fields_[1].find_first_of(kDigits) < fields_[1].size() && fields_[2].find_first_of(kDigits) < fields_[2].size();
 }
 
-// The row that could not be read.
+// The error of a row that could not be read.
 Error Importer::explain_row(std::string_view line, std::uint64_t number) {
   split(line);
   for (std::size_t role = 0; role < kRoles; ++role) {
@@ -298,7 +297,7 @@ Error Importer::explain_row(std::string_view line, std::uint64_t number) {
                              ", the velocity; remove the row or repair the value");
 }
 
-// False: a time that repeats the last one.
+// Sets the time of a row. Returns false if it repeats the last one.
 Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, RecordingRow& row) {
   if (request_.rate_Hz) {
     row.time_s = static_cast<double>(table_.recording.rows.size()) / *request_.rate_Hz;
@@ -328,13 +327,13 @@ Result<bool> Importer::add_time(const TableTime& time, std::uint64_t line, Recor
   return true;
 }
 
-// The seconds from the file's first own time to `time`.
+// The seconds from the first time of the file to `time`.
 double Importer::own_seconds(const TableTime& time) const {
   return (static_cast<double>(time.whole - first_.whole) + (time.fraction - first_.fraction)) * to_si_[0];
 }
 
-// Every row in one pass. Lines that are no rows may stand at the end only, but for as
-// many bad rows as the request allows.
+// Reads every row in one pass. Other lines are allowed at the end only, except for the number of bad rows that the
+// request allows.
 Status Importer::read_rows() {
   std::string_view rest = text_.substr(table_.layout.data_offset);
   auto& rows = table_.recording.rows;
@@ -368,7 +367,7 @@ Status Importer::read_rows() {
       ++footer_lines;
       continue;
     }
-    // What rows follow was no footer.
+    // Lines that are followed by rows are no footer.
     bad_rows += std::exchange(footer_lines, 0);
     if (footer_line > 0 && bad_rows > request_.skip_bad_rows) return explain_row(footer, footer_line);
     footer_line = 0;
@@ -408,7 +407,7 @@ void Importer::describe_time() {
   if (start_s != 0.0) note("time began at " + short_number(start_s) + " s and begins at 0 now");
 }
 
-// What a wrong rate makes of the length.
+// Warns if the given rate changes the duration.
 void Importer::check_rate() {
   if (!own_time_) return;
   const double seconds = table_.recording.rows.back().time_s;
@@ -417,8 +416,8 @@ void Importer::check_rate() {
        " s long, by the times of the file " + short_number(last_time_s_) + " s");
 }
 
-// A velocity that is not the rate of the position (unsigned, a set value) is left out: the slope of the one over
-// the other is 1 within a fifth.
+// Drops a velocity that is not the derivative of the position (unsigned, a set value): the slope of one over the other
+// must be 1 within a fifth.
 void Importer::check_velocity() {
   if (!velocity_) return;
   auto& rows = table_.recording.rows;

@@ -50,7 +50,7 @@ std::string count_of(std::uint64_t count, const char* what) {
 
 std::string time_fault_words(const std::string& quoted_name, double time_s, double last_time_s, std::size_t rows) {
   const std::string what = "found a time " + short_number(last_time_s - time_s) + " s before that of the row above";
-  // The rate of the rows up to here, which is the best that is known of them.
+  // The mean rate of the rows so far.
   const std::string rate = rows > 2 && last_time_s > 0.0
                                ? short_number(std::round(static_cast<double>(rows - 1) / last_time_s))
                                : std::string("HZ");

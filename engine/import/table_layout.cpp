@@ -13,7 +13,7 @@ namespace {
 // Preambles of testing machines are some hundred lines long at most.
 constexpr std::size_t kSampleLines = 2000;
 constexpr std::size_t kSampleBytes = 1024 * 1024;
-// A header stands at most so many lines above the numbers: units, a type, a rule.
+// A header is at most this many lines above the numbers: units, a type, a rule may follow it.
 constexpr std::size_t kHeaderReach = 6;
 constexpr std::array<Delimiter, 4> kDelimiters = {Delimiter::tab, Delimiter::semicolon, Delimiter::comma,
                                                   Delimiter::blanks};
@@ -52,7 +52,7 @@ bool is_cell_of_numbers(std::string_view field, char decimal) {
          parse_clock_time(field, time);
 }
 
-// A field that begins as a number and is none: the sign of a wrong reading.
+// Whether a field begins like a number and is none, which indicates a wrong reading.
 bool is_mangled(std::string_view field) {
   return field.find_first_of("0123456789") < 2 &&
          field.find_first_not_of("0123456789.,;+-eE \t") == std::string_view::npos;
@@ -79,7 +79,7 @@ RowLooks look_at(std::string_view line, Delimiter delimiter, char decimal, std::
   return looks;
 }
 
-// The table as one reading of the sample sees it.
+// The table for one combination of separator and decimal mark.
 struct Reading {
   TableLayout layout;
   std::size_t first = 0;  // index of its first line in the sample
@@ -119,8 +119,7 @@ Reading read_as(const std::vector<SampleLine>& lines, Delimiter delimiter, char 
   return best;
 }
 
-// The first lines of a run that have fewer fields than the others are the last of a
-// preamble: "Rate 1000".
+// Skips first lines of a run with fewer fields than the others: they end a preamble ("Rate 1000").
 void skip_short_rows(Reading& reading, const std::vector<SampleLine>& lines) {
   std::vector<std::string_view> fields;
   const std::size_t end = std::min(lines.size(), reading.first + kHeaderReach);
@@ -135,7 +134,7 @@ void skip_short_rows(Reading& reading, const std::vector<SampleLine>& lines) {
   reading.layout.data_offset = lines[first].offset;
 }
 
-// Names may be written behind the mark of a comment.
+// Removes the mark of a comment before the names.
 std::string_view without_comment_mark(std::string_view line) {
   line = trimmed(line);
   const std::size_t begin = line.find_first_not_of("#%/");
@@ -145,7 +144,7 @@ std::string_view without_comment_mark(std::string_view line) {
   return trimmed(line.substr(begin));
 }
 
-// Fields of a header written with blanks: units in brackets belong to the name before.
+// In a header separated by blanks, joins units in brackets with the name before.
 void join_bracketed(std::vector<std::string_view>& fields) {
   std::size_t kept = 0;
   for (const std::string_view field : fields) {
@@ -172,8 +171,8 @@ bool fits(const std::vector<std::string_view>& fields, std::size_t columns) {
   return fields.size() >= columns && columns > 0;
 }
 
-// Fields of a line above the table, separated as the table or, failing that, in any
-// way that gives as many fields as the table has columns.
+// Splits a line above the table, by the separator of the table or, if that fails, by any one that gives as many fields
+// as the table has columns.
 bool split_header(std::string_view line, const TableLayout& layout, std::vector<std::string_view>& fields) {
   const std::string_view bare = without_comment_mark(line);
   for (const std::string_view text : {line, bare}) {
@@ -195,8 +194,7 @@ bool split_header(std::string_view line, const TableLayout& layout, std::vector<
   return false;
 }
 
-// As R writes tables: the column of row numbers has no name, so the header is one
-// shorter than the rows.
+// Splits a header of a table of R: the column of row numbers has no name, so the header has one field less.
 bool split_header_of_row_names(std::string_view line, const Reading& reading, const std::vector<SampleLine>& lines,
                                std::vector<std::string_view>& fields) {
   double number = 0.0;
@@ -253,8 +251,8 @@ void find_header(Reading& reading, const std::vector<SampleLine>& lines) {
   }
 }
 
-// Whether a comma in the numbers can be nothing but a decimal mark: not followed by
-// exactly three digits, or behind a lone 0 or more than three digits.
+// Whether a comma in the numbers can only be a decimal mark: not followed by exactly three digits, or after a single 0
+// or more than three digits.
 bool proves_decimal_comma(std::string_view field) {
   const std::size_t comma = field.find(',');
   if (comma == std::string_view::npos) return false;

@@ -26,8 +26,7 @@ bool is_thousands_mark(char c, char decimal) {
   return c == '\'' || c == ' ' || (c == ',' && decimal == '.') || (c == '.' && decimal == ',');
 }
 
-// "1,234.5" without its thousands marks, into `buffer`; 0 unless they are
-// unmistakable.
+// Writes "1,234.5" without its thousands marks to `buffer`; returns the length, or 0 if the marks are ambiguous.
 std::size_t without_thousands(std::string_view text, char decimal, char* buffer) {
   std::size_t length = 0;
   std::size_t marks = 0;
@@ -53,7 +52,7 @@ std::size_t without_thousands(std::string_view text, char decimal, char* buffer)
   return unmistakable ? length : 0;
 }
 
-// Two to four digits at the start of `text`, which loses them.
+// Parses and removes up to `most` digits at the start of `text`.
 bool parse_digits(std::string_view& text, std::size_t most, int& value) {
   const auto parsed = std::from_chars(text.data(), text.data() + std::min(text.size(), most), value);
   if (text.empty() || !is_digit(text.front()) || parsed.ec != std::errc()) return false;
@@ -67,8 +66,8 @@ bool skip_one_of(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-// A date at the start of `text`, which loses it. Only the difference between rows
-// counts, so that of 3/5/2024 either reading will do.
+// Parses and removes a date at the start of `text`. Only differences between rows count, so that within a day either
+// reading of 3/5/2024 is adequate.
 bool parse_date(std::string_view& text, std::int64_t& days) {
   std::string_view rest = text;
   std::array<int, 3> parts{};
@@ -181,7 +180,7 @@ bool parse_clock_time(std::string_view text, TableTime& time) {
     if (half == "am" && first == 12) time.whole -= kSecondsPerDay / 2;
     text.remove_prefix(2);
   }
-  // A zone is the same in every row: "Z", "+01:00".
+  // The time zone, "Z" or "+01:00", is the same in every row.
   return text.empty() || text == "Z" || text.front() == '+' || text.front() == '-';
 }
 

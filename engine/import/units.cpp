@@ -54,7 +54,7 @@ NameAndUnit parts(std::string_view name, std::string_view unit) {
   return {std::string(trimmed(name)), find_unit(unit), ""};
 }
 
-// "Pos [mm]": the last pair of brackets.
+// Splits "Pos [mm]" at the last pair of brackets.
 std::optional<NameAndUnit> bracketed(std::string_view header) {
   const std::size_t open = header.find_last_of(kOpening);
   if (open == std::string_view::npos || open == 0) return std::nullopt;
@@ -83,7 +83,7 @@ std::optional<Unit> find_unit(std::string_view text) {
   for (const SpelledUnit& one : kUnits) {
     if (is_word_of(one.spellings, text)) return one.unit;
   }
-  // "MN" might be meganewtons and "NM" a torque: too much to guess.
+  // "MN" may be meganewtons and "NM" a torque, so they are not guessed.
   const std::string lower = lower_ascii(text);
   if (lower == "mn" || lower == "nm" || lower == "m") return std::nullopt;
   for (const SpelledUnit& one : kUnits) {
@@ -100,14 +100,14 @@ double volts_of(std::string_view text) {
 
 NameAndUnit split_name_and_unit(std::string_view header) {
   header = trimmed(header);
-  // "Position (z), mm": the unit may stand behind what the brackets say.
+  // "Position (z), mm": the unit may follow the brackets.
   auto found = bracketed(header);
   const std::size_t comma = header.rfind(',');
   if ((!found || !found->unit) && comma != std::string_view::npos && comma > 0) {
     if (NameAndUnit result = parts(header.substr(0, comma), header.substr(comma + 1)); result.unit) return result;
   }
   if (found) return *found;
-  // The strongest sign first: a slash, the word "in", then a last word after any mark.
+  // The most reliable mark first: a slash, the word "in", then a last word after any mark.
   for (const std::string_view mark : {std::string_view("/"), std::string_view(" in ")}) {
     const std::size_t at = header.rfind(mark);
     if (at == std::string_view::npos || at == 0) continue;

@@ -16,8 +16,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostLines = 20;
 
-// Where brackets open beyond the allowed nesting, if they do. Counts before the
-// parser runs, which would need memory for each level.
+// The offset of the first bracket beyond the allowed nesting, if any. It is found before the parser runs, which would
+// need memory for each level.
 std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
   int depth = 0;
   bool inside_text = false;
@@ -35,7 +35,7 @@ std::optional<std::size_t> too_deep_at(std::string_view text, int nesting) {
   return std::nullopt;
 }
 
-// Where an object has a name for the second time, if one does. `text` is valid JSON.
+// The offset of the first repeated name in an object, if any. `text` is valid JSON.
 std::optional<std::size_t> repeated_name_at(std::string_view text) {
   std::vector<std::set<std::string_view>> open;  // names of each object or list
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -51,8 +51,8 @@ std::optional<std::size_t> repeated_name_at(std::string_view text) {
   return std::nullopt;
 }
 
-// Walks the text once for the place of the first fault, which the parser of
-// documents does not always tell (numbers beyond the range of a double).
+// Parses the text once for the position of the first fault, which the parser of documents does not always report
+// (numbers beyond the range of a double).
 class SyntaxCheck final : public nlohmann::json_sax<Json> {
  public:
   SyntaxCheck(std::string_view text, const std::string& path, const JsonAdvice& advice)
@@ -120,7 +120,7 @@ Result<Json> parse_json(std::string_view text, const std::string& path, int nest
     return Error{position_prefix(path, position_of_offset(text, *offset)) + "found more than " +
                  std::to_string(nesting) + " lists inside each other, expected fewer" + advice.damaged};
   }
-  // The parser takes a NUL for the end of the text.
+  // The parser treats a NUL as the end of the text.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     return Error{position_prefix(path, position_of_offset(text, nul)) + "found a NUL byte, expected text" +
                  advice.damaged};
@@ -204,7 +204,7 @@ JsonNode JsonFields::entry(const JsonNode& list, std::size_t index) {
   return {&(*list.value)[index], list.pointer + "/" + std::to_string(index)};
 }
 
-// The member if `good` says so; else complains, and gives none.
+// Returns the member if `good` accepts it; otherwise reports an error and returns null.
 template <typename Good>
 const Json* JsonFields::value_where(const JsonNode& object, const char* key, const std::string& expected,
                                     const Good& good) {
@@ -238,7 +238,7 @@ std::string JsonFields::filled_text(const JsonNode& object, const char* key) {
 
 double JsonFields::number_in(const JsonNode& object, const char* key, const std::string& expected, double instead,
                              const NumberRange& range) {
-  // No range holds what is not finite.
+  // No range contains a non-finite number.
   const Json* value = value_where(object, key, expected,
                                   [&](const Json& one) { return one.is_number() && range.holds(one.get<double>()); });
   return value != nullptr ? value->get<double>() : instead;
@@ -283,7 +283,7 @@ JsonNode JsonFields::list(const JsonNode& object, const char* key, const std::st
           object.pointer + "/" + key};
 }
 
-// Exactly `expected_count` numbers (`words` says which) into `values`.
+// Reads exactly `expected_count` numbers into `values`; `words` describes them in errors.
 bool JsonFields::fill(const JsonNode& node, std::size_t expected_count, const std::string& words, double* values) {
   if (node.value == nullptr) return false;
   if (!node.value->is_array() || node.value->size() != expected_count) {

@@ -5,15 +5,15 @@
 namespace palpate {
 namespace {
 
-// Walks valid JSON; never reads past the end whatever it is given.
+// Walks through valid JSON; it never reads past the end, even if the text is not valid.
 class Walker {
  public:
   explicit Walker(std::string_view text) : text_(text) { skip_blanks(); }
 
   std::size_t offset() const { return at_; }
 
-  // Steps from the container at the current place to its member or element
-  // called `step`; false, place unchanged, if there is none.
+  // Moves from the container at the current position to its member or element `step`. If there is none, returns false
+  // and does not move.
   bool enter(std::string_view step) {
     const std::size_t start = at_;
     const bool object = peek() == '{';
@@ -57,7 +57,7 @@ class Walker {
     return name;
   }
 
-  // Counts brackets instead of recursing: depth cannot overflow the stack.
+  // Counts brackets without recursion, so that deep nesting cannot overflow the stack.
   void skip_value() {
     std::size_t open = 0;
     do {

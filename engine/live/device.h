@@ -41,7 +41,7 @@ class ToolInput {
   virtual void set_target(double position_m, double now_s) noexcept = 0;
   virtual void nudge(double by_m, double now_s) noexcept = 0;
   // The user no longer moves the tool.
-  virtual void leave() noexcept = 0;
+  virtual void release() noexcept = 0;
   // Whether the tool moves by itself until the user moves it.
   virtual bool hand_is_exploring() const noexcept = 0;
 };
@@ -68,7 +68,7 @@ class ReplayControl {
 };
 
 // The holder of the tool, on whom the written force acts.
-enum class Holder { nobody, simulated, person };
+enum class Holder { none, simulated, person };
 
 class Device {
  public:
@@ -104,7 +104,7 @@ class Device {
   virtual std::string note() const { return {}; }
 
   // Slow side: further interfaces of this device, valid during its lifetime; null: not available.
-  virtual ToolInput* mouse() noexcept { return nullptr; }
+  virtual ToolInput* tool_input() noexcept { return nullptr; }
   virtual ReplayControl* replay() noexcept { return nullptr; }
 };
 

@@ -33,7 +33,7 @@ struct DeviceHealth {
   double round_trip_s = std::numeric_limits<double>::quiet_NaN();
   // Lag of the force behind the motion: transport, waiting times, half the time for which a force is held. NaN: the
   // device reads and writes in the tick itself.
-  double late_s = std::numeric_limits<double>::quiet_NaN();
+  double lag_s = std::numeric_limits<double>::quiet_NaN();
 
   bool may_push() const noexcept { return faults == 0 && (zeroing == Zeroing::not_needed || zeroing == Zeroing::done); }
 };

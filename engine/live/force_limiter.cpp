@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-// Ten ticks: longer is a stall, after which the force moves as after 10 ms.
+// Ten ticks. A longer step is a stall, after which the force changes as after 10 ms.
 constexpr double kLongestStep_s = 0.01;
 
 }  // namespace
@@ -16,8 +16,7 @@ double ForceLimiter::heat_share() const noexcept {
   return std::isfinite(budget) ? heat_ / budget : 0.0;
 }
 
-// The last force was there for all of `step_s`, a stall included. Backward Euler:
-// stable whatever the step.
+// The last force acted for all of `step_s`, a stall included. Backward Euler is stable for any step.
 void ForceLimiter::warm(double step_s) noexcept {
   if (!std::isfinite(limits_.continuous_N) || !(step_s > 0.0)) return;
   const double share = std::isfinite(step_s) ? step_s / (limits_.thermal_time_s + step_s) : 1.0;
@@ -34,7 +33,7 @@ double ForceLimiter::clamp_N() const noexcept {
 
 bool ForceLimiter::stops(double commanded_N, const ForceConditions& conditions) noexcept {
   if (!std::isfinite(commanded_N)) flags_ |= force_limit::kNotFinite;
-  // The comparison is false for a NaN, which so counts as stale.
+  // The comparison is false for NaN, which therefore counts as stale.
   if (!(conditions.sample_age_s <= limits_.stale_after_s)) flags_ |= force_limit::kStale;
   if (conditions.device_fault) flags_ |= force_limit::kDeviceFault;
   if (conditions.dead_man_released) flags_ |= force_limit::kReleased;
@@ -58,7 +57,7 @@ void ForceLimiter::change(double target_N, double most_N) noexcept {
 }
 
 double ForceLimiter::limit(double commanded_N, double step_s, const ForceConditions& conditions) noexcept {
-  // The comparison is false for a NaN, which so counts as no time at all.
+  // The comparison is false for NaN, which therefore counts as a step of 0.
   const double step = step_s > 0.0 ? std::min(step_s, kLongestStep_s) : 0.0;
   warm(step_s);
   flags_ = 0;

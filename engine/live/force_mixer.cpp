@@ -7,8 +7,8 @@ namespace palpate {
 namespace {
 
 constexpr double kJndTime_s = 0.01;
-// A rising force raises its own JND by up to 3 % within 10 ms; so much less is
-// taken, and a little for rounding.
+// A rising force increases its own JND by up to 3 % within 10 ms. This share of the JND compensates for that and for
+// rounding.
 constexpr double kShareOfJnd = 0.95;
 
 }  // namespace
@@ -27,7 +27,7 @@ double ForceMixer::current(const Forces& forces_N) const noexcept {
 }
 
 double ForceMixer::mix(const Forces& forces_N, std::size_t selected, double step_s) noexcept {
-  // Exactly the model's own bits once it is the active one.
+  // After the fade the force has the bits of the model.
   if (settled_on(selected)) return forces_N[selected];
   const double force_N = current(forces_N);
   const double difference_N = forces_N[selected] - force_N;

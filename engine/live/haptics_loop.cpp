@@ -7,8 +7,8 @@ namespace palpate {
 namespace {
 
 constexpr double kSPerNs = 1e-9;
-// At the end the limiter takes the force down; at its slowest sensible slew this
-// is enough, and then the device is given 0 whatever it was.
+// At the end the limiter ramps the force down. This is enough for its slowest sensible slew rate; then 0 is written
+// to the device in any case.
 constexpr int kLetGoTicks = 100;
 
 double seconds(std::int64_t time_ns) noexcept { return kSPerNs * static_cast<double>(time_ns); }
@@ -64,9 +64,8 @@ void HapticsLoop::run(Pacer& pacer) noexcept {
   let_go(pacer, deadlines);
 }
 
-// When it wakes up, for then everything is cold, and once more shortly before the deadline:
-// in between others have worked with this core's caches. Not when the tick might have to wait
-// for the end of it.
+// Rehearses the tick after waking up, when all caches are cold, and once more shortly before the deadline, because
+// other threads use the caches of this core in between. It does not rehearse if that could delay the tick.
 void HapticsLoop::wait_for(Pacer& pacer, std::int64_t deadline_ns) noexcept {
   const std::int64_t lead_ns = settings_.rehearse_ns;
   if (lead_ns <= 0) return pacer.wait_until(deadline_ns);

@@ -11,10 +11,10 @@
 namespace palpate {
 namespace {
 
-// Strokes for warming up: in and out of contact, a second of each.
+// Strokes for warming up, in and out of contact.
 constexpr int kWarmUpSamples = 500;
 constexpr double kWarmUpStep_s = 1e-3;
-// A force that is written in a tick is there in the next one, and held for one.
+// A force that is written in a tick acts from the next tick on and is held for one.
 constexpr double kInTick_s = 1.5 * kHapticTick_s;
 
 ToolSample warm_up_sample(int index) noexcept {
@@ -32,8 +32,8 @@ static_assert(fault_bits(TickFault::bad_sample) == loop_fault::kBadSample &&
               fault_bits(TickFault::time_not_later) == loop_fault::kTimeNotLater &&
               fault_bits(TickFault::force_not_finite) == loop_fault::kModelNotFinite);
 
-// At each depth the tool comes to rest, then makes a cycle; a force that relaxes meanwhile is taken off as a straight
-// line, and of the rest the first harmonic counts.
+// At each depth the tool comes to rest, then makes one cycle. The relaxation of the force is subtracted as a straight
+// line; the first harmonic of the rest gives the impedance.
 constexpr double kProbedDepths_m[] = {0.5e-3, 1e-3, 2e-3, 3e-3, 4.5e-3, 6e-3, 8e-3, 10e-3};
 constexpr double kProbe_m = 0.1e-3;
 constexpr int kCycleSamples = 20, kRestSamples = 10;
@@ -230,7 +230,7 @@ double LiveTick::mix(const LoopControls& controls, double step_s) noexcept {
   return scale(force_N, controls.scale, step_s);
 }
 
-// Of what is in the hand: a mixture of models while they fade.
+// The impedance of the rendered force: a mixture of models during a fade.
 Impedance LiveTick::impedance() const noexcept {
   ForceMixer::Forces stiffness = models_->stiffness_N_per_m, damping = models_->damping_Ns_per_m;
   if (outgoing_ != nullptr) {
@@ -241,13 +241,13 @@ Impedance LiveTick::impedance() const noexcept {
 }
 
 double LiveTick::scale(double force_N, const ForceScale& wanted, double step_s) noexcept {
-  const double late_s = snapshot_.device.late_s;
-  stability_.update(late_s > kInTick_s ? late_s : kInTick_s, step_s);
+  const double lag_s = snapshot_.device.lag_s;
+  stability_.update(lag_s > kInTick_s ? lag_s : kInTick_s, step_s);
   const Impedance model = impedance();
   const ForceScale unbounded = wanted.limited(StabilityLimit(), {});
   const ForceScale limited = bounded_ ? wanted.limited(stability_, model) : unbounded;
   snapshot_.stiffness_share = static_cast<float>(limited.stiffness / unbounded.stiffness);
-  snapshot_.late_ms = static_cast<float>(1e3 * stability_.late_s());
+  snapshot_.lag_ms = static_cast<float>(1e3 * stability_.lag_s());
   const TickSnapshot& tick = snapshot_.tick;
   return scaled_.apply(force_N, tick.velocity_m_per_s, tick.in_contact, limited, step_s);
 }
@@ -271,13 +271,13 @@ bool LiveTick::dead_man_released(const LoopControls& controls) const noexcept {
   return false;
 }
 
-// A study presents forces of its own, which owe nothing to where the tool is.
+// Off in a study, which presents forces that do not depend on the position of the tool.
 double LiveTick::passive(double commanded_N, double step_s) noexcept {
   if (!passivity_on_) return commanded_N;
   const TickSnapshot& tick = snapshot_.tick;
   const bool in_contact = tick.in_contact && !snapshot_.restarted;
   const double hold_s = std::max(kHapticTick_s, snapshot_.device.interval_s);
-  const PassivityController::Loop loop{std::max(0.0, stability_.late_s() - 0.5 * hold_s),
+  const PassivityController::Loop loop{std::max(0.0, stability_.lag_s() - 0.5 * hold_s),
                                        std::max(0.0, stability_.damping_Ns_per_m() - scaled_.now().damping_Ns_per_m),
                                        hold_s};
   return passivity_.apply(commanded_N,
@@ -287,7 +287,7 @@ double LiveTick::passive(double commanded_N, double step_s) noexcept {
 
 void LiveTick::render(double commanded_N, double passive_N, double step_s, bool dead_man_released) noexcept {
   const DeviceHealth& device = snapshot_.device;
-  // A sample that cannot be true: no force until there is one that can.
+  // After an impossible sample there is no force until a possible one.
   if ((snapshot_.faults & loop_fault::kBadSample) != 0) limiter_.fault();
   if (device.faults != 0) snapshot_.faults |= loop_fault::kDeviceFault;
   snapshot_.commanded_N = commanded_N;

@@ -109,7 +109,7 @@ struct LoopSnapshot {
   std::uint32_t limiter_flags = 0;  // force_limit
   float heat_share = 0.0F;          // of the motor's thermal limit
   float stiffness_share = 1.0F;     // of the wanted stiffness: the rest is not stable (StabilityLimit)
-  float late_ms = 0.0F;             // lag of the force behind the motion
+  float lag_ms = 0.0F;              // lag of the force behind the motion
   bool dead_man_released = false;   // the dead-man switch is released: no force
   bool fading = false;              // between two models
   bool restarted = false;           // a new stream began in this tick

@@ -6,9 +6,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kPlay_steps = 1.01;  // rounding must not make a step more than one
+constexpr double kPlay_steps = 1.01;  // rounding must not let a step exceed the play
 
-// What was taken is given back over some of this time when the model is exchanged.
+// The time constant with which the reduction decays while models are exchanged.
 constexpr double kLetGo_s = 0.01;
 
 }  // namespace
@@ -23,11 +23,11 @@ void PassivityController::begin_at(double depth_m) noexcept {
 }
 
 void PassivityController::pass_inwards(double depth_m, double energy_J) noexcept {
-  if (count_ < kMostPassed) ++count_;  // else the last one moves on
+  if (count_ < kMostPassed) ++count_;  // otherwise the deepest is replaced
   passed_[count_ - 1] = {depth_m, energy_J};
 }
 
-// By interpolation; what lies deeper is passed on the way out now and forgotten.
+// Interpolates between the passed depths; deeper ones are passed during unloading now and removed.
 double PassivityController::energy_when_passed(double depth_m) noexcept {
   while (count_ > 1 && passed_[count_ - 2].depth_m >= depth_m) --count_;
   Passed& deeper = passed_[count_ - 1];
@@ -39,8 +39,8 @@ double PassivityController::energy_when_passed(double depth_m) noexcept {
   return deeper.energy_J;
 }
 
-// The mean since the last sample, of what was written a transport and a hold ago: a force that is taken for older than
-// it is makes the debt of the way out larger, never smaller.
+// The mean since the last sample of the force that was written a transport and a hold ago. Assuming too large a lag
+// makes the debt during unloading larger, never smaller.
 double PassivityController::arrived_N(const Tool& tool, double lag_s, double written_N, double tick_s) noexcept {
   written_N_[ticks_ % kMostUnderWay] = written_N;
   const double most = static_cast<double>(std::min(ticks_, kMostUnderWay - 1));
@@ -61,11 +61,11 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   const double felt_N = arrived_N(tool, loop.transport_s + loop.hold_s, written_N, kHapticTick_s);
   if (!tool.in_contact || !std::isfinite(tool.depth_m)) {
     begin_at(0.0);
-    return less(commanded_N, 0.0);
+    return reduced(commanded_N, 0.0);
   }
-  if (tool.other_material) {
+  if (tool.model_changing) {
     begin_at(tool.depth_m);
-    return less(commanded_N, less_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
+    return reduced(commanded_N, reduction_N_ * std::max(0.0, 1.0 - step_s / kLetGo_s));
   }
   const double half_play_m = 0.5 * play_m_;
   const double depth_m = std::clamp(depth_m_, tool.depth_m - half_play_m, tool.depth_m + half_play_m);
@@ -75,26 +75,26 @@ double PassivityController::apply(double commanded_N, const Tool& tool, const Lo
   if (change_m >= 0.0) {
     if (depth_m > passed_[count_ - 1].depth_m + kSpacing_m) pass_inwards(depth_m, energy_J_ + debt_J_);
   } else {
-    // The turning point, where it was not noted.
+    // Adds the turning point, unless it was added before.
     if (depth_m_ > passed_[count_ - 1].depth_m) pass_inwards(depth_m_, before_J + debt_J_);
     if (depth_m < passed_[0].depth_m) {
-      begin_at(depth_m);  // further out than it began: nothing to compare with
+      begin_at(depth_m);  // further out than the beginning: there is no reference
     } else {
       debt_J_ = std::max(0.0, energy_when_passed(depth_m) - energy_J_);
     }
   }
   depth_m_ = depth_m;
   const double out_m_per_s = -tool.velocity_m_per_s;
-  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return less(commanded_N, 0.0);
+  if (!(debt_J_ > 0.0) || !(out_m_per_s > 0.0) || !(step_s > 0.0)) return reduced(commanded_N, 0.0);
   const double damping_Ns_per_m =
       std::min(loop.damping_Ns_per_m, debt_J_ / (out_m_per_s * out_m_per_s * std::max(step_s, loop.hold_s)));
-  return less(commanded_N, damping_Ns_per_m * out_m_per_s);
+  return reduced(commanded_N, damping_Ns_per_m * out_m_per_s);
 }
 
-double PassivityController::less(double commanded_N, double less_N) noexcept {
-  less_N_ = less_N;
-  if (less_N == 0.0) return commanded_N;
-  return commanded_N > less_N ? commanded_N - less_N : std::min(commanded_N, 0.0);
+double PassivityController::reduced(double commanded_N, double reduction_N) noexcept {
+  reduction_N_ = reduction_N;
+  if (reduction_N == 0.0) return commanded_N;
+  return commanded_N > reduction_N ? commanded_N - reduction_N : std::min(commanded_N, 0.0);
 }
 
 }  // namespace palpate

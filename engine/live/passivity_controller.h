@@ -33,7 +33,7 @@ class PassivityController {
     double depth_m = 0.0;  // of the sample, quantised by the encoder
     double velocity_m_per_s = 0.0;
     bool in_contact = false;
-    bool other_material = false;  // the active model is changing
+    bool model_changing = false;  // the active model is changing
     bool fresh = true;            // a sample was read in this tick
   };
   struct Loop {
@@ -59,7 +59,7 @@ class PassivityController {
 
   void begin_at(double depth_m) noexcept;
   double arrived_N(const Tool& tool, double transport_s, double written_N, double step_s) noexcept;
-  double less(double commanded_N, double less_N) noexcept;
+  double reduced(double commanded_N, double reduction_N) noexcept;
   void pass_inwards(double depth_m, double energy_J) noexcept;
   double energy_when_passed(double depth_m) noexcept;
 
@@ -75,7 +75,7 @@ class PassivityController {
   std::size_t ticks_ = 0;
   double arrived_N_ = 0.0;  // sum over the ticks since the last sample
   int arrivals_ = 0;
-  double less_N_ = 0.0;  // reduction in this tick
+  double reduction_N_ = 0.0;  // reduction in this tick
 };
 
 }  // namespace palpate

@@ -36,8 +36,8 @@ bool has_capability(int number) {
   return false;
 }
 
-// Under a limit, locking what is still to come would make a later allocation
-// fail, anywhere in the program: worse than not locking.
+// Under a limit, locking future memory would make a later allocation fail anywhere in the program, which is worse than
+// not locking.
 int lock_memory() {
   rlimit limit{};
   const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
@@ -75,7 +75,7 @@ std::string fix_for(const std::string& refused, bool root) {
          program_path();
 }
 
-// So that the first deep call of a tick finds its pages there.
+// Maps the pages of the stack before the first deep call of a tick.
 void touch_stack() {
   std::array<char, kStackBytes> pages;
   volatile char* first = pages.data();

@@ -35,16 +35,16 @@ class StabilityLimit {
   explicit StabilityLimit(double encoder_step_m = 0.0) noexcept
       : share_(kShareOfDamping * std::max(0.0, 1.0 - encoder_step_m / kCoarse_m)) {}
 
-  // Follows the current lag `late_s` with a time constant of 0.1 s where it grows and 1 s where it falls: an increase
+  // Follows the current lag `lag_s` with a time constant of 0.1 s where it grows and 1 s where it falls: an increase
   // of stiffness during a press adds energy.
-  void update(double late_s, double step_s) noexcept {
-    const double time_s = late_s > late_s_ ? kRise_s : kFall_s;
-    late_s_ = late_s_ > 0.0 ? late_s_ + std::clamp(step_s / time_s, 0.0, 1.0) * (late_s - late_s_) : late_s;
+  void update(double lag_s, double step_s) noexcept {
+    const double time_s = lag_s > lag_s_ ? kRise_s : kFall_s;
+    lag_s_ = lag_s_ > 0.0 ? lag_s_ + std::clamp(step_s / time_s, 0.0, 1.0) * (lag_s - lag_s_) : lag_s;
   }
 
-  double late_s() const noexcept { return late_s_; }
-  double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / late_s_; }
-  double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / late_s_; }
+  double lag_s() const noexcept { return lag_s_; }
+  double damping_Ns_per_m() const noexcept { return 0.5 * kLightestHand_kg / lag_s_; }
+  double stiffness_N_per_m() const noexcept { return (kHandDamping_Ns_per_m + share_ * damping_Ns_per_m()) / lag_s_; }
   // The largest stable factor of a force with this impedance.
   double largest_scale(const Impedance& of) const noexcept {
     return std::min(stiffness_N_per_m() / std::max(of.stiffness_N_per_m, kNone),
@@ -56,7 +56,7 @@ class StabilityLimit {
   static constexpr double kFall_s = 1.0;
   static constexpr double kNone = 1e-9;
   double share_;
-  double late_s_ = 0.0;
+  double lag_s_ = 0.0;
 };
 
 }  // namespace palpate

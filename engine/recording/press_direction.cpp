@@ -7,14 +7,14 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSlices = 16;
-// Of the range of positions, at each end.
+// Slices of the range of positions that make up an end.
 constexpr std::size_t kEndSlices = 4;
-// An end whose force is less than this share of the other end's is out of contact or
-// just touching; above it, an offset of the force may hide which is which.
+// An end whose force is below this share of the force at the other end is the shallow one. Above it an offset of the
+// force may hide that.
 constexpr double kShallowShare = 0.35;
-// Free air: flat to this share of the force at the deep end, and below it.
+// Free air: the force is below this share of the force at the deep end, and flat to this share.
 constexpr double kAirShare = 0.1;
-// How much more the force must change at one end than at the other to tell.
+// The least ratio of the changes of force at the two ends that identifies the deep end.
 constexpr double kClearRatio = 2.0;
 
 struct Slice {
@@ -23,7 +23,7 @@ struct Slice {
   double mean_N() const { return sum_N / static_cast<double>(count); }
 };
 
-// Mean of the outermost slice with samples, and the spread of the means of one end.
+// The mean of the outermost slice with samples, and the spread of the means of one end.
 struct EndForce {
   double outermost_N = 0.0;
   double spread_N = 0.0;

@@ -9,13 +9,13 @@
 namespace palpate {
 namespace {
 
-// Rows returned at a time by read_recording: they stay in the cache on their way.
+// Rows that read_recording reads at a time, few enough for the cache.
 constexpr std::size_t kBatchRows = 4096;
 constexpr std::size_t kShortestRow = 6;  // bytes of "0,0,0" and a line end
 constexpr std::size_t kMostExpected = 6000000;
 
-// Room for all rows that may come: what stays untouched takes no memory, and a vector that
-// grows holds its rows twice now and then.
+// The largest number of rows that a file may have, to reserve memory: untouched memory costs nothing, and a growing
+// vector would have its rows twice at times.
 std::size_t rows_to_expect(const std::string& path) {
   std::error_code unknown;
   const auto bytes = std::filesystem::file_size(path, unknown);

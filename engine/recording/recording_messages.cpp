@@ -1,4 +1,4 @@
-// The slow side of the recording reader: the header, and why a row was refused.
+// The slow side of the recording reader: it parses the header and explains why a row was refused.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -49,7 +49,7 @@ std::string joined(const std::vector<std::string_view>& names) {
   return text;
 }
 
-// ';' or tab where it, and not the comma, separates the fields of `text`.
+// Names semicolon or tab if it, and not the comma, separates the fields of `text`; otherwise null.
 const char* foreign_separator(std::string_view text, std::size_t expected_fields) {
   const auto count = [text](char c) { return static_cast<std::size_t>(std::count(text.begin(), text.end(), c)); };
   if (count(';') + 1 >= expected_fields) return "semicolons";
@@ -68,7 +68,7 @@ Error separator_error(const LineScanner& scanner, const CsvLine& line, const cha
 
 Error missing_columns(const LineScanner& scanner, const CsvLine& line, const std::vector<std::string_view>& names,
                       const std::vector<std::string_view>& missing) {
-  // A file of another program most often: said once, for whatever is wrong with it.
+  // Usually the file is that of another program, so every message recommends the import.
   const auto at = [&](std::size_t column, const std::string& text) {
     return scanner.error_at(line.number, column,
                             text + ", or let palpate import " + scanner.label() + " --out REC.csv do it");
@@ -99,7 +99,7 @@ Error missing_columns(const LineScanner& scanner, const CsvLine& line, const std
                    (missing.size() > 1 ? "s" : "") + " or rename what holds the values");
 }
 
-// A row whose number of fields is not that of the header.
+// The error of a row whose number of fields differs from the header.
 Error field_count_error(const LineScanner& scanner, const CsvLine& line, const RecordingHeader& header,
                         std::size_t found) {
   const std::size_t expected = header.roles.size();
@@ -132,7 +132,7 @@ Error field_count_error(const LineScanner& scanner, const CsvLine& line, const R
                               "column");
 }
 
-// Why `field` is no number that `name` can hold.
+// Explains why `field` is not a valid number for the column `name`.
 std::string number_fault(std::string_view field, std::string_view name) {
   const std::string_view text = trimmed(field);
   const std::string expected = ", expected a finite number in " + std::string(name) + "; ";

@@ -103,7 +103,7 @@ bool RecordingReader::fail(const RowFault& fault, const CsvLine& line) {
   return fail(scanner_.error_at(line.number, field_column(line.text, index), fault.text));
 }
 
-// Every field of one row, or false; then `explain_recording_row` knows why.
+// Parses every field of one row. If false, `explain_recording_row` gives the reason.
 bool RecordingReader::parse(std::string_view text, RecordingRow& row) const {
   std::array<double, kKnownColumns> values{};
   const char* at = text.data();
@@ -122,7 +122,7 @@ bool RecordingReader::parse(std::string_view text, RecordingRow& row) const {
   return true;
 }
 
-// Blank lines are forgiven at the very end of the file only.
+// Blank lines are allowed at the end of the file only.
 bool RecordingReader::skip_last_blank_lines(const CsvLine& blank) {
   const std::uint64_t number = blank.number;
   CsvLine line;
@@ -142,7 +142,7 @@ bool RecordingReader::finish() {
   return false;
 }
 
-// The next row; false at the end and on an error.
+// Reads the next row; false at the end and on an error.
 bool RecordingReader::next(RecordingRow& row) {
   CsvLine line;
   if (!scanner_.next(line)) return finish();

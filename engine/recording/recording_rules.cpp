@@ -12,7 +12,7 @@ std::array<double, kKnownColumns> values_of(const RecordingRow& row) {
   return {row.time_s, row.position_m, row.force_N, row.velocity_m_per_s, row.acceleration_m_per_s2};
 }
 
-// What to do about a median step that no recording has.
+// The advice for a median step outside of the valid range.
 std::string rate_advice(double step_s) {
   struct Unit {
     const char* name;
@@ -68,7 +68,7 @@ RowFault RowRules::explain(const RecordingRow& row) const {
               ", expected newtons, at most 1000000 either way; check the unit of the column"};
 }
 
-// The rows from which the rate is checked.
+// Accepts a row among the first ones, from which the rate is checked.
 std::optional<RowFault> RowRules::accept_early(const RecordingRow& row) {
   if (rows_ > 0) steps_s_.push_back(row.time_s - last_time_s_);
   last_time_s_ = row.time_s;
@@ -77,7 +77,7 @@ std::optional<RowFault> RowRules::accept_early(const RecordingRow& row) {
 }
 
 std::optional<RowFault> RowRules::check_rate() {
-  // Of an even number of steps the upper of the two middle ones: either will do.
+  // With an even number of steps the median is the upper of the two middle ones.
   const auto middle = steps_s_.begin() + static_cast<std::ptrdiff_t>(steps_s_.size() / 2);
   std::nth_element(steps_s_.begin(), middle, steps_s_.end());
   const double step_s = *middle;

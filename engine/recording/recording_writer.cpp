@@ -12,14 +12,14 @@
 namespace palpate {
 namespace {
 
-// Text written at a time, so that a long recording is not held twice.
+// Text written at a time, so that a long recording is not in memory twice.
 constexpr std::size_t kPieceBytes = 256 * 1024;
 
-// What a comment may hold: '#', a blank and the text fit in one line.
+// The longest comment: '#', a blank and the text fit in one line.
 constexpr std::size_t kMaximumCommentBytes = kMaximumLineBytes - 2;
 
-// One '#' line for each line of `comment`; control characters, which the
-// reader would refuse or take for line ends, become blanks.
+// Appends one '#' line for each line of `comment`. Control characters become blanks, because the reader would refuse
+// them or take them for line ends.
 void append_comment(std::string& out, std::string_view comment) {
   for (;;) {
     const std::size_t newline = comment.find('\n');

@@ -10,8 +10,7 @@
 namespace palpate {
 namespace {
 
-// A filter at rest decays to zero, not into denormals, which would slow every later
-// operation on it.
+// Smaller values are set to 0: denormals would slow every later operation.
 constexpr double kNothing_N = 1e-30;
 PALPATE_INLINE void curve_at(V4& value, const CurveLanes& curve, double depth_m) noexcept {
   const auto* knots = curve.has_knots ? &curve.knot_N : nullptr;
@@ -62,7 +61,7 @@ PALPATE_INLINE double advance_groups(const BranchLanes::Group* group, std::size_
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-// What half a step of creep leaves of the bends.
+// The bends after half a step of creep.
 PALPATE_INLINE void creep_on(V4& bend, const V4& creep_per_m2_s, double step_s) noexcept {
   const V4 squared = 1.0 + step_s * creep_per_m2_s * bend * bend;
   for (std::size_t lane = 0; lane < kLanes; ++lane) bend[lane] /= std::sqrt(squared[lane]);
@@ -87,7 +86,7 @@ PALPATE_INLINE void bend_groups(const BristleLanes::Group* group, std::size_t co
   }
 }
 
-// Plainly, and with four lanes to an instruction: the same bits.
+// Each loop is compiled twice, for the baseline and with four lanes to an instruction; the bits are the same.
 #define PALPATE_LANE_LOOPS(attribute, suffix)                                                                          \
   attribute void prepare_##suffix(const BranchLanes::Group* group, std::size_t count, double step_s, double surface_m, \
                                   BranchLanes::Step* step) noexcept {                                                  \
@@ -116,7 +115,7 @@ constexpr auto kBend = &bend_plain;
 #endif
 #undef PALPATE_LANE_LOOPS
 
-// The group of a part that comes after `count`.
+// The group of the next part after `count` parts.
 template <typename Group>
 Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
   assert(count < kMaxLaneGroups * kLanes);
@@ -124,7 +123,7 @@ Group& group_of_next(std::vector<Group>& groups, std::size_t count) {
   return groups.back();
 }
 
-// Of `count` lanes from `place` on, in rows `stride` apart.
+// The sum of `count` lanes from `place` on, in rows `stride` apart.
 double sum_of(const V4* row, std::size_t stride, std::size_t place, std::size_t count) noexcept {
   double sum = 0.0;
   for (std::size_t i = place; i < place + count; ++i) sum += row[i / kLanes * stride][i % kLanes];

@@ -10,13 +10,13 @@
 namespace palpate {
 namespace {
 
-// So fine that one step more or less does not show in the ninth decimal of a force.
+// Fine enough that one step more or less does not change the ninth decimal of a force.
 constexpr double kSurfaceForce_N = 1e-11;
 constexpr int kSurfaceSteps = 40;
-// Nearer than this, below an atom, the surface has come back.
+// A smaller lag, less than an atom, counts as 0.
 constexpr double kNoLag_m = 1e-12;
 
-// What stands in lanes: branches, of which one alone is a spectrum of one, and stops.
+// The number of lanes of a feature: branches (a maxwell_branch is a spectrum of one) and bristles have lanes.
 std::size_t lane_count(const FeatureSpec& spec) noexcept {
   if (spec.kind == FeatureKind::maxwell_branch) return 1;
   return has_parts(spec.kind) ? spec.part_count : 0;
@@ -28,9 +28,9 @@ double branch_time_s(const FeatureSpec& spec, std::size_t part) noexcept {
   return spec.kind == FeatureKind::maxwell_branch ? spec.relaxation_time_s : spec.parts[part].relaxation_time_s;
 }
 
-// Where the surface is above the tool, by regula falsi with halving (Dowell & Jarratt 1971): with
-// the surface of before elastic response and branches hold nothing or push, since what pulls in
-// them decays. The last call of `held_N` is that of the surface that is returned.
+// The surface above the tool, where elastic response and branches hold no force, by regula falsi with halving (Dowell &
+// Jarratt 1971). At the last surface that force is 0 or pushes, because pulling forces in the branches decay. The last
+// call of `held_N` is for the surface that is returned.
 template <typename Held>
 double surface_above_m(const Held& held_N, double depth_m, double last_surface_m) noexcept {
   double low_m = depth_m;
@@ -61,7 +61,7 @@ void copy_lane(V4* to, std::size_t place, const V4* from, std::size_t other, std
   to[place / kLanes * stride][place % kLanes] = from[other / kLanes * stride][other % kLanes];
 }
 
-// The bends of those bristles that both have.
+// Copies the bends of the bristles that both features have.
 void adopt_bends(const FeatureSpec& spec, std::size_t place, V4* bend_m, const FeatureSpec& old, std::size_t old_place,
                  const V4* old_bend_m) noexcept {
   for (std::size_t p = 0; p < spec.part_count; ++p) {
@@ -84,11 +84,11 @@ double surface_halfway(double last_surface_m, double last_depth_m, double depth_
   return apart ? last_surface_m : 0.5 * (last_surface_m + depth_m);
 }
 
-double branch_clock(double slowing, double surface_m, double reference_depth_m) noexcept {
+double relaxation_time_factor(double slowing, double surface_m, double reference_depth_m) noexcept {
   if (slowing == 0.0) return 1.0;
-  V4 clock{slowing * std::min(surface_m / reference_depth_m, 1.0)};
-  to_exponential(clock);  // the lanes' own, so that both have the same bits
-  return clock[0];
+  V4 factor{slowing * std::min(surface_m / reference_depth_m, 1.0)};
+  to_exponential(factor);  // as in the lanes, so that both have the same bits
+  return factor[0];
 }
 
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept {
@@ -152,8 +152,7 @@ void FeaturePlan::update(FeatureState& state, const ToolSample& sample, const Mo
         if (step_s > 0.0) {
           const double keep = std::exp(-step_s / spec.relaxation_time_s);
           value = keep * value + (1.0 - keep) * (depth_m - state.depth_m) / step_s;
-          // A filter at rest decays to zero, not into denormals, which would
-          // slow every later operation on it.
+          // Smaller values are set to 0: denormals would slow every later operation.
           if (std::abs(value) < 1e-30) value = 0.0;
         }
         break;

@@ -150,7 +150,7 @@ struct FeatureSpec {
 double surface_halfway(double last_surface_m, double last_depth_m, double depth_m) noexcept;
 // The factor exp(b s / reference depth) of the relaxation times with the surface at `surface_m`; s is clamped to the
 // reference depth.
-double branch_clock(double slowing, double surface_m, double reference_depth_m) noexcept;
+double relaxation_time_factor(double slowing, double surface_m, double reference_depth_m) noexcept;
 
 // The position of the surface: that of the depth feature; 0 without one.
 double surface_position_m(const std::vector<FeatureSpec>& specs) noexcept;

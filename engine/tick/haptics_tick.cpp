@@ -10,8 +10,8 @@
 namespace palpate {
 namespace {
 
-// From what was recalled to the change of models: a slow picture, and the way through
-// the model slot. In longer ones the tool may have been anywhere.
+// The largest gap between the recalled motion and the exchange of models (a slow frame of the window, and the model
+// slot). In a longer gap the motion is unknown.
 constexpr double kLongestGap_s = 5.0;
 constexpr double kRehearsedStep_s = 1e-3;
 
@@ -38,7 +38,7 @@ void HapticsTick::reset() noexcept {
   motion_.reset();
   for (FeatureFilter& filter : filters_) filter.reset();
   started_ = false;
-  // No force of the stream before.
+  // Forces of the previous stream are removed.
   snapshot_ = {.tick = snapshot_.tick, .model_count = snapshot_.model_count};
 }
 
@@ -79,7 +79,7 @@ void HapticsTick::continue_from(const HapticsTick& before) noexcept {
     return;
   }
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    // At rest at the last sample, but for what is known of it.
+    // The features start at rest at the last sample, unless their past is known.
     const double since_s = sample_.time_s - filters_[i].time_s();
     if (!(since_s >= 0.0 && since_s < kLongestGap_s)) filters_[i].reset();
     filters_[i].update({sample_.time_s, snapshot_.position_m, 0.0, 0.0}, motion_.estimate());
@@ -117,8 +117,8 @@ const TickSnapshot& HapticsTick::step(const ToolSample& sample) noexcept {
 
 void HapticsTick::evaluate_models() noexcept {
   snapshot_.out_of_domain_mask = 0;
-  // Each is the first in turn: the first after a pause pays for what the processor has
-  // forgotten, and none should look slower for its place.
+  // The models take turns in being first: the first one after a pause runs with cold caches, and no model should look
+  // slower because of its position.
   const std::size_t first = models_.empty() ? 0 : static_cast<std::size_t>(snapshot_.tick % models_.size());
   for (std::size_t k = 0; k < models_.size(); ++k) {
     const std::size_t i = first + k < models_.size() ? first + k : first + k - models_.size();
@@ -129,7 +129,7 @@ void HapticsTick::evaluate_models() noexcept {
       const FeatureVector& vector = filters_[filter_of_[i]].vector();
       const ForceEstimate estimate = models_[i]->evaluate(vector.values.data());
       if (timed_) cycles_[i] = cycle_count() - before;
-      // Its surface may lie deeper than where positions are 0.
+      // The surface of the model may be deeper than position 0.
       force_N = vector.in_contact ? estimate.force_N : 0.0;
       predicted_error_N = estimate.predicted_error_N;
       if (vector.in_contact && estimate.out_of_domain) snapshot_.out_of_domain_mask |= 1U << i;

@@ -3,7 +3,7 @@
 namespace palpate {
 namespace {
 
-// `n`: how many states there are, for the compiler to unroll every loop over them.
+// `n`: the number of states, a constant so that the compiler unrolls all loops over them.
 template <int n>
 void advance(motion_filter::MotionState& state, const SensorSpec& sensor, const ToolSample& sample,
              double step_s) noexcept {

@@ -3,8 +3,7 @@
 namespace palpate {
 namespace {
 
-// The filters are exact for steps of any length in which the tool moves evenly; a hand
-// changes little in so long.
+// The filters are exact for steps of any length with a constant velocity, and that of a hand changes little in a step.
 constexpr double kStep_s = 3.9e-3;
 constexpr double kRemembered_s = 60.0;
 

@@ -17,11 +17,11 @@ Status check_count(const ForceModels& models) {
                "; replay them in several runs"};
 }
 
-// Fewer tell no deviation.
+// The least number of rows for a standard deviation.
 constexpr std::size_t kFewestAirRows = 20;
 
-// The deviation of the force before the first contact: a sensor that wanders, a mass that
-// it carries, cables that drag. 0 where too little of it was recorded.
+// The standard deviation of the force before the first contact, due to drift of the sensor, inertia and cables. 0 with
+// too few rows.
 double air_deviation_N(const RecordingRow* rows, std::size_t count, double surface_m) {
   double sum = 0.0;
   double squares = 0.0;
@@ -90,7 +90,7 @@ Result<ReplaySummary> replay(const Recording& recording, const ForceModels& mode
 Result<ReplaySummary> replay(RecordingReader& reader, const ForceModels& models, const ReplayVisitor& visitor,
                              double surface_offset_m) {
   if (const Status status = check_count(models); !status) return status.error();
-  // One buffer for all: the rows that identification needs are also the chunk.
+  // One buffer: the rows for the identification are also the first chunk.
   std::vector<RecordingRow> rows(kSensorIdentificationRows);
   Result<std::size_t> count = reader.read(rows.data(), rows.size());
   if (!count) return count.error();

@@ -13,21 +13,21 @@ constexpr double kQuietShare = 0.2;
 // Below this a change is rounding of the last decimal, in any of the units.
 constexpr double kFinestStep = 1e-9;
 constexpr double kMultipleTolerance = 0.02;
-// Grows with the multiple, as the error of the step does, but never so far that
-// anything would pass for a multiple: noise passes half the time at most.
+// The tolerance grows with the multiple, like the error of the step, up to this limit: at most half of all noise passes
+// as a multiple.
 constexpr double kLargestMultipleTolerance = 0.25;
 constexpr double kMultipleShare = 0.99;
-// The readings of an encoder that moves advance by now more, now fewer steps: by half of its rows at most speeds. What
-// advances by the same amount throughout is a ramp of exact positions.
+// The readings of a moving encoder advance by varying numbers of steps: at most speeds half of the rows differ from the
+// last. Readings that always advance by the same amount are a ramp of exact positions.
 constexpr double kUnevenShare = 0.05;
-// A change of position loses digits of the position: of 1 m in steps of 1 um it keeps
-// ten. Rounded to nine, the step is the number that a data sheet has, 3e-05 and not
-// 2.9999999999998778e-05, and a program that is told that number gives replay's bits.
+// A difference of positions loses digits: at 1 m with steps of 1 um it keeps ten. Rounded to nine digits the step is
+// the number of a data sheet, 3e-05 and not 2.9999999999998778e-05, and a program that is given that number computes
+// the bits of replay.
 constexpr int kStepDigits = 9;
-// A step this far below the noise is the last digit of the text, not an encoder's.
+// A step below this share of the noise is the last digit of the text, not a step of an encoder.
 constexpr double kLeastStepOverNoise = 0.5;
 
-// The step that a column is quantised by; 0 when it is not.
+// The quantisation step of a column; 0 if it is not quantised.
 double quantisation_step(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < count; ++i) {
@@ -81,15 +81,15 @@ double preferred_number(double value) {
   const double decade = std::floor(std::log10(value));
   double best = 0.0;
   for (const double digit : {1.0, 2.0, 5.0, 10.0}) {
-    // A quotient of whole numbers, so that the same number always has the same bits.
+    // A quotient of integers, so that equal numbers have equal bits.
     const double candidate = decade < 0.0 ? digit / std::pow(10.0, -decade) : digit * std::pow(10.0, decade);
     if (std::abs(std::log(candidate / value)) < std::abs(std::log(best / value))) best = candidate;
   }
   return best;
 }
 
-// White noise of a column, its quantisation included: a velocity differenced
-// from an encoder is quiet at rest and wrong by a step in motion.
+// The white noise of a column, at least that of its quantisation: a velocity that is a difference of encoder readings
+// has no noise at rest and errors of a step in motion.
 double column_noise(const RecordingRow* rows, std::size_t count, double RecordingRow::*column) {
   return std::max(quiet_noise(rows, count, column), quantisation_step(rows, count, column) / std::sqrt(12.0));
 }
@@ -102,9 +102,9 @@ SensorSpec identify_sensor(const RecordingRow* rows, std::size_t count, Recordin
   sensor.encoder_step_m = rounded_step(quantisation_step(rows, count, &RecordingRow::position_m));
   const double position_noise_m = quiet_noise(rows, count, &RecordingRow::position_m);
   const double quantisation_m = sensor.encoder_step_m / std::sqrt(12.0);
-  // The quantisation is modelled as such; only what exceeds it is noise. Recordings of
-  // one rig differ by less than the factor of 1.6 that rounding may change it by, and by
-  // that the velocity changes less than by half a decade of its own density.
+  // The quantisation is modelled as such; only noise above it counts. It is rounded to a preferred number, by a factor
+  // of at most 1.6, which exceeds the difference between recordings of one rig. The velocity changes less than by half
+  // a decade of the density of the jerk.
   sensor.position_noise_m =
       preferred_number(std::sqrt(std::max(0.0, position_noise_m * position_noise_m - quantisation_m * quantisation_m)));
   if (sensor.encoder_step_m < kLeastStepOverNoise * sensor.position_noise_m) sensor.encoder_step_m = 0.0;

@@ -16,12 +16,12 @@
 namespace palpate {
 namespace {
 
-// A range of forces below this, or below five deviations of its noise, is no press.
+// A range of positions below this is no motion.
 constexpr double kLeastTravel_m = 10e-6;
 // A flat punch of 20 mm on the hardest rubber: 2 E a / (1 - nu^2) with E = 10 MPa, a = 10 mm (Johnson 1985, section
-// 3.4). What is stiffer is no soft material, or its unit is wrong; a testing machine may press as hard.
+// 3.4). A stiffer material is not soft, or a unit is wrong; a testing machine may press as hard.
 constexpr double kHardRubber_N_per_m = 270e3;
-// A bench testing machine's load cell.
+// The load cell of a bench testing machine.
 constexpr double kLargestForce_N = 10e3;
 constexpr double kStrangeDepth_m = 0.05;
 constexpr double kGap_s = 0.25;
@@ -80,7 +80,7 @@ class Checker {
   double noise_N_ = 0.0;
 };
 
-// Without force or motion there is nothing to say about the rest.
+// Without force or motion all other checks are meaningless.
 bool Checker::check_signal() {
   const bool force = force_range_N() > std::max(kForceFloor_N, 5.0 * noise_N_);
   const bool motion = travel_m() > kLeastTravel_m;
@@ -210,17 +210,16 @@ void Checker::check_clipping() {
       "the sensor or its amplifier is at its limit: press less or choose a larger range");
 }
 
-// Every `step`-th row.
+// Returns every `step`-th row.
 Recording every_so_many(const Recording& recording, std::size_t step) {
   Recording thin{recording.name, recording.columns, {}};
   for (std::size_t i = 0; i < recording.rows.size(); i += step) thin.rows.push_back(recording.rows[i]);
   return thin;
 }
 
-// A late force hides the surface and the zero, so both are estimated without the lag.
+// A lag of the force biases the surface and the force zero, so both are estimated after the lag is removed.
 void Checker::check_lag() {
-  // Of a long recording every so-many-th row: the onset needs no more, and the motion of
-  // every row costs more than reading it.
+  // A long recording is thinned: the onset needs no more rows, and estimating the motion costs more than reading.
   const std::size_t step = (recording_.rows.size() + kSurfaceRows - 1) / kSurfaceRows;
   const std::vector<SurfaceRow> rows = all_rows(step > 1 ? every_so_many(recording_, step) : recording_);
   surface_ = estimate_surface(rows, noise_N_);
@@ -228,10 +227,10 @@ void Checker::check_lag() {
     check_.motion.reserve(rows.size());
     for (const SurfaceRow& row : rows) check_.motion.push_back(row.motion);
   }
-  // Without an onset a lag cannot be told from the material's memory.
+  // Without an onset a lag cannot be distinguished from the material's memory.
   if (!surface_.free_air) return;
-  const Located lag = find_force_lag(rows, noise_N_);
-  if (lag.not_zero && !lag.told) {
+  const OffsetEstimate lag = find_force_lag(rows, noise_N_);
+  if (lag.not_zero && !lag.identified) {
     surface_.standard_error_m = HUGE_VAL;
     surface_.offset_m = 0.0;
     add("lag_unknown", Severity::note, 0.0,
@@ -247,9 +246,9 @@ void Checker::check_lag() {
 }
 
 void Checker::check_surface() {
-  check_.surface_told = surface_.told();
+  check_.surface_identified = surface_.identified();
   check_.surface_offset_m = surface_.offset_m;
-  if (!surface_.told()) {
+  if (!surface_.identified()) {
     add("surface_unknown", Severity::note, 0.0,
         surface_.free_air ? "where force begins cannot be told; depth counts from position 0"
                           : "the tool never leaves the material for certain: where its surface lies cannot be told; "
@@ -315,7 +314,7 @@ void Checker::check_exploration() {
       where.empty() ? "" : std::string("record next: ").append(where));
 }
 
-// Whether the scene's relaxation times can be seen at all.
+// Checks whether the recording can show the scene's relaxation times.
 void Checker::check_memory() {
   if (request_.relaxation_times_s.empty()) return;
   const double longest_s = *std::max_element(request_.relaxation_times_s.begin(), request_.relaxation_times_s.end());
@@ -343,7 +342,7 @@ void Checker::find_noise_floor() {
   for (const RecordingRow& row : recording_.rows) {
     if (!(row.position_m > check_.surface_offset_m)) continue;
     const double jnd_N = request_.jnd.at(row.force_N - check_.force_zero_N);
-    // Beyond six deviations the share is 1 to nine digits, and erf is slow.
+    // Above six standard deviations the share is 1 to nine digits, and erf is slow.
     sum += jnd_N > 6.0 * noise_N_ ? 1.0 : std::erf(jnd_N / (std::sqrt(2.0) * noise_N_));
     ++count;
   }
@@ -360,7 +359,7 @@ RecordingCheck Checker::run() {
   if (check_signal()) {
     check_signs();
     const bool right_way = check_.findings.back().severity != Severity::fatal;
-    // The surface of a press the wrong way round is nowhere.
+    // With the wrong sign of position or force there is no surface to estimate.
     if (right_way) {
       check_lag();
       check_surface();

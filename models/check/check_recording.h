@@ -42,10 +42,10 @@ struct RecordingCheck {
   // The share of contact samples that a perfect model would have within the JND at this force noise: the mean of
   // P(|noise| <= JND(f)).
   double noise_floor_within_jnd = 1.0;
-  bool surface_told = false;       // whether the surface is identified
-  double surface_offset_m = 0.0;   // to be subtracted from position_m; 0 if not identified
-  double force_zero_N = 0.0;       // to be subtracted from force_N
-  std::uint64_t content_hash = 0;  // of all rows; equal for copies of a file
+  bool surface_identified = false;  // whether the surface is identified
+  double surface_offset_m = 0.0;    // to be subtracted from position_m; 0 if not identified
+  double force_zero_N = 0.0;        // to be subtracted from force_N
+  std::uint64_t content_hash = 0;   // of all rows; equal for copies of a file
   // The estimates of all rows for a fit; empty if the check did not compute them (long or unusable recordings).
   std::vector<MotionEstimate> motion;
   RecordingMeasures measures;

@@ -1,4 +1,4 @@
-// Recordings read and checked, for the verbs.
+// Reads and checks recordings for the commands of the program.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-// Beyond it a material may have other forces on the way in.
+// Above this ratio of speeds a material may have different loading forces.
 constexpr double kOtherSpeed = 3.0;
 
 void add_finding(CheckedFile& file, Finding finding) {
@@ -32,7 +32,7 @@ void add_repetitions(std::vector<CheckedFile>& files) {
   }
 }
 
-// A finding of the first file that contradicts an earlier one.
+// Adds a finding to the first file that contradicts an earlier one.
 void add_contradiction(std::vector<CheckedFile>& files, const JndLine& jnd) {
   for (std::size_t i = 1; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -12,7 +12,7 @@ constexpr int kBins = 60;
 constexpr double kApartShare = 0.8;
 constexpr double kLeastJnds = 2.0;
 constexpr double kExplainedJnds = 1.0;
-constexpr double kLeastOverlap = 0.3;  // of the shorter way
+constexpr double kLeastOverlap = 0.3;  // of the smaller range
 constexpr double kTail = 0.05;         // of the forces in a bin, on either side
 
 double quantile_of(std::vector<double>& values, double share) {
@@ -26,7 +26,7 @@ struct Bin {
   std::vector<double> inward_N;
   double low_N = 0.0;
   double high_N = 0.0;
-  double middle_N = 0.0;  // on the way in
+  double middle_N = 0.0;  // median, loading
   bool known() const { return !inward_N.empty(); }
 };
 
@@ -51,7 +51,7 @@ std::vector<Bin> bins_of(const Recording& recording, const Range& range, double 
   double turn_m = range.low_m;
   bool inward = true;
   for (const RecordingRow& row : recording.rows) {
-    // A way back by more than a bin is a turn; less is noise.
+    // A reversal by more than the width of a bin is a turn; less is noise.
     turn_m = inward ? std::max(turn_m, row.position_m) : std::min(turn_m, row.position_m);
     if (std::abs(row.position_m - turn_m) > width_m) {
       inward = !inward;
@@ -71,12 +71,12 @@ std::vector<Bin> bins_of(const Recording& recording, const Range& range, double 
 }
 
 struct Comparison {
-  double jnds = HUGE_VAL;  // apart, at the median bin
+  double jnds = HUGE_VAL;  // median difference of the bins
   double force_N = 0.0;
   double apart_share = 0.0;
 };
 
-// With the second's bins `shift` further in.
+// Compares the forces with the bins of `second` moved inwards by `shift`.
 Comparison compare(const std::vector<Bin>& first, const std::vector<Bin>& second, int shift, const JndLine& jnd) {
   std::vector<double> jnds;
   std::vector<double> forces_N;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kHoldShare = 0.02;
 constexpr double kSmallestStroke = 0.05, kLargestSmallStroke = 0.4;
-// A speed is the way over this time, so that encoder steps do not look like motion.
+// A speed is the displacement over this time, so that encoder steps do not look like motion.
 constexpr double kSpeedWindow_s = 0.02;
-// A stroke goes in by this share of the deepest after it came out by as much: whatever the
-// rate, and neither noise nor creep.
+// A stroke is a motion inwards by this share of the greatest depth after one outwards by as much: independent of the
+// sampling rate, and neither noise nor creep.
 constexpr double kStrokeShare = 0.15;
 constexpr std::size_t kShortestFlat = 3;
 
@@ -101,7 +101,7 @@ class MotionMeasure {
     if (going_in_) ++measures_.strokes;
   }
 
-  // A turn: the tool has come back from its farthest by more than noise.
+  // Finds turns: the tool has come back from its extreme by more than noise.
   void follow_turns(double depth_m) {
     const double way_m = (depth_m - farthest_m_) * direction_;
     if (way_m >= 0.0) farthest_m_ = depth_m;
@@ -117,7 +117,7 @@ class MotionMeasure {
 
   RecordingMeasures& measures_;
   bool going_in_ = false;
-  double turn_m_ = 0.0;  // the outermost depth since the last way in, or the innermost of this
+  double turn_m_ = 0.0;  // extreme depth of the current motion: outermost, or innermost if going in
   double surface_m_;
   double deepest_m_;
   double hold_m_ = HUGE_VAL;

@@ -15,7 +15,7 @@ std::string shortest(Real value) {
   return text;
 }
 
-// A value too small for a float is 0 to it: a literal that underflows is an error.
+// A value too small for a float becomes 0, because a literal that underflows is an error of the compiler.
 std::string literal(double value, bool single) {
   return single ? shortest(static_cast<float>(value)) + "F" : shortest(value);
 }

@@ -138,8 +138,8 @@ Status write_correction(CText& out, const CorrectionPtr& correction) {
 
 void write_trust(CText& out, const DomainCover& cover) {
   const auto n = static_cast<std::size_t>(cover.points.cols());
-  // Compared in single precision, as the library does; its processors add a square
-  // with one rounding, which a sum in double precision and then one gives as well.
+  // Compared in single precision, as in the library, whose instructions add a square with one rounding; a sum in double
+  // precision with one rounding to single gives the same.
   out.add("\n/* ---- trust: the distance to the nearest of the data ---- */\n\n#define COVER_POINTS " +
           std::to_string(n) + "\n#define INNER_RADIUS ");
   const CText exact(false);

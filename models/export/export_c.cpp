@@ -9,10 +9,10 @@
 namespace palpate {
 namespace {
 
-// The motion filter, the depth and the last sample.
+// The size of the state of the motion filter, the depth and the last sample, in numbers.
 constexpr std::size_t kMotionNumbers = 2 * (3 + 9 + 1) + 2 + 6;
 
-// Text that may stand in a C comment.
+// Replaces characters that are not safe in a C comment.
 std::string in_comment(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -22,7 +22,7 @@ std::string in_comment(const std::string& text) {
   return safe;
 }
 
-// What the file takes the positions for.
+// Describes the sensor that the file assumes.
 std::string sensor_text(const CText& exact, const PositionSensor& sensor) {
   const std::string step =
       sensor.encoder_step_m > 0.0 ? "in steps of " + exact.number(sensor.encoder_step_m) + " m" : "";
@@ -156,7 +156,7 @@ real palpate_force(real time_s, real position_m) {
 }
 )C";
 
-// A press deeper than any recorded one, as the library tells it.
+// The C condition for a press deeper than the recorded ones, as in the library.
 std::string too_deep(const CText& out, const ModelData& data) {
   std::size_t feature = 0;
   const double deepest_m = deepest_in_domain_m(data, feature);

@@ -7,8 +7,8 @@
 namespace palpate {
 namespace {
 
-// Only the file's own text and numbers come into the output; nothing of a name.
-// append(): of "[" + a temporary g++ 12 warns.
+// Only text of this file and numbers are written; names from the model file are not.
+// append(), because g++ 12 warns about "[" + a temporary.
 std::string index_text(std::size_t index) { return std::string("[").append(std::to_string(index)).append("]"); }
 
 constexpr const char* kCurveC = R"C(
@@ -92,7 +92,7 @@ static real filtered(real state, real change, real step_s, real time_s, real gai
 }
 )C";
 
-// Writes the tables; returns the curve's value at `u`, a C expression.
+// Writes the tables of a curve; returns the C expression of its value at `u`.
 template <std::size_t n>
 std::string write_curve(CText& out, const std::string& name, const std::array<double, n>& coefficients, bool has_knots,
                         const std::array<double, kDriveKnots>& knots, const std::string& u) {
@@ -107,8 +107,7 @@ std::string write_drive(CText& out, const std::string& name, const DriveCurve& c
                      depth + " / " + out.number(curve.reference_depth_m));
 }
 
-// Of one feature: tables and state go to `out` at once, the returned text goes into
-// update_features.
+// Emits one feature: writes its tables and state to `out`, and returns its statements in update_features.
 using FeatureEmitter = std::string (*)(CText& out, const FeatureSpec& spec, std::size_t index);
 
 std::string emit_depth(CText&, const FeatureSpec&, std::size_t index) {
@@ -129,8 +128,7 @@ std::string emit_lowpass(CText& out, const FeatureSpec& spec, std::size_t index)
 constexpr const char* kSurfaceHalfwayC =
     "(surface_m > last_depth_m && surface_m > depth_m ? surface_m : R(0.5) * (surface_m + depth_m))";
 
-// A branch behind a drive: state `target`, drive of the last sample and the next value of
-// the state in functions of `name`.
+// Emits a branch with its drive. The state is `target`; functions prefixed by `name` give the drive and the next state.
 std::string emit_branch(CText& out, const std::string& target, const std::string& name, const DriveCurve& drive,
                         double time_s, double slowing) {
   const std::string curve = write_drive(out, name, drive, "s");
@@ -148,7 +146,7 @@ std::string emit_branch(CText& out, const std::string& target, const std::string
 std::string branch_name(std::size_t index) { return "drive_" + std::to_string(index); }
 std::string branch_name(std::size_t index, std::size_t part) { return branch_name(index) + "_" + std::to_string(part); }
 
-// What decides where the surface is: all branches and the elastic response of the lag.
+// Writes the force that determines the surface: all branches and the elastic response of the lag.
 void write_surface(CText& out, const std::vector<FeatureSpec>& features, const FeatureSpec& lag) {
   const std::string elastic = write_drive(out, "surface_elastic", lag.drive, "s");
   std::string text = "\nstatic real held(real step_s, real s) {\n  return " + elastic;
@@ -170,7 +168,7 @@ std::string emit_maxwell(CText& out, const FeatureSpec& spec, std::size_t index)
                      spec.slowing);
 }
 
-// Of every part of a spectrum a branch, summed.
+// Emits a branch for every part of a spectrum, and their sum.
 std::string emit_spectrum(CText& out, const FeatureSpec& spec, std::size_t index) {
   const std::string state = "part_" + std::to_string(index);
   out.add("static real " + state + index_text(spec.part_count) + ";\n");
@@ -185,7 +183,7 @@ std::string emit_spectrum(CText& out, const FeatureSpec& spec, std::size_t index
   return text + "  value" + index_text(index) + " = " + sum + ";\n";
 }
 
-// Bristles: a stop bends by at most its threshold and then slips, others creep on at any bend.
+// Emits bristles: a stop bends by at most its threshold and then slips; the others creep at any bend.
 std::string emit_bristles(CText& out, const FeatureSpec& spec, std::size_t index) {
   const std::string state = "part_" + std::to_string(index);
   out.add("static real " + state + index_text(spec.part_count) + ";\n");
@@ -215,7 +213,7 @@ constexpr FeatureEmitter kEmitters[] = {emit_depth,    emit_velocity, emit_lowpa
                                         emit_spectrum, emit_bristles, emit_bristles, emit_surface_lag};
 static_assert(std::size(kEmitters) == kFeatureKinds.size());
 
-// The last feature of that kind, as C text; 0 when there is none.
+// The C text of the last feature of a kind; 0 if there is none.
 std::string feature_of(const std::vector<FeatureSpec>& features, FeatureKind kind) {
   std::string text = "R(0.0)";
   for (std::size_t i = 0; i < features.size(); ++i) {

@@ -26,7 +26,7 @@ constexpr int kHighestDecade = 1;
 constexpr std::array kStrengths{1.0, 0.75, 0.5, 0.25};
 constexpr std::array kRadiusFactors{1.0, 2.0, 4.0, 8.0};
 
-// The left-out fits for every smoothing. Rows stand by fold.
+// The fits without each fold, for any smoothing. The rows are sorted by fold.
 class LeftOutFits {
  public:
   explicit LeftOutFits(const StrengthInput& input)
@@ -47,7 +47,7 @@ class LeftOutFits {
 
   double unit() const { return unit_; }
 
-  // The correction at every row, from the rows of the other folds.
+  // Predicts the correction at every row from the rows of the other folds.
   Eigen::VectorXd predictions(double smoothing) const {
     Eigen::VectorXd values(design_.rows());
     for (const Fold& fold : folds_) {
@@ -65,7 +65,7 @@ class LeftOutFits {
     Eigen::Index first = 0;
     Eigen::Index count = 0;
     Eigen::MatrixXd gram;   // first of its own rows, then of all others; the lower triangle
-    Eigen::VectorXd right;  // of all others, of what the trend without this fold leaves
+    Eigen::VectorXd right;  // of all others, for the residual of the trend without this fold
   };
 
   static Eigen::MatrixXd random_centres(const Eigen::MatrixXd& points) {
@@ -83,7 +83,7 @@ class LeftOutFits {
     return centres;
   }
 
-  // Of the scaled kernel between all rows: the unit of the smoothing.
+  // The mean eigenvalue of the kernel between all scaled rows, estimated at the centres: the unit of the smoothing.
   double mean_eigenvalue() const {
     const double trace = space_.penalty.trace();
     const double rows = std::max(1.0, static_cast<double>(centres_.cols()));
@@ -92,7 +92,7 @@ class LeftOutFits {
     return value > 0.0 ? value : 1.0;
   }
 
-  // A block of [K Z, G] at the points.
+  // Fills a block of rows of [K Z, G].
   void fill_design(int block) {
     const Eigen::Index first = block * kBlockRows;
     const Eigen::Index rows = std::min(kBlockRows, design_.rows() - first);
@@ -119,7 +119,7 @@ class LeftOutFits {
     }
     Eigen::VectorXd left = input_.rows.force_N - input_.rows.trend_N.col(fold);
     for (Eigen::Index i = 0; i < left.size(); ++i) {
-      // Where nothing was measured the trend may ask for less than nothing.
+      // Where no force is measured, a trend below 0 needs no correction.
       if (input_.rows.no_force[static_cast<std::size_t>(i)] && left(i) > 0.0) left(i) = 0.0;
     }
     left.array() *= input_.rows.row_scale.array().square();
@@ -160,9 +160,9 @@ class LeftOutFits {
   std::vector<Fold> folds_;
 };
 
-// Rows that count: not deeper than every row of the other folds.
+// Marks the rows that count: those not deeper than all rows of the other folds.
 std::vector<char> inside_depth(const StrengthInput& input) {
-  const LeftOutRows& rows = input.rows;
+  const CrossValidationRows& rows = input.rows;
   std::vector<double> deepest_m(static_cast<std::size_t>(input.folds), 0.0);
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     double& deepest = deepest_m[static_cast<std::size_t>(rows.fold[i])];
@@ -195,7 +195,7 @@ std::vector<FoldErrors> errors_of(const std::vector<Variant>& variants) {
 
 }  // namespace
 
-double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h) {
+double cross_validated_force_N(const StrengthInput& input, std::size_t i, double trust, double h) {
   const double limit = input.correction_limit_N;
   const auto row = static_cast<Eigen::Index>(i);
   const double force_N = input.rows.trend_N(row, input.rows.fold[i]) + trust * std::clamp(h, -limit, limit);
@@ -209,7 +209,7 @@ double trust_at_distance(double distance, double inner_radius, double outer_radi
   return t * t * (3.0 - 2.0 * t);
 }
 
-void find_distances(LeftOutRows& rows, int folds) {
+void find_distances(CrossValidationRows& rows, int folds) {
   rows.distance.assign(rows.fold.size(), std::numeric_limits<double>::infinity());
   parallel_for(folds, [&](int fold) {
     std::vector<Eigen::Index> others;
@@ -230,7 +230,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   StrengthChoice choice;
   choice.inner_radius = input.least_radius;
   choice.strength = 0.0;
-  const LeftOutRows& rows = input.rows;
+  const CrossValidationRows& rows = input.rows;
   if (rows.fold.size() < 2 || input.folds < 2) return choice;
   const BlasThreads one_thread(1);
   const LeftOutFits fits(input);
@@ -242,7 +242,7 @@ StrengthChoice choose_strength(const StrengthInput& input) {
       const auto row = static_cast<Eigen::Index>(i);
       const double trust =
           strength > 0.0 ? trust_at_distance(rows.distance[i], radius, input.outer_to_inner * radius) : 0.0;
-      const double force_N = left_out_force_N(input, i, trust, strength * h(row));
+      const double force_N = cross_validated_force_N(input, i, trust, strength * h(row));
       const double error = input.jnd.error_over_jnd(force_N, rows.force_N(row));
       variant.errors.add(static_cast<std::size_t>(rows.fold[i]), error * robust_scale(error));
     }
@@ -266,8 +266,8 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   std::vector<Variant> variants{none};
   for (const auto& some : of_decade) variants.insert(variants.end(), some.begin(), some.end());
   const double strength = variants[best_score(errors_of(variants))].strength;
-  // From the simplest: no correction; then the shortest reach and with it the most smoothing. (Strokes
-  // that are all alike do not show how far the correction may reach.)
+  // From the simplest to the most complex: no correction, then by growing reach and, with the same reach, by falling
+  // smoothing. (Similar strokes do not identify the reach.)
   std::erase_if(variants, [&](const Variant& one) { return one.strength != 0.0 && one.strength != strength; });
   std::stable_sort(variants.begin() + 1, variants.end(),
                    [](const Variant& a, const Variant& b) { return a.inner_radius < b.inner_radius; });
@@ -275,8 +275,8 @@ StrengthChoice choose_strength(const StrengthInput& input) {
   choice.smoothing = chosen->smoothing;
   choice.strength = chosen->strength;
   choice.inner_radius = chosen->inner_radius;
-  choice.trend_error_over_jnd = none.errors.typical();
-  choice.error_over_jnd = chosen->errors.typical();
+  choice.trend_error_over_jnd = none.errors.rms_at_mean_score();
+  choice.error_over_jnd = chosen->errors.rms_at_mean_score();
   return choice;
 }
 

@@ -1,7 +1,7 @@
 // Selects strength, smoothing and reach of the correction by cross-validation.
 //
 // A correction h of the residual of the trend helps only as far as other strokes have the same residual. For each fold
-// (models/training/fold_dealer.h), h is fitted to the rows of the others, by penalised least squares on up to 200
+// (models/training/fold_assignment.h), h is fitted to the rows of the others, by penalised least squares on up to 200
 // random centres,
 //   minimise sum_i s_i^2 (r_i - h(x_i))^2 + smoothing w^T (sign Phi) w,  G^T w = 0,
 // where r is the residual of a trend fitted to the same rows. The rows of the fold are then predicted by
@@ -25,7 +25,7 @@
 namespace palpate {
 
 // Rows in contact in ascending order of their folds; each is predicted from the other folds.
-struct LeftOutRows {
+struct CrossValidationRows {
   Eigen::MatrixXd points;   // normalised features, one column a row
   Eigen::VectorXd force_N;  // measured
   Eigen::VectorXd depth_m;
@@ -37,7 +37,7 @@ struct LeftOutRows {
 };
 
 struct StrengthInput {
-  const LeftOutRows& rows;
+  const CrossValidationRows& rows;
   int folds = 0;
   KernelKind kernel = KernelKind::cubic;
   JndLine jnd;
@@ -48,7 +48,7 @@ struct StrengthInput {
 };
 
 // The prediction of one row by a model fitted without its fold.
-struct LeftOutPrediction {
+struct CrossValidationPrediction {
   double error_N = 0.0;  // absolute error of the force
   double measured_N = 0.0;
   double predicted_N = 0.0;
@@ -59,16 +59,16 @@ struct StrengthChoice {
   double smoothing = 0.0;
   double strength = 1.0;
   double inner_radius = 0.0;
-  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::typical), without the correction
+  double trend_error_over_jnd = 0.0;  // cross-validated (FoldErrors::rms_at_mean_score), without the correction
   double error_over_jnd = 0.0;        // the same, with the correction
 };
 
 // The force at row `i` without its fold, as FittedModel computes it. `trust`: g; `h`: strength times correction, N.
-double left_out_force_N(const StrengthInput& input, std::size_t i, double trust, double h);
+double cross_validated_force_N(const StrengthInput& input, std::size_t i, double trust, double h);
 // The trust g at a distance: 1 up to the inner radius, 0 from the outer one, a cubic step between.
 double trust_at_distance(double distance, double inner_radius, double outer_radius);
 // Sets `distance` of the rows.
-void find_distances(LeftOutRows& rows, int folds);
+void find_distances(CrossValidationRows& rows, int folds);
 
 StrengthChoice choose_strength(const StrengthInput& input);
 

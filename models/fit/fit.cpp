@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "engine/base/parallel.h"
-#include "models/fit/decide_strength.h"
+#include "models/fit/select_strength.h"
 
 namespace palpate {
 namespace {
 
-// Nothing when cancelled.
+// Returns no value when interrupted.
 std::optional<double> share_within_jnd(const PreparedTraining& prepared, const ModelData& data,
                                        const FitControl& control) {
   constexpr std::size_t kBetweenQuestions = 16384;
@@ -55,7 +55,7 @@ Result<MethodFit> fit_method(const PreparedTraining& prepared, const MethodReque
   const bool corrects = !prepared.strength || prepared.strength->strength > 0.0;
   std::optional<FittedCorrection> from;
   if (base != nullptr && method.base != nullptr) from = FittedCorrection{base->data.correction, base->report, ""};
-  // Where cross-validation rejected the correction, every method is the trend: a model without centres.
+  // If cross-validation rejected the correction, every method returns the trend, a model without centres.
   MethodRequest of_trend;
   of_trend.method = &kTrendMethod;
   const MethodTask task{prepared.sites, prepared.common.features, jnd_N, corrects ? request : of_trend,

@@ -56,11 +56,11 @@ struct TrainingRequest {
 
 struct PreparedTraining {
   TrainingSet set;
-  Sites sites;                             // normalised; target: residual of the trend, or the force
-  ModelData common;                        // the parts of the model that all methods have in common
-  std::vector<PartGain> gains;             // of each term of the dictionary; empty unless FeatureChoice::automatic
-  std::optional<StrengthChoice> strength;  // none in the paper's recipe
-  std::optional<LeftOutRows> left_out;     // rows for cross-validation; none in the paper's recipe
+  Sites sites;                                  // normalised; target: residual of the trend, or the force
+  ModelData common;                             // the parts of the model that all methods have in common
+  std::vector<PartGain> gains;                  // of each term of the dictionary; empty unless FeatureChoice::automatic
+  std::optional<StrengthChoice> strength;       // none in the paper's recipe
+  std::optional<CrossValidationRows> left_out;  // rows for cross-validation; none in the paper's recipe
   int folds = 0;
   std::size_t strokes = 0;
   // Feature vectors in contact and their forces, for training_within_jnd; at most 100,000.

@@ -16,7 +16,7 @@
 namespace palpate {
 namespace {
 
-// Of the fit, for its progress.
+// Fractions of the fit, for its progress.
 constexpr double kFactorisingFrom = 0.25;
 constexpr double kFactorised = 0.95;
 
@@ -27,7 +27,7 @@ Result<FittedRbf> solve(const Sites& sites, const ProjectedKernel& kernel, doubl
     cancelled = !control.may_continue(kFactorisingFrom + (kFactorised - kFactorisingFrom) * share);
     return !cancelled;
   };
-  // A matrix that rounding made indefinite gets ten times the smoothing.
+  // If rounding made the matrix indefinite, the smoothing is multiplied by ten.
   for (int attempt = 0; attempt < 8; ++attempt, smoothing *= 10.0) {
     Eigen::MatrixXd matrix = kernel.matrix(kernel.mean_eigenvalue(), smoothing);
     const BlasThreads threads(thread_count());

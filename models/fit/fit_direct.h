@@ -1,5 +1,5 @@
 // Direct interpolation: every site is a centre, with the side condition of eq. 3. The smoothing is selected by
-// cross-validation (decide_strength.h), otherwise by maximum likelihood (choose_smoothing.h).
+// cross-validation (select_strength.h), otherwise by maximum likelihood (choose_smoothing.h).
 //
 // The projected system (projected_kernel.h) is solved by a Cholesky factorisation. With `as_2009`, the paper's
 // truncated SVD (truncated_svd.h) takes some thirty times longer.

@@ -16,8 +16,8 @@
 namespace palpate {
 namespace {
 
-// One way to choose the next centre: adds its column to the basis and returns
-// its site, or -1 when no candidate is of use.
+// A strategy for the next centre. It adds the column of the centre to the basis and returns its site, or -1 if no
+// candidate has a gain.
 class Selection {
  public:
   Selection(const Sites& sites, const MethodRequest& request, std::vector<Eigen::Index> distinct)
@@ -26,8 +26,7 @@ class Selection {
   virtual Eigen::Index next() = 0;
 
  protected:
-  // The place of the largest gain among the first `count` sites left, the first of
-  // equals; -1 when none has any.
+  // The index of the largest gain among the first `count` sites left, the first of equal ones; -1 if none is positive.
   std::ptrdiff_t best_of(std::size_t count) const {
     std::ptrdiff_t best = -1;
     double best_gain = 0.0;
@@ -50,7 +49,7 @@ class RandomSubsets final : public Selection {
       : Selection(sites, request, std::move(distinct)), candidates_(request.candidates), random_(request.seed) {}
 
   Eigen::Index next() override {
-    // A subset without use is followed by another, a few times.
+    // If no site of a subset has a gain, another subset is drawn, up to five in all.
     for (int attempt = 0; attempt < 5 && !left_.empty(); ++attempt) {
       const std::size_t count = draw();
       gains_.update(std::span(left_).first(count), basis_);
@@ -99,8 +98,7 @@ class AllSites final : public Selection {
   }
 
  private:
-  // Whether the recurrence still knows this column; 1 % is far below any
-  // difference in gain that matters.
+  // Whether the gain of the recurrence is accurate to 1 %, far below any difference in gain that matters.
   bool agrees(Eigen::Index site, const OrthogonalBasis::Outside& part) const {
     return gains_.useful(site, part) && part.correlation * part.correlation / part.squared >= 0.99 * gains_.gain(site);
   }
@@ -146,7 +144,7 @@ Result<CentreSequence> choose_greedy(const Sites& sites, const MethodRequest& re
     finished = select(selection, clamped.centres, control, chosen);
   }
   if (!finished) return interrupted();
-  if (chosen.empty() && clamped.centres > 0) chosen.push_back(first);  // a model file holds one centre at least
+  if (chosen.empty() && clamped.centres > 0) chosen.push_back(first);  // a model file has at least one centre
   Eigen::MatrixXd centres(sites.dimension(), static_cast<Eigen::Index>(chosen.size()));
   for (Eigen::Index j = 0; j < centres.cols(); ++j)
     centres.col(j) = sites.points.col(chosen[static_cast<std::size_t>(j)]);

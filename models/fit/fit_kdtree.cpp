@@ -28,8 +28,7 @@ class GrowingFit {
     right_.resize(most);
   }
 
-  // Puts columns for `centres` (d x k) at the places `at`, which are below
-  // size() or next to it.
+  // Sets the columns `at` to those of `centres` (d x k). A column is below size(), or the next ones.
   void set(const Eigen::MatrixXd& centres, const std::vector<Eigen::Index>& at) {
     const Eigen::Index count = centres.cols();
     for (const Eigen::Index place : at) size_ = std::max(size_, place + 1);
@@ -56,8 +55,8 @@ class GrowingFit {
       Eigen::MatrixXd& product = products[static_cast<std::size_t>(part)];
       product.resize(size_, count);
       product.setZero();
-      // One column at a time, for few of them dgemm spends its time copying; by blocks
-      // of rows that stay in the cache for the next.
+      // One column at a time, because dgemm would spend its time copying; by blocks of rows, which stay in the cache
+      // for the next column.
       for (Eigen::Index row = 0; row < rows; row += kRows) {
         const Eigen::Index some = std::min(kRows, rows - row);
         for (Eigen::Index k = 0; k < count; ++k)
@@ -76,7 +75,7 @@ class GrowingFit {
 
   // row_scale (f - h) at every site for the best weights.
   Eigen::VectorXd residual() const {
-    // Columns scaled to length 1; those that are nothing keep the weight 0.
+    // Columns are scaled to length 1; columns near 0 get the weight 0.
     Eigen::VectorXd scale = gram_.diagonal().head(size_).cwiseSqrt();
     const double tiny = 1e-20 * scale.maxCoeff();
     scale = (scale.array() > tiny).select(scale.cwiseInverse(), 0.0);
@@ -101,8 +100,8 @@ class GrowingFit {
   }
 
  private:
-  // Half the rows to each of two threads: fixed, so that the sums are the same on any
-  // number of cores, and the first a multiple of 8, as kernel_matrix wants it.
+  // Each of two threads takes half of the rows. The number is fixed, so that the sums do not depend on the number of
+  // cores; the first half is a multiple of 8, as kernel_matrix requires.
   static constexpr int kParts = 2;
   std::pair<Eigen::Index, Eigen::Index> rows_of(int part) const {
     const Eigen::Index half = sites_.count() / 16 * 8;
@@ -110,8 +109,7 @@ class GrowingFit {
   }
 
   static constexpr Eigen::Index kRows = 512;
-  // Products of a step that take about 0.3 ms: less is done sooner than threads are
-  // started.
+  // The number of products, about 0.3 ms, above which a step is faster with threads.
   static constexpr Eigen::Index kWorthThreads = 1000000;
   void for_parts(const std::function<void(int part)>& work) const {
     if (sites_.count() * size_ >= kWorthThreads) return parallel_for(kParts, work);
@@ -128,7 +126,7 @@ class GrowingFit {
   Eigen::Index size_ = 0;
 };
 
-// Splits the leaf of the worst sample that can be split; its number, or -1.
+// Splits the leaf of the site with the largest error, among the leaves that can be split; returns its number, or -1.
 Eigen::Index split_worst(SiteTree& tree, const Eigen::VectorXd& excess, std::vector<bool>& whole) {
   whole.resize(static_cast<std::size_t>(tree.leaf_count()), true);
   while (true) {
@@ -142,8 +140,7 @@ Eigen::Index split_worst(SiteTree& tree, const Eigen::VectorXd& excess, std::vec
   }
 }
 
-// Errors over the JND. A site that counts for nothing never asks for a split
-// before the others.
+// Errors in JND; 0 for sites without weight, so that the leaves of others are split first.
 Eigen::VectorXd excess_of(const GrowingFit& fit, const Sites& sites, const Eigen::VectorXd& jnd_N) {
   const Eigen::VectorXd residual = fit.residual();
   return (sites.row_scale.array() > 0.0)
@@ -164,12 +161,12 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
   GrowingFit fit(sites, request.kernel, most);
   CentreSequence sequence;
   sequence.pool.resize(sites.dimension(), 2 * most - 1);
-  std::vector<std::size_t> of_leaf;  // its column
+  std::vector<std::size_t> of_leaf;  // the column of each leaf
   const auto add = [&](Eigen::Index leaf) {
     const auto place = static_cast<std::size_t>(leaf);
     of_leaf.resize(std::max(of_leaf.size(), place + 1));
-    of_leaf[place] = sequence.stays.size();
-    sequence.stays.push_back({leaf, tree.leaf_count(), 0});
+    of_leaf[place] = sequence.memberships.size();
+    sequence.memberships.push_back({leaf, tree.leaf_count(), 0});
     sequence.pool.col(static_cast<Eigen::Index>(of_leaf[place])) = tree.barycentre(leaf);
   };
   add(0);
@@ -182,13 +179,13 @@ Result<CentreSequence> choose_kdtree(const Sites& sites, const Eigen::VectorXd& 
     const Eigen::Index lower = split_worst(tree, excess_of(fit, sites, jnd_N), whole);
     if (lower < 0) break;
     const Eigen::Index upper = tree.leaf_count() - 1;
-    sequence.stays[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
-    const auto before = static_cast<Eigen::Index>(sequence.stays.size());
+    sequence.memberships[of_leaf[static_cast<std::size_t>(lower)]].until = tree.leaf_count();
+    const auto before = static_cast<Eigen::Index>(sequence.memberships.size());
     add(lower);
     add(upper);
     fit.set(sequence.pool.middleCols(before, 2), {lower, upper});
   }
-  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.stays.size()));
+  sequence.pool.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(sequence.memberships.size()));
   sequence.most = request.centres > 0 ? tree.leaf_count() : 0;
   if (sequence.most < request.centres) sequence.shortage = "no leaf can be split further";
   return sequence;

@@ -14,13 +14,13 @@
 namespace palpate {
 namespace {
 
-// The paper's grid: 25 nodes along the depth, 11 along every other feature; with
-// more features fewer each, so that a grid never has more nodes than this.
+// The grid of the paper: 25 nodes along the depth, 11 along every other feature. With more features each axis has
+// fewer, so that a grid never has more than kMostNodes.
 constexpr int kDepthNodes = 25;
 constexpr int kOtherNodes = 11;
 constexpr double kMostNodes = 2e5;
 constexpr int kPositionOnlyNodes = 200;
-// Of a grid that was asked for; a model file holds no more.
+// The limit for a requested grid and for a model file.
 constexpr double kMaximumGridNodes = 1e7;
 
 std::vector<int> default_grid(std::size_t features) {
@@ -36,8 +36,8 @@ std::vector<int> default_grid(std::size_t features) {
   return grid;
 }
 
-// Node coordinates of one axis: half evenly spread, half where the data are.
-// A fast poke makes most of an even axis empty and slow motion too coarse. `even`: as the paper has them.
+// Node coordinates of one axis: the means of even nodes and of quantiles of the data. (After a fast poke most of an
+// even axis has no data, and slow motion too few nodes.) `even`: even nodes, as in the paper.
 std::vector<double> axis_nodes(const Eigen::VectorXd& values, int count, bool even) {
   std::vector<double> sorted(values.data(), values.data() + values.size());
   std::sort(sorted.begin(), sorted.end());

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "models/fit/decide_strength.h"
 #include "models/fit/methods.h"
+#include "models/fit/select_strength.h"
 #include "models/linear/lapack.h"
 #include "models/model/rbf/rbf_correction.h"
 #include "models/solve/penalised_weights.h"
@@ -32,7 +32,7 @@ Result<NestedWeights> NestedWeights::fold(const Sites& sites, KernelKind kernel,
   return NestedWeights(kernel, std::move(sequence), std::move(*folded));
 }
 
-// In the order of solve_weights: Phi of these columns, G, f.
+// The triangle of these columns, in the order of solve_weights: Phi, G, f.
 FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) const {
   const Eigen::MatrixXd& all = folded_.triangle;
   const Eigen::Index last = all.cols() - 1;
@@ -51,7 +51,7 @@ FoldedRows NestedWeights::folded_for(const std::vector<Eigen::Index>& columns) c
   }
   folded.triangle.block(0, k, rows, tail) = all.topLeftCorner(rows, tail);
   folded.triangle.col(k + tail).head(rows) = all.col(last).head(rows);
-  // The data's length outside these columns.
+  // The norm of the data outside of the span of these columns.
   folded.triangle(rows, k + tail) = all.col(last).tail(last + 1 - rows).norm();
   if (folded.triangle.rows() > folded.triangle.cols()) {
     qr_in_place(folded.triangle);

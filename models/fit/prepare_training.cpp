@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "engine/tick/sensor_identification.h"
-#include "models/fit/decide_strength.h"
 #include "models/fit/fit.h"
+#include "models/fit/select_strength.h"
 #include "models/surface/surface_registration.h"
 #include "models/training/relaxation_times.h"
 #include "models/training/training_extent.h"
@@ -16,11 +16,12 @@ namespace {
 
 constexpr double kCorrectionMargin = 1.1;
 constexpr std::size_t kMaximumEvaluationSamples = 100000;
-// Of the trend's regression: the noise of so many averages out.
+// Rows of the trend's regression, enough to average out the noise.
 constexpr std::size_t kTrendRows = 8000;
 // A dwell of many samples counts as at most this many.
 constexpr double kMaximumSiteCount = 16.0;
-// Normalised features are about 1, and forces of a function that extrapolates stay below a hundred times its data.
+// No limits for the recipe of 2009: normalised features are about 1, and an extrapolating function stays below a
+// hundred times the forces of its data.
 constexpr double kEverywhere = 1e6;
 constexpr double kUnlimited = 100.0;
 
@@ -69,7 +70,7 @@ std::vector<RelaxationTime> times_of(const std::vector<FeatureSpec>& features) {
   return times;
 }
 
-// The paper trusts its function everywhere, as far as the output's own limits go, and has even grids and
+// The paper uses its function everywhere, within the limits of the output only, with even grids and with
 // pseudo-inverses by truncated singular values.
 void without_guard(PreparedTraining& prepared) {
   prepared.sites.as_2009 = true;
@@ -95,7 +96,7 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
     base_N(k) = prepared.common.trend.at(site.features.data(), set.features);
     const double residual_N = site.force_N - base_N(k);
     sites.target_N(k) = prepared.common.corrects_trend ? residual_N : site.force_N;
-    // Where nothing was measured and the trend is below 0, that is told already.
+    // Where no force is measured and the trend is below 0, no correction is needed.
     if (site.no_force && base_N(k) < 0.0 && prepared.common.corrects_trend) sites.target_N(k) = 0.0;
     sites.row_scale(k) =
         row_scale(request.weighting, request.jnd, site.force_N) * std::sqrt(std::min(site.count, kMaximumSiteCount));
@@ -110,7 +111,7 @@ void make_sites(PreparedTraining& prepared, const TrainingRequest& request) {
   if (is_papers_recipe(request)) without_guard(prepared);
 }
 
-// Moves every recording to the common surface; returns where that is, m.
+// Corrects every recording to the common surface; returns the position of that, m.
 Result<double> find_surfaces(MotionSource& source, const TrainingRequest& request, Provenance& provenance,
                              const FitControl& control) {
   source.correct({});
@@ -128,7 +129,7 @@ Result<double> find_surfaces(MotionSource& source, const TrainingRequest& reques
   return found->surface_position_m;
 }
 
-// What all lists of features share.
+// The data that all lists of features share.
 struct Given {
   MotionSource& source;
   const TrainingRequest& request;
@@ -136,7 +137,7 @@ struct Given {
   const TrendProblem& problem;
 };
 
-// The relaxation times of the scene, given ones instead, or identified ones.
+// The relaxation times: those of the scene, of the request, or identified ones.
 Result<std::vector<double>> scene_times(const Given& given, Provenance& provenance, const FitControl& control) {
   const TrainingRequest& request = given.request;
   std::vector<double> times_s = filter_times(request.features);
@@ -156,7 +157,7 @@ Result<std::vector<double>> scene_times(const Given& given, Provenance& provenan
   return times_s;
 }
 
-// Everything, with the law of memory that the recordings show.
+// All candidate terms, with the law of memory selected from the recordings.
 Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& given, const FitControl& control) {
   const TrainingExtent& extent = given.extent;
   const FeatureList list =
@@ -164,7 +165,7 @@ Result<FeatureList> automatic_list(PreparedTraining& prepared, const Given& give
   return select_memory_law(given.source, list, given.problem, prepared.gains, control, 0.15);
 }
 
-// Of each part of the list: what the folds left out lose without it.
+// The gain of each part of the list: the cross-validated error with it and without it.
 void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendRows& rows,
                const TrendRegression& regression, const CrossValidated& with_all, const Eigen::VectorXd& x) {
   for (const FeatureColumns& group : feature_columns(list, rows)) {
@@ -173,8 +174,8 @@ void add_gains(PreparedTraining& prepared, const FeatureList& list, const TrendR
       if (!std::binary_search(group.columns.begin(), group.columns.end(), column)) others.push_back(column);
     }
     const bool taken = (x(group.columns).array() > 0.0).any();
-    prepared.gains.push_back(
-        {group.name, taken, with_all.errors.typical(), regression.cross_validate(others).errors.typical()});
+    prepared.gains.push_back({group.name, taken, with_all.errors.rms_at_mean_score(),
+                              regression.cross_validate(others).errors.rms_at_mean_score()});
   }
   std::stable_partition(prepared.gains.begin(), prepared.gains.end(), [](const PartGain& one) { return one.taken; });
 }
@@ -223,7 +224,7 @@ Status prepare_list(PreparedTraining& prepared, const Given& given, const Featur
   common.upper = prepared.set.normalisation.upper;
   common.jnd = request.jnd;
   make_sites(prepared, request);
-  if (!papers) decide_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
+  if (!papers) select_strength(prepared, *rows, fitted.row_features, left_out, given.problem, given.extent.strokes);
   return {};
 }
 
@@ -237,7 +238,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   auto extent = measure_extent(source, control);
   if (!extent) return extent.error();
   if (request.surface == Surface::automatic) {
-    const auto beginning_m = find_beginning(source, *extent, request.jnd, control);
+    const auto beginning_m = find_preload_surface(source, *extent, request.jnd, control);
     if (!beginning_m) return beginning_m.error();
     if (*beginning_m != 0.0) {
       source.shift(*beginning_m);
@@ -252,15 +253,15 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
         "no sample of the training recordings is in contact (position_m > 0): there is nothing to learn; "
         "record a press, check the sign of position_m, or set its zero (palpate import FILE --zero contact)"};
   }
-  // Contact with a material that pulls is not one-sided: there no force is a force, too.
+  // Contact with a material that pulls is not one-sided: a force of 0 counts like any other.
   const double force_noise_floor_N =
       extent->lowest_force_N < 0.0 ? -std::numeric_limits<double>::infinity() : no_force_N(source.force_noise_N());
   const TrendProblem problem{extent->depth_m, extent->rms_velocity_m_per_s, force_noise_floor_N,
                              is_papers_recipe(request) ? Weighting::jnd : request.weighting, request.jnd};
-  source.deal(dealer_for(source, *extent));
+  source.assign_folds(fold_assignment_for(source, *extent));
   const Given given{source, request, *extent, problem};
   FeatureList list = request.list;
-  // The paper's recipe has the scene's features, whatever the recordings would support.
+  // The paper's recipe always uses the features of the scene.
   const bool everything = request.choice == FeatureChoice::automatic && !is_papers_recipe(request);
   if (everything) {
     auto found = automatic_list(prepared, given, control);
@@ -273,7 +274,7 @@ Result<PreparedTraining> prepare_training(MotionSource& source, const TrainingRe
   }
   if (Status status = prepare_list(prepared, given, list, control); !status) return status.error();
 
-  // Positions of a model are those of its recordings.
+  // A model takes positions in the coordinate of its recordings.
   for (FeatureSpec& spec : prepared.common.features) {
     if (spec.kind == FeatureKind::depth) spec.surface_position_m = *surface_m;
   }

@@ -1,5 +1,5 @@
-// The trend method: the viscoelastic trend that prepare_training fitted, with nothing
-// added. The smallest model there is, and what every other method must better.
+// The trend method: the viscoelastic trend of prepare_training without a correction. It is the smallest model and the
+// baseline of every other method.
 #include <cmath>
 
 #include "models/fit/methods.h"

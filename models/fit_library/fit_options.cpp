@@ -21,7 +21,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-// "0.17+1.27" as positive numbers, each followed by `unit`; empty when it is anything else.
+// Parses "0.17+1.27": positive numbers, each followed by `unit`. Empty if the text is anything else.
 std::vector<double> parse_values(std::string_view text, char separator, std::string_view unit = "") {
   std::vector<double> values;
   for (std::string_view part : split(text, separator)) {
@@ -35,7 +35,7 @@ std::vector<double> parse_values(std::string_view text, char separator, std::str
   return values;
 }
 
-// "25x11x11x11" as whole numbers of at least 2; empty when it is anything else.
+// Parses "25x11x11x11": whole numbers of at least 2. Empty if the text is anything else.
 std::vector<int> parse_grid(const std::string& text) {
   std::vector<int> sizes;
   for (const double value : parse_values(text, 'x')) {
@@ -49,7 +49,7 @@ Error wrong(std::string_view item, const std::string& expected) {
   return Error{"found \"" + std::string(item) + "\", expected " + expected};
 }
 
-// What may stand behind a kind's colon: one to eight values.
+// A kind of feature with one to eight values after its colon.
 struct ListedKind {
   std::string_view kind;
   std::string_view unit;
@@ -197,11 +197,11 @@ TrainingRequest training_request(const FitOptions& options, TrainingRequest scen
   request.weighting = static_cast<Weighting>(index_of(kWeightingNames, options.weighting));
   request.reduction = static_cast<Reduction>(index_of(kReductionNames, options.reduction));
   request.surface = options.surface == "recorded" ? Surface::recorded : Surface::automatic;
-  // The two spellings of one recipe.
+  // The paper's recipe is requested by its name or by its two options.
   const bool papers = options.recipe == kRecipe2009 ||
                       (request.reduction == Reduction::force && request.weighting == Weighting::relative);
   if (papers) request = recipe_2009_request(std::move(request));
-  // Relaxation times are options of the scene's features, and the paper's recipe has those.
+  // Relaxation times are an option of the scene's features, which the paper's recipe uses, too.
   if (!options.relaxation.empty() || papers || options.features == "scene") {
     request.choice = FeatureChoice::scene;
   } else if (options.features == "auto") {

@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-// Of the progress: what it takes to prepare the training.
+// The share of the progress for the preparation of the training.
 constexpr double kPrepared = 0.3;
 
 FitControl part_of(const std::function<bool(double)>& progress, double begin, double end) {
@@ -43,7 +43,7 @@ Result<RecordingsFit> fit_recordings(std::vector<CheckedFile> recordings, const 
   auto prepared = prepare_training(source, training, part_of(progress, 0.0, kPrepared));
   if (!prepared) return prepared.error();
   MethodRequest method = method_request(options);
-  // The number of features is not known before; the last size of the grid serves all that have none.
+  // The number of features is not known before: features without a size get the last size of the grid.
   if (training.choice == FeatureChoice::automatic && !method.grid.empty())
     method.grid.resize(prepared->common.features.size(), method.grid.back());
   auto fit = fit_method(*prepared, method, part_of(progress, kPrepared, 1.0));

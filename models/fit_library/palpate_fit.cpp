@@ -19,7 +19,7 @@
 #include "models/library/error_text.h"
 #include "models/library/handles.h"
 #include "models/model/file/model_io.h"
-#include "models/training/fold_dealer.h"
+#include "models/training/fold_assignment.h"
 #include "models/training/training_extent.h"
 
 struct palpate_recording {
@@ -27,14 +27,14 @@ struct palpate_recording {
   std::vector<bool> left_out{};
 };
 
-// A row of the interface is a row of a recording.
+// A row of the interface has the layout of a row of a recording.
 static_assert(sizeof(palpate_row) == sizeof(palpate::RecordingRow) &&
               offsetof(palpate_row, acceleration_m_per_s2) == offsetof(palpate::RecordingRow, acceleration_m_per_s2));
 
 namespace palpate::library {
 namespace {
 
-// The features of Hoever & Harders (2009) as a candidate beside those that the recordings support.
+// The scene of fits without a scene file: the features of Hoever & Harders (2009).
 constexpr const char* kSceneFeatures = "depth,velocity,lowpass_velocity:0.17,lowpass_velocity:1.27";
 
 Status import_to(const std::string& table, const std::string& recording, bool overwrite) {
@@ -108,7 +108,7 @@ CheckRequest check_of(const TrainingRequest& scene) {
   return request;
 }
 
-// `check`: the checked recordings for a request.
+// `check`: returns the checked recordings for a request.
 template <typename Check>
 Result<RecordingsFit> fit_checked(const palpate_fit_options& given, const Check& check) {
   const auto began = std::chrono::steady_clock::now();
@@ -161,8 +161,8 @@ Result<Recording> recording_of(std::string name, std::size_t n, const double* ti
                fault->text};
 }
 
-// The folds of samples that come recording by recording.
-int deal(std::size_t n, const double* depth_m, const int* recording, int* fold) {
+// Assigns samples, which are in order of recordings, to folds; returns the number of folds.
+int assign_folds(std::size_t n, const double* depth_m, const int* recording, int* fold) {
   const auto recording_of = [&](std::size_t i) { return recording == nullptr ? 0 : recording[i]; };
   std::vector<MotionRow> rows(n);
   TrainingExtent extent;
@@ -175,14 +175,15 @@ int deal(std::size_t n, const double* depth_m, const int* recording, int* fold) 
     recordings += row.first ? 1 : 0;
     row.stroke = static_cast<int>(extent.strokes);
     if (!row.first)
-      (depth_m[i] > depth_m[i - 1] ? extent.way_in_m : extent.way_out_m) += std::abs(depth_m[i] - depth_m[i - 1]);
+      (depth_m[i] > depth_m[i - 1] ? extent.loading_path_m : extent.unloading_path_m) +=
+          std::abs(depth_m[i] - depth_m[i - 1]);
     if (!(depth_m[i] > 0.0)) continue;
     if (row.first || !(depth_m[i - 1] > 0.0)) row.stroke = static_cast<int>(++extent.strokes);
     ++extent.contact_samples;
   }
-  FoldDealer dealer(recordings, extent.strokes, extent.contact_samples, extent.turns_round());
-  for (std::size_t i = 0; i < n; ++i) fold[i] = dealer.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
-  return dealer.folds();
+  FoldAssignment assignment(recordings, extent.strokes, extent.contact_samples, extent.has_unloading());
+  for (std::size_t i = 0; i < n; ++i) fold[i] = assignment.next(rows[i].recording, rows[i].stroke, depth_m[i] > 0.0);
+  return assignment.folds();
 }
 
 }  // namespace
@@ -305,5 +306,5 @@ int palpate_fit(const char* const* recordings, size_t recording_count, const pal
 
 int palpate_folds(size_t n, const double* depth_m, const int* recording, int* fold) {
   if (depth_m == nullptr || fold == nullptr) return -1;
-  return guarded<int>(-1, {}, [&](Place) { return palpate::library::deal(n, depth_m, recording, fold); });
+  return guarded<int>(-1, {}, [&](Place) { return palpate::library::assign_folds(n, depth_m, recording, fold); });
 }

@@ -28,7 +28,7 @@ struct palpate_stream {
 
   palpate::SensorSpec sensor;
   palpate::HapticsTick tick;
-  // Of the last sample that was taken.
+  // The values of the last accepted sample.
   bool out_of_domain = false;
   double predicted_error_N = std::numeric_limits<double>::quiet_NaN();
 };
@@ -85,7 +85,7 @@ palpate_sensor sensor_from(const SensorSpec& spec) {
           spec.has_velocity ? 1 : 0,   spec.has_acceleration ? 1 : 0};
 }
 
-// Of the first samples, as many as identification looks at.
+// Identifies the sensor from the first kSensorIdentificationRows samples.
 SensorSpec sensor_of_samples(size_t n, const double* time_s, const double* position_m, const double* velocity_m_per_s,
                              const double* acceleration_m_per_s2) {
   std::vector<RecordingRow> rows(std::min(n, kSensorIdentificationRows));

@@ -43,7 +43,7 @@ std::recursive_mutex& blas_mutex() {
   return mutex;
 }
 
-// With the variable of OpenBLAS's manual set meanwhile.
+// Restarts OpenBLAS with its variable for the core type set, if it did not recognise a newer core.
 void choose_blas_core() {
 #ifdef __x86_64__
   constexpr const char* kVariable = "OPENBLAS_CORETYPE";
@@ -99,7 +99,7 @@ void multiply(const ConstMatrixRef& a, bool transpose_a, const ConstMatrixRef& b
   const int ldb = leading(b);
   const int ldc = leading(c);
   if (n == 1 && !transpose_b) {
-    // dgemm would copy all of `a` first, which takes longer than the product.
+    // dgemm would copy all of `a`, which takes longer than the product.
     const int rows = to_int(a.rows());
     const int columns = to_int(a.cols());
     const int one = 1;
@@ -122,8 +122,8 @@ void gram(const ConstMatrixRef& a, MatrixRef c) {
   dsyrk_("L", "T", &n, &k, &one, a.data(), &lda, &zero, c.data(), &ldc);
 }
 
-// By the recursive panels of dgeqrt: dgeqrf takes matrices of up to 128 columns column by
-// column, which takes 2.5 times as long at 106.
+// Uses the recursive panels of dgeqrt: dgeqrf factorises up to 128 columns one by one, which takes 2.5 times as long
+// with 106 columns.
 Eigen::MatrixXd qr_in_place(MatrixRef a) {
   assert(a.rows() >= a.cols());
   const int m = to_int(a.rows());
@@ -187,8 +187,8 @@ bool singular_values(Eigen::MatrixXd& a, Eigen::VectorXd& values, Eigen::MatrixX
   return info == 0;
 }
 
-// By panels, so that a large one can be given up: half a second each at 6,850 sites
-// on one slow core, and as quick as LAPACK's own in one go.
+// Works by panels, so that a large matrix can be interrupted: a panel takes half a second at 6,850 sites on one slow
+// core. The whole is as fast as LAPACK's own routine.
 bool cholesky_in_place(MatrixRef a, const std::function<bool(double)>& may_continue) {
   constexpr int kPanel = 512;
   const int n = to_int(a.rows());

@@ -26,7 +26,7 @@ std::vector<Eigen::Index> thinned(const Eigen::MatrixXd& sites, double radius) {
   };
   for (Eigen::Index i = 0; i < sites.cols(); ++i) {
     const double* x = sites.col(i).data();
-    // Sites come in the order of time: what covers one is most often new.
+    // Sites are in order of time, so that the newest kept points are the most likely to be near.
     if (std::any_of(kept.rbegin(), kept.rend(), [&](Eigen::Index other) { return is_near(x, other); })) continue;
     if (static_cast<Eigen::Index>(kept.size()) == kMaximumCoverPoints) return {};
     kept.push_back(i);
@@ -45,7 +45,7 @@ DomainCover make_cover(const Eigen::MatrixXd& sites) {
   }
   DomainCover cover;
   cover.points = sites(Eigen::all, kept);
-  // Every site keeps full trust, however thin the cover had to be.
+  // Every site has full trust, however much the cover was thinned.
   cover.inner_radius = std::max(kInnerRadius, 1.5 * radius);
   cover.outer_radius = kOuterToInner * cover.inner_radius;
   return cover;

@@ -7,10 +7,10 @@ namespace {
 
 constexpr double kPieces = kElasticPieces;
 
-// The knots of the quadratic B-splines in pieces: those at the ends three times.
+// The knots of the quadratic B-splines in units of a piece; those at the ends are threefold.
 double knot_at(std::size_t i) { return static_cast<double>(std::clamp<std::size_t>(i, 2, kElasticPieces + 2) - 2); }
 
-// N_i of a degree at x pieces (Cox-de Boor recursion), continuous from the left at the end.
+// N_i of a degree at x, in units of a piece (Cox-de Boor recursion), continuous from the left at the end.
 double b_spline(std::size_t i, int degree, double x) {
   const double first = knot_at(i);
   if (degree == 0) {
@@ -48,7 +48,7 @@ std::vector<ElasticSpline> spline_basis() {
       const auto begin = static_cast<double>(piece);
       const double at_begin = b_spline(i, 2, begin);
       const double at_middle = b_spline(i, 2, begin + 0.5);
-      // From inside, since the last piece ends at a repeated knot.
+      // Continuous from the left, because the last piece ends at a repeated knot.
       const double square = 2.0 * (b_spline(i, 2, begin + 1.0) - 2.0 * at_middle + at_begin);
       const double slope = 2.0 * (at_middle - at_begin) - 0.5 * square;
       double* c = basis[i].pieces_N.data() + piece * kElasticCoefficients;

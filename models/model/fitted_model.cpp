@@ -12,17 +12,17 @@
 namespace palpate {
 namespace {
 
-// The guard's radius is chosen by what the correction is worth beyond the data; a press
-// deeper than the deepest recorded one by this share is out of the domain in any case.
+// A press deeper than the deepest recorded one by this share is out of the domain, whatever the radius of the guard,
+// which is selected by the gain of the correction away from the data.
 constexpr double kDeeper = 0.15;
-// Times that grow a hundred million times with the depth are a damaged file.
+// Relaxation times that grow by more than exp(20), or 5e8, with the depth indicate a damaged file.
 constexpr double kMostSlowing = 20.0;
 
 Error wrong(const std::string& field, const std::string& found, const std::string& expected) {
   return {field + ": found " + found + ", expected " + expected};
 }
 
-// The first of all that is wrong.
+// Keeps the first fault.
 class Check {
  public:
   void that(bool good, const std::string& field, const std::string& found, const std::string& expected) {
@@ -34,7 +34,7 @@ class Check {
   void not_negative(const std::string& field, double value) {
     that(value >= 0.0 && std::isfinite(value), field, std::to_string(value), "0 or more");
   }
-  // Forces of recordings: none beyond that is read (engine/recording/recording_rules.h).
+  // Recordings have no larger forces (engine/recording/recording_rules.h).
   void recorded_force(const std::string& field, double value_N) {
     that(std::abs(value_N) <= kMaximumForce_N, field, general(value_N, 4) + " N", "at most 1e6 N");
   }
@@ -45,7 +45,7 @@ class Check {
     finite(field, values.allFinite());
   }
   void drive(const std::string& field, const DriveCurve& curve) {
-    // Of a branch that relaxes at once the curve may be large, but it is a force.
+    // The curve of a branch with a short relaxation time may be large, but it is a force.
     const auto is_force = [](double value_N) { return std::abs(value_N) <= 1e9; };
     positive(field + ".reference_depth_m", curve.reference_depth_m);
     that(std::all_of(curve.coefficient_N.begin(), curve.coefficient_N.end(), is_force) &&
@@ -97,12 +97,11 @@ void check_cover(Check& check, const DomainCover& cover, Eigen::Index dimension)
              "0 <= inner < outer");
 }
 
-// A part of the force that is beyond this multiple of the largest forces that the file names
-// is a damaged number: the model would jump between 0 and its limit. The parts of a fitted
-// model cancel one another to within far less.
+// A part of the force above this multiple of the largest forces in the file indicates a damaged number: the model would
+// jump between 0 and its limit. The parts of a fitted model are far smaller.
 constexpr double kMostOfLimit = 100.0;
 
-// At the recorded samples that the domain is made of.
+// Checks the forces at the points of the cover.
 Status validate_forces(const ModelData& data) {
   const double limit_N = kMostOfLimit * (data.largest_force_N + data.correction_limit_N + data.jnd.offset_N);
   const TrendInputs inputs(data.features);
@@ -197,10 +196,9 @@ int FittedModel::centre_count() const noexcept { return data_.correction->size()
 ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
   std::array<double, kMaxFeatures> u{};
   for (std::size_t i = 0; i < dimension_; ++i) u[i] = (features[i] - offset_[i]) * inverse_scale_[i];
-  // The guard's leaf is found by steps that wait for one another, while the correction works;
-  // the look at its points, for which nothing but a comparison waits, is done while the
-  // correction's last roots are. No other order of the four is quicker, some are slower by up
-  // to 26 ns (Zen 4).
+  // This order lets the processor overlap the work: the search for the leaf of the guard, a chain of dependent steps,
+  // with the correction, and the distances in the leaf with the last square roots of the correction. No other order is
+  // faster, some are slower by up to 26 ns (Zen 4).
   const double trend_N = data_.trend.at(features, trend_inputs_);
   const float* leaf = guard_.leaf(u.data());
   double correction_N = correction_ != nullptr ? correction_->evaluate(u.data()) : 0.0;
@@ -211,7 +209,7 @@ ForceEstimate FittedModel::evaluate(const double* features) const noexcept {
     if (!data_.corrects_trend) correction_N -= trend_N;
     force_N += trust * std::clamp(correction_N, -data_.correction_limit_N, data_.correction_limit_N);
   }
-  // A comparison that fails for NaN, so that nothing but a force leaves.
+  // The comparisons are false for NaN, so that the result is always a finite force.
   const double largest_N = kForceMargin * data_.largest_force_N;
   if (!(force_N > 0.0)) force_N = force_N < 0.0 ? std::max(force_N, data_.lowest_force_N) : 0.0;
   ForceEstimate estimate{std::min(force_N, largest_N), trust < 0.5 || features[depth_] > deepest_m_};

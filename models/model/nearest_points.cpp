@@ -13,16 +13,16 @@
 namespace palpate {
 namespace {
 
-// The share of a part that each of its halves has of the other.
+// The share of a part by which its halves overlap.
 constexpr double kOverlap = 0.1;
-// Of a distance, as a share of the query's norm and the points'.
+// The rounding of a distance relative to the norms of query and points.
 constexpr double kDistanceRounding = 3e-7;
 
 std::size_t whole_vectors(std::size_t count) {
   return (count + simd::kSimdPadFloat - 1) / simd::kSimdPadFloat * simd::kSimdPadFloat;
 }
 
-// The points `order`, and the last again up to `stride`; one row a coordinate.
+// Writes the points `order`, one row for each coordinate, and repeats the last point up to `stride`.
 void fill_rows(const Eigen::MatrixXd& points, const std::vector<Eigen::Index>& order, std::size_t stride, float* to) {
   for (Eigen::Index k = 0; k < points.rows(); ++k)
     for (std::size_t i = 0; i < stride; ++i)
@@ -91,9 +91,8 @@ NearPoints::NearPoints(const Eigen::MatrixXd& points, double radius)
   set_limit(radius, points.colwise().norm().maxCoeff(), about.colwise().squaredNorm().maxCoeff());
 }
 
-// With u = 2^-24, P the largest |p| and Q = |q|, the rounding of q, p, of a product and
-// a sum for each of up to 8 coordinates and of what they are compared with is less than
-// 18 u (P^2 + Q^2) = 1.1e-6 (P^2 + Q^2), and 1e-10 of what counts as 0.
+// With u = 2^-24, P the largest |p| and Q = |q|, the rounding of q, of p, of a product and a sum for each of up to 8
+// coordinates and of the limit is less than 18 u (P^2 + Q^2) = 1.1e-6 (P^2 + Q^2), and 1e-10 for values set to 0.
 void NearPoints::set_limit(double radius, double largest, double about_squared) {
   constexpr double kRounding = 2e-6;
   const double certain = radius - kDistanceRounding * (2.0 * largest + radius) - 1e-9;

@@ -44,20 +44,19 @@ float nearest(const float* coordinates, size_t stride, size_t count, const float
 #if HWY_MAX_BYTES >= 32
 using Four = hn::FixedTag<float, 4>;
 
-// x - c of kCount coordinates, as nearest_float has it.
+// x - c of kCount coordinates, rounded like nearest_float.
 template <int kCount>
 HWY_INLINE hn::Vec<Four> four_about(const double* x, const double* centre) {
   const hn::FixedTag<double, 4> d;
   const Four four;
-  // One at a time: a load of what has been stored in smaller pieces waits for the stores.
+  // Sets the lanes one at a time: a vector load of values that were stored one by one would wait for the stores.
   const auto at = [&](int k) HWY_ATTR { return k < kCount ? hn::Set(d, x[k]) : hn::Zero(d); };
   const auto theirs = hn::ConcatUpperLower(d, hn::OddEven(at(3), at(2)), hn::OddEven(at(1), at(0)));
   const auto q = hn::DemoteTo(four, hn::Sub(theirs, hn::LoadU(d, centre)));
   return hn::IfThenZeroElse(hn::Lt(hn::Abs(q), hn::Set(four, kSmallestFloat)), q);
 }
 
-// All splits at once, then from bit to bit: a comparison after the other would take three
-// times as long.
+// Compares all splits at once, then follows the bits: one comparison after the other would take three times as long.
 template <int kDimension>
 HWY_INLINE size_t leaf_number(const NearTree& tree, const double* x) {
   const hn::FixedTag<float, 8> eight;

@@ -9,7 +9,7 @@ namespace palpate {
 TrendInputs::TrendInputs(const std::vector<FeatureSpec>& specs) noexcept {
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const auto index = static_cast<std::uint8_t>(i);
-    // The paper's low-pass features carry no stiffness, and a surface_lag is what the branches follow.
+    // Low-pass features have no force, and the branches already follow the surface_lag.
     const FeatureKind kind = specs[i].kind;
     if (kind == FeatureKind::depth) depth = index;
     if (kind == FeatureKind::velocity) velocity = index;

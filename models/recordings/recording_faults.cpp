@@ -18,13 +18,13 @@ using Column = double RecordingRow::*;
 constexpr std::size_t kLongestDropout = 3;  // rows
 constexpr std::size_t kLeastDropouts = 3;
 constexpr double kMostDropoutShare = 0.1;
-constexpr double kNoiseFactor = 6.0;         // one row in 1e9 of white noise is as far out
-constexpr double kCourseFactor = 3.0;        // a triangle's tip has 1
-constexpr double kResidualShare = 0.9;       // more than dropouts can take a share in
+constexpr double kNoiseFactor = 6.0;         // exceeded by one row in 1e9 of white noise
+constexpr double kCourseFactor = 3.0;        // the tip of a triangle wave has 1
+constexpr double kResidualShare = 0.9;       // dropouts are at most a tenth of the rows
 constexpr double kFastest_m_per_s2 = 100.0;  // a hand reaches some 50 m/s^2, a testing machine less
 constexpr double kSlowStep_s = 0.01;
 
-// Rows on end with one value.
+// Consecutive rows with one value.
 struct Run {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -47,7 +47,7 @@ double quantile_of(std::vector<double> values, double share) {
   return *at;
 }
 
-// How far the run is from the median of itself and its neighbours, when it is beyond both; else 0.
+// The distance of a run to the nearer of its neighbours' values if it exceeds, or is below, both; else 0.
 double excursion(const std::vector<Run>& runs, std::size_t at) {
   const double before = runs[at].value - runs[at - 1].value;
   const double after = runs[at].value - runs[at + 1].value;
@@ -67,7 +67,7 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
   std::vector<double> of_rows = excursions;  // a row that repeats its value has none
   of_rows.resize(rows.size(), 0.0);
   const double least = kNoiseFactor * std::max(noise, quantile_of(std::move(of_rows), kResidualShare));
-  std::vector<std::pair<Run, bool>> candidates;  // whether one is enough
+  std::vector<std::pair<Run, bool>> candidates;  // and whether it is physically impossible
   std::map<double, std::size_t> values;
   for (std::size_t i = 2; i + 2 < runs.size(); ++i) {
     const Run& run = runs[i];
@@ -90,7 +90,7 @@ std::vector<Run> dropouts(const Rows& rows, Column column, double noise, bool is
   return found.size() >= kLeastDropouts && few ? found : std::vector<Run>{};
 }
 
-// Marks the rows; returns how many.
+// Marks the rows of the runs; returns their number.
 std::size_t mark(const std::vector<Run>& runs, std::vector<bool>& out) {
   std::size_t count = 0;
   for (const Run& run : runs) {
@@ -111,14 +111,14 @@ void remove_marked(Rows& rows, const std::vector<bool>& out) {
 constexpr std::size_t kLeastUpdates = 50;
 constexpr double kFewIntervals = 0.05;    // shorter ones are jitter
 constexpr double kEqualIntervals = 0.75;  // of the median
-constexpr double kManySteps = 3.0;        // the median change over the smallest: no encoder moves like that
+constexpr double kManySteps = 3.0;        // ratio of the median change to the smallest; encoder steps have less
 
-// Rows between updates of the position; 0 where every row may have its own.
+// The number of rows from one update of the position to the next; 0 if every row may be an update.
 double update_rows(const std::vector<Run>& runs) {
   if (runs.size() < kLeastUpdates) return 0.0;
   std::vector<double> lengths;
   std::vector<double> steps;
-  // Neither the first nor the last run is whole.
+  // The first and the last run are incomplete.
   for (std::size_t i = 1; i + 1 < runs.size(); ++i) {
     lengths.push_back(static_cast<double>(runs[i].end - runs[i].begin));
     steps.push_back(std::abs(runs[i].value - runs[i - 1].value));

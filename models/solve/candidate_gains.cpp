@@ -9,15 +9,13 @@
 namespace palpate {
 namespace {
 
-// Sites at a time: they share the products with the directions that the furthest behind of
-// them lacks.
+// Sites at a time: they share the products with all directions that one of them lacks.
 constexpr Eigen::Index kGroup = 4;
-// Rows at a time: a group's columns stay in the first-level cache, that block of the
-// directions in the second.
+// Rows at a time: the columns of a group stay in the first-level cache, the block of the directions in the second.
 constexpr Eigen::Index kRows = 512;
-// Columns whose part outside is computed at once, 7 MB at 6,850 sites.
+// Columns that are orthogonalised at once, 7 MB at 6,850 sites.
 constexpr std::size_t kRecompute = 128;
-// Sums are taken per part, then in order: the same for any number of cores.
+// Each part is summed by itself, then the parts in order: the result does not depend on the number of cores.
 constexpr int kParts = 4;
 
 struct Sums {
@@ -64,12 +62,12 @@ void CandidateGains::add_shares(std::span<const Eigen::Index> sites, const Ortho
   const auto count = static_cast<Eigen::Index>(sites.size());
   const Eigen::Index groups = (count + kGroup - 1) / kGroup;
   const auto group_size = [&](Eigen::Index group) { return std::min(kGroup, count - group * kGroup); };
-  // The directions known to the first of a group are known to all of it.
+  // The sites of a group have at least the directions of its first site.
   const auto known_to = [&](Eigen::Index group) {
     return known_to_[static_cast<std::size_t>(sites[static_cast<std::size_t>(group * kGroup)])];
   };
   std::array<std::vector<Sums>, kParts> sums;
-  // Whole vectors of the points, which are padded to them.
+  // A part begins at a multiple of the vector length, to which the points are padded.
   const auto first_row = [&](int part) {
     constexpr auto kVector = static_cast<Eigen::Index>(simd::kSimdPad);
     return std::min(sites_.count(), (sites_.count() * part / kParts + kVector - 1) / kVector * kVector);

@@ -11,24 +11,24 @@ namespace palpate {
 
 struct CentreSequence {
   // The index of a centre, and the numbers of centres whose selection contains it.
-  struct Stay {
+  struct Membership {
     Eigen::Index place = 0;
     Eigen::Index from = 1;
     Eigen::Index until = 0;  // first number of centres without it; 0: none
   };
 
-  Eigen::MatrixXd pool;     // d x m, the centres of all selections, each once, in order of appearance
-  std::vector<Stay> stays;  // one for each column of `pool`
-  Eigen::Index most = 0;    // maximum number of centres
-  std::string shortage;     // why `most` is less than requested; else empty
+  Eigen::MatrixXd pool;                 // d x m, the centres of all selections, each once, in order of appearance
+  std::vector<Membership> memberships;  // one for each column of `pool`
+  Eigen::Index most = 0;                // maximum number of centres
+  std::string shortage;                 // why `most` is less than requested; else empty
 
   // The columns of `pool` of the selection of `count` centres (0 to `most`), in the order of their indices.
   std::vector<Eigen::Index> columns_of(Eigen::Index count) const {
     std::vector<Eigen::Index> columns(static_cast<std::size_t>(count));
-    for (std::size_t j = 0; j < stays.size(); ++j) {
-      const Stay& stay = stays[j];
-      if (stay.from <= count && (stay.until == 0 || count < stay.until)) {
-        columns[static_cast<std::size_t>(stay.place)] = static_cast<Eigen::Index>(j);
+    for (std::size_t j = 0; j < memberships.size(); ++j) {
+      const Membership& membership = memberships[j];
+      if (membership.from <= count && (membership.until == 0 || count < membership.until)) {
+        columns[static_cast<std::size_t>(membership.place)] = static_cast<Eigen::Index>(j);
       }
     }
     return columns;
@@ -39,7 +39,7 @@ struct CentreSequence {
   static CentreSequence growing(Eigen::MatrixXd centres) {
     CentreSequence sequence{std::move(centres), {}, 0, ""};
     sequence.most = sequence.pool.cols();
-    for (Eigen::Index j = 0; j < sequence.most; ++j) sequence.stays.push_back({j, j + 1, 0});
+    for (Eigen::Index j = 0; j < sequence.most; ++j) sequence.memberships.push_back({j, j + 1, 0});
     return sequence;
   }
 };

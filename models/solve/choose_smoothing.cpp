@@ -11,7 +11,7 @@ namespace {
 
 // The largest subset: its eigendecomposition takes some 40 ms.
 constexpr Eigen::Index kSmoothingSubset = 500;
-// Tried relative to the mean eigenvalue, in quarters of a decade.
+// The range of the search relative to the mean eigenvalue, in quarters of a decade.
 constexpr int kLowestQuarter = -48;
 constexpr int kHighestQuarter = 8;
 
@@ -23,7 +23,7 @@ Result<double> choose_smoothing(const Sites& sites, KernelKind kernel) {
   const double unit = projected.mean_eigenvalue();
   const Eigen::Index rank = subset.count() - projected.tail_rank();
   if (rank == 0) return projected.smallest_smoothing();
-  // The tail's directions get an eigenvalue above all others, to be told apart.
+  // The directions of the tail get an eigenvalue above all others, so that they come last.
   Eigen::MatrixXd vectors = projected.matrix(10.0 * unit * static_cast<double>(subset.count()), 0.0);
   Eigen::VectorXd values;
   const BlasThreads one_thread(1);
@@ -31,13 +31,13 @@ Result<double> choose_smoothing(const Sites& sites, KernelKind kernel) {
     return Error{"the eigendecomposition did not converge; check the recording for extreme values"};
   const Eigen::ArrayXd eigenvalues = values.head(rank).cwiseMax(0.0).array();
   const Eigen::ArrayXd z_squared = (vectors.leftCols(rank).transpose() * projected.data()).array().square();
-  // exp(2 / rank) of the negative log likelihood.
+  // exp(2 L / rank), where L is the negative log likelihood.
   const auto likelihood = [&](double smoothing) {
     const Eigen::ArrayXd variances = eigenvalues + smoothing;
     return (z_squared / variances).mean() * std::exp(variances.log().mean());
   };
-  // Where it is flat, within two units of log likelihood, the noise is too small to matter,
-  // and the most smoothing among equals gives the best conditioned system.
+  // The largest smoothing within two units of log likelihood of the best is chosen: it gives the best conditioned
+  // system.
   const double as_good = 1.0 + 4.0 / static_cast<double>(rank);
   double chosen = projected.smallest_smoothing();
   double lowest = likelihood(chosen);
@@ -55,7 +55,7 @@ Result<double> choose_smoothing(const Sites& sites, KernelKind kernel) {
 }
 
 Result<double> smoothing_of(const Sites& sites, KernelKind kernel) {
-  if (is_smoothing_decided(sites, kernel)) return *sites.smoothing;
+  if (is_smoothing_selected(sites, kernel)) return *sites.smoothing;
   return choose_smoothing(sites, kernel);
 }
 

@@ -20,7 +20,7 @@ namespace palpate {
 // Errors: the eigendecomposition did not converge. Deterministic. Slow side.
 Result<double> choose_smoothing(const Sites& sites, KernelKind kernel);
 // Whether cross-validation has selected the smoothing; its value is valid for the cubic kernel only.
-inline bool is_smoothing_decided(const Sites& sites, KernelKind kernel) {
+inline bool is_smoothing_selected(const Sites& sites, KernelKind kernel) {
   return sites.smoothing && kernel == KernelKind::cubic;
 }
 // The smoothing selected by cross-validation, otherwise by maximum likelihood.

@@ -8,8 +8,7 @@
 namespace palpate {
 namespace {
 
-// Tail columns nearer than this to the span of the others (a constant feature)
-// add nothing but rounding.
+// Tail columns nearer than this to the span of the others (a constant feature) are rounding only.
 constexpr double kDependent = 1e-10;
 
 }  // namespace

@@ -12,9 +12,10 @@
 namespace palpate {
 namespace {
 
-// Relative to the largest: what rounding leaves of a direction that is not there.
+// Eigenvalues below this share of the largest are rounding.
 constexpr double kNothing = 1e-13;
-// Of a column's length. Its square is a thousandth of what began to cost 100 centres accuracy.
+// Relative to the norm of a column. Its square is a thousandth of the value at which 100 centres begin to lose
+// accuracy.
 constexpr double kRidge = 1e-6;
 
 Eigen::MatrixXd kernel_at_centres(KernelKind kernel, const Eigen::MatrixXd& centres) {
@@ -23,10 +24,10 @@ Eigen::MatrixXd kernel_at_centres(KernelKind kernel, const Eigen::MatrixXd& cent
   return values;
 }
 
-// Upper C with C^T C = the penalty, of the directions of Z that make a function: centres at one
-// point make none with opposite weights.
+// Upper C with C^T C = the penalty, for the directions of Z that give a function other than 0 (opposite weights of
+// equal centres give 0).
 struct Root {
-  std::optional<Eigen::MatrixXd> directions;  // orthonormal; none: all there are
+  std::optional<Eigen::MatrixXd> directions;  // orthonormal; none: all directions
   Eigen::MatrixXd upper;
 };
 
@@ -45,8 +46,7 @@ Root root_of(const Eigen::MatrixXd& penalty) {
   return {vectors.rightCols(count), values.tail(count).cwiseSqrt().asDiagonal()};
 }
 
-// Least squares of the triangle [R z], columns scaled to length 1; directions of
-// next to nothing get no share.
+// Least squares of the triangle [R z] with columns scaled to length 1; directions at the level of rounding get 0.
 struct TriangleSolution {
   Eigen::VectorXd unknowns;
   double condition = 0.0;

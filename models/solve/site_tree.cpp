@@ -35,7 +35,7 @@ bool SiteTree::split(Eigen::Index leaf) {
   const auto value = [&](Eigen::Index site) { return points_(widest, site); };
   std::sort(begin, end,
             [&](Eigen::Index a, Eigen::Index b) { return value(a) != value(b) ? value(a) < value(b) : a < b; });
-  // The boundary between different values nearest to the middle.
+  // Splits between different values, as near to the middle as possible.
   const auto middle = begin + (end - begin) / 2;
   const double median = value(*middle);
   const auto first_equal = std::partition_point(begin, end, [&](Eigen::Index s) { return value(s) < median; });

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// 1 / value, 0 for what counts as 0; and the condition of the rest.
+// 1 / value, or 0 for values at the level of rounding. Sets the condition number of the others.
 Eigen::VectorXd inverted(const Eigen::VectorXd& values, Eigen::Index size, double& condition) {
   const double largest = values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0;
   const double least = static_cast<double>(size) * kEpsilon * largest;
@@ -35,7 +35,7 @@ FittedRbf truncated_weights(const FoldedRows& folded, KernelKind kernel, const E
   const Eigen::Index columns = triangle.cols() - 1;
   const Eigen::Index n = centres.cols();
   const Eigen::Index tail = columns - n;
-  // The rows of the sites, as their triangle; those of the side condition.
+  // The rows of the sites in reduced form, above those of the side condition.
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(triangle.rows() + tail, columns);
   matrix.topRows(triangle.rows()) = triangle.leftCols(columns);
   if (n > 0) matrix.bottomLeftCorner(tail, n) = tail_matrix(tail_degree(kernel), centres).transpose();

@@ -32,7 +32,7 @@ double rise(double u) {
 
 double hat(double u) { return std::max(0.0, 1.0 - std::abs(u)); }
 
-// Position and velocity at a time, between rows by a cubic (Hermite).
+// Position and velocity at any time, by cubic Hermite interpolation between the rows.
 class MotionAt {
  public:
   explicit MotionAt(const std::vector<SurfaceRow>& rows) : rows_(rows) {}
@@ -57,7 +57,7 @@ class MotionAt {
 
 }  // namespace
 
-// All but the branches, whose places get the rise that drives them.
+// Fills all columns of a row but those of the branches.
 void CommonFit::put_row(double z_m, double velocity_m_per_s, double* row) const {
   const double range_m = high_m_ - low_m_;
   const double x = (z_m - low_m_) / range_m;
@@ -103,7 +103,7 @@ CommonFit::Member CommonFit::member(const std::vector<SurfaceRow>& rows, double 
   return made;
 }
 
-// Contact is one-sided: where nothing is measured the fit may be below.
+// Contact is one-sided: where no force is measured the fit may be below 0.
 bool CommonFit::is_idle(double force_N, double predicted_N) const {
   return predicted_N < 0.0 && std::abs(force_N) <= no_force_N(noise_N_);
 }

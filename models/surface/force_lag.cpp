@@ -9,13 +9,13 @@ namespace palpate {
 namespace {
 
 constexpr double kMostLag_s = 0.05;
-constexpr double kCoarse_s = 0.005;  // of lags, and between rows
+constexpr double kCoarse_s = 0.005;  // between lags, and at least between rows
 constexpr double kFine_s = 0.2e-3;
 
-// Strokes at different speeds tell a lag from memory; one press alone does not.
+// Strokes at different speeds distinguish a lag from memory; one press does not.
 constexpr int kLeastStrokes = 3;
 
-// How often the tool goes in past the middle of its way.
+// Counts how often the tool passes the middle of its range inwards.
 int strokes_of(const std::vector<SurfaceRow>& rows, double middle_m) {
   int strokes = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -24,7 +24,7 @@ int strokes_of(const std::vector<SurfaceRow>& rows, double middle_m) {
   return strokes;
 }
 
-// The first rows, not closer together than is of use.
+// The first kSearchRows rows with at least kCoarse_s between them.
 std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
   std::vector<SurfaceRow> kept;
   for (const SurfaceRow& row : rows) {
@@ -36,9 +36,9 @@ std::vector<SurfaceRow> first_rows(const std::vector<SurfaceRow>& rows) {
 
 }  // namespace
 
-Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N) {
+OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N) {
   const std::vector<SurfaceRow> some = first_rows(rows);
-  Located none;
+  OffsetEstimate none;
   none.standard_error = std::numeric_limits<double>::infinity();
   if (some.size() < 100) return none;
   const double step_s = (some.back().sample.time_s - some.front().sample.time_s) / static_cast<double>(some.size() - 1);
@@ -49,8 +49,8 @@ Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N
   if (!(high->motion.position_m > low->motion.position_m)) return none;
   if (strokes_of(some, 0.5 * (low->motion.position_m + high->motion.position_m)) < kLeastStrokes) return none;
   const CommonFit fit(low->motion.position_m, high->motion.position_m, force_noise_N);
-  return locate([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
-                {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kToldLag_s, true, kToldLag_s});
+  return estimate_offset([&](double lag_s) { return fit.residual(some, 0.0, lag_s); },
+                         {-kMostLag_s, kMostLag_s, kCoarse_s, kFine_s, kToldLag_s, true, kToldLag_s});
 }
 
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s) {

@@ -18,7 +18,7 @@ inline constexpr double kToldLag_s = 0.002;
 
 // `rows`: of a recording, in time order. `at` > 0 s: the force is late. Not identified with fewer than 100 rows or
 // three strokes, or with rows too far apart.
-Located find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N);
+OffsetEstimate find_force_lag(const std::vector<SurfaceRow>& rows, double force_noise_N);
 
 // The rows with the force shifted by `lag_s` to earlier times; rows for which no force was recorded are dropped.
 std::vector<SurfaceRow> without_lag(const std::vector<SurfaceRow>& rows, double lag_s);

@@ -8,20 +8,20 @@
 namespace palpate {
 namespace {
 
-// The way of the tool is cut into so many slices; free air is at least two of them.
+// The range of positions is divided into these slices; free air covers at least two.
 constexpr std::size_t kSlices = 100;
 constexpr std::size_t kLeastSlices = 2;
 constexpr std::size_t kLeastRows = 10;  // of the stretch
-// Medians of slices stay within this many deviations of the noise, or this share of the
-// range of forces: sensors wander and encoders are coarse.
+// The medians of the slices stay within this many standard deviations of the noise, or this share of the range of
+// forces, because sensors drift and encoders are coarse.
 constexpr double kFlatNoises = 3.0;
 constexpr double kMedianErrors = 4.0;
 constexpr double kFlatShare = 0.003;
 constexpr double kFlatFloor_N = 2e-3;
-// The mean stiffness would have changed the force by this many times as much: materials
+// Over free air the mean stiffness would change the force by more than this multiple of the limit above: materials
 // begin ten times softer than they end.
 constexpr double kEvidence = 20.0;
-// Velocities are differenced over this time.
+// The acceleration is a difference of velocities over this time.
 constexpr double kAccelerationWindow_s = 0.01;
 constexpr double kLeastMass_kg = 1e-3;
 constexpr double kMassErrors = 5.0;
@@ -68,7 +68,7 @@ class AirSearch {
 
   FreeAir run() {
     FreeAir air = stretch(0.0);
-    // What an accelerated tool weighs may hide the flat stretch.
+    // The inertia of the tool may hide the flat slices.
     const double mass_kg = mass();
     if (mass_kg > 0.0) {
       FreeAir without = stretch(mass_kg);
@@ -83,7 +83,7 @@ class AirSearch {
  private:
   double force_N(std::size_t i, double mass_kg) const { return rows_[i].force_N - mass_kg * acceleration_m_per_s2_[i]; }
 
-  // The outermost slices whose forces on the way in stay flat.
+  // Finds the outermost slices whose force is flat during loading.
   FreeAir stretch(double mass_kg) const {
     FreeAir air;
     double lowest_N = HUGE_VAL;
@@ -95,7 +95,7 @@ class AirSearch {
         if (rows_[i].motion.velocity_m_per_s >= 0.0) forces_N.push_back(force_N(i, mass_kg));
       }
       if (forces_N.empty()) continue;
-      // The median of few rows is noise itself.
+      // The median of a few rows is noisy itself.
       const double middle_N = median_of(forces_N);
       const double margin_N = kMedianErrors * noise_N_ / std::sqrt(static_cast<double>(forces_N.size()));
       lowest_N = std::min(lowest_N, middle_N + margin_N);
@@ -106,7 +106,7 @@ class AirSearch {
     const double stiffness_N_per_m = range_N_ / std::max(high_m_ - low_m_ - span_m, 1e-9);
     const bool evident = end >= kLeastSlices && end < kSlices && stiffness_N_per_m * span_m > kEvidence * flat_N_;
     if (!evident) return air;
-    // Where force begins softly the inner half is in the material already.
+    // If the force begins softly, the inner half may be in the material already.
     air.inner_end_m = low_m_ + 0.5 * span_m;
     std::vector<double> forces_N;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -128,7 +128,7 @@ class AirSearch {
     for (const double force_N : forces_N) mean_N += (force_N - middle_N) / count;
     for (const double force_N : forces_N) squares += (force_N - middle_N) * (force_N - middle_N);
     const double spread_N = std::sqrt(squares / count);
-    // A quantised force has a median on one of its steps; the mean near it has not.
+    // The median of a quantised force is one of its steps; the mean of the forces near it is not.
     air.zero_N = std::abs(mean_N) < spread_N ? middle_N + mean_N : middle_N;
     air.zero_error_N = spread_N / std::sqrt(count);
     const auto third = static_cast<std::ptrdiff_t>(forces_N.size() / 3);
@@ -136,8 +136,8 @@ class AirSearch {
         median_of({forces_N.end() - third, forces_N.end()}) - median_of({forces_N.begin(), forces_N.begin() + third});
   }
 
-  // By a regression of the force on the acceleration over the outermost tenth of the way;
-  // 0 where the force does not clearly follow it.
+  // The mass of the tool, by a regression of the force on the acceleration in the outermost tenth of the slices; 0 if
+  // the slope is not significant.
   double mass() const {
     double count = 0.0, a = 0.0, f = 0.0, aa = 0.0, af = 0.0, ff = 0.0;
     for (std::size_t s = 0; s < kSlices / 10; ++s) {

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kMostValleys = 4;
 constexpr double kMostScans = 1e6;
-constexpr int kForceSteps = 16;  // to a thousandth of the largest
+constexpr int kForceSteps = 16;  // resolve a thousandth of the largest
 constexpr double kGolden = 0.6180339887498949;
 constexpr int kMostGoldenSteps = 100;  // an interval shrinks by 1e-21: beyond the digits of any number
-// In place of a cost that is not a number: worse than any other, and sums of it stay finite.
+// Replaces a cost that is not finite: worse than any other, and sums of it stay finite.
 constexpr double kWorstCost = 1e100;
 
 double sum(const BlockCosts& costs) { return std::accumulate(costs.begin(), costs.end(), 0.0); }
@@ -29,33 +29,35 @@ class Search {
  public:
   Search(const std::function<BlockCosts(double)>& cost, const SearchRange& range) : cost_(cost), range_(range) {}
 
-  Located run() {
+  OffsetEstimate run() {
     if (!(range_.high > range_.low && (range_.high - range_.low) / range_.coarse_step < kMostScans))
       return {0.0, false, kUnknownError};
     scan();
     const Place zero = place(0.0);
-    if (range_.blur > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
-          return !is_certainly_worse(zero.costs, one.costs);
+    if (range_.systematic_effect > 0.0 && std::all_of(scanned_.begin(), scanned_.end(), [&](const Place& one) {
+          return !is_significantly_worse(zero.costs, one.costs);
         })) {
       return {0.0, false, kUnknownError, false, sum(zero.costs), sum(zero.costs)};
     }
     refine_valleys();
     look_around();
-    Located found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
-    // Outside of the range, where recordings do not overlap, a cost at 0 says nothing.
+    OffsetEstimate found{0.0, false, jackknife_error(), false, sum(best_.costs), sum(zero.costs)};
+    // If 0 is outside of the range, recordings do not overlap there and the cost at 0 has no meaning.
     const bool zero_counts = range_.low <= 0.0 && range_.high >= 0.0;
     double half = kSignificantErrors * found.standard_error;
-    found.told = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
-    if (range_.blur > 0.0) {
-      found.told = found.told && certainly_worse(best_.at - range_.blur) && certainly_worse(best_.at + range_.blur);
-      half += range_.blur;
-      found.standard_error = std::max(found.standard_error, range_.blur / kSignificantErrors);
+    found.identified = best_.at - half > range_.low && best_.at + half < range_.high && half <= range_.widest && alone_;
+    if (range_.systematic_effect > 0.0) {
+      found.identified = found.identified && significantly_worse(best_.at - range_.systematic_effect) &&
+                         significantly_worse(best_.at + range_.systematic_effect);
+      half += range_.systematic_effect;
+      found.standard_error = std::max(found.standard_error, range_.systematic_effect / kSignificantErrors);
     }
     found.not_zero = !zero_counts || std::abs(best_.at) > half;
-    if (found.not_zero && zero_counts && range_.imitated && !is_certainly_worse(zero.costs, best_.costs))
-      found.told = false;
-    if (!found.told) found.standard_error = kUnknownError;
-    if (found.told && found.not_zero) found.at = best_.at;
+    if (found.not_zero && zero_counts && range_.has_systematic_effect &&
+        !is_significantly_worse(zero.costs, best_.costs))
+      found.identified = false;
+    if (!found.identified) found.standard_error = kUnknownError;
+    if (found.identified && found.not_zero) found.at = best_.at;
     found.minimum_at = best_.at;
     found.minimum = best_.costs;
     return found;
@@ -94,11 +96,11 @@ class Search {
     best_ = *std::min_element(bottoms.begin(), bottoms.end(),
                               [](const Place& a, const Place& b) { return sum(a.costs) < sum(b.costs); });
     alone_ = std::none_of(bottoms.begin(), bottoms.end(), [&](const Place& one) {
-      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_certainly_worse(one.costs, best_.costs);
+      return std::abs(one.at - best_.at) > 2.0 * range_.coarse_step && !is_significantly_worse(one.costs, best_.costs);
     });
   }
 
-  // Places ever further from the best, for where it lies when a block is left out.
+  // Adds offsets at growing distances from the best, for the minima of the jackknife.
   void look_around() {
     for (double step = range_.fine_step; step < range_.coarse_step; step *= 2.0) {
       for (const double at : {best_.at - step, best_.at + step}) {
@@ -108,8 +110,7 @@ class Search {
     std::sort(scanned_.begin(), scanned_.end(), [](const Place& a, const Place& b) { return a.at < b.at; });
   }
 
-  // Where the cost without one block has its minimum: the best place seen and a parabola
-  // through it and its neighbours.
+  // The minimum of the cost without one block: a parabola through the best offset tried and its neighbours.
   double best_without(std::size_t block) const {
     const auto cost = [&](std::size_t i) { return sum(scanned_[i].costs) - scanned_[i].costs[block]; };
     std::size_t best = 0;
@@ -125,9 +126,9 @@ class Search {
     return bend > 0.0 ? at + 0.5 * (fall * right - climb * left) / bend : at;
   }
 
-  bool certainly_worse(double at) const { return is_certainly_worse(place(at).costs, best_.costs); }
+  bool significantly_worse(double at) const { return is_significantly_worse(place(at).costs, best_.costs); }
 
-  // Quenouille (1956), Tukey (1958): a block left out at a time.
+  // The jackknife of Quenouille (1956) and Tukey (1958), with one block left out at a time.
   double jackknife_error() const {
     const std::size_t count = best_.costs.size();
     std::vector<double> places;
@@ -164,13 +165,13 @@ class Search {
 
 }  // namespace
 
-Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
+OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range) {
   return Search(cost, range).run();
 }
 
-Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N) {
-  if (!shift.told || !shift.not_zero || !(most_N > 0.0)) return shift;
-  // J is convex in the offset of the force, but for Huber's bound: one valley.
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N) {
+  if (!shift.identified || !shift.not_zero || !(most_N > 0.0)) return shift;
+  // J, a sum of Huber's losses, has one minimum over the force offset.
   double low_N = -most_N;
   double high_N = most_N;
   const auto total = [&](double offset_N) { return sum(cost(offset_N)); };
@@ -184,8 +185,8 @@ Located unless_force_offset(Located shift, const std::function<BlockCosts(double
     }
   }
   const double offset_N = 0.5 * (low_N + high_N);
-  if (!is_as_good(cost(offset_N), shift.minimum)) return shift;
-  shift.told = false;
+  if (!is_within_one_standard_error(cost(offset_N), shift.minimum)) return shift;
+  shift.identified = false;
   shift.at = 0.0;
   shift.standard_error = kUnknownError;
   shift.force_offset_N = offset_N;

@@ -8,9 +8,8 @@
 // (acceptance.h). Within two standard errors of 0 it is 0, unless 0 is outside the range.
 // An effect of the material that looks like an offset (friction like a shift, viscosity like a lag) is the same in all
 // blocks, and a jackknife does not see it. In such a case the offset is identified only if 0 is significantly worse.
-// If the effect reaches as far as `blur`, the costs at `blur` on either side must be significantly worse, too, and 0
-// must be further away by `blur`.
-// Thread guarantee: slow side, pure.
+// If the effect reaches as far as `systematic_effect`, the costs at `systematic_effect` on either side must be
+// significantly worse, too, and 0 must be further away by `systematic_effect`. Thread guarantee: slow side, pure.
 #pragma once
 
 #include <functional>
@@ -20,11 +19,11 @@ namespace palpate {
 
 using BlockCosts = std::vector<double>;
 
-struct Located {
+struct OffsetEstimate {
   double at = 0.0;              // the offset; 0 if not identified or not significantly different from 0
   bool not_zero = false;        // the minimum differs from 0, identified or not
   double standard_error = 0.0;  // infinite if not identified
-  bool told = false;            // identified
+  bool identified = false;      // identified
   double cost = 0.0;            // J at the minimum, and at 0
   double cost_at_zero = 0.0;
   double minimum_at = 0.0;  // the minimum, identified or not, and its blocks
@@ -38,17 +37,17 @@ struct SearchRange {
   double high = 0.0;
   double coarse_step = 0.0;
   double fine_step = 0.0;
-  double widest = 0.0;    // limit of two standard errors
-  bool imitated = false;  // the material has an effect that looks like an offset
-  double blur = 0.0;      // 0, or the size of that effect
+  double widest = 0.0;                 // limit of two standard errors
+  bool has_systematic_effect = false;  // the material has an effect that looks like an offset
+  double systematic_effect = 0.0;      // 0, or the size of that effect
 };
 
 // The minimum of `cost` in `range`. Not identified where the range is empty.
-Located locate(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
+OffsetEstimate estimate_offset(const std::function<BlockCosts(double)>& cost, const SearchRange& range);
 
 // Tests whether a force offset explains the data as well as `shift`: whether the lowest cost over force offsets of
 // -most_N to most_N exceeds that of the shift by at most one standard error (acceptance.h). If so, the shift is not
 // identified. `cost`: J by blocks for a force offset in N.
-Located unless_force_offset(Located shift, const std::function<BlockCosts(double)>& cost, double most_N);
+OffsetEstimate unless_force_offset(OffsetEstimate shift, const std::function<BlockCosts(double)>& cost, double most_N);
 
 }  // namespace palpate

@@ -13,10 +13,10 @@ namespace {
 
 // Longer recordings are thinned: 30 minutes at 1 kHz keep every row.
 constexpr std::size_t kEstimateRows = 2000000;
-// Force begins beyond five deviations of the noise, 20 mN.
+// Force begins above five standard deviations of the noise, at least 20 mN.
 constexpr double kOnsetDeviations = 5.0;
 constexpr double kOnsetFloor_N = 0.02;
-// Force zeros smaller than this are none: 1.5 % of the JND at rest.
+// A smaller force zero counts as 0: 1.5 % of the JND at 0 N.
 constexpr double kLeastZero_N = 1e-3;
 
 void estimate_drift(SurfaceEstimate& estimate, const std::vector<SurfaceRow>& rows, const std::vector<Touch>& touches,
@@ -42,7 +42,7 @@ SurfaceEstimate estimate_surface(const std::vector<SurfaceRow>& rows, double for
   estimate.force_zero_error_N = air.zero_error_N;
   estimate.force_zero_drift_N = air.drift_N;
   estimate.tool_mass_kg = air.tool_mass_kg;
-  // A zero that drifts by more than it is off is not known either.
+  // A force zero that drifts by more than its size is not identified.
   const double least_N = std::max({kLeastZero_N, kSignificantErrors * air.zero_error_N, std::abs(air.drift_N)});
   if (std::abs(air.zero_N) >= least_N) estimate.force_zero_N = air.zero_N;
 

@@ -43,7 +43,7 @@ struct SurfaceEstimate {
   double offset_drift_m = 0.0;
   double offset_drift_error_m = 0.0;
 
-  bool told() const { return std::isfinite(standard_error_m); }  // whether the surface is identified
+  bool identified() const { return std::isfinite(standard_error_m); }  // whether the surface is identified
 };
 
 // `rows`: a whole recording in time order. `force_noise_N`: standard deviation. `lag_error_s`: standard error of the

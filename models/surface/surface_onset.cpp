@@ -12,27 +12,27 @@
 namespace palpate {
 namespace {
 
-// A touch is followed from this far out of the first guess to this far into it.
+// A touch reaches from kTouchOut_m outside of its first force to kTouchIn_m inside.
 constexpr double kTouchOut_m = 1e-3;
 constexpr double kTouchIn_m = 2e-3;
-// The tool is going in: slower backward motion is jitter.
+// A retreat slower than this is jitter of an approach.
 constexpr double kBackward_m_per_s = 2e-3;
 // Rows of a slow touch beyond this many are thinned.
 constexpr std::size_t kMostTouchRows = 300;
-// The first guess is late where the onset is soft.
+// The search ends this far inside of the first force, which comes late where the onset is soft.
 constexpr double kScanIn_m = 0.3e-3;
 constexpr double kCoarseStep_m = 0.05e-3;
-constexpr double kScale_m = 1e-3;  // x in millimetres keeps the columns alike
-// The force may bend to either side but rises up to here (in units of kScale_m).
+constexpr double kScale_m = 1e-3;  // x in mm: columns of similar size
+// The force law may be convex or concave but rises up to x = kFlat (in units of kScale_m).
 constexpr double kFlat = 3.0;
 constexpr Eigen::Index kTerms = 2;
-// How force begins: a flat or rough contact, a ball on a soft solid (Hertz, 1881).
+// The exponent of the force law: a flat or rough contact, or a sphere on a soft solid (Hertz, 1881).
 constexpr double kLinear = 1.0;
 constexpr double kBall = 1.5;
-// A drop of chi^2 by this much, two standard errors, tells one from the other; below, half of
-// what they differ by is the error.
+// A difference of chi^2 above this, two standard errors, selects an exponent. Below it, half the difference of the two
+// onsets adds to the standard error.
 constexpr double kClearDrop = kSignificantErrors * kSignificantErrors;
-// Force begins with this many rows on end beyond the noise.
+// Force begins with this many consecutive rows above the threshold.
 constexpr std::size_t kForceRun = 3;
 
 class OnsetCost {
@@ -85,7 +85,7 @@ class OnsetCost {
   std::vector<std::vector<const SurfaceRow*>> touches_;
 };
 
-// From the row at `at`, back to where the approach begins.
+// Returns the first row of the approach that contains the row `at`.
 std::size_t approach_begin(const std::vector<SurfaceRow>& rows, std::size_t at, double outermost_m) {
   while (at > 0 && rows[at - 1].motion.position_m > outermost_m &&
          rows[at - 1].motion.velocity_m_per_s > -kBackward_m_per_s) {
@@ -136,7 +136,7 @@ std::vector<Touch> touches_at_rest(const std::vector<SurfaceRow>& rows, double z
                                    double air_end_m) {
   std::vector<Touch> touches;
   bool in_air = false;
-  bool rested = true;  // nothing is known of what came before
+  bool rested = true;  // the first touch counts as one at rest
   double left_s = 0.0;
   std::size_t run = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -175,7 +175,7 @@ Onset find_onset(const std::vector<SurfaceRow>& rows, const std::vector<Touch>& 
     onset.standard_error_m = std::max(2.0 * kFinest_m, std::sqrt(2.0 * variance / chosen.curvature));
     const bool clear = drop > kClearDrop || drop < -kClearDrop;
     if (!clear) onset.standard_error_m = std::hypot(onset.standard_error_m, 0.5 * (linear.at_m - ball.at_m));
-    // Neither law holds: what they say between the air and the first force is a guess.
+    // Neither law fits, so that the onset between free air and the first force is uncertain.
     if (std::sqrt(variance) > kSignificantErrors * force_noise_N) {
       onset.misfit_m = std::abs(onset.at_m - touches.front().first_force_m);
     }

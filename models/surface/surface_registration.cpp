@@ -16,36 +16,36 @@
 namespace palpate {
 namespace {
 
-// Rows of each recording: at least, of the kSearchRows that the common fit has of all together, and
-// at most for its onset.
+// The minimum of rows of a recording in the common fit, which has kSearchRows rows in all, and the maximum of rows for
+// its onset.
 constexpr std::size_t kLeastMemberRows = 300;
 constexpr std::size_t kOnsetRows = 400000;
-// Further apart the rows of an approach are too few to tell where force begins: of a
-// recording of hours at 1 kHz the first seven minutes tell it.
+// With a larger interval an approach has too few rows to identify the onset. Of a recording of hours at 1 kHz the
+// first seven minutes are used.
 constexpr double kCoarsestOnset_s = 1.5e-3;
-// Two recordings must share so much of the shorter way.
+// Two recordings must overlap by this share of the smaller range of positions.
 constexpr double kLeastOverlap = 0.3;
 constexpr double kCoarseSteps = 120.0;
-// Of the rows in contact, beyond which some lie outside of the surface for certain.
+// A share of the rows with a certain force: if more of them are outside of the surface, it is moved outwards.
 constexpr double kOuterShare = 0.005;
-constexpr double kOuterRange = 0.01;  // of the largest force: sensors wander
+constexpr double kOuterRange = 0.01;  // of the largest force: sensors drift
 
 struct Member {
-  std::vector<SurfaceRow> rows;  // thinned, force zero taken off
+  std::vector<SurfaceRow> rows;  // thinned, without the force zero
   SurfaceEstimate own;
   double low_m = 0.0;
   double high_m = 0.0;
-  Located place;
+  OffsetEstimate place;
 
   double way_m() const { return high_m - low_m; }
 };
 
-// The lag that the recordings have in common.
+// The common lag; 0 if less than half of the recordings identify one, or if they disagree.
 double common_lag_s(const std::vector<std::vector<SurfaceRow>>& recordings, double force_noise_N) {
   std::vector<double> lags_s;
   for (const auto& rows : recordings) {
     if (!find_free_air(rows, force_noise_N).found) continue;
-    const Located lag = find_force_lag(rows, force_noise_N);
+    const OffsetEstimate lag = find_force_lag(rows, force_noise_N);
     if (lag.at != 0.0) lags_s.push_back(lag.at);
   }
   if (lags_s.empty() || 2 * lags_s.size() < recordings.size()) return 0.0;
@@ -73,14 +73,15 @@ double largest_force_N(const std::vector<SurfaceRow>& rows) {
   return largest_N;
 }
 
-// Where `member` lies to those in `fit`, which go from `low_m` to `high_m`.
-Located place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
+// Estimates the offset of `member` to the recordings in `fit`, whose positions range from `low_m` to `high_m`.
+OffsetEstimate place_of(const CommonFit& fit, const Member& member, double low_m, double high_m) {
   const double overlap_m = kLeastOverlap * std::min(member.way_m(), high_m - low_m);
   const double from_m = member.low_m - high_m + overlap_m;
   const double to_m = member.high_m - low_m - overlap_m;
   const SearchRange range{from_m, to_m, (to_m - from_m) / kCoarseSteps, kFinest_m, kWidestSurface_m, true};
-  const Located place = locate([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
-  // Recordings that do not overlap as recorded agree with any offset of the force.
+  const OffsetEstimate place =
+      estimate_offset([&](double offset_m) { return fit.residual(member.rows, offset_m); }, range);
+  // Recordings that do not overlap as recorded are consistent with any force offset.
   if (from_m > 0.0 || to_m < 0.0) return place;
   std::vector<SurfaceRow> rows = member.rows;
   return unless_force_offset(
@@ -92,31 +93,31 @@ Located place_of(const CommonFit& fit, const Member& member, double low_m, doubl
       largest_force_N(member.rows));
 }
 
-// Where force begins at the same place in both, as each shows by itself, a shift is the
-// material's doing: two speeds look like one.
-Located unless_onsets_agree(Located place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
-  if (!own.told() || !first.told()) return place;
+// The offset is 0 if it contradicts the onsets of both recordings, each estimated by itself, and these agree: the
+// material causes it, because recordings at two speeds look shifted.
+OffsetEstimate unless_onsets_agree(OffsetEstimate place, const SurfaceEstimate& own, const SurfaceEstimate& first) {
+  if (!own.identified() || !first.identified()) return place;
   const double apart_m = own.raw_offset_m - first.raw_offset_m;
   const double error_m = std::hypot(own.law_error_m, first.law_error_m);
   const double off_m = std::abs(place.at - apart_m);
   if (std::abs(apart_m) <= std::max(kLeastOffset_m, kSignificantErrors * error_m) &&
       off_m > kSignificantErrors * std::hypot(error_m, place.standard_error)) {
-    place.told = true;
+    place.identified = true;
     place.standard_error = error_m;
     place.at = 0.0;
   }
   return place;
 }
 
-// The recording with the longest way stays at 0; the others, the longest first, are
-// placed one by one beside those that are.
+// The recording with the largest range of positions has the offset 0. The offsets of the others are estimated in
+// descending order of their range, each to all identified recordings before it.
 void place_all(std::vector<Member>& members, double force_noise_N, const FitControl& control) {
   std::vector<std::size_t> order(members.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return members[a].way_m() > members[b].way_m(); });
   Member& first = members[order.front()];
-  first.place.told = true;
+  first.place.identified = true;
   double low_m = first.low_m;
   double high_m = first.high_m;
   CommonFit fit(low_m, high_m, force_noise_N);
@@ -124,7 +125,7 @@ void place_all(std::vector<Member>& members, double force_noise_N, const FitCont
   for (std::size_t k = 1; k < order.size() && control.may_continue(0.0); ++k) {
     Member& member = members[order[k]];
     member.place = unless_onsets_agree(place_of(fit, member, low_m, high_m), member.own, first.own);
-    if (!member.place.told) continue;
+    if (!member.place.identified) continue;
     fit.add(member.rows, member.place.at);
     low_m = std::min(low_m, member.low_m - member.place.at);
     high_m = std::max(high_m, member.high_m - member.place.at);
@@ -136,15 +137,16 @@ bool unmoved(const Member& member, double shift_m) {
          std::max(kLeastOffset_m, kSignificantErrors * member.place.standard_error);
 }
 
-// The place in the middle: of the told ones that which is nearest to all others, and of two as
-// near that of the later recording, whose state the next one will begin from.
+// The identified offset with the smallest sum of distances to the others; of nearly equal ones that of the latest
+// recording, with whose state the next recording begins.
 double common_shift_m(const std::vector<Member>& members) {
   double best_m = 0.0;
   double least_m = std::numeric_limits<double>::infinity();
   for (const Member& candidate : members) {
-    if (!candidate.place.told) continue;
+    if (!candidate.place.identified) continue;
     double away_m = 0.0;
-    for (const Member& one : members) away_m += one.place.told ? std::abs(one.place.at - candidate.place.at) : 0.0;
+    for (const Member& one : members)
+      away_m += one.place.identified ? std::abs(one.place.at - candidate.place.at) : 0.0;
     if (away_m > least_m + kLeastOffset_m) continue;
     least_m = std::min(least_m, away_m);
     best_m = candidate.place.at;
@@ -152,14 +154,14 @@ double common_shift_m(const std::vector<Member>& members) {
   return best_m;
 }
 
-// Where force begins in all recordings together, moved by their offsets; 0 where none
-// of them shows free air, or where it cannot be told from 0.
+// The weighted mean of the onsets of the recordings after their offsets; 0 if no onset is identified, or if the mean
+// does not differ significantly from 0.
 double common_surface_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces) {
   double sum = 0.0;
   double weights = 0.0;
   for (std::size_t r = 0; r < members.size(); ++r) {
     const SurfaceEstimate& own = members[r].own;
-    if (!own.told()) continue;
+    if (!own.identified()) continue;
     const double weight = 1.0 / (own.standard_error_m * own.standard_error_m);
     sum += weight * (own.raw_offset_m - surfaces[r].offset_m);
     weights += weight;
@@ -169,8 +171,8 @@ double common_surface_m(const std::vector<Member>& members, const std::vector<Re
   return std::abs(at_m) > std::max(0.5 * kWidestSurface_m, kSignificantErrors / std::sqrt(weights)) ? at_m : 0.0;
 }
 
-// The outermost position with a force for certain, of all moved by their offsets; at
-// least `surface_m` where no more than a few rows lie outside of that.
+// The outermost position with a certain force, after the offsets, if more than kOuterShare of these rows are outside
+// of `surface_m`; otherwise `surface_m`.
 double outermost_contact_m(const std::vector<Member>& members, const std::vector<RegisteredSurface>& surfaces,
                            double force_noise_N, double surface_m) {
   double largest_N = 0.0;
@@ -205,7 +207,7 @@ RegisteredSurfaces registered(std::vector<Member> members, double force_noise_N,
   for (const Member& member : members) {
     RegisteredSurface one{0.0, kUnknownError, member.own.force_zero_N};
     if (members.size() == 1) one.standard_error_m = member.own.standard_error_m;
-    if (member.place.told) {
+    if (member.place.identified) {
       one.standard_error_m = member.place.standard_error;
       if (!unmoved(member, shift_m)) one.offset_m = member.place.at - shift_m;
     }

@@ -24,7 +24,7 @@ struct RegisteredSurface {
   double offset_m = 0.0;          // to be subtracted from the positions
   double standard_error_m = 0.0;  // infinite if not identified
   double force_zero_N = 0.0;
-  bool told() const { return std::isfinite(standard_error_m); }
+  bool identified() const { return std::isfinite(standard_error_m); }
 };
 
 struct RegisteredSurfaces {

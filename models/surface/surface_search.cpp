@@ -14,7 +14,7 @@ constexpr double kCoarseSearch_m = 0.1e-3;
 constexpr double kMostCoarseSteps = 200.0;
 constexpr double kSearchHuberLimit = 1.0;  // JND
 
-using ForceErrors = std::vector<double>;  // model less measured, N, one a row
+using ForceErrors = std::vector<double>;  // model minus measured, N, by row
 
 ForceErrors errors_of(const ForceModel& model, const std::vector<SurfaceRow>& rows, double offset_m) {
   FeatureFilter filter(model.features());
@@ -31,7 +31,7 @@ ForceErrors errors_of(const ForceModel& model, const std::vector<SurfaceRow>& ro
   return errors;
 }
 
-// `force_offset_N`: what the measured force has too much.
+// `force_offset_N`: the offset of the measured force.
 void add_costs(const ForceErrors& errors, double force_offset_N, const std::vector<SurfaceRow>& rows,
                const std::vector<std::size_t>& blocks, const JndLine& jnd, BlockCosts& costs) {
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -40,26 +40,26 @@ void add_costs(const ForceErrors& errors, double force_offset_N, const std::vect
 
 }  // namespace
 
-Located locate_surface(const std::vector<SurfaceRow>& rows,
-                       const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
-  Located nowhere;
+OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
+                              const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd) {
+  OffsetEstimate nowhere;
   nowhere.standard_error = kUnknownError;
   if (rows.empty() || models.empty()) return nowhere;
   const auto [low, high] = std::minmax_element(rows.begin(), rows.end(), [](const SurfaceRow& a, const SurfaceRow& b) {
     return a.motion.position_m < b.motion.position_m;
   });
-  // From all in the air to a press that begins as deep as this one ends.
+  // The range reaches from a recording that is all in air to one that begins at the greatest depth of this one.
   const double way_m = high->motion.position_m - low->motion.position_m;
   const double reach_m = std::max({way_m, std::abs(low->motion.position_m), std::abs(high->motion.position_m)});
   const std::vector<std::size_t> blocks = blocks_by_way(rows, CommonFit::kBlocks);
-  const Located shift = locate(
+  const OffsetEstimate shift = estimate_offset(
       [&](double offset_m) {
         BlockCosts costs(CommonFit::kBlocks, 0.0);
         for (const auto& model : models) add_costs(errors_of(*model, rows, offset_m), 0.0, rows, blocks, jnd, costs);
         return costs;
       },
       {-reach_m, reach_m, std::max(kCoarseSearch_m, 2.0 * reach_m / kMostCoarseSteps), kFinest_m, kWidestSurface_m});
-  if (!shift.told || !shift.not_zero) return shift;
+  if (!shift.identified || !shift.not_zero) return shift;
   std::vector<ForceErrors> unmoved;
   double most_N = 0.0;
   for (const auto& model : models) {

@@ -17,7 +17,7 @@ namespace palpate {
 
 // `rows`: a whole recording in time order, thinned. The costs of several models are added. `at`: to be subtracted from
 // position_m so that 0 is the models' surface, m. Without models or rows it is not identified.
-Located locate_surface(const std::vector<SurfaceRow>& rows,
-                       const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd);
+OffsetEstimate locate_surface(const std::vector<SurfaceRow>& rows,
+                              const std::vector<std::shared_ptr<const ForceModel>>& models, const JndLine& jnd);
 
 }  // namespace palpate

@@ -16,7 +16,7 @@
 namespace palpate {
 
 // Whether the sum of `one` exceeds the sum of `best` by at most one standard error of their paired differences.
-inline bool is_as_good(const std::vector<double>& one, const std::vector<double>& best) {
+inline bool is_within_one_standard_error(const std::vector<double>& one, const std::vector<double>& best) {
   const auto count = static_cast<double>(one.size());
   const double sum = std::accumulate(one.begin(), one.end(), 0.0) - std::accumulate(best.begin(), best.end(), 0.0);
   if (count < 2.0) return sum <= 0.0;
@@ -27,7 +27,7 @@ inline bool is_as_good(const std::vector<double>& one, const std::vector<double>
 
 // Whether `one` is significantly worse than `best` by the test above. The tenth of the mean block damps blocks with
 // small costs, whose relative differences are noise.
-inline bool is_certainly_worse(const std::vector<double>& one, const std::vector<double>& best) {
+inline bool is_significantly_worse(const std::vector<double>& one, const std::vector<double>& best) {
   constexpr double kLeastBlock = 0.1;
   const auto count = static_cast<double>(one.size());
   const double least = kLeastBlock * std::accumulate(best.begin(), best.end(), 0.0) / count;

@@ -26,10 +26,10 @@ void BranchLadder::update(double time_s, double depth_m, double surface_m) {
     std::fill(values_.begin(), values_.end(), 0.0);
   } else if (step_s > 0.0) {
     const double halfway_m = surface_halfway(surface_m_, depth_m_, depth_m);
-    const double clock = branch_clock(slowing_, halfway_m, curves_.front().reference_depth_m);
+    const double factor = relaxation_time_factor(slowing_, halfway_m, curves_.front().reference_depth_m);
     double* value = values_.data();
     for (const double relaxation_time_s : times_s_) {
-      const BranchStep step = branch_step(clock * relaxation_time_s, step_s);
+      const BranchStep step = branch_step(factor * relaxation_time_s, step_s);
       for (std::size_t k = 0; k < curves_.size(); ++k, ++value) {
         *value = step.keep * *value + step.gain * change_[k];
         if (std::abs(*value) < 1e-30) *value = 0.0;

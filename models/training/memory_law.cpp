@@ -11,14 +11,14 @@ namespace {
 
 // At the greatest depth a relaxation time is exp(slowing) times that at the surface: 0.2 to 20.
 constexpr std::array kSlowings{0.75, -0.75, 1.5, -1.5, 2.25, 3.0};
-// Where the surface is depends on the branches, and these on where it is.
+// The surface depends on the branches and the branches on the surface: a fixed-point iteration.
 constexpr int kSurfacePasses = 2;
 // The filters are exact for steps of any length, and a hand moves little in 4 ms.
 constexpr double kSearchStep_s = 3.9e-3;
 constexpr std::size_t kSearchedTimes = 8;
 constexpr std::size_t kSearchedBristles = 2;
 
-// At most `most` of the values, evenly.
+// At most `most` of the values, evenly spaced by index.
 std::vector<double> evenly(const std::vector<double>& values, std::size_t most) {
   if (values.size() <= most) return values;
   std::vector<double> few;
@@ -37,10 +37,10 @@ struct Tried {
   std::vector<FoldErrors> errors{};
 
   std::size_t best() const { return simplest_adequate(errors); }
-  // The lowest error of the laws from the first to before the last.
+  // The lowest error of the laws `first` to `last` - 1.
   double lowest_error(std::size_t first, std::size_t last) const {
-    double lowest = errors[first].typical();
-    for (std::size_t i = first + 1; i < last; ++i) lowest = std::min(lowest, errors[i].typical());
+    double lowest = errors[first].rms_at_mean_score();
+    for (std::size_t i = first + 1; i < last; ++i) lowest = std::min(lowest, errors[i].rms_at_mean_score());
     return lowest;
   }
 };
@@ -63,7 +63,7 @@ class LawSearch {
       if (!rows) return rows.error();
       const TrendRegression regression(*rows, source_.folds(), problem_, TrendRegression::Smoothness::fixed);
       ColumnList columns = regression.all_columns();
-      columns.resize(rows->first_stop());  // friction and creep hold no surface back
+      columns.resize(rows->first_stop());  // friction and creep do not make the surface lag
       law.surface = surface_of(*rows, regression.solve(columns));
     }
     const auto rows = rows_of(law);
@@ -113,7 +113,8 @@ Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& l
   if (Status status = search.add(surface, {}, true); !status) return status.error();
   const std::size_t found = surface.best();
   const bool lags = found == 1;
-  gains.push_back({"surface that lags", lags, surface.errors[1].typical(), surface.errors[0].typical()});
+  gains.push_back(
+      {"surface that lags", lags, surface.errors[1].rms_at_mean_score(), surface.errors[0].rms_at_mean_score()});
 
   Tried slower{{surface.laws[found]}, {surface.errors[found]}};
   for (const double slowing : kSlowings) {
@@ -122,9 +123,10 @@ Result<FeatureList> select_memory_law(MotionSource& source, const FeatureList& l
     }
   }
   const std::size_t chosen = slower.best();
-  gains.push_back({"slower when deeper", chosen != 0,
-                   chosen != 0 ? slower.errors[chosen].typical() : slower.lowest_error(1, slower.errors.size()),
-                   slower.errors[0].typical()});
+  gains.push_back(
+      {"slower when deeper", chosen != 0,
+       chosen != 0 ? slower.errors[chosen].rms_at_mean_score() : slower.lowest_error(1, slower.errors.size()),
+       slower.errors[0].rms_at_mean_score()});
   FeatureList result = list;
   result.slowing = slower.laws[chosen].slowing;
   result.surface = std::move(slower.laws[chosen].surface);

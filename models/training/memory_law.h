@@ -11,7 +11,8 @@
 
 namespace palpate {
 
-// The gain of a term of the trend: the cross-validated error in JND (FoldErrors::typical) with it and without it.
+// The gain of a term of the trend: the cross-validated error in JND (FoldErrors::rms_at_mean_score) with it and without
+// it.
 struct PartGain {
   std::string name;
   bool taken = false;

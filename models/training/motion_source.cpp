@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-// The rows of one input, from memory or from its file, in chunks.
+// Reads the rows of one input, from memory or from its file, in chunks.
 class RowStream {
  public:
   static Result<RowStream> open(const MotionSource::Input& input) {
@@ -31,8 +31,8 @@ class RowStream {
   const std::string& name() const { return loaded_ ? loaded_->name : reader_->name(); }
   RecordingColumns columns() const { return loaded_ ? loaded_->columns : reader_->columns(); }
 
-  // The next kSensorIdentificationRows, fewer only at the end: files and memory show the
-  // identification the same. None at the end.
+  // The next kSensorIdentificationRows rows, fewer only at the end, so that the identification of the sensor gets the
+  // same rows from a file as from memory. Empty at the end.
   Result<std::span<const RecordingRow>> next() {
     if (loaded_) {
       const auto rows = std::span(loaded_->rows).subspan(position_);
@@ -57,19 +57,19 @@ class RowStream {
   std::size_t position_ = 0;
 };
 
-// Of what is kept of long recordings: at least so many stretches of each where they are not too short.
+// Of a long recording stretches of consecutive rows are kept: kStretches or more, unless that makes them too short.
 constexpr std::size_t kStretches = 4;
 constexpr std::size_t kShortestStretch = 256;
 constexpr std::size_t kLongestStretch = 16384;
 
-// Rows moved by their recording's correction, contacts counted as they are then.
+// Applies the corrections to the rows and counts contacts by the corrected position.
 class CorrectedRows {
  public:
-  CorrectedRows(const std::vector<RowCorrection>& corrections, const std::optional<FoldDealer>& dealer)
-      : corrections_(corrections), dealer_(dealer) {}
+  CorrectedRows(const std::vector<RowCorrection>& corrections, const std::optional<FoldAssignment>& assignment)
+      : corrections_(corrections), assignment_(assignment) {}
 
-  // Visits the rows that `recorded` completes: it itself, or, with a lag, those whose force
-  // comes with it. False when a visit says so.
+  // Visits the rows whose force is known with `recorded`: the row itself or, with a lag, earlier rows. Returns false
+  // when a visit does.
   template <typename Visit>
   bool feed(const MotionRow& recorded, const Visit& visit) {
     const double lag_s = corrections_.empty() ? 0.0 : corrections_[static_cast<std::size_t>(recorded.recording)].lag_s;
@@ -110,12 +110,12 @@ class CorrectedRows {
     if (in_contact && (recorded.first || !was_in_contact_)) ++stroke_;
     was_in_contact_ = in_contact;
     row_.stroke = stroke_;
-    if (dealer_) row_.fold = dealer_->next(row_.recording, stroke_, in_contact);
+    if (assignment_) row_.fold = assignment_->next(row_.recording, stroke_, in_contact);
     return row_;
   }
 
   const std::vector<RowCorrection>& corrections_;
-  std::optional<FoldDealer> dealer_;
+  std::optional<FoldAssignment> assignment_;
   std::deque<MotionRow> waiting_;
   std::deque<std::pair<double, double>> forces_;  // s, N
   bool first_ = true;
@@ -159,7 +159,7 @@ Status MotionSource::read(const Input& input, const Thinning& thinning, OneRecor
       if (!between || one.recorded % thinning.sparse == 0) one.rows.push_back(row);
       ++one.recorded;
     }
-    // What turns out to be too long comes again, thinned.
+    // A recording that is too long is read again, thinned.
     if (thinning.sparse == 1 && one.rows.size() > most_rows_) one.rows.clear();
     if (!control.may_continue(fraction)) return interrupted();
   }
@@ -178,7 +178,7 @@ Status MotionSource::load(const FitControl& control, double fraction) {
     }
   }
   if (rows_ > most_rows_) {
-    // A quarter of them at the beginnings, a third in stretches, a third on the way to these.
+    // Of `most_rows_` a quarter is at the beginnings, up to a third in stretches and up to a third in run-ups.
     Thinning thinning{most_rows_ / (4 * inputs_.size()), 3 * rows_ / most_rows_ + 1, 0};
     const std::size_t mean_rows = rows_ / inputs_.size();
     thinning.stretch = std::clamp(mean_rows / (kStretches * thinning.sparse), kShortestStretch, kLongestStretch);
@@ -186,7 +186,7 @@ Status MotionSource::load(const FitControl& control, double fraction) {
       if (Status status = read(inputs_[i], thinning, recordings_[i], control, fraction); !status) return status;
     }
   }
-  // The longest first, then by content; equal recordings by name.
+  // By descending length, then by the hash of the content, then by name.
   std::stable_sort(recordings_.begin(), recordings_.end(), [](const OneRecording& a, const OneRecording& b) {
     return std::tie(b.recorded, a.hash, a.name) < std::tie(a.recorded, b.hash, b.name);
   });
@@ -204,7 +204,7 @@ Status MotionSource::for_each(const std::function<bool(const MotionRow&)>& visit
     if (Status status = load(control, fraction); !status) return status;
   }
   std::size_t seen = 0;
-  CorrectedRows corrected(corrections_, dealer_);
+  CorrectedRows corrected(corrections_, assignment_);
   for (const OneRecording& one : recordings_) {
     for (const MotionRow& row : one.rows) {
       if (!corrected.feed(row, visit)) return interrupted();

@@ -21,7 +21,7 @@
 #include "engine/recording/recording.h"
 #include "engine/tick/motion_estimator.h"
 #include "engine/tick/tool_sample.h"
-#include "models/training/fold_dealer.h"
+#include "models/training/fold_assignment.h"
 
 namespace palpate {
 
@@ -37,7 +37,7 @@ struct MotionRow {
   double force_N = 0.0;
   int recording = 0;
   int stroke = 0;       // number of the contact, counted over all recordings
-  int fold = 0;         // of the cross-validation (fold_dealer.h); 0 before `deal`
+  int fold = 0;         // of the cross-validation (fold_assignment.h); 0 before `assign_folds`
   bool first = false;   // of its recording: filters are reset
   bool run_up = false;  // only updates filters, is not a training sample
 };
@@ -80,9 +80,9 @@ class MotionSource {
     for (RowCorrection& one : corrections_) one.offset_m += offset_m;
   }
 
-  // Assigns the rows of all later passes to the folds of `dealer`.
-  void deal(const FoldDealer& dealer) { dealer_ = dealer; }
-  int folds() const { return dealer_ ? dealer_->folds() : 1; }
+  // Assigns the rows of all later passes to the folds of `assignment`.
+  void assign_folds(const FoldAssignment& assignment) { assignment_ = assignment; }
+  int folds() const { return assignment_ ? assignment_->folds() : 1; }
 
   // Valid after the first pass, as all below.
   const std::vector<std::string>& names() const { return names_; }
@@ -121,7 +121,7 @@ class MotionSource {
   std::vector<std::uint64_t> hashes_;
   std::vector<OneRecording> recordings_;
   std::vector<RowCorrection> corrections_;
-  std::optional<FoldDealer> dealer_;
+  std::optional<FoldAssignment> assignment_;
   std::size_t rows_ = 0;
   double force_noise_N_ = 0.0;
   double encoder_step_m_ = 0.0;

@@ -8,10 +8,10 @@
 namespace palpate {
 namespace {
 
-// Three columns of half a ladder of five decades: more differ too little to matter.
+// The largest number of times; more would be too close together to identify.
 constexpr std::size_t kMostTimes = 3;
 
-// Elastic response, viscosity and the branches of the chosen times.
+// The columns of elastic response, viscosity and the branches with the chosen times.
 ColumnList columns_of(const TrendRows& rows, const std::vector<std::size_t>& chosen) {
   ColumnList columns;
   for (std::size_t i = 0; i < rows.first_branch(); ++i) columns.push_back(static_cast<Eigen::Index>(i));
@@ -28,7 +28,7 @@ struct Choice {
   CrossValidated error;
 };
 
-// The best set with one time more: of the last one's times each may move by a rung.
+// Adds the time with the lowest RMS error, then moves single times by one step of the ladder while the error falls.
 Choice with_one_more(const TrendRegression& regression, const TrendRows& rows, const Choice& last) {
   Choice best;
   const std::size_t ladder = rows.relaxation_times_s().size();

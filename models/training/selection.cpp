@@ -37,7 +37,7 @@ double FoldErrors::rms() const {
   return count > 0.0 ? std::sqrt(sum_of(squares) / count) : 0.0;
 }
 
-double FoldErrors::typical() const {
+double FoldErrors::rms_at_mean_score() const {
   const std::vector<double> scores = scores_of(*this);
   if (scores.empty()) return 0.0;
   const double square = std::exp(sum_of(scores) / static_cast<double>(scores.size()));

@@ -1,6 +1,6 @@
 // Cross-validated errors of candidates and the one rule that selects among them.
 //
-// Each candidate predicts the samples of every fold (fold_dealer.h) from the other folds. The score of a fold is
+// Each candidate predicts the samples of every fold (fold_assignment.h) from the other folds. The score of a fold is
 //   l_k = ln(mean_i (e_i / JND_i)^2 + kUnnoticed_jnd^2).
 // The logarithm keeps a fold that is difficult for every candidate from dominating; the constant makes errors below
 // the JND irrelevant. The rule takes the simplest candidate whose mean score exceeds the best by at most two standard
@@ -31,7 +31,7 @@ struct FoldErrors {
   // Root mean square over all samples, in JND.
   double rms() const;
   // sqrt(exp(mean score) - kUnnoticed_jnd^2), in JND: the RMS error of a fold whose score is the mean score.
-  double typical() const;
+  double rms_at_mean_score() const;
 
   std::vector<double> squares;  // by fold, in JND^2
   std::vector<double> counts;   // samples

@@ -56,7 +56,7 @@ std::vector<Eigen::Index> distinct_sites(const Sites& sites) {
   const auto count = static_cast<std::size_t>(sites.count());
   std::vector<Eigen::Index> distinct;
   distinct.reserve(count);
-  // Slots of one more than an index, by a hash of the point; twice as many as points at least.
+  // A hash table with open addressing: index + 1 of a point, 0: free. At least twice as many slots as points.
   std::vector<Eigen::Index> slots(std::bit_ceil(2 * count + 1), 0);
   for (Eigen::Index i = 0; i < sites.count(); ++i) {
     const auto point = sites.points.col(i);

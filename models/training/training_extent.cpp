@@ -9,23 +9,24 @@
 namespace palpate {
 namespace {
 
-// Of the way in: with less way out in contact the tool never turns round.
-constexpr double kLeastWayOut = 0.1;
+// An unloading path below this share of the loading path counts as none.
+constexpr double kLeastUnloading = 0.1;
 
 }  // namespace
 
-bool TrainingExtent::turns_round() const { return way_out_m > kLeastWayOut * way_in_m; }
+bool TrainingExtent::has_unloading() const { return unloading_path_m > kLeastUnloading * loading_path_m; }
 
-FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent) {
-  return {source.names().size(), extent.strokes, extent.contact_samples, extent.turns_round()};
+FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent) {
+  return {source.names().size(), extent.strokes, extent.contact_samples, extent.has_unloading()};
 }
 
 namespace {
 
-// Forces below the JND at rest are a pull where there are so many, down to a certain one.
+// The material pulls if at least kLeastPulls samples and a share of kPullShare have a force below -JND(0), and the
+// lowest force is certain (certain_force_N).
 constexpr double kLeastPulls = 10.0;
 constexpr double kPullShare = 1e-3;
-// Of the greatest depth: less than a tenth of the first piece of the trend's elastic response.
+// A share of the greatest depth: a third of the first piece of the trend's elastic response.
 constexpr double kShallow = 0.01;
 
 }  // namespace
@@ -53,7 +54,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
           count += 1.0;
           extent.strokes = static_cast<std::size_t>(row.stroke);
           const double way_m = row.motion.position_m - last_m;
-          if (!row.first) (way_m > 0.0 ? extent.way_in_m : extent.way_out_m) += std::abs(way_m);
+          if (!row.first) (way_m > 0.0 ? extent.loading_path_m : extent.unloading_path_m) += std::abs(way_m);
         }
         last_m = row.motion.position_m;
         if (row.first) {
@@ -78,8 +79,8 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
   return extent;
 }
 
-Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
-                              const FitControl& control) {
+Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                                    const FitControl& control) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;  // sums, of depth and force
   const Status status = source.for_each(
       [&](const MotionRow& row) {
@@ -97,9 +98,9 @@ Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent
   const double force_N = (y - slope * x) / n;
   const double variance = std::max(0.0, yy - force_N * y - slope * xy) / (n - 2.0);
   const double felt_N = std::max(jnd.at(0.0), 2.0 * std::sqrt(variance * xx / spread));
-  const bool told = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
+  const bool identified = force_N > felt_N && slope > 2.0 * std::sqrt(variance * n / spread);
   const double out_m = force_N / slope;
-  return told && out_m < extent.depth_m ? -out_m : 0.0;
+  return identified && out_m < extent.depth_m ? -out_m : 0.0;
 }
 
 }  // namespace palpate

@@ -7,7 +7,7 @@
 #include "engine/base/fit_control.h"
 #include "engine/base/result.h"
 #include "engine/tick/jnd.h"
-#include "models/training/fold_dealer.h"
+#include "models/training/fold_assignment.h"
 #include "models/training/motion_source.h"
 
 namespace palpate {
@@ -19,16 +19,16 @@ struct TrainingExtent {
   double rms_velocity_m_per_s = 0.0;  // in contact
   std::size_t contact_samples = 0;
   std::size_t strokes = 0;
-  double way_in_m = 0.0;   // path of the tool in contact, loading
-  double way_out_m = 0.0;  // the same, unloading
-  double sample_s = 0.0;   // mean sampling period
+  double loading_path_m = 0.0;    // path of the tool in contact, loading
+  double unloading_path_m = 0.0;  // the same, unloading
+  double sample_s = 0.0;          // mean sampling period
   double longest_recording_s = 0.0;
 
   // Whether the recordings contain unloading in contact.
-  bool turns_round() const;
+  bool has_unloading() const;
 };
 
-FoldDealer dealer_for(const MotionSource& source, const TrainingExtent& extent);
+FoldAssignment fold_assignment_for(const MotionSource& source, const TrainingExtent& extent);
 
 // Errors: those of the source; interrupted.
 Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& control);
@@ -38,7 +38,7 @@ Result<TrainingExtent> measure_extent(MotionSource& source, const FitControl& co
 // surface is where it has no force. The line is used if its force at position 0 exceeds the JND and two standard
 // errors, its slope exceeds two standard errors, and the surface is nearer than the greatest depth.
 // Errors: those of the source; interrupted.
-Result<double> find_beginning(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
-                              const FitControl& control);
+Result<double> find_preload_surface(MotionSource& source, const TrainingExtent& extent, const JndLine& jnd,
+                                    const FitControl& control);
 
 }  // namespace palpate

@@ -32,7 +32,7 @@ struct FeatureMoments {
     Normalisation result{mean, Eigen::VectorXd::Ones(mean.size()), lower, upper};
     for (Eigen::Index i = 0; i < mean.size(); ++i) {
       const double scale = std::sqrt((upper(i) - lower(i)) * 4.0 * std::sqrt(squares(i) / count));
-      // A spread at the level of rounding is no spread.
+      // A spread at the level of rounding counts as 0; the scale stays 1.
       if (scale > 1e-12 * std::max(std::abs(lower(i)), std::abs(upper(i)))) result.scale(i) = scale;
     }
     return result;
@@ -46,11 +46,11 @@ struct FeatureMoments {
 };
 
 using CellKey = std::array<std::int32_t, kMaxFeatures + 1>;
-// The cells that have been visited, numbered as they came; at most kCoverageSites + 1 of
-// them. A std::unordered_map takes a block of memory for each, again after each coarsening.
+// Numbers the visited cells in order of appearance, at most kCoverageSites + 1. Unlike std::unordered_map it does not
+// allocate memory for each cell.
 class CellTable {
  public:
-  // The number of the cell, and whether it is a new one.
+  // Returns the number of the cell and whether the cell is new.
   std::pair<std::size_t, bool> place_of(const CellKey& key) {
     std::size_t slot = hash(key) % kSlots;
     for (; slots_[slot] != 0; slot = (slot + 1) % kSlots) {
@@ -67,7 +67,7 @@ class CellTable {
   }
 
  private:
-  static constexpr std::size_t kSlots = 32768;  // so many that a neighbour is most often free
+  static constexpr std::size_t kSlots = 32768;  // at most half of them occupied: few probes
   static_assert(kSlots > 2 * (kCoverageSites + 1));
 
   static std::size_t hash(const CellKey& key) {
@@ -84,7 +84,7 @@ class CellTable {
   std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(kSlots, 0);  // number + 1; 0: free
 };
 
-// One mean per visited cube of the feature space.
+// Replaces the samples in each visited cube of the feature space by their mean.
 class CoverageReduction {
  public:
   explicit CoverageReduction(const Normalisation& normalisation) : normalisation_(normalisation) {}
@@ -141,7 +141,8 @@ class CoverageReduction {
   double step_ = kCoverageStep;
 };
 
-// The paper's rule; the threshold grows when too many samples pass it.
+// The rule of the paper: keeps a sample whose force differs from that of the last kept one by the threshold. The
+// threshold grows when too many samples are kept.
 class ForceReduction {
  public:
   void add(const TrainingSite& site, bool first_of_recording) {
@@ -172,7 +173,7 @@ class ForceReduction {
 
 class NoReduction {
  public:
-  // As many as the memory of a fit allows; beyond, every other one.
+  // The limit for the memory of a fit; above it every other sample is dropped.
   static constexpr std::size_t kMaximum = 1000000;
 
   void add(const TrainingSite& site) {
@@ -202,7 +203,7 @@ Result<TrainingSet> make_training_set(MotionSource& source, const std::vector<Fe
   TrainingSet set;
   set.features = features;
   const auto n = static_cast<Eigen::Index>(features.size());
-  // `handle` sees every sample in contact with its features.
+  // Calls `handle` for every sample in contact, with its features.
   const auto pass = [&](const auto& handle) {
     FeatureFilter filter(features);
     return source.for_each(

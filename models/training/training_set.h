@@ -13,7 +13,7 @@
 //   none      every sample in contact; beyond a million every other one is dropped.
 // Recordings stream through in bounded memory.
 //
-// In `coverage`, a site has samples of one fold only (fold_dealer.h), so that cross-validation has no leakage, and
+// In `coverage`, a site has samples of one fold only (fold_assignment.h), so that cross-validation has no leakage, and
 // samples without measured force (contact is one-sided) form sites of their own, which are marked.
 // Thread guarantee: slow side.
 #pragma once

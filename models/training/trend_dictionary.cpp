@@ -10,9 +10,9 @@
 namespace palpate {
 namespace {
 
-// Neighbours differ by 1.8 times, and two of them follow any time between: the data blur more.
+// Neighbouring times differ by a factor of 1.8; a sum of two fits any time between them better than the data resolve.
 constexpr double kTimesPerDecade = 4.0;
-// A millisecond is the tick; what takes longer than 100 s no exploration shows.
+// 1 ms is the tick; no exploration shows what takes longer than 100 s.
 constexpr double kShortest_s = 1e-3;
 constexpr double kLongest_s = 100.0;
 constexpr std::size_t kBands = 3;
@@ -20,12 +20,12 @@ constexpr std::size_t kStops = 8;
 static_assert(kStops <= kMaxFeatureParts);
 constexpr double kCreepShortest_s = 1e-3;
 constexpr double kCreepLongest_s = 100.0;
-// Faster than the recording by this factor the velocity stops counting.
+// The trend limits velocities to this multiple of the greatest recorded one.
 constexpr double kVelocityMargin = 1.5;
 
 std::vector<double> ladder(double shortest_s, double longest_s, double per_decade) {
   std::vector<double> times_s;
-  // The last rung is not lost to rounding.
+  // Rounding must not drop the last time.
   const double end_s = longest_s * (1.0 + 1e-9);
   for (int i = 0;; ++i) {
     const double time_s = shortest_s * std::pow(10.0, i / per_decade);
@@ -71,14 +71,14 @@ Trend trend_from(const TrendRows& rows, const Eigen::VectorXd& x) {
   return trend;
 }
 
-// The constant of each part: a relaxation time, a threshold or a time of creep.
+// Makes a part. `constant`: its relaxation time, threshold or creep time.
 FeaturePart part_of(FeatureKind kind, double constant, const double* weights, double depth_m) {
   if (kind == FeatureKind::stops) return {0.0, constant, combined_friction(weights, depth_m)};
   if (kind == FeatureKind::creep) return {constant, depth_m, combined_friction(weights, depth_m)};
   return {constant, 0.0, combined_drive(weights, depth_m)};
 }
 
-// One feature of the parts that carry something; none when nothing does.
+// Makes one feature of the parts with a weight above 0, or of all parts if `all`.
 FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>& constants, const Eigen::VectorXd& x,
                           const TrendRows& rows, bool all) {
   static_assert(kBranchTerms == kBristleTerms);
@@ -93,7 +93,7 @@ FeatureSpec parts_feature(const FeatureColumns& group, const std::vector<double>
   if (group.kind != FeatureKind::maxwell_spectrum) return spec;
   spec.slowing = rows.terms().slowing;
   if (spec.part_count != 1) return spec;
-  // A branch alone is the older kind.
+  // A spectrum of one branch is written as a maxwell_branch.
   FeatureSpec branch{FeatureKind::maxwell_branch, spec.parts[0].relaxation_time_s, spec.parts[0].drive};
   branch.slowing = spec.slowing;
   return branch;
@@ -181,7 +181,7 @@ FittedTrend fitted_trend(const FeatureList& list, const TrendRows& rows, const E
     lag.drive = coarse_curve(fitted.trend.elastic, rows.reference_depth_m());
     fitted.features.push_back(lag);
   }
-  std::vector<ColumnList> sums;  // of the features that are sums of columns
+  std::vector<ColumnList> sums;  // the columns of each feature that is a sum of columns
   std::size_t band = 0;
   for (const FeatureColumns& group : feature_columns(list, rows)) {
     const bool relaxes = group.kind == FeatureKind::maxwell_spectrum;

@@ -13,17 +13,17 @@
 namespace palpate {
 namespace {
 
-// Relative to unit-norm columns: far below any information in a recording, far
-// above rounding; decides only between columns that are equal.
+// A ridge for columns of unit norm. It is far below the information in a recording and far above rounding, and only
+// decides between equal columns.
 constexpr double kEqualColumns = 1e-8;
-// Active set and robust weights settle within so many passes.
+// Active set and robust weights converge within these passes.
 constexpr int kPasses = 4;
-// lambda. 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
+// The candidates for lambda: 1e-6 smooths over a third of the depth, 1e-9 over two pieces.
 constexpr std::array kSmoothness{1e-6, 1e-7, 1e-8, 1e-9};
 constexpr double kFirstSmoothness = 1e-8;
 constexpr Eigen::Index kBlock = 512;  // rows of a product
 
-// Lawson & Hanson's working state on unit-norm columns.
+// The active-set method of Lawson & Hanson, with columns of unit norm.
 class NonNegativeSolver {
  public:
   NonNegativeSolver(Eigen::MatrixXd gram, Eigen::VectorXd right_side)
@@ -39,7 +39,7 @@ class NonNegativeSolver {
   }
 
   Eigen::VectorXd solve() {
-    // They end after few changes; 3 n is their own bound.
+    // The method ends after a few changes; 3 n is the limit of its authors.
     for (Eigen::Index change = 0; change < 3 * x_.size(); ++change) {
       const Eigen::Index entering = most_promising();
       if (entering < 0) break;
@@ -77,8 +77,8 @@ class NonNegativeSolver {
     return full;
   }
 
-  // Walks towards the minimum over the passive set; a coefficient that would
-  // turn negative stops the walk and leaves the set.
+  // Moves x towards the minimum over the passive set. A coefficient that would become negative stops the step and
+  // leaves the set.
   void move_to_minimum() {
     Eigen::VectorXd candidate = unconstrained();
     for (Eigen::Index leaving = 0; leaving < x_.size(); ++leaving) {
@@ -113,7 +113,7 @@ RowMatrix matrix_of(const TrendRows& rows) {
   return {rows.row(0), static_cast<Eigen::Index>(rows.count()), static_cast<Eigen::Index>(rows.columns())};
 }
 
-// Of every fold, how deep the others go.
+// The greatest depth outside each fold.
 std::vector<double> deepest_elsewhere(const TrendRows& rows, int folds) {
   std::vector<double> deepest_m(static_cast<std::size_t>(folds), 0.0);
   for (std::size_t i = 0; i < rows.count(); ++i) {
@@ -222,7 +222,7 @@ ColumnList TrendRegression::all_columns() const {
   return all;
 }
 
-// The penalised solution on these columns, over all of them. The elastic response's come first.
+// The penalised solution on these columns, 0 in all others. The columns of the elastic response come first.
 Eigen::VectorXd TrendRegression::weights(const Equations& equations, const ColumnList& columns,
                                          double smoothness) const {
   constexpr auto kElastic = static_cast<Eigen::Index>(kElasticTerms);

@@ -20,7 +20,7 @@ void keep_every_other(std::vector<T>& values, std::size_t width) {
   values.resize(kept * width);
 }
 
-// Of every k, once: the sums of a row are many.
+// The Bernstein polynomials, computed once because every row uses them.
 constexpr auto kViscousBasis = [] {
   std::array<std::array<double, kViscosityCoefficients>, kViscosityCoefficients> basis{};
   for (std::size_t k = 0; k < basis.size(); ++k) basis[k] = bernstein<kViscosityCoefficients - 1>(k);
@@ -33,7 +33,7 @@ std::vector<DriveCurve> branch_curves(const TrendTerms& terms) {
   return curves;
 }
 
-// The terms of one bristle, each a feature.
+// Makes one feature for each term of a bristle.
 std::vector<FeatureSpec> bristle_basis(FeatureKind kind, double threshold_m, double time_s, double reference_depth_m) {
   std::vector<FeatureSpec> specs(kBristleTerms);
   for (std::size_t k = 0; k < kBristleTerms; ++k) {
@@ -82,13 +82,13 @@ DriveCurve combined_friction(const double* weights, double reference_depth_m) {
 DriveCurve coarse_curve(const ElasticSpline& elastic, double reference_depth_m) {
   constexpr std::size_t kCoarsePieces = kDriveKnots + 1;
   constexpr double kWidth = 1.0 / kCoarsePieces;
-  // Greville's knot averages, in pieces.
+  // The Greville abscissae in units of a piece.
   std::array<double, kCoarsePieces + 3> average{};
   for (std::size_t i = 1; i <= kCoarsePieces + 1; ++i) average[i] = static_cast<double>(i) - 1.0;
   average[1] = 1.0 / 3.0;
   average[kCoarsePieces + 1] = kCoarsePieces - 1.0 / 3.0;
   average[kCoarsePieces + 2] = kCoarsePieces;
-  // The weights of the quadratic B-splines of the slope, and the slope of that at each knot.
+  // The slope is a quadratic B-spline: its weights, and the second derivative of the curve at each knot.
   std::array<double, kCoarsePieces + 2> weight{};
   for (std::size_t i = 0; i < weight.size(); ++i) {
     weight[i] = (elastic.at(average[i + 1] * kWidth) - elastic.at(average[i] * kWidth)) /

@@ -62,7 +62,7 @@ class TrendRows {
 
   // Resets the filters for a new recording.
   void begin_recording();
-  // Adds the next sample, in contact or not; only samples in contact make rows. `fold`: fold_dealer.h.
+  // Adds the next sample, in contact or not; only samples in contact make rows. `fold`: fold_assignment.h.
   void add(const ToolSample& sample, const MotionEstimate& motion, double force_N, int fold);
 
   // Updates the filters with a sample that makes no row.

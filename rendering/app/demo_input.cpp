@@ -29,7 +29,7 @@ constexpr float kReach = 0.8F;
 // deep as there are data, wherever the block's surface is.
 void move_tool_to_mouse(LiveSession& session, const WindowView& shown, const BlockView& blocks, const ViewState& view,
                         const SceneArea& area) {
-  ToolInput* tool = session.mouse();
+  ToolInput* tool = session.tool_input();
   if (tool == nullptr || view.exhibit.tool_is_held) return;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const bool aimed = tool->hand_is_exploring() && !view.exhibit.on;  // a visitor need not aim
@@ -57,7 +57,7 @@ double limited_depth_m(const LiveSession& session, double requested_m) {
 }
 
 void nudge_tool(const LiveSession& session, double by_m) {
-  ToolInput* tool = session.mouse();
+  ToolInput* tool = session.tool_input();
   const double at_m = session.newest().tick.position_m;
   if (tool != nullptr && (by_m < 0.0 || limited_depth_m(session, at_m + by_m) > at_m))
     tool->nudge(by_m, steady_now_s());
@@ -113,7 +113,7 @@ bool DemoInput::handle_mouse(LiveSession& session, const WindowView& shown, Bloc
     blocks.camera().orbit(-kOrbit_rad_per_px * io.MouseDelta.x, kOrbit_rad_per_px * io.MouseDelta.y);
     return false;
   }
-  ToolInput* tool = session.mouse();
+  ToolInput* tool = session.tool_input();
   if (left && tool != nullptr && !tool->hand_is_exploring() && session.newest().tick.position_m > 0.0) {
     tool->set_target(kRest_m, steady_now_s());
     return true;

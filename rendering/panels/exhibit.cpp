@@ -84,7 +84,8 @@ bool Exhibit::update(LiveSession& session, ViewState& view) {
   view.exhibit.tool_is_held = game_.state() != State::attract && game_.state() != State::press;
   if (view.exhibit.tool_is_held) let_go(session);
   // A visitor who hesitates presses; the hand does not do it instead.
-  if (game_.state() == State::press && session.mouse() != nullptr) session.mouse()->nudge(0.0, steady_now_s());
+  if (game_.state() == State::press && session.tool_input() != nullptr)
+    session.tool_input()->nudge(0.0, steady_now_s());
   const ExhibitRound* now = pair();
   const bool blind = game_.state() == State::press && game_.felt();
   view.exhibit.blind = blind;
@@ -99,7 +100,7 @@ void Exhibit::note_device(const LiveSession& session) {
   const double at_m = session.newest().tick.position_m;
   if (std::abs(at_m - device_at_m_) < kDeviceMoves_m) return;
   device_at_m_ = at_m;
-  const ToolInput* tool = session.mouse();
+  const ToolInput* tool = session.tool_input();
   const bool somebody = tool != nullptr ? !tool->hand_is_exploring() : session.renders_force();
   if (somebody) moved_s_ = session.newest().loop_time_s;
 }
@@ -123,7 +124,7 @@ void Exhibit::read_ticks(const LiveSession& session) {
 }
 
 void Exhibit::let_go(LiveSession& session) {
-  if (session.mouse() != nullptr) session.mouse()->set_target(kLifted_m, steady_now_s());
+  if (session.tool_input() != nullptr) session.tool_input()->set_target(kLifted_m, steady_now_s());
 }
 
 void Exhibit::note_result() {
@@ -151,7 +152,7 @@ void Exhibit::forget(LiveSession& session, ViewState& view) {
   language_ = 0;
   host_ = false;
   session.reset_figures();
-  if (session.mouse() != nullptr) session.mouse()->leave();
+  if (session.tool_input() != nullptr) session.tool_input()->release();
   view.time.run();
 }
 

@@ -74,7 +74,7 @@ std::string device_line(const HealthView& health) {
   if (device.interval_s > 0.0) line += text_of(", %.0f samples a second", 1.0 / device.interval_s);
   if (!std::isnan(device.round_trip_s)) line += text_of(", round trip %.1f ms", 1e3 * device.round_trip_s);
   if (softened) {
-    line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, more would swing", health.late_ms,
+    line += text_of(", force %.1f ms late: rendered at %.0f %% of the stiffness, more would swing", health.lag_ms,
                     100.0 * health.stiffness_share);
   }
   line += text_of(", motor heat %.0f %%", 100.0 * health.heat_share);

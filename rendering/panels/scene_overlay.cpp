@@ -56,8 +56,8 @@ void draw_title(const LiveSession& session, const ViewState& view, const SceneAr
 // Until it was done: half a newton felt by whoever moves the mouse.
 void draw_hint(const LiveSession& session, ViewState& view, const UiStyle& style, const SceneArea& area, float top_px) {
   constexpr double kPressed_N = 0.5;
-  if (session.mouse() == nullptr) return;
-  const bool alone = session.mouse()->hand_is_exploring();
+  if (session.tool_input() == nullptr) return;
+  const bool alone = session.tool_input()->hand_is_exploring();
   if (!alone && session.newest().rendered_N > kPressed_N) view.has_pressed = true;
   if (!alone && view.has_pressed) return;
   const std::string hint = alone ? "The hand moves by itself. Move the mouse down over the block to press it."

@@ -112,7 +112,7 @@ HealthView health_view(const LiveSession& session) {
   view.device = session.newest().device;
   view.heat_share = static_cast<double>(session.newest().heat_share);
   view.stiffness_share = static_cast<double>(session.newest().stiffness_share);
-  view.late_ms = static_cast<double>(session.newest().late_ms);
+  view.lag_ms = static_cast<double>(session.newest().lag_ms);
   return view;
 }
 

@@ -64,7 +64,7 @@ struct HealthView {
   std::string device_name;
   DeviceHealth device;
   double heat_share = 0.0;                      // see LoopSnapshot
-  double stiffness_share = 1.0, late_ms = 0.0;  // see LoopSnapshot
+  double stiffness_share = 1.0, lag_ms = 0.0;  // see LoopSnapshot
 };
 
 struct WindowView {

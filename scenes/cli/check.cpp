@@ -37,7 +37,7 @@ void print_check_json(const std::vector<CheckedFile>& files) {
                     {"verdict", file.check.verdict()},
                     {"findings", findings},
                     {"noise_floor_within_jnd", file.check.noise_floor_within_jnd},
-                    {"surface_told", file.check.surface_told},
+                    {"surface_told", file.check.surface_identified},
                     {"surface_offset_m", file.check.surface_offset_m},
                     {"force_zero_N", file.check.force_zero_N}});
   }

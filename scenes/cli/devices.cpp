@@ -55,7 +55,7 @@ Status print_devices() {
   const int column = static_cast<int>(width);
   std::printf("%-*s  %-5s  %-6s  %s\n", column, "DEVICE", "FORCE", "USABLE", "WHAT IT IS");
   for (const DeviceDescription& device : devices) {
-    std::printf("%-*s  %-5s  %-6s  %s\n", column, device.name.c_str(), device.holder != Holder::nobody ? "yes" : "no",
+    std::printf("%-*s  %-5s  %-6s  %s\n", column, device.name.c_str(), device.holder != Holder::none ? "yes" : "no",
                 device.problem.empty() ? "yes" : "no", device.summary.c_str());
     if (!device.problem.empty()) std::printf("%*s  %s\n", column + 15, "", device.problem.c_str());
   }

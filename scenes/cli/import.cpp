@@ -81,7 +81,7 @@ Status move_zero(const std::string& zero, Recording& recording) {
   double at_m = recording.rows.front().position_m;
   if (zero == "contact") {
     const SurfaceEstimate surface = estimate_surface(recording);
-    if (!surface.told()) {
+    if (!surface.identified()) {
       return Error{"where force begins cannot be told, " +
                    std::string(surface.free_air ? "although there is free air" : "for there is no free air") +
                    "; give --zero first, or a position in metres"};

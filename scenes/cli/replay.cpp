@@ -38,7 +38,7 @@ struct ReplayedModel {
   ErrorSummary as_recorded;
   ErrorSummary surface_moved;
   PredictedErrors predicted;
-  Located surface;
+  OffsetEstimate surface;
   ModelTiming time;
 };
 
@@ -114,7 +114,7 @@ OrderedJson model_json(const LoadedModel& one, const ReplayedModel& replayed) {
   object["tick_ns"] = time_json(replayed.time.tick, replayed.time.measured);
   add_figures(object["surface_moved"], replayed.surface_moved);
   object["surface_offset_m"] = replayed.surface.at;
-  object["surface_told"] = replayed.surface.told;
+  object["surface_told"] = replayed.surface.identified;
   const PredictedErrors& predicted = replayed.predicted;
   object["predicted_error"] = {
       {"bound_95_held", number_or_null(!std::isnan(predicted.held_share), predicted.held_share)},
@@ -148,7 +148,7 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
   };
   add(model.as_recorded);
   row.push_back(std::to_string(model.as_recorded.out_of_domain_samples));
-  row.push_back(model.surface.told
+  row.push_back(model.surface.identified
                     ? fixed(1e3 * model.surface.at, 3) + " +- " + fixed(1e3 * model.surface.standard_error, 3)
                     : "not identified");
   add(model.surface_moved);
@@ -161,7 +161,7 @@ std::vector<std::string> table_row(const LoadedModel& one, const ReplayedModel& 
 // Two explanations that the recording does not distinguish, for the first model that has them.
 std::string ambiguity_remark(const ReplayedRecording& replayed, const std::vector<LoadedModel>& models) {
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const Located& surface = replayed.models[i].surface;
+    const OffsetEstimate& surface = replayed.models[i].surface;
     if (surface.force_offset_N == 0.0) continue;
     char text[320];
     std::snprintf(text, sizeof text,

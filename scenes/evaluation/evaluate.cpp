@@ -114,10 +114,10 @@ Result<RecordingEvaluation> evaluate(const RowSource& rows, const Models& models
   if (!request.move_surface) return result;
   const std::vector<SurfaceRow> searched = thinned_rows(surface_rows.rows(), kSearchRows);
   std::map<double, std::vector<std::size_t>> by_offset;
-  Located common;
+  OffsetEstimate common;
   if (!request.surface_models.empty()) common = locate_surface(searched, request.surface_models, models.front().jnd);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    Located& surface = result.models[i].surface;
+    OffsetEstimate& surface = result.models[i].surface;
     surface = request.surface_models.empty() ? locate_surface(searched, {models[i].model}, models[i].jnd) : common;
     if (surface.at != 0.0) by_offset[surface.at].push_back(i);
   }

@@ -57,7 +57,7 @@ struct ModelEvaluation {
   ModelErrors as_recorded;
   ModelErrors surface_moved;
   PredictedErrors predicted;  // with the surface moved
-  Located surface;            // 0 where no offset is determined
+  OffsetEstimate surface;            // 0 where no offset is determined
 };
 
 struct RecordingEvaluation {

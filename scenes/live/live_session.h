@@ -120,7 +120,7 @@ class LiveSession {
   bool renders_force() const noexcept;                // whether a person holds it
   void start_zeroing() { device_->start_zeroing(); }  // call it while the tool is at its rest position
   // Null where the device has none.
-  ToolInput* mouse() const noexcept { return device_->mouse(); }
+  ToolInput* tool_input() const noexcept { return device_->tool_input(); }
   ReplayControl* replay() const noexcept { return device_->replay(); }
   // The estimated surface offset of the replayed recording. Every change of the offset clears the errors.
   const ReplayTest& replay_test() const noexcept { return test_; }

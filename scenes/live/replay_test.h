@@ -46,7 +46,7 @@ class ReplayTest {
     Evidence as_recorded, surface_moved;
   };
   struct Outcome {
-    Located surface;
+    OffsetEstimate surface;
     std::vector<Tested> models;
   };
   Outcome run(const std::vector<std::shared_ptr<const ForceModel>>& models) const;

@@ -47,7 +47,7 @@ DeviceHealth SimulatedTool::health(double) noexcept {
   DeviceHealth health;
   health.sample_age_s = 0.0;
   health.interval_s = settings_.sample_s;
-  health.late_s = settings_.delay_s + 0.5 * std::max(1e-3, settings_.sample_s);
+  health.lag_s = settings_.delay_s + 0.5 * std::max(1e-3, settings_.sample_s);
   return health;
 }
 

@@ -18,7 +18,7 @@ Eigen::MatrixXd read_points(JsonFields& fields, const JsonNode& object, const ch
   const JsonNode node = fields.list(object, key, expected);
   if (node.value == nullptr) return {};
   if (node.value->empty()) fields.complain(node.pointer, "found an empty list, expected " + expected);
-  // The list has been parsed, so there is memory for as many points as it has.
+  // The parsed list was in memory, so a matrix of as many points fits, too.
   Eigen::MatrixXd matrix(dimension, static_cast<Eigen::Index>(node.value->size()));
   for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
     const JsonNode point = JsonFields::entry(node, static_cast<std::size_t>(j));

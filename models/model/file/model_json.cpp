@@ -1,6 +1,5 @@
-// The text of a model file, read and written by one description of it: `describe` names
-// every member once, in the file's order, to a reader or a writer. The text may come from
-// anywhere, so nothing in it is believed before it was checked.
+// Reads and writes the text of a model file by one description: the describe functions name every member once, in the
+// order of the file, to a reader or a writer. The text may come from anywhere, so every value is checked.
 #include "models/model/file/model_json.h"
 
 #include <algorithm>
@@ -22,11 +21,11 @@ namespace {
 constexpr const char* kFitAgain = "; fit the model again";
 constexpr const char* kDamaged = "; the file is damaged: copy it again or fit the model again";
 
-// Whether members, or items, stand on a line each or all on one.
+// Whether members, or items, are written on a line each or all on one.
 enum class Layout { lines, one_line };
 
-// What is wrong with the name of a model or a method, empty if nothing is. It heads a column of a
-// CSV file, so it holds nothing that would break a line into other columns.
+// The fault of the name of a model or a method, empty if there is none. The name is the header of a column of a CSV
+// file, so it must not contain characters that separate columns.
 std::string name_fault(const std::string& name) {
   const std::string expected =
       "expected 1 to " + std::to_string(kModelNameBytes) + " bytes without control characters, commas and quotes";
@@ -38,7 +37,7 @@ std::string name_fault(const std::string& name) {
   return plain ? "" : "found a control character, comma or quote, " + expected;
 }
 
-// ---- what a model file holds; File: a ModelReader or a ModelWriter ----
+// ---- the description of a model file; File: a ModelReader or a ModelWriter ----
 
 template <typename File, typename Item, typename Body>
 void describe_each(File& file, const char* key, std::vector<Item>& items, std::size_t most, Layout layout,
@@ -121,7 +120,7 @@ template <typename File>
 void describe_provenance(File& file, Provenance& from) {
   file.object("provenance", "an object", Layout::lines, [&] {
     file.names("recordings", from.recordings);
-    // Models of positions as recorded have no such list.
+    // Models fitted to positions as recorded have no such list.
     if (file.has("surfaces", !from.surfaces.empty())) {
       describe_each(file, "surfaces", from.surfaces, 0, Layout::lines,
                     [&](RecordingSurface& surface) { describe_surface(file, surface); });
@@ -155,7 +154,7 @@ void describe_features(File& file, ModelData& data) {
                 [&](FeatureSpec& spec) { describe_feature(file, spec); });
 }
 
-// All whose size depends on the features, and the rest, but for the correction.
+// All members whose size depends on the features, and all others except the correction.
 template <typename File>
 void describe_rest(File& file, ModelData& data) {
   file.object("normalisation", "an object with offset and scale", Layout::lines, [&] {
@@ -210,7 +209,7 @@ class ModelReader {
     return data;
   }
 
-  // About the members of the object that is being read. Whether there is such a one:
+  // The members of the object that is being read. `has`: whether there is such a member.
   bool has(const char* key, bool) { return fields_.optional_member(at_, key).value != nullptr; }
   void text(const char* key, std::string& value) { value = fields_.text(at_, key); }
   void flag(const char* key, bool& value) { value = fields_.boolean(at_, key); }
@@ -251,7 +250,7 @@ class ModelReader {
     inside(fields_.member(at_, key, expected), body);
   }
 
-  // `most`: 0 for any number of items, none among them.
+  // `most`: the largest number of items; 0: any number, or none.
   template <typename Body>
   void each(const char* key, std::size_t& count, std::size_t most, Layout, const Body& body) {
     const std::string expected = most == 0 ? "a list" : "a list of 1 to " + std::to_string(most) + " " + key;
@@ -283,7 +282,7 @@ class ModelReader {
     dimension_ = static_cast<Eigen::Index>(data.features.size());
     describe_rest(*this, data);
     read_correction(data);
-    // After another error not all that may be there was asked for.
+    // After another error some known members were not read and would seem unknown.
     if (fields_.error_count() == 0) fields_.refuse_unknown(top_);
   }
 
@@ -304,7 +303,7 @@ class ModelReader {
     return !fields_.error();
   }
 
-  // Exactly one of the fields that tell the kinds of correction apart.
+  // Reads the correction from exactly one of the fields that identify its kind.
   void read_correction(ModelData& data) {
     const auto quoted = [](const CorrectionKind& kind) { return std::string("\"").append(kind.key).append("\""); };
     std::vector<const CorrectionKind*> present;

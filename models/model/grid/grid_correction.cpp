@@ -41,7 +41,7 @@ CorrectionPtr read_grid(JsonFields& fields, const JsonNode& top, int dimension) 
   for (std::size_t k = 0; k < axes.value->size(); ++k) {
     if (!read_grid_axis(fields, JsonFields::entry(axes, k), grid)) return nullptr;
     product *= grid.nodes.back().size();
-    // Checked at every step, for the product of eight sizes may wrap around.
+    // Checked at every step, because the product of eight sizes may overflow.
     if (product > values.value->size()) break;
   }
   if (product != values.value->size()) {

@@ -8,9 +8,8 @@
 namespace palpate {
 namespace {
 
-// Interpolates between the corners of a cell along all dimensions but the last,
-// for both ends of the last at once: they are neighbours in memory. Unrolled by
-// the compiler: everything stays in registers.
+// Interpolates between the corners of a cell along all dimensions but the last, for both ends of the last at once,
+// which are neighbours in memory. The compiler unrolls the recursion and keeps everything in registers.
 template <int kFirst, int kDimension>
 inline Eigen::Array2d between(const double* corner, const std::size_t* stride, const double* fraction) noexcept {
   if constexpr (kFirst == kDimension - 1) {

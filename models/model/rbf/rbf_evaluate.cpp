@@ -44,7 +44,7 @@ RbfEvaluator::RbfEvaluator(const RbfFunction& function)
 void RbfEvaluator::evaluate_many(const Eigen::MatrixXd& points, Eigen::VectorXd& out) const {
   assert(points.rows() == dimension_);
   out.resize(points.cols());
-  // A part of about 1e6 kernels takes half a millisecond: worth a thread.
+  // A part of about 1e6 kernels takes half a millisecond, enough for a thread.
   const Eigen::Index chunk = std::max<Eigen::Index>(1, 1000000 / std::max<Eigen::Index>(1, centre_count()));
   const auto parts = static_cast<int>((points.cols() + chunk - 1) / chunk);
   parallel_for(parts, [&](int part) {

@@ -21,13 +21,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::CappedTag<double, kSimdPad>;
 using Vector = hn::Vec<Doubles>;
 
-// Squared distances are lifted to this: keeps 1/sqrt and log finite, every power
-// of it that is used well above the denormal range. The kernels change by up to 1e-18 (linear), 5e-35 (thin-plate),
-// 1e-54 (cubic) and 1e-90 (quintic).
+// The minimum of squared distances. It keeps 1/sqrt and log finite and all powers well above the denormal range. The
+// kernels change by up to 1e-18 (linear), 5e-35 (thin-plate), 1e-54 (cubic) and 1e-90 (quintic).
 constexpr double kSmallestSquared = 1e-36;
 
-// r from r^2. The square root unit is the bottleneck; AVX-512 has an estimate y of 1/r good to
-// 14 bits as well, and takes turns between the unit and
+// r from r^2. The square root unit is the bottleneck. AVX-512 also has an estimate y of 1/r to 14 bits; the loops
+// alternate between the unit and
 //   r = r^2 y (1 + e/2 + 3 e^2/8 + 5 e^3/16),  e = 1 - r^2 y^2, |e| <= 2^-13.
 template <bool kSeries>
 HWY_INLINE Vector root(Vector squared) {
@@ -61,7 +60,7 @@ HWY_INLINE Vector kernel_of_squared(Vector squared) {
 // A point with every coordinate in all lanes.
 template <int kDimension>
 struct Broadcast {
-  // Written out: g++ gives one of its own no instruction set but the machine's least.
+  // Not defaulted: g++ compiles a defaulted constructor for the baseline instruction set only.
   HWY_INLINE Broadcast() {}
   Vector coordinate[kDimension];
 };
@@ -126,7 +125,7 @@ void column(const Points& points, size_t count, const double* centre, double* ou
   std::copy(last, last + (count - i), out + i);
 }
 
-// Of kernel k and dimension d + 1 in place 8 k + d.
+// The loops of kernel k and dimension d + 1 are at index 8 k + d.
 template <int... kIndex>
 KernelLoops pick_loops(size_t place, std::integer_sequence<int, kIndex...>) {
   static constexpr KernelLoops kTable[] = {{&evaluate<static_cast<KernelKind>(kIndex / 8), kIndex % 8 + 1>,

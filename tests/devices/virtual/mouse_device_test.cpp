@@ -96,7 +96,7 @@ TEST(AutoDevice, GivesWayToTheMouseAndComesBack) {
   };
   run(0, 3000);
   EXPECT_TRUE(device.hand_is_exploring());
-  device.mouse()->set_target(-2e-3, 3.0);
+  device.tool_input()->set_target(-2e-3, 3.0);
   run(3000, 5000);
   EXPECT_FALSE(device.hand_is_exploring());
   EXPECT_NEAR(last_m, -2e-3, 1e-6);
@@ -104,10 +104,10 @@ TEST(AutoDevice, GivesWayToTheMouseAndComesBack) {
   EXPECT_FALSE(device.hand_is_exploring());
   run(22999, 40000);
   EXPECT_TRUE(device.hand_is_exploring()) << "after 20 s";
-  device.mouse()->set_target(-2e-3, 40.0);
+  device.tool_input()->set_target(-2e-3, 40.0);
   run(40000, 41000);
   EXPECT_FALSE(device.hand_is_exploring());
-  device.mouse()->leave();
+  device.tool_input()->release();
   run(41000, 42000);
   EXPECT_TRUE(device.hand_is_exploring()) << "at once, when it is said";
 }

@@ -119,7 +119,7 @@ TEST(LiveTick, DoesNothingForbiddenWithAnyDevice) {
   mouse.set_target(4e-3, 0.0);
   EXPECT_EQ(offences(mouse), 0) << "mouse";
   AutoDevice automatic;
-  automatic.mouse()->set_target(4e-3, -15.0);
+  automatic.tool_input()->set_target(4e-3, -15.0);
   EXPECT_EQ(offences(automatic), 0) << "auto, taken over by the hand after 5 s";
   ReplayDevice recording(test::example_recording(4000, 2000.0, 30e-6));
   EXPECT_EQ(offences(recording), 0) << "replay";

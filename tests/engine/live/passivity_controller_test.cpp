@@ -23,7 +23,7 @@ struct Stroke {
   PassivityController controller;
   double depth_m = 0.0;
   double written_N = 0.0;
-  bool other_material = false;
+  bool model_changing = false;
 
   explicit Stroke(double encoder_step_m = 0.0) : controller(encoder_step_m) {}
   // `steps` above 0: inwards. The last force.
@@ -31,7 +31,7 @@ struct Stroke {
     const double direction = steps < 0 ? -1.0 : 1.0;
     for (int i = 0; i < std::abs(steps); ++i) {
       depth_m += direction * kStep_m;
-      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, other_material}, kLoop,
+      written_N = controller.apply(commanded_N, {depth_m, direction * kSpeed_m_per_s, true, model_changing}, kLoop,
                                    written_N, kTick_s);
     }
     return written_N;
@@ -88,9 +88,9 @@ TEST(PassivityController, ForgetsInTheAir) {
 TEST(PassivityController, BeginsAnewWithAnotherMaterial) {
   Stroke stroke;
   stroke.move(100, 1.0);
-  stroke.other_material = true;
+  stroke.model_changing = true;
   EXPECT_EQ(stroke.move(-10, 3.0), 3.0);
-  stroke.other_material = false;
+  stroke.model_changing = false;
   EXPECT_EQ(stroke.move(-20, 3.0), 3.0) << "out of where it began: nothing is known";
   stroke.move(40, 3.0);
   EXPECT_LT(stroke.move(-20, 4.0), 4.0) << "passed since, and it gives more than it took";

@@ -207,7 +207,7 @@ TEST(CheckRecording, WithoutFreeAirNothingIsToldOfSurfaceAndZero) {
     recording.rows.push_back({2e-3 * i, depth_m, 500.0 * depth_m + 0.1 * std::sin(7.0 * i) * 0.05, 0.0, 0.0});
   }
   const RecordingCheck check = check_recording(recording, CheckRequest{});
-  EXPECT_FALSE(check.surface_told);
+  EXPECT_FALSE(check.surface_identified);
   EXPECT_EQ(check.surface_offset_m, 0.0);
   EXPECT_EQ(check.force_zero_N, 0.0);
   EXPECT_NE(find(check, "surface_unknown"), nullptr) << all_of(check);

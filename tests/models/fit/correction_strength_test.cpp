@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "models/fit/decide_strength.h"
+#include "models/fit/select_strength.h"
 #include "tests/support/random_points.h"
 
 namespace palpate {
@@ -18,10 +18,10 @@ constexpr int kFolds = 5;
 
 // `shared`: what every stroke leaves over; `own`: what each has for itself; `first`: the share of
 // the rows that the first has beyond its own.
-LeftOutRows make_rows(double shared, double own, double first = 0.0) {
+CrossValidationRows make_rows(double shared, double own, double first = 0.0) {
   test::Numbers numbers(3);
   constexpr Eigen::Index kRows = 1000;
-  LeftOutRows rows;
+  CrossValidationRows rows;
   rows.points.resize(2, kRows);
   rows.force_N.resize(kRows);
   rows.depth_m = Eigen::VectorXd::Constant(kRows, 1e-3);
@@ -40,7 +40,7 @@ LeftOutRows make_rows(double shared, double own, double first = 0.0) {
   return rows;
 }
 
-StrengthChoice choose(const LeftOutRows& rows) {
+StrengthChoice choose(const CrossValidationRows& rows) {
   StrengthInput input{rows, kFolds, KernelKind::cubic, JndLine{}};
   input.correction_limit_N = 1.0;
   input.least_radius = 0.1;
@@ -84,8 +84,8 @@ TEST(CorrectionStrength, NothingToLeaveOutMeansNone) { EXPECT_EQ(choose({}).stre
 
 TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   test::Numbers numbers(5);
-  std::vector<LeftOutPrediction> past;
-  std::vector<LeftOutPrediction> future;
+  std::vector<CrossValidationPrediction> past;
+  std::vector<CrossValidationPrediction> future;
   for (int i = 0; i < 8000; ++i) {
     const double force_N = between(numbers, 0.0, 5.0);
     // A triangular error that grows with the force.
@@ -96,7 +96,7 @@ TEST(CalibrateBound, HoldsItsShareAndGrowsAwayFromTheData) {
   const auto bound = calibrate_bound(past, 0.1, JndLine{}, 5.0);
   ASSERT_TRUE(bound.has_value());
   int held = 0;
-  for (const LeftOutPrediction& one : future) held += one.error_N <= bound->at(one.predicted_N, 0.0) ? 1 : 0;
+  for (const CrossValidationPrediction& one : future) held += one.error_N <= bound->at(one.predicted_N, 0.0) ? 1 : 0;
   // 97 % of 4000, give or take three standard deviations of each half.
   EXPECT_NEAR(held / 4000.0, 0.97, 0.012);
   EXPECT_GE(bound->at(1.0, 1.0), bound->at(1.0, 0.0) + 1.25) << "a quarter of the largest force";

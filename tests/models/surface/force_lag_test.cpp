@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-Located lag_of(const std::string& material, double late_s) {
+OffsetEstimate lag_of(const std::string& material, double late_s) {
   RigSettings settings = test::train_settings(material);
   settings.seconds = 15.0;
   const Recording recording = *test::rig_recording(settings);
@@ -25,8 +25,8 @@ Located lag_of(const std::string& material, double late_s) {
 TEST(ForceLag, FindsALateForce) {
   for (const auto& [material, late_s] :
        {std::pair{"silicone", 8e-3}, std::pair{"foam", 30e-3}, std::pair{"stiff", -10e-3}}) {
-    const Located found = lag_of(material, late_s);
-    EXPECT_TRUE(found.told) << material;
+    const OffsetEstimate found = lag_of(material, late_s);
+    EXPECT_TRUE(found.identified) << material;
     EXPECT_NEAR(found.at, late_s, 2e-3) << material;
   }
 }

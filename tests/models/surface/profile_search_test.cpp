@@ -19,34 +19,36 @@ BlockCosts bowl(double x, double at, double floor) {
 }
 
 TEST(ProfileSearch, FindsThePlaceThatAllBlocksAgreeOn) {
-  const Located found = locate([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
-  EXPECT_TRUE(found.told);
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 7.3, 0.01); }, kRange);
+  EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 7.3, 0.01);
   EXPECT_LT(found.standard_error, 0.2);
 }
 
 TEST(ProfileSearch, ZeroStandsWhileItIsAsGood) {
-  const Located found = locate([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
-  EXPECT_TRUE(found.told);
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 0.03, 1.0); }, kRange);
+  EXPECT_TRUE(found.identified);
   EXPECT_EQ(found.at, 0.0);
 }
 
 // All blocks err alike where the material imitates a shift: the jackknife says 0.05 +- 0.02, but
 // no block is better for it by more than its own noise.
 TEST(ProfileSearch, WhatTheMaterialImitatesIsNotTold) {
-  SearchRange imitated = kRange;
-  imitated.imitated = true;
-  const Located found = locate([](double x) { return bowl(x, 0.05, 1.0); }, imitated);
-  EXPECT_FALSE(found.told);
+  SearchRange with_effect = kRange;
+  with_effect.has_systematic_effect = true;
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 0.05, 1.0); }, with_effect);
+  EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
-  EXPECT_NEAR(locate([](double x) { return bowl(x, 7.3, 0.01); }, imitated).at, 7.3, 0.01);
+  EXPECT_NEAR(estimate_offset([](double x) { return bowl(x, 7.3, 0.01); }, with_effect).at, 7.3, 0.01);
 }
 
 TEST(ProfileSearch, ABlurIsPartOfTheError) {
-  SearchRange blurred = kRange;
-  blurred.imitated = true;
-  blurred.blur = 1.0;
-  const auto at = [&](double place) { return locate([=](double x) { return bowl(x, place, 0.01); }, blurred); };
+  SearchRange with_effect = kRange;
+  with_effect.has_systematic_effect = true;
+  with_effect.systematic_effect = 1.0;
+  const auto at = [&](double place) {
+    return estimate_offset([=](double x) { return bowl(x, place, 0.01); }, with_effect);
+  };
   EXPECT_EQ(at(0.9).at, 0.0);
   EXPECT_NEAR(at(3.0).at, 3.0, 0.01);
   EXPECT_GE(at(3.0).standard_error, 0.5);
@@ -55,21 +57,21 @@ TEST(ProfileSearch, ABlurIsPartOfTheError) {
 // Recordings that do not overlap as recorded fit any way.
 TEST(ProfileSearch, ZeroOutsideOfTheRangeSaysNothing) {
   const auto apart = [](double x) { return x == 0.0 ? BlockCosts(10, 0.0) : bowl(x, 5.0, 0.01); };
-  const Located found = locate(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
-  EXPECT_TRUE(found.told);
+  const OffsetEstimate found = estimate_offset(apart, {2.0, 10.0, 0.5, 1e-3, 1.0});
+  EXPECT_TRUE(found.identified);
   EXPECT_NEAR(found.at, 5.0, 0.01);
 }
 
 TEST(ProfileSearch, AnOptimumAtTheEdgeIsNotTold) {
-  const Located found = locate([](double x) { return bowl(x, 14.0, 0.01); }, kRange);
-  EXPECT_FALSE(found.told);
+  const OffsetEstimate found = estimate_offset([](double x) { return bowl(x, 14.0, 0.01); }, kRange);
+  EXPECT_FALSE(found.identified);
   EXPECT_EQ(found.at, 0.0);
 }
 
 TEST(ProfileSearch, TwoPlacesAsGoodAreNotTold) {
   const auto two = [](double x) { return bowl(std::abs(x), 5.0, 0.01); };
-  const Located found = locate(two, kRange);
-  EXPECT_FALSE(found.told);
+  const OffsetEstimate found = estimate_offset(two, kRange);
+  EXPECT_FALSE(found.identified);
   EXPECT_TRUE(found.not_zero);
 }
 
@@ -79,7 +81,7 @@ TEST(ProfileSearch, WhatOneBlockAloneSaysIsNotTold) {
     costs[3] += (x - 5.0) * (x - 5.0);
     return costs;
   };
-  EXPECT_FALSE(locate(lone, kRange).told);
+  EXPECT_FALSE(estimate_offset(lone, kRange).identified);
 }
 
 // A gap of hours used to make every cost NaN, and the search ended the program.
@@ -88,38 +90,38 @@ TEST(ProfileSearch, EndsWhateverTheCostFunctionReturns) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const BlockCosts& costs : {BlockCosts(10, nan), BlockCosts(10, infinity), BlockCosts(10, -infinity),
                                   BlockCosts(10, 1e308), BlockCosts(10, 0.0), BlockCosts{}}) {
-    const Located found = locate([&](double) { return costs; }, kRange);
-    EXPECT_FALSE(found.told);
+    const OffsetEstimate found = estimate_offset([&](double) { return costs; }, kRange);
+    EXPECT_FALSE(found.identified);
     EXPECT_EQ(found.at, 0.0);
   }
 }
 
 TEST(ProfileSearch, APlaceWithoutACostIsNoMinimum) {
   const auto holes = [&](double x) { return std::abs(x) < 1.0 ? BlockCosts(10, std::nan("")) : bowl(x, 7.3, 0.01); };
-  EXPECT_NEAR(locate(holes, kRange).at, 7.3, 0.01);
+  EXPECT_NEAR(estimate_offset(holes, kRange).at, 7.3, 0.01);
 }
 
 TEST(ProfileSearch, WithoutARangeNothingIsTold) {
   const auto any = [](double x) { return bowl(x, 1.0, 0.01); };
   for (const SearchRange& range : {SearchRange{1.0, 1.0, 0.5, 1e-3, 1.0}, SearchRange{2.0, -2.0, 0.5, 1e-3, 1.0},
                                    SearchRange{-1.0, 1.0, 0.0, 1e-3, 1.0}, SearchRange{std::nan(""), 1.0, 0.1, 1e-3}}) {
-    EXPECT_FALSE(locate(any, range).told);
+    EXPECT_FALSE(estimate_offset(any, range).identified);
   }
 }
 
 // Forces of a straight spring: a shift of 1 is an offset of the force of 3.
 TEST(ProfileSearch, WhatAForceOffsetExplainsAsWellIsNotTold) {
-  const Located shift = locate([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
-  ASSERT_TRUE(shift.told);
-  const Located both = unless_force_offset(
+  const OffsetEstimate shift = estimate_offset([](double x) { return bowl(x, 1.0, 0.01); }, kRange);
+  ASSERT_TRUE(shift.identified);
+  const OffsetEstimate both = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 0.01); }, 10.0);
-  EXPECT_FALSE(both.told);
+  EXPECT_FALSE(both.identified);
   EXPECT_EQ(both.at, 0.0);
   EXPECT_NEAR(both.minimum_at, 1.0, 0.01);
   EXPECT_NEAR(both.force_offset_N, 3.0, 0.05);
-  const Located only = unless_force_offset(
+  const OffsetEstimate only = unless_force_offset(
       shift, [](double f_N) { return bowl(f_N / 3.0, 1.0, 9.0); }, 10.0);
-  EXPECT_TRUE(only.told);
+  EXPECT_TRUE(only.identified);
   EXPECT_EQ(only.at, shift.at);
   EXPECT_EQ(only.force_offset_N, 0.0);
 }

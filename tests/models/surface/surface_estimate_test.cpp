@@ -55,8 +55,8 @@ TEST(SurfaceEstimate, FindsTheShiftAndTheForceZeroOfVirtualRecordings) {
       for (const double shift_m : {-1.2e-3, -0.5e-3, -0.05e-3, 0.05e-3, 0.3e-3}) {
         const SurfaceEstimate estimate = estimate_surface(moved(recording, shift_m, 0.1));
         EXPECT_NEAR(estimate.raw_offset_m, shift_m, 0.02e-3) << material << ", seed " << seed;
-        const bool told = std::abs(estimate.raw_offset_m) > 2.0 * estimate.standard_error_m;
-        EXPECT_EQ(estimate.offset_m, told ? estimate.raw_offset_m : 0.0) << material << ", seed " << seed;
+        const bool identified = std::abs(estimate.raw_offset_m) > 2.0 * estimate.standard_error_m;
+        EXPECT_EQ(estimate.offset_m, identified ? estimate.raw_offset_m : 0.0) << material << ", seed " << seed;
         EXPECT_NEAR(estimate.force_zero_N, 0.1, 1e-3) << material << ", seed " << seed;
       }
     }
@@ -126,7 +126,7 @@ TEST(SurfaceEstimate, SaysSoWhereThereIsNoAirAndNoForce) {
   EXPECT_EQ(held.force_zero_N, 0.0);
   EXPECT_TRUE(std::isinf(held.force_zero_error_N));
   EXPECT_FALSE(held.free_air);
-  EXPECT_FALSE(held.told());
+  EXPECT_FALSE(held.identified());
 }
 
 }  // namespace

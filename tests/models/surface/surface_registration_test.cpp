@@ -137,7 +137,7 @@ TEST(SurfaceRegistration, WithoutFreeAirOnlyWhatIsRelativeIsTold) {
   const RegisteredSurfaces one = registered({pressed(12.0, 0.0)});
   EXPECT_EQ(one.recordings[0].offset_m, 0.0);
   EXPECT_EQ(one.recordings[0].force_zero_N, 0.0);
-  EXPECT_FALSE(one.recordings[0].told());
+  EXPECT_FALSE(one.recordings[0].identified());
   EXPECT_EQ(one.surface_position_m, 0.0);
   const auto two = registered({pressed(12.0, 0.0), pressed(10.0, 3e-3)}).recordings;
   EXPECT_NEAR(two[1].offset_m - two[0].offset_m, 3e-3, 0.1e-3);

@@ -33,17 +33,17 @@ TEST(SurfaceSearch, FindsTheShiftOfATestRecording) {
                                                                 test::fit(prepared, &kRandomMethod)};
     const Recording recording = shorter(test::test_settings(material), 2);
     for (const double shift_m : {-12e-3, -1.4e-3, -0.5e-3, 0.0, 0.3e-3, 5e-3}) {
-      const Located found = locate_surface(moved(recording, shift_m), models, JndLine{});
+      const OffsetEstimate found = locate_surface(moved(recording, shift_m), models, JndLine{});
       EXPECT_NEAR(found.at, shift_m, 0.03e-3) << material;
-      EXPECT_TRUE(found.told) << material;
+      EXPECT_TRUE(found.identified) << material;
     }
   }
 }
 
 TEST(SurfaceSearch, WithoutModelsOrRowsThereIsNoSurface) {
-  const Located nothing = locate_surface({}, {}, JndLine{});
+  const OffsetEstimate nothing = locate_surface({}, {}, JndLine{});
   EXPECT_EQ(nothing.at, 0.0);
-  EXPECT_FALSE(nothing.told);
+  EXPECT_FALSE(nothing.identified);
 }
 
 }  // namespace

@@ -41,10 +41,10 @@ TEST(Selection, TheRootMeanSquareIsOverAllSamples) {
 
 // Equal folds have their own RMS; a hard one counts by its logarithm.
 TEST(Selection, TheTypicalErrorIsThatOfTheMeanScore) {
-  EXPECT_NEAR(errors_of({4.0, 4.0}).typical(), 2.0, 1e-12);
-  EXPECT_EQ(errors_of({0.0, 0.0}).typical(), 0.0);
-  EXPECT_LT(errors_of({100.0, 1.0}).typical(), 0.5 * errors_of({100.0, 1.0}).rms());
-  EXPECT_EQ(FoldErrors(3).typical(), 0.0);
+  EXPECT_NEAR(errors_of({4.0, 4.0}).rms_at_mean_score(), 2.0, 1e-12);
+  EXPECT_EQ(errors_of({0.0, 0.0}).rms_at_mean_score(), 0.0);
+  EXPECT_LT(errors_of({100.0, 1.0}).rms_at_mean_score(), 0.5 * errors_of({100.0, 1.0}).rms());
+  EXPECT_EQ(FoldErrors(3).rms_at_mean_score(), 0.0);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(TrainingExtent, MeasuresDepthStrokesAndWays) {
   EXPECT_NEAR(extent->force_N, 1.0, 1e-3);
   EXPECT_EQ(extent->strokes, 10u);
   EXPECT_NEAR(static_cast<double>(extent->contact_samples), 5000.0, 20.0);
-  EXPECT_TRUE(extent->turns_round());
+  EXPECT_TRUE(extent->has_unloading());
   EXPECT_NEAR(extent->sample_s, 1e-3, 1e-9);
   EXPECT_NEAR(extent->longest_recording_s, 9.999, 1e-9);
 }
@@ -42,7 +42,7 @@ double beginning_of(double preload_N, double noise_N, double stiffness_N_per_m) 
   }
   MotionSource source({{"", std::make_shared<const Recording>(recording)}});
   const auto extent = measure_extent(source, {});
-  const auto beginning_m = find_beginning(source, *extent, {}, {});
+  const auto beginning_m = find_preload_surface(source, *extent, {}, {});
   return beginning_m.ok() ? *beginning_m : 1.0;
 }
 

@@ -199,10 +199,10 @@ TEST_F(DemoCommandsTest, APressIsExplainedUntilItWasDone) {
   open("mouse");
   frames(5);
   EXPECT_FALSE(app_->view().has_pressed);
-  app_->session().mouse()->set_target(-0.004, steady_now_s());
+  app_->session().tool_input()->set_target(-0.004, steady_now_s());
   frames(20);
   EXPECT_FALSE(app_->view().has_pressed) << "above the block there is nothing to feel";
-  app_->session().mouse()->set_target(0.005, steady_now_s());
+  app_->session().tool_input()->set_target(0.005, steady_now_s());
   EXPECT_TRUE(until([&] { return app_->view().has_pressed; }));
 }
 

@@ -12,7 +12,7 @@ using DemoInputTest = test::DemoWindowTest;
 TEST_F(DemoInputTest, SwitchingWhilePressingFadesTheForce) {
   open("mouse");
   LiveSession& session = app_->session();
-  session.mouse()->set_target(0.004, steady_now_s());
+  session.tool_input()->set_target(0.004, steady_now_s());
   ASSERT_TRUE(until([&] { return session.newest().tick.depth_m > 0.002; }));
   frames(60);  // at rest
   const double before_s = session.newest().loop_time_s;
@@ -73,7 +73,7 @@ TEST_F(DemoInputTest, AHardPressOfTheMouseEndsWhereTheDataEnd) {
 TEST_F(DemoInputTest, SaysWhenTheProbeIsAwayFromTheData) {
   open("mouse");
   EXPECT_FALSE(app_->shown().models.out_of_domain());
-  app_->session().mouse()->set_target(0.03, steady_now_s());  // example models know 6 mm
+  app_->session().tool_input()->set_target(0.03, steady_now_s());  // example models know 6 mm
   EXPECT_TRUE(until([&] { return app_->shown().models.out_of_domain(); }));
 }
 
@@ -82,13 +82,13 @@ TEST_F(DemoInputTest, MovingTheMouseOverTheBlockTakesOverFromTheHand) {
   GLFWwindow* window = app_->window().handle();
   glfwFocusWindow(window);
   frames(3);
-  EXPECT_TRUE(app_->session().mouse()->hand_is_exploring());
+  EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
   // Beside the block nothing happens; over it, lower is deeper.
   glfwSetCursorPos(window, 20.0, 300.0);
   frames(5);
-  EXPECT_TRUE(app_->session().mouse()->hand_is_exploring());
+  EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring());
   glfwSetCursorPos(window, 384.0, 380.0);
-  ASSERT_TRUE(until([&] { return !app_->session().mouse()->hand_is_exploring(); }));
+  ASSERT_TRUE(until([&] { return !app_->session().tool_input()->hand_is_exploring(); }));
   frames(30);
   const double high_m = app_->session().newest().tick.position_m;
   glfwSetCursorPos(window, 384.0, 430.0);

@@ -246,7 +246,7 @@ TEST_F(ExhibitTest, IsAsNewAfterManyVisitors) {
     EXPECT_EQ(app_->session().newest().rendered_N, 0.0);
     frames(3);
     EXPECT_TRUE(says("Can you tell")) << "in the first language";
-    EXPECT_TRUE(app_->session().mouse()->hand_is_exploring()) << "the comparison goes on at once";
+    EXPECT_TRUE(app_->session().tool_input()->hand_is_exploring()) << "the comparison goes on at once";
     EXPECT_NEAR(block(0, 0.0F).x, home.x, 0.5F);
     if (first_MB == 0.0) first_MB = resident_MB();
     std::printf("visitor %d: %.1f MB, %llu frames, late p50 %.0f us\n", i + 1, resident_MB(),

@@ -146,7 +146,7 @@ TEST(LiveSession, ComparesWithTheForceInTheRecording) {
 TEST(LiveSession, ReplaysAsTold) {
   const Files files;
   const Session session = files.replaying();
-  EXPECT_EQ(session->mouse(), nullptr);
+  EXPECT_EQ(session->tool_input(), nullptr);
   ASSERT_NE(session->replay(), nullptr);
   session->replay()->pause(true);
   session->replay()->seek(0.25);
@@ -279,12 +279,12 @@ TEST(LiveSession, TheHandPressesNeitherDeeperNorFasterThanWasRecorded) {
 TEST(LiveSession, TakesTheMouse) {
   const Files files;
   const Session session = must(LiveSession::open(files.request("auto")));
-  ASSERT_NE(session->mouse(), nullptr);
+  ASSERT_NE(session->tool_input(), nullptr);
   EXPECT_EQ(session->replay(), nullptr);
-  EXPECT_TRUE(session->mouse()->hand_is_exploring());
-  session->mouse()->set_target(-0.01, steady_now_s());
-  ASSERT_TRUE(frames_until(*session, [&] { return !session->mouse()->hand_is_exploring(); }));
-  session->mouse()->nudge(1e-3, steady_now_s());
+  EXPECT_TRUE(session->tool_input()->hand_is_exploring());
+  session->tool_input()->set_target(-0.01, steady_now_s());
+  ASSERT_TRUE(frames_until(*session, [&] { return !session->tool_input()->hand_is_exploring(); }));
+  session->tool_input()->nudge(1e-3, steady_now_s());
   ASSERT_TRUE(frames_until(*session, [&] { return std::abs(session->newest().tick.position_m + 9e-3) < 1e-4; }));
 }
 

@@ -13,10 +13,10 @@ namespace palpate {
 
 inline constexpr int kMaximumFolds = 6;
 
-class FoldDealer {
+class FoldAssignment {
  public:
-  // `contact_samples`, `strokes`: totals of all recordings. `turns_round`: whether the recordings contain unloading.
-  FoldDealer(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool turns_round = true);
+  // `contact_samples`, `strokes`: totals of all recordings. `has_unloading`: whether the recordings contain unloading.
+  FoldAssignment(std::size_t recordings, std::size_t strokes, std::size_t contact_samples, bool has_unloading = true);
 
   int folds() const noexcept { return folds_; }
   // The fold of the next row, 0 to folds() - 1. To be called for every row of every recording in order.

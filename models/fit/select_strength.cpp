@@ -1,4 +1,4 @@
-#include "models/fit/decide_strength.h"
+#include "models/fit/select_strength.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +12,21 @@
 namespace palpate {
 namespace {
 
-// More tell the same.
+// More rows give the same selection.
 constexpr std::size_t kLeftOutRows = 5000;
-// One or two presses say nothing of how the next differs: 5 % of the force, as two
-// specimens of a cast silicone do (Dawood et al. 2026).
+// One or two presses do not show how the next one differs. The bound is then at least 5 % of the force, the difference
+// between two specimens of a cast silicone (Dawood et al. 2026).
 constexpr std::size_t kFewPresses = 3;
 constexpr double kLeastPerForce = 0.05;
 
-LeftOutRows left_out_rows(const ModelData& common, const TrendRows& rows, const Eigen::MatrixXd& row_features,
-                          const CrossValidated& left_out, const TrendProblem& problem) {
+CrossValidationRows left_out_rows(const ModelData& common, const TrendRows& rows, const Eigen::MatrixXd& row_features,
+                                  const CrossValidated& left_out, const TrendProblem& problem) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < rows.count(); i += rows.count() / kLeftOutRows + 1) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return rows.fold(a) < rows.fold(b); });
   const auto n = static_cast<Eigen::Index>(order.size());
-  LeftOutRows out;
+  CrossValidationRows out;
   out.points.resize(row_features.rows(), n);
   for (Eigen::VectorXd* values : {&out.force_N, &out.depth_m, &out.row_scale}) values->resize(n);
   out.trend_N.resize(n, left_out.solutions.cols());
@@ -48,7 +48,7 @@ LeftOutRows left_out_rows(const ModelData& common, const TrendRows& rows, const 
 constexpr std::size_t kFewest = 50;
 constexpr double kHeld = 0.975;
 constexpr double kLeastPerDistance = 0.25;  // of the largest force
-constexpr double kLeastShape_N = 1e-3;      // something is left to multiply
+constexpr double kLeastShape_N = 1e-3;      // above 0, so that the factor enlarges it
 
 constexpr Eigen::Index kLeftOutSites = 1500;  // a tenth of a second for each fold
 
@@ -59,9 +59,9 @@ StrengthInput strength_input(const PreparedTraining& prepared) {
   return input;
 }
 
-// What a correction is fitted to without a fold: what the trend without it leaves over.
+// The sites of a correction without a fold. The targets are the residuals of the trend without that fold.
 Sites sites_without(const PreparedTraining& prepared, int fold) {
-  const LeftOutRows& rows = *prepared.left_out;
+  const CrossValidationRows& rows = *prepared.left_out;
   std::vector<Eigen::Index> others;
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     if (rows.fold[i] != fold) others.push_back(static_cast<Eigen::Index>(i));
@@ -81,13 +81,13 @@ Sites sites_without(const PreparedTraining& prepared, int fold) {
 
 }  // namespace
 
-std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& predictions, double inner_radius,
-                                          const JndLine& jnd, double largest_force_N) {
+std::optional<ErrorBound> calibrate_bound(const std::vector<CrossValidationPrediction>& predictions,
+                                          double inner_radius, const JndLine& jnd, double largest_force_N) {
   if (predictions.size() < kFewest) return std::nullopt;
-  const auto beyond = [&](const LeftOutPrediction& one) { return std::max(0.0, one.distance - inner_radius); };
+  const auto beyond = [&](const CrossValidationPrediction& one) { return std::max(0.0, one.distance - inner_radius); };
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(3, 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
-  for (const LeftOutPrediction& one : predictions) {
+  for (const CrossValidationPrediction& one : predictions) {
     const double scale = 1.0 / jnd.at(one.predicted_N);
     const Eigen::Vector3d row = scale * Eigen::Vector3d(1.0, one.predicted_N, beyond(one));
     gram += row * row.transpose();
@@ -97,10 +97,10 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
   ErrorBound bound{std::max(shape(0), kLeastShape_N), shape(1),
                    std::max(shape(2), kLeastPerDistance * largest_force_N)};
   std::vector<double> ratios;
-  for (const LeftOutPrediction& one : predictions) {
+  for (const CrossValidationPrediction& one : predictions) {
     ratios.push_back(one.error_N / bound.at(one.predicted_N, beyond(one)));
   }
-  // The smallest that holds ceil((n + 1) 97.5 %) of them.
+  // The smallest factor that covers ceil((n + 1) 97.5 %) of them.
   const auto n = static_cast<double>(ratios.size());
   const auto rank = std::min(ratios.size() - 1, static_cast<std::size_t>(std::ceil((n + 1.0) * kHeld)) - 1);
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(rank), ratios.end());
@@ -111,7 +111,7 @@ std::optional<ErrorBound> calibrate_bound(const std::vector<LeftOutPrediction>& 
   return bound;
 }
 
-void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
+void select_strength(PreparedTraining& prepared, const TrendRows& rows, const Eigen::MatrixXd& row_features,
                      const CrossValidated& left_out, const TrendProblem& problem, std::size_t strokes) {
   ModelData& common = prepared.common;
   prepared.left_out = left_out_rows(common, rows, row_features, left_out, problem);
@@ -128,9 +128,9 @@ void decide_strength(PreparedTraining& prepared, const TrendRows& rows, const Ei
   common.cover.outer_radius = input.outer_to_inner * prepared.strength->inner_radius;
 }
 
-Result<std::vector<LeftOutPrediction>> cross_validate(const PreparedTraining& prepared, const MethodRequest* request,
-                                                      const FitControl& control) {
-  const LeftOutRows& rows = *prepared.left_out;
+Result<std::vector<CrossValidationPrediction>> cross_validate(const PreparedTraining& prepared,
+                                                              const MethodRequest* request, const FitControl& control) {
+  const CrossValidationRows& rows = *prepared.left_out;
   const StrengthInput input = strength_input(prepared);
   Eigen::VectorXd correction_N = Eigen::VectorXd::Zero(rows.force_N.size());
   const bool corrects = request != nullptr && prepared.sites.strength > 0.0;
@@ -147,18 +147,19 @@ Result<std::vector<LeftOutPrediction>> cross_validate(const PreparedTraining& pr
     }
   }
   const DomainCover& cover = prepared.common.cover;
-  std::vector<LeftOutPrediction> predictions;
+  std::vector<CrossValidationPrediction> predictions;
   for (std::size_t i = 0; i < rows.fold.size(); ++i) {
     if (!std::isfinite(rows.distance[i])) continue;
     const auto row = static_cast<Eigen::Index>(i);
     const double trust = trust_at_distance(rows.distance[i], cover.inner_radius, cover.outer_radius);
-    const double force_N = left_out_force_N(input, i, trust, correction_N(row));
+    const double force_N = cross_validated_force_N(input, i, trust, correction_N(row));
     predictions.push_back({std::abs(force_N - rows.force_N(row)), rows.force_N(row), force_N, rows.distance[i]});
   }
   return predictions;
 }
 
-std::optional<ErrorBound> bound_of(const PreparedTraining& prepared, const std::vector<LeftOutPrediction>& errors) {
+std::optional<ErrorBound> bound_of(const PreparedTraining& prepared,
+                                   const std::vector<CrossValidationPrediction>& errors) {
   const ModelData& common = prepared.common;
   auto bound = calibrate_bound(errors, common.cover.inner_radius, common.jnd, common.largest_force_N);
   if (bound && prepared.strokes < kFewPresses) bound->per_force = std::max(bound->per_force, kLeastPerForce);
