@@ -11,7 +11,7 @@ namespace {
 
 using Models = std::vector<EvaluatedModel>;
 
-// Of a model: its predicted bounds, and how often they held.
+// The predicted bounds of one model, and the number of errors within them.
 struct Bounds {
   std::vector<float> bound_N;
   std::size_t held = 0;
@@ -25,7 +25,7 @@ struct Bounds {
   }
 };
 
-// What all models made of all rows.
+// The results of all models over all rows.
 struct Passed {
   ReplaySummary summary;
   ModelErrors no_force;
