@@ -15,7 +15,7 @@ bool is_non_inferior(const Candidate& one, const Candidate& best) {
 
 }  // namespace
 
-Candidate candidate(const Evidence& errors, const ModelTiming& time) {
+Candidate candidate(const UnitErrors& errors, const ModelTiming& time) {
   return {errors.p99_error_over_jnd, errors.unit_p99, time.tick};
 }
 

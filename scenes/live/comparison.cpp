@@ -18,7 +18,7 @@ constexpr double kSettled_memories = 5.0;
 
 Comparison::Comparison(const SessionModels& models, const JndLine& jnd) : models_(models), jnd_(jnd) {
   slots_.resize(kMaxModels);
-  for (Slot& slot : slots_) slot.evidence = ModelErrors(jnd);
+  for (Slot& slot : slots_) slot.model_errors = ModelErrors(jnd);
 }
 
 void Comparison::use_reference(ReferenceKind kind) {
@@ -34,7 +34,7 @@ void Comparison::forget_errors(std::string why) {
   for (Slot& slot : slots_) {
     slot.errors = {};
     slot.quantile = {};
-    slot.evidence = ModelErrors(jnd_);
+    slot.model_errors = ModelErrors(jnd_);
     slot.outside_s = 0.0;
   }
 }
@@ -43,7 +43,7 @@ void Comparison::begin_slot(std::size_t slot) { slots_[slot].dent = Dent(models_
 
 void Comparison::forget_slot(std::size_t slot) {
   slots_[slot] = {};
-  slots_[slot].evidence = ModelErrors(jnd_);
+  slots_[slot].model_errors = ModelErrors(jnd_);
   history_.forget(slot);
 }
 
@@ -167,8 +167,8 @@ void Comparison::count_errors(const HistoryPoint& point, const PublishedSet& set
     slot.errors.add(model_N, reference_N, false, jnd_);
     slot.quantile.add(std::abs(difference));
     if (counted_ > kMostJudged) continue;
-    if (begins) slot.evidence.begin_stroke();
-    slot.evidence.add(model_N, reference_N, false);
+    if (begins) slot.model_errors.begin_stroke();
+    slot.model_errors.add(model_N, reference_N, false);
   }
 }
 

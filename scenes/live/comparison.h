@@ -69,7 +69,7 @@ class Comparison {
 
   ModelFigures figures(std::size_t slot) const;
   // The errors of the first kMostJudged samples with their strokes, for a ranking.
-  const ModelErrors& evidence(std::size_t slot) const noexcept { return slots_[slot].evidence; }
+  const ModelErrors& model_errors(std::size_t slot) const noexcept { return slots_[slot].model_errors; }
 
   // Ten minutes of contact at 1 kHz; 2.4 MB per model.
   static constexpr std::uint64_t kMostJudged = 600'000;
@@ -82,7 +82,7 @@ class Comparison {
     double sustained_over_jnd = 0.0;  // in the last snapshot; ticks without a reference count as 0
     ErrorFigures errors;
     ErrorQuantile quantile;
-    ModelErrors evidence{JndLine{}};
+    ModelErrors model_errors{JndLine{}};
     double outside_s = 0.0;
   };
   HistoryPoint point_of(const LoopSnapshot& snapshot, const PublishedSet* set);

@@ -297,7 +297,7 @@ bool LiveSession::tests_recording() const noexcept {
 ModelFigures LiveSession::figures(std::size_t slot) const {
   ModelFigures figures = comparison_.figures(slot);
   if (!tests_recording()) return figures;
-  const Evidence* tested = test_.errors(models_.model(slot).get());
+  const UnitErrors* tested = test_.errors(models_.model(slot).get());
   figures.errors = tested != nullptr ? static_cast<const ErrorSummary&>(*tested) : ErrorSummary{};
   return figures;
 }
@@ -307,7 +307,7 @@ Verdict LiveSession::verdict() const {
   std::vector<const JudgedModel*> judged;
   if (tests_recording()) {
     for (const std::size_t slot : models_.ready_slots()) {
-      const Evidence* errors = test_.errors(models_.model(slot).get());
+      const UnitErrors* errors = test_.errors(models_.model(slot).get());
       if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).tick, *errors});
     }
     for (const JudgedModel& one : tested) judged.push_back(&one);

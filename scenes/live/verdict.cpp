@@ -41,19 +41,19 @@ std::string tick_share(double tick_ns) {
 Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models, const std::string& off_from) {
   std::vector<Candidate> candidates;
   for (const JudgedModel* one : judged)
-    candidates.push_back({one->evidence.p99_error_over_jnd, one->evidence.unit_p99, one->tick});
+    candidates.push_back({one->unit_errors.p99_error_over_jnd, one->unit_errors.unit_p99, one->tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
   const JudgedModel& chosen = *judged[ranking.recommended];
   verdict.chosen = chosen.slot;
-  verdict.noticeable = chosen.evidence.p99_error_over_jnd > 1.0;
+  verdict.noticeable = chosen.unit_errors.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
   for (std::size_t i = 0; i < judged.size(); ++i) {
     const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
     if (tied) verdict.tied.push_back(judged[i]->slot);
     if (i == ranking.recommended) continue;
     if (tied) as_good.push_back(judged[i]->slot);
-    if (!tied && judged[i]->evidence.p99_error_over_jnd > 1.0) noticed.push_back(judged[i]->slot);
+    if (!tied && judged[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(judged[i]->slot);
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = off_from.empty() ? "" : " from " + off_from;
@@ -62,7 +62,7 @@ Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +
       from + "; uses " + tick_share(info.tick_ns()) + " of the time there is";
   if (verdict.noticeable)
-    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.evidence.p99_error_over_jnd) +
+    verdict.detail = "Its error is at most " + formatted("%.1f", chosen.unit_errors.p99_error_over_jnd) +
                      " times what a hand can feel, 99 % of the time. ";
   if (!as_good.empty()) verdict.detail += "As good, but slower: " + listed(as_good, models) + ". ";
   if (!noticed.empty()) verdict.detail += "You can feel the difference of " + listed(noticed, models) + ".";
@@ -92,14 +92,14 @@ void LiveJudge::update(const SessionModels& models, const Comparison& comparison
   for (const std::size_t slot : models.ready_slots()) {
     const bool is_reference = comparison.reference() == ReferenceKind::direct && models.reference() == slot;
     if (is_reference || models.info(slot).foreign || comparison.figures(slot).errors.samples == 0) continue;
-    asked.push_back({slot, models.info(slot).tick, comparison.evidence(slot)});
+    asked.push_back({slot, models.info(slot).tick, comparison.model_errors(slot)});
   }
   if (asked.empty()) return;
   try {
     running_ = std::async(std::launch::async, [asked = std::move(asked)] {
       lower_thread_priority();
       std::vector<JudgedModel> judged;
-      for (const Asked& one : asked) judged.push_back({one.slot, one.tick, one.errors.evidence()});
+      for (const Asked& one : asked) judged.push_back({one.slot, one.tick, one.errors.unit_errors()});
       return judged;
     });
   } catch (const std::system_error&) {

@@ -21,7 +21,7 @@ class SessionModels;
 struct JudgedModel {
   std::size_t slot = 0;
   Timing tick;
-  Evidence evidence;
+  UnitErrors unit_errors;
 };
 
 struct Verdict {
@@ -42,7 +42,7 @@ Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels
 // The share of the tick's period of 1 ms, as "0.04 %".
 std::string tick_share(double tick_ns);
 
-// Computes the Evidence of a live session in the background, every 2 s or, if that is longer, every tenth of the
+// Computes the UnitErrors of a live session in the background, every 2 s or, if that is longer, every tenth of the
 // duration of contact so far.
 class LiveJudge {
  public:

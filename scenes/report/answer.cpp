@@ -29,19 +29,19 @@ Words tick(const ModelResult& model) {
 
 void append(Sentence& sentence, const Sentence& more) { sentence.insert(sentence.end(), more.begin(), more.end()); }
 
-std::string unit_words(const Evidence& errors) {
+std::string unit_words(const UnitErrors& errors) {
   return std::to_string(errors.units()) + " " + unit_name(errors) + (errors.units() == 1 ? "" : "s");
 }
 
 Sentence errors_of(const ModelResult& model) {
-  const Evidence& errors = model.errors;
+  const UnitErrors& errors = model.errors;
   Sentence sentence{number(model, "within_jnd", percent(errors.within_jnd)),
                     {" of the test is within what a hand can notice ("}};
   const Words beyond =
-      number(model, "beyond_units", std::to_string(errors.beyond_units) + " of " + unit_words(errors) + " beyond");
+      number(model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " beyond");
   if (!errors.has_intervals()) {
     append(sentence, {beyond, {", too few for an interval"}});
-  } else if (errors.beyond_units == 0) {
+  } else if (errors.units_above_jnd == 0) {
     append(sentence, {beyond,
                       {"; 95 %: at most "},
                       number(model, "units_at_most", percent(1.0 - errors.within_at_least())),

@@ -62,7 +62,7 @@ class Measurement {
       if (const Status status = run_fold(fold); !status) return status;
     }
     for (std::size_t i = 0; i < data_.models.size(); ++i) {
-      data_.models[i].errors = recorded_[i].evidence();
+      data_.models[i].errors = recorded_[i].unit_errors();
       data_.models[i].moved = moved_[i].summary();
     }
     data_.floor = noise_floor(tested_, scene_.jnd);
