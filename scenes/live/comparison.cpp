@@ -189,8 +189,8 @@ double Comparison::reference_in(const LoopSnapshot& snapshot, const PublishedSet
   if (reference_ == ReferenceKind::measured) return snapshot.measured_N;
   if (reference_ == ReferenceKind::truth) return snapshot.reference_N;
   if (set == nullptr || !models_.reference()) return kNoForce;
-  const auto place = set->place_of(*models_.reference());
-  return place ? snapshot.tick.force_N[*place] : kNoForce;
+  const auto index = set->index_of(*models_.reference());
+  return index ? snapshot.tick.force_N[*index] : kNoForce;
 }
 
 }  // namespace palpate

@@ -40,7 +40,7 @@ struct SessionModels::Slot {
   }
 };
 
-std::optional<std::size_t> PublishedSet::place_of(std::size_t slot) const noexcept {
+std::optional<std::size_t> PublishedSet::index_of(std::size_t slot) const noexcept {
   const auto place = std::find(slots.begin(), slots.end(), slot);
   if (place == slots.end()) return std::nullopt;
   return static_cast<std::size_t>(place - slots.begin());
@@ -293,9 +293,9 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
     set.slots.push_back(i);
   }
   auto next = std::make_unique<LiveModels>(set.id, sensor, std::move(models), std::move(reference));
-  next->selected = static_cast<std::uint32_t>(set.place_of(selected_).value_or(0));
-  if (const auto model = this->reference(); model && set.place_of(*model)) {
-    next->written_model = static_cast<std::uint32_t>(*set.place_of(*model));
+  next->selected = static_cast<std::uint32_t>(set.index_of(selected_).value_or(0));
+  if (const auto model = this->reference(); model && set.index_of(*model)) {
+    next->written_model = static_cast<std::uint32_t>(*set.index_of(*model));
   }
   sets_.push_back(std::move(set));
   return next;
@@ -310,7 +310,7 @@ const PublishedSet* SessionModels::set_of(const LoopSnapshot& snapshot) const no
 void SessionModels::write_selection(LoopControls& controls) const {
   if (sets_.empty()) return;
   controls.models_id = sets_.back().id;
-  controls.selected = static_cast<std::uint32_t>(sets_.back().place_of(selected_).value_or(sets_.back().slots.size()));
+  controls.selected = static_cast<std::uint32_t>(sets_.back().index_of(selected_).value_or(sets_.back().slots.size()));
 }
 
 std::size_t SessionModels::size() const noexcept { return slots_.size(); }

@@ -57,7 +57,7 @@ struct PublishedSet {
   std::vector<std::size_t> slots;
 
   // Index of the slot's model in the set; empty when it has none.
-  std::optional<std::size_t> place_of(std::size_t slot) const noexcept;
+  std::optional<std::size_t> index_of(std::size_t slot) const noexcept;
 };
 
 class SessionModels {

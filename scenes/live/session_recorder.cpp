@@ -24,7 +24,7 @@ std::string counted(std::uint64_t count, const char* words) {
 
 }  // namespace
 
-std::optional<double> RecordingTime::place(double time_s, bool restart) noexcept {
+std::optional<double> RecordingTime::file_time_s(double time_s, bool restart) noexcept {
   if (!started_ || restart) {
     if (started_) {
       start_s_ = last_s_ + kStreamGap_s;
@@ -132,7 +132,7 @@ void SessionRecorder::write(const RecordedSample& sample) {
     ++counts_.without_force;
     return;
   }
-  const std::optional<double> time_s = time_.place(sample.tool.time_s, restart_pending_);
+  const std::optional<double> time_s = time_.file_time_s(sample.tool.time_s, restart_pending_);
   restart_pending_ = false;
   if (!time_s) {
     ++counts_.unusable;
