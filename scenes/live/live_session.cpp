@@ -187,7 +187,7 @@ void LiveSession::update() {
   loop_->collect_models();
   newest_ = loop_->newest();
   comparison_.show(newest_);
-  judge_.update(models_, comparison_, newest_.loop_time_s);
+  background_evaluation_.update(models_, comparison_, newest_.loop_time_s);
   check_faults();
   if (std::optional<Notice> outcome = recorder_->read_outcome()) {
     send_controls();  // it may have ended by itself
@@ -207,7 +207,7 @@ void LiveSession::update_models() {
 // All begin to be compared together: the same samples for each.
 void LiveSession::publish(std::string why) {
   comparison_.forget_errors(std::move(why));
-  judge_.forget();
+  background_evaluation_.reset();
   auto set = models_.make_set(device_->sensor(), truth_);
   history_.recall(set->tick);
   loop_->publish_models(std::move(set));
@@ -281,7 +281,7 @@ bool LiveSession::has_reference(ReferenceKind kind) const noexcept {
 void LiveSession::use_reference(ReferenceKind kind) {
   if (!has_reference(kind)) return;
   comparison_.use_reference(kind);
-  judge_.forget();
+  background_evaluation_.reset();
 }
 
 bool LiveSession::replays_training() const noexcept {
@@ -303,20 +303,20 @@ ModelFigures LiveSession::figures(std::size_t slot) const {
 }
 
 Verdict LiveSession::verdict() const {
-  std::vector<JudgedModel> tested;
-  std::vector<const JudgedModel*> judged;
+  std::vector<EvaluatedSlot> tested;
+  std::vector<const EvaluatedSlot*> evaluated;
   if (tests_recording()) {
     for (const std::size_t slot : models_.ready_slots()) {
       const UnitErrors* errors = test_.errors(models_.model(slot).get());
       if (errors != nullptr && errors->samples > 0) tested.push_back({slot, models_.info(slot).tick, *errors});
     }
-    for (const JudgedModel& one : tested) judged.push_back(&one);
+    for (const EvaluatedSlot& one : tested) evaluated.push_back(&one);
   } else {
-    for (const JudgedModel& one : judge_.judged()) judged.push_back(&one);
+    for (const EvaluatedSlot& one : background_evaluation_.evaluated()) evaluated.push_back(&one);
   }
-  if (judged.empty()) return {{}, {}, false, why_no_verdict(), {}};
+  if (evaluated.empty()) return {{}, {}, false, why_no_verdict(), {}};
   const bool of_model = comparison_.reference() == ReferenceKind::direct;
-  Verdict verdict = judge(judged, models_, of_model ? models_.info(*models_.reference()).name : "");
+  Verdict verdict = judge(evaluated, models_, of_model ? models_.info(*models_.reference()).name : "");
   if (of_model && verdict.detail.empty())
     verdict.detail = "No true force is known here: test on a second recording (M).";
   if (replay() != nullptr && replays_training()) verdict.detail += " Tested on its own training.";
@@ -329,7 +329,7 @@ std::string LiveSession::why_no_verdict() const {
   if (!has_reference(comparison_.reference())) return reference_words();
   if (replay() != nullptr && comparison_.reference() == ReferenceKind::measured)
     return "Testing the models on " + replay()->recording().name + " ...";
-  if (comparison_.outside_s() > kJudged_s) {
+  if (comparison_.outside_s() > kLeastContact_s) {
     const std::string& name = models_.info(comparison_.mostly_outside()).name;
     return "No verdict yet: these presses are deeper or faster than what " + name + " was trained on";
   }

@@ -165,7 +165,7 @@ class LiveSession {
   Comparison comparison_;
   MotionHistory history_;
   ReplayTest test_;
-  LiveJudge judge_;
+  BackgroundEvaluation background_evaluation_;
   FaultLog faults_;
   FaultRecorder fault_recorder_;
   std::unique_ptr<SessionRecorder> recorder_;

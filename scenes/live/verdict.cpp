@@ -38,22 +38,23 @@ std::string tick_share(double tick_ns) {
   return formatted(percent < 1.0 ? "%.1g %%" : "%.2g %%", percent);
 }
 
-Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels& models, const std::string& off_from) {
+Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
+              const std::string& off_from) {
   std::vector<Candidate> candidates;
-  for (const JudgedModel* one : judged)
+  for (const EvaluatedSlot* one : evaluated)
     candidates.push_back({one->unit_errors.p99_error_over_jnd, one->unit_errors.unit_p99, one->tick});
   const Ranking ranking = rank(candidates);
   Verdict verdict;
-  const JudgedModel& chosen = *judged[ranking.recommended];
+  const EvaluatedSlot& chosen = *evaluated[ranking.recommended];
   verdict.chosen = chosen.slot;
   verdict.noticeable = chosen.unit_errors.p99_error_over_jnd > 1.0;
   std::vector<std::size_t> as_good, noticed;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
     const bool tied = std::find(ranking.qualified.begin(), ranking.qualified.end(), i) != ranking.qualified.end();
-    if (tied) verdict.tied.push_back(judged[i]->slot);
+    if (tied) verdict.tied.push_back(evaluated[i]->slot);
     if (i == ranking.recommended) continue;
-    if (tied) as_good.push_back(judged[i]->slot);
-    if (!tied && judged[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(judged[i]->slot);
+    if (tied) as_good.push_back(evaluated[i]->slot);
+    if (!tied && evaluated[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(evaluated[i]->slot);
   }
   const ModelInfo& info = models.info(chosen.slot);
   const std::string from = off_from.empty() ? "" : " from " + off_from;
@@ -69,19 +70,19 @@ Verdict judge(const std::vector<const JudgedModel*>& judged, const SessionModels
   return verdict;
 }
 
-void LiveJudge::forget() {
-  judged_.clear();
+void BackgroundEvaluation::reset() {
+  evaluated_.clear();
   discard_ = running_.valid();
   next_s_ = 0.0;
 }
 
-void LiveJudge::update(const SessionModels& models, const Comparison& comparison, double now_s) {
+void BackgroundEvaluation::update(const SessionModels& models, const Comparison& comparison, double now_s) {
   if (running_.valid()) {
     if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    std::vector<JudgedModel> made = running_.get();
-    if (!std::exchange(discard_, false)) judged_ = std::move(made);
+    std::vector<EvaluatedSlot> made = running_.get();
+    if (!std::exchange(discard_, false)) evaluated_ = std::move(made);
   }
-  if (now_s < next_s_ || comparison.counted_s() < kJudged_s) return;
+  if (now_s < next_s_ || comparison.counted_s() < kLeastContact_s) return;
   next_s_ = now_s + std::max(kInterval_s, kMoreContact * comparison.counted_s());
   struct Asked {
     std::size_t slot;
@@ -98,9 +99,9 @@ void LiveJudge::update(const SessionModels& models, const Comparison& comparison
   try {
     running_ = std::async(std::launch::async, [asked = std::move(asked)] {
       lower_thread_priority();
-      std::vector<JudgedModel> judged;
-      for (const Asked& one : asked) judged.push_back({one.slot, one.tick, one.errors.unit_errors()});
-      return judged;
+      std::vector<EvaluatedSlot> evaluated;
+      for (const Asked& one : asked) evaluated.push_back({one.slot, one.tick, one.errors.unit_errors()});
+      return evaluated;
     });
   } catch (const std::system_error&) {
     // No thread to be had: a later frame tries again.
