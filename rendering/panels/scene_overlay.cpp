@@ -175,7 +175,7 @@ BigNumber big_number(const ModelsView& models, bool has_truth) {
   }
   BigNumber big;
   const std::string& name = active->name;
-  if (active->foreign) {
+  if (active->other_material) {
     big.below = models.counted;
   } else if (!models.compared) {
     const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");

@@ -87,7 +87,7 @@ std::string counted_words(const LiveSession& session) {
   const std::size_t active = session.models().selected();
   if (!session.has_reference(comparison.reference())) return session.reference_words(true);
   if (active >= session.models().size()) return {};
-  if (session.models().info(active).foreign)
+  if (session.models().info(active).other_material)
     return "no truth to compare " + session.models().info(active).name + " with";
   if (session.tests_recording()) {
     return grouped(session.figures(active).errors.samples) + " samples in contact, all of " +

@@ -122,7 +122,7 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
     const std::size_t slot = set->slots[i];
     if (slot == PublishedSet::kRemoved) continue;
     point.force_N[slot] = static_cast<float>(snapshot.tick.force_N[i]);
-    if (models_.info(slot).foreign) point.foreign |= static_cast<std::uint16_t>(1U << slot);
+    if (models_.info(slot).other_material) point.other_material |= static_cast<std::uint16_t>(1U << slot);
   }
   return point;
 }
@@ -133,7 +133,7 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
   bool outside = false;
   for (std::size_t i = 0; i < set.slots.size(); ++i) {
     const std::size_t slot = set.slots[i];
-    if (slot == PublishedSet::kRemoved || models_.info(slot).foreign) continue;
+    if (slot == PublishedSet::kRemoved || models_.info(slot).other_material) continue;
     if ((snapshot.tick.out_of_domain_mask >> i & 1U) == 0) continue;
     outside = true;
     slots_[slot].outside_s += step_s;

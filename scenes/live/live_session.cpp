@@ -218,8 +218,8 @@ void LiveSession::remove(std::size_t slot) {
   if (models_.remove(slot)) publish(models_.info(slot).name + " was taken out");
 }
 
-void LiveSession::claim(std::size_t slot) {
-  models_.claim(slot);
+void LiveSession::treat_as_this_material(std::size_t slot) {
+  models_.treat_as_this_material(slot);
   comparison_.forget_errors(models_.info(slot).name + " joined");
 }
 

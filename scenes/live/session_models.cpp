@@ -119,7 +119,7 @@ void SessionModels::show_progress() {
 
 // A truth is one of a material: a model of something else is not wrong where it differs.
 // A recording was named together with the models that are held against it.
-bool SessionModels::is_foreign(const Slot& slot) const {
+bool SessionModels::is_of_other_material(const Slot& slot) const {
   if (!scene_.material || slot.claimed || slot.plan.origin != ModelOrigin::file) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
@@ -174,7 +174,7 @@ bool SessionModels::join(std::size_t index, FinishedModel& finished) {
   slot.info.progress = 1.0;
   slot.info.centres = slot.model->centre_count();
   slot.info.tick = finished.tick;
-  slot.info.foreign = is_foreign(slot);
+  slot.info.other_material = is_of_other_material(slot);
   if (slot.plan.origin != ModelOrigin::position) {
     slot.info.method = slot.model->method();
     std::string name = slot.model->name();
@@ -318,7 +318,7 @@ const ModelInfo& SessionModels::info(std::size_t slot) const noexcept { return s
 const std::shared_ptr<const FittedModel>& SessionModels::model(std::size_t slot) const noexcept {
   return slots_[slot]->model;
 }
-void SessionModels::claim(std::size_t slot) noexcept { slots_[slot]->info.foreign = false; }
+void SessionModels::treat_as_this_material(std::size_t slot) noexcept { slots_[slot]->info.other_material = false; }
 
 std::vector<SlotPlan> SessionModels::plans() const {
   std::vector<SlotPlan> plans;
@@ -358,7 +358,7 @@ bool SessionModels::load_file(const std::string& path) {
   join(loaded_.back(), finished);
   notices_.push_back(
       {"loaded " + slot.info.name + " from " + path +
-           (slot.info.foreign ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
+           (slot.info.other_material ? ": of " + recordings_of(*slot.model) + ", no truth to compare it with" : ""),
        false});
   return true;
 }

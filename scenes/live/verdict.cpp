@@ -92,7 +92,7 @@ void BackgroundEvaluation::update(const SessionModels& models, const Comparison&
   std::vector<Asked> asked;
   for (const std::size_t slot : models.ready_slots()) {
     const bool is_reference = comparison.reference() == ReferenceKind::direct && models.reference() == slot;
-    if (is_reference || models.info(slot).foreign || comparison.figures(slot).errors.samples == 0) continue;
+    if (is_reference || models.info(slot).other_material || comparison.figures(slot).errors.samples == 0) continue;
     asked.push_back({slot, models.info(slot).tick, comparison.model_errors(slot)});
   }
   if (asked.empty()) return;
