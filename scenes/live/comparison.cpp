@@ -68,7 +68,7 @@ ModelFigures Comparison::figures(std::size_t slot) const {
   return figures;
 }
 
-void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
+void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
   const PublishedSet* set = models_.set_of(snapshot);
   const double step_s = std::clamp(snapshot.loop_time_s - last_loop_time_s_, 0.0, kLongestStep_s);
   last_loop_time_s_ = snapshot.loop_time_s;
@@ -82,7 +82,7 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
       (!snapshot.tick.in_contact || time_s > stream_began_s_ + kSettled_memories * models_.longest_memory_s()))
     settled_ = true;
   HistoryPoint point = point_of(snapshot, set);
-  point.trouble = trouble_ = std::max(trouble_, trouble);
+  point.fault_level = fault_level_ = std::max(fault_level_, fault_level);
   // A recording that stands still says nothing new.
   const bool fresh = snapshot.samples > 0;
   if (fresh && set != nullptr) count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
@@ -94,7 +94,7 @@ void Comparison::add(const LoopSnapshot& snapshot, TickTrouble trouble) {
       point.sustained_over_jnd[i] = static_cast<float>(slots_[i].sustained_over_jnd);
   }
   history_.append(point);
-  trouble_ = TickTrouble::none;
+  fault_level_ = TickFaultLevel::none;
 }
 
 HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedSet* set) {

@@ -39,7 +39,7 @@ struct HistoryPoint {
   bool counts = true;          // in contact, without a fault, and the feature filters have settled
   bool out_of_domain = false;  // of the active model
   std::uint8_t active = 0;     // its slot
-  TickTrouble trouble = TickTrouble::none;
+  TickFaultLevel fault_level = TickFaultLevel::none;
   std::array<float, kMaxModels> force_N{};  // by slot; NaN: not ready
   // By slot: mean over 50 ms of (model - reference) / JND (sustained_error.h), signed; NaN without a comparison.
   std::array<float, kMaxModels> sustained_over_jnd{};
