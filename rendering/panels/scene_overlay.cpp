@@ -180,12 +180,12 @@ BigNumber big_number(const ModelsView& models, bool has_truth) {
   } else if (!models.compared) {
     const double guess = models.in_contact ? active->predicted_error_N / models.jnd.at(active->force_N) : std::nan("");
     if (!std::isnan(guess)) big.number = jnd_text(guess);
-    big.below = name + "'s own guess of its error (95 %); " + models.off_from;
+    big.below = name + "'s own guess of its error (95 %); " + models.reference_name;
     big.error_over_jnd = guess;
   } else if (models.selected == models.reference) {
     big.below = name + " is what the others are compared with";
   } else if (active->errors.samples == 0) {
-    big.below = "the error of " + name + " from " + models.off_from + ", from the next touch on";
+    big.below = "the error of " + name + " from " + models.reference_name + ", from the next touch on";
   } else {
     big.error_over_jnd = active->errors.p99_error_over_jnd;
     big.number = jnd_text(big.error_over_jnd);

@@ -40,7 +40,7 @@ ModelsView models_view(const LiveSession& session, double until_s) {
   const Comparison& comparison = session.comparison();
   view.compared = session.has_reference(comparison.reference());
   if (comparison.reference() == ReferenceKind::direct && view.compared) view.reference = *session.models().reference();
-  view.off_from = session.reference_words(true);
+  view.reference_name = session.reference_words(true);
   view.counted = counted_words(session);
   view.knows_this = session.replay() != nullptr && session.replays_training();
   view.jnd = session.jnd();

@@ -33,11 +33,11 @@ struct ModelsView {
   std::vector<ModelView> slots;
   std::size_t selected = 0;
   bool in_contact = false;
-  bool compared = true;                     // there is a reference
-  std::size_t reference = kReferenceBlock;  // its slot, if it is a model
-  std::string off_from = "the material";    // the reference in few words
-  std::string counted;                      // see counted_words
-  bool knows_this = false;                  // the replayed recording belongs to the training set
+  bool compared = true;                         // there is a reference
+  std::size_t reference = kReferenceBlock;      // its slot, if it is a model
+  std::string reference_name = "the material";  // the reference in few words
+  std::string counted;                          // see counted_words
+  bool knows_this = false;                      // the replayed recording belongs to the training set
   JndLine jnd{};
   Verdict verdict;
   // The last tick that the curves show.

@@ -39,7 +39,7 @@ std::string tick_share(double tick_ns) {
 }
 
 Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
-              const std::string& off_from) {
+              const std::string& reference_name) {
   std::vector<Candidate> candidates;
   for (const EvaluatedSlot* one : evaluated)
     candidates.push_back({one->unit_errors.p99_error_over_jnd, one->unit_errors.unit_p99, one->tick});
@@ -57,7 +57,7 @@ Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionM
     if (!tied && evaluated[i]->unit_errors.p99_error_over_jnd > 1.0) noticed.push_back(evaluated[i]->slot);
   }
   const ModelInfo& info = models.info(chosen.slot);
-  const std::string from = off_from.empty() ? "" : " from " + off_from;
+  const std::string from = reference_name.empty() ? "" : " from " + reference_name;
   verdict.headline =
       info.name +
       (verdict.noticeable ? ": best here, but you can feel the difference" : ": you cannot feel the difference") +

@@ -35,10 +35,10 @@ struct Verdict {
 // Contact that a verdict needs at least.
 inline constexpr double kLeastContact_s = 1.0;
 
-// `off_from`: name of the reference model; empty: the true force is known.
+// `reference_name`: name of the reference model; empty: the true force is known.
 // `models`: for names and times. `evaluated`: at least one, each with samples.
 Verdict judge(const std::vector<const EvaluatedSlot*>& evaluated, const SessionModels& models,
-              const std::string& off_from);
+              const std::string& reference_name);
 
 // The share of the tick's period of 1 ms, as "0.04 %".
 std::string tick_share(double tick_ns);

@@ -115,7 +115,7 @@ TEST(PanelWords, WithoutATruthTheBigNumberSaysSo) {
   ModelView& greedy = models.slots[0];
   // What the model predicts of itself, of 0.13 N at 1 N.
   models.compared = false;
-  models.off_from = "no truth to compare with";
+  models.reference_name = "no truth to compare with";
   EXPECT_EQ(big_number(models, false).number, "–") << "it does not know";
   greedy.force_N = 1.0;
   greedy.predicted_error_N = 0.5 * JndLine{}.at(1.0);
