@@ -20,7 +20,7 @@ void Block::reset(double position_m) noexcept {
   velocity_m_per_s_ = 0.0;
   surface_m_ = std::max(0.0, position_m);
   force_N_ = 0.0;
-  forget(surface_m_);
+  reset_state(surface_m_);
 }
 
 double Block::step(double position_m, double velocity_m_per_s, double dt_s) noexcept {
@@ -81,7 +81,7 @@ double Block::free_surface_m(double depth_m, double depth_residual_N) const noex
 }
 
 void Block::move_surface(double surface_m, bool touching) noexcept {
-  settle(surface_m, touching);
+  update_state(surface_m, touching);
   surface_m_ = surface_m > kFlat_m ? surface_m : 0.0;
 }
 
