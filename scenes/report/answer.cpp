@@ -17,13 +17,13 @@ constexpr double kGoodShare = 0.9;
 // A share that moves by less is no reason to speak of the surface.
 constexpr double kShareThatMatters = 0.005;
 
-Words number(const ModelResult& model, const char* figure, const std::string& text) {
+SentencePart number(const ModelResult& model, const char* figure, const std::string& text) {
   return {text, model.plan.name, figure};
 }
 
-Words name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
+SentencePart name(const ModelResult& model) { return {model.plan.name, model.plan.name}; }
 
-Words tick(const ModelResult& model) {
+SentencePart tick(const ModelResult& model) {
   return number(model, "tick_ns", with_thousands(fixed(model.time.tick.median_ns, 0)) + " ns");
 }
 
@@ -37,7 +37,7 @@ Sentence errors_of(const ModelResult& model) {
   const UnitErrors& errors = model.errors;
   Sentence sentence{number(model, "within_jnd", percent(errors.within_jnd)),
                     {" of the test is within what a hand can notice ("}};
-  const Words beyond =
+  const SentencePart beyond =
       number(model, "beyond_units", std::to_string(errors.units_above_jnd) + " of " + unit_words(errors) + " beyond");
   if (!errors.has_intervals()) {
     append(sentence, {beyond, {", too few for an interval"}});
@@ -127,7 +127,7 @@ Sentence answer(const ReportData& data) {
 
 std::string html_of(const Sentence& sentence) {
   std::string html;
-  for (const Words& words : sentence) {
+  for (const SentencePart& words : sentence) {
     const std::string text = escape_html(words.text);
     const std::string model = "<span data-model=\"" + escape_html(words.model) + "\" data-figure=\"";
     html += words.model.empty()    ? text
@@ -139,7 +139,7 @@ std::string html_of(const Sentence& sentence) {
 
 std::string plain_text_of(const Sentence& sentence) {
   std::string text;
-  for (const Words& words : sentence) text += words.text;
+  for (const SentencePart& words : sentence) text += words.text;
   return text.substr(0, text.find_last_not_of(' ') + 1);
 }
 

@@ -73,7 +73,7 @@ void share_scale(Panel& one, Panel& other) {
 }  // namespace
 
 Hue model_colour(const PlannedModel& plan) {
-  return plan.recipe == Recipe::nothing ? kMutedColour : plan.request.method->colour;
+  return plan.recipe == Recipe::no_force ? kMutedColour : plan.request.method->colour;
 }
 
 Figure speed_figure(const ReportData& data) {

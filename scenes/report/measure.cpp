@@ -77,7 +77,7 @@ class Measurement {
   double expected_total() const {
     double total = 2.0 * kPrepareSeconds;
     for (const ModelResult& one : data_.models) {
-      if (one.plan.recipe != Recipe::nothing) total += one.plan.request.method->expected_seconds(one.plan.request);
+      if (one.plan.recipe != Recipe::no_force) total += one.plan.request.method->expected_seconds(one.plan.request);
     }
     return static_cast<double>(recordings_.folds.size()) *
            (total + kEvaluateSeconds * static_cast<double>(data_.models.size()));
@@ -103,7 +103,7 @@ class Measurement {
     std::map<std::pair<Recipe, const Method*>, std::pair<MethodFit, double>> bases;
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const PlannedModel& plan = data_.models[i].plan;
-      if (plan.recipe == Recipe::nothing) continue;
+      if (plan.recipe == Recipe::no_force) continue;
       const auto base = bases.find({plan.recipe, plan.request.method->base});
       const auto start = std::chrono::steady_clock::now();
       const PreparedTraining& on = prepared.of(plan.recipe);

@@ -31,7 +31,7 @@ bool is_slow(const Method& method) { return &method == &kDirectMethod || method.
 }  // namespace
 
 std::vector<PlannedModel> make_plan(bool quick, std::size_t features) {
-  std::vector<PlannedModel> plan{planned(Recipe::nothing, kTrendMethod, kMainCentres),
+  std::vector<PlannedModel> plan{planned(Recipe::no_force, kTrendMethod, kMainCentres),
                                  planned(Recipe::trend, kTrendMethod, kMainCentres)};
   plan[0].name = "no force";
   for (const Recipe of : {Recipe::paper, Recipe::palpate}) {
