@@ -49,7 +49,7 @@ void DemoApp::draw() {
                                  use_device(device);
                                },
                                [this](const std::string& name) { use_line_up(*find_line_up(name)); },
-                               [this] { start_offer(); }};
+                               [this] { use_recording_roles(); }};
   overlay_.draw(*session_, shown_, *blocks_, view_, style_, area, toasts_, actions);
   if (view_.exhibit.on) {
     exhibit_.draw(*session_, shown_, *blocks_, style_, layout);

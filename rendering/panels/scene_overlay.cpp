@@ -241,13 +241,13 @@ void SceneOverlay::draw(LiveSession& session, const WindowView& shown, const Blo
   draw_recording(session, style, area);
   draw_replay_bar(session, area, buttons, *actions.commands);
   if (!view.exhibit.on) buttons_height_ = draw_buttons(area, *actions.commands);
-  if (!view.dialogs.offer.any()) draw_device_words(session, style, area);
+  if (!view.dialogs.recording_roles.any()) draw_device_words(session, style, area);
   draw_toasts(toasts, style, area, top_px + 0.5F * line);
   draw_file_picker(view, actions);
   draw_device_list(view, session.device_name(), actions);
   draw_scene_list(session, view, actions);
   draw_view_list(session, view, actions);
-  draw_offer(view, actions);
+  draw_recording_roles(view, actions);
   draw_help(view, style, *actions.commands);
 }
 

@@ -24,7 +24,7 @@ namespace palpate {
 struct OverlayActions {
   const std::vector<WindowCommand>* commands = nullptr;  // for the buttons and the list of keys
   std::function<void(const std::string&)> use_scene, open, use_device, use_line_up;
-  std::function<void()> start_offer;  // trains and tests by Dialogs::offer
+  std::function<void()> use_recording_roles;  // trains and tests by Dialogs::recording_roles
 };
 
 // Sentences of the overlay; may be empty.
