@@ -258,7 +258,7 @@ void DemoApp::reopen(const SessionRequest& request) {
   blocks_framed_ = 0;
   panel_ = SidePanel{};  // no curve of the old one
   view_.time = CurveTime{};
-  view_.feel = false;
+  view_.scales_force = false;
   view_.time.zero_s = steady_now_s();
   look();
 }

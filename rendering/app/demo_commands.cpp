@@ -96,10 +96,10 @@ std::vector<WindowCommand> DemoApp::make_commands() {
        .help = "make the active model stiffer or more damped in the hand, and as it is again",
        .run =
            [this](std::size_t) {
-             turn(view_.feel);
+             turn(view_.scales_force);
              session_->use_scale({});
            },
-       .on = [this] { return view_.feel; }},
+       .on = [this] { return view_.scales_force; }},
       {.keys = {GLFW_KEY_B},
        .help = "one, two or four blocks side by side",
        .run = [this](std::size_t) { next_block_count(); }},

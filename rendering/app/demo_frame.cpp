@@ -96,7 +96,7 @@ std::vector<BlockPose> DemoApp::true_poses() const {
   pose.tool_m = frozen ? now.position_m : static_cast<float>(session_->newest().tick.position_m);
   pose.dent_m = std::max(0.0F, pose.tool_m);
   std::vector<BlockPose> poses;
-  for (const std::size_t slot : shown_.stage)
+  for (const std::size_t slot : shown_.blocks)
     poses.push_back(slot == kReferenceBlock ? reference_pose(pose) : model_pose(slot, pose));
   // Before the first model is ready: a block nobody has a model of yet.
   if (poses.empty()) {

@@ -119,7 +119,7 @@ struct ViewState {
   ExhibitState exhibit;
   CurveTime time;
   TableState table;
-  bool feel = false;                                   // shows the sliders that scale the rendered force
+  bool scales_force = false;                           // shows the sliders that scale the rendered force
   bool exaggerated = false;                            // arrows show ten times the difference
   bool centres_together = true;                        // the slider of centres refits all models that have centres
   int requested_centres = 0;                           // last value of that slider

@@ -219,14 +219,14 @@ class DefaultStart : public test::DemoWindowTest {
   }
 };
 
-// The sentence is of the model that stands on the stage, and of the table's numbers.
+// The sentence names a model that has a block, with the numbers of the table.
 TEST_F(DefaultStart, TheHeadlineIsOfAModelOnTheStageAndOfTheTablesNumbers) {
   open_as_started();
   ASSERT_TRUE(until([&] { return app_->shown().models.verdict.chosen.has_value(); }));
   const WindowView& shown = app_->shown();
   const std::size_t chosen = *shown.models.verdict.chosen;
   const ModelView& best = shown.models.slots[chosen];
-  EXPECT_EQ(std::count(shown.stage.begin(), shown.stage.end(), chosen), 1);
+  EXPECT_EQ(std::count(shown.blocks.begin(), shown.blocks.end(), chosen), 1);
   EXPECT_EQ(shown.models.verdict.headline.rfind(best.name + ": ", 0), 0u) << shown.models.verdict.headline;
   EXPECT_NE(shown.models.verdict.headline.find(tick_share(best.tick_ns())), std::string::npos);
   const nlohmann::json stats = nlohmann::json::parse(stats_text(app_->session(), shown, app_->frames()));

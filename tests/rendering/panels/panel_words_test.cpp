@@ -88,9 +88,9 @@ TEST(PanelWords, WarnsOutOfDomainOnlyInContactAndOfTheActiveModel) {
   EXPECT_EQ(data_warning(models), "");
   models.in_contact = true;
   EXPECT_NE(data_warning(models).find("greedy-100"), std::string::npos);
-  models.knows_this = true;
+  models.replays_training = true;
   EXPECT_EQ(data_warning(models), "") << "it was trained on this recording";
-  models.knows_this = false;
+  models.replays_training = false;
   models.selected = 1;
   EXPECT_EQ(data_warning(models), "");
 }
