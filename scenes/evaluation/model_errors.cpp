@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kOneSided = 0.05;
 
-// The smallest value that at least 99 % of those from `begin` to `end` do not exceed.
+// The smallest of the values from `begin` to `end` that at least 99 % of them do not exceed.
 double percentile_99(std::vector<float>::const_iterator begin, std::vector<float>::const_iterator end) {
   std::vector<float> values(begin, end);
   const std::size_t rank = (values.size() * 99 + 99) / 100;  // rounded up, from 1
