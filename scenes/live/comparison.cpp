@@ -7,11 +7,11 @@
 namespace palpate {
 namespace {
 
-// A longer gap between snapshots is a stall, in which the picture stood still.
+// A longer gap between two snapshots is a stall; only this part of it counts as time.
 constexpr double kLongestStep_s = 0.1;
-// A tick takes several samples of a quick recording.
+// A stream that begins this soon after the recording's first sample is settled: one tick may take several samples.
 constexpr double kBeginning_s = 0.05;
-// After so many times its time constant a first-order filter is within 1 % of its input.
+// After 5 time constants a first-order filter has less than 1 % of its initial error.
 constexpr double kSettled_memories = 5.0;
 
 }  // namespace
@@ -83,7 +83,7 @@ void Comparison::add(const LoopSnapshot& snapshot, TickFaultLevel fault_level) {
     settled_ = true;
   HistoryPoint point = point_of(snapshot, set);
   point.fault_level = fault_level_ = std::max(fault_level_, fault_level);
-  // A recording that stands still says nothing new.
+  // While a replay is paused, ticks have no new sample.
   const bool fresh = snapshot.samples > 0;
   if (fresh && set != nullptr) count(point, snapshot, *set, std::clamp(time_s - last_time_s_, 0.0, kLongestStep_s));
   for (Slot& slot : slots_) slot.dent.step(snapshot.tick.depth_m, std::abs(slot.sustained_over_jnd), step_s);
@@ -129,7 +129,7 @@ HistoryPoint Comparison::point_of(const LoopSnapshot& snapshot, const PublishedS
 
 void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, const PublishedSet& set,
                        double step_s) {
-  // Where one model is out of domain, none is compared.
+  // Where one model is outside its training domain, the sample counts for no model.
   bool outside = false;
   for (std::size_t i = 0; i < set.slots.size(); ++i) {
     const std::size_t slot = set.slots[i];
@@ -145,7 +145,7 @@ void Comparison::count(const HistoryPoint& point, const LoopSnapshot& snapshot, 
         slots_[slot].sustained.add(point.time_s, std::isnan(difference) ? 0.0 : difference);
   }
   if (strokes_.begins_stroke(point.time_s, point.in_contact)) stroke_pending_ = true;
-  // Of a set before the newest: a model that joined is not in it.
+  // A snapshot of an earlier set lacks the models that joined since.
   if (&set != models_.newest_set() || std::isnan(point.reference_N) || !point.in_contact) return;
   contact_s_ += step_s;
   if (outside) outside_s_ += step_s;

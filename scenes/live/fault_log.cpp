@@ -35,7 +35,7 @@ TickFaultLevel FaultLog::update(const LoopSnapshot& snapshot) {
   return fault_level;
 }
 
-// Once when it begins, however long it lasts.
+// Logs each device fault once, when it begins.
 void FaultLog::update_device(std::uint32_t faults, double at_s) {
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     const bool begins = (faults & ~device_faults_ & kFaults[i].bit) != 0;

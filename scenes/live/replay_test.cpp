@@ -31,7 +31,7 @@ bool ReplayTest::update(const SessionModels& models) {
       return run(ready);
     });
   } catch (const std::system_error&) {
-    // No thread to be had: positions stay as recorded, and errors are those of the ticks.
+    // Without a thread, positions stay as recorded, and the errors are those of the ticks.
   }
   return false;
 }

@@ -23,18 +23,18 @@ std::string recordings_of(const FittedModel& model) {
 struct SessionModels::Slot {
   ModelInfo info;
   SlotPlan plan;
-  std::size_t job = 0;                       // of the worker
-  int asked_centres = 0;                     // of the plan, before it was changed by hand
+  std::size_t job = 0;                       // id of the worker's job
+  int asked_centres = 0;                     // of the plan, before the user changed the number
   std::shared_ptr<const FittedModel> model;  // null until ready
   bool removed = false;
-  bool claimed = false;  // of a file: somebody said that it is of this material
+  bool claimed = false;  // the user said that this model file is of this material
 
   bool hidden() const { return info.state == SlotState::hidden; }
   bool takes_part() const { return model != nullptr && !hidden(); }
   void show() {
     info.state = model != nullptr ? SlotState::ready : info.problem.empty() ? SlotState::waiting : SlotState::failed;
   }
-  bool is(const SlotPlan& other) const {  // which is no file
+  bool is(const SlotPlan& other) const {  // `other` is not a file
     return !removed && plan.origin == other.origin && plan.method == other.method && plan.paper == other.paper &&
            asked_centres == other.centres;
   }
@@ -60,7 +60,7 @@ Status SessionModels::start(const std::vector<SlotPlan>& plans, bool claimed) {
   return worker_->start();
 }
 
-// In the place of one that was removed, else of one that is hidden, as long as there are enough places.
+// Reuses the slot of a removed model; if all kMaxModels slots exist, that of a hidden model; else appends a slot.
 SessionModels::Slot& SessionModels::add_slot(const SlotPlan& plan) {
   const auto usable = [&](bool removed) {
     return std::find_if(slots_.begin(), slots_.end(), [&](const auto& slot) {
@@ -91,9 +91,9 @@ std::vector<std::size_t> SessionModels::update() {
   std::vector<std::size_t> ready = std::exchange(loaded_, {});
   for (FinishedModel& finished : worker_->read_finished()) {
     const std::optional<std::size_t> index = slot_of_job(finished.job_id);
-    if (!index) continue;  // it was removed meanwhile
+    if (!index) continue;  // the model was removed meanwhile
     Slot& slot = *slots_[*index];
-    // Asked for again while it was made: the newer one counts.
+    // The user has asked for another number of centres meanwhile: another fit follows.
     const bool old = slot.info.refitting && finished.plan.centres != slot.plan.centres;
     if (join(*index, finished)) ready.push_back(*index);
     slot.info.refitting = old;
@@ -117,13 +117,13 @@ void SessionModels::show_progress() {
   if (info.state == SlotState::fitting) info.progress = progress.share;
 }
 
-// A truth is one of a material: a model of something else is not wrong where it differs.
-// A recording was named together with the models that are held against it.
+// A model file of another material is not wrong where it differs from the true force of this one. Recordings that the
+// user named count as the material of all models.
 bool SessionModels::is_of_other_material(const Slot& slot) const {
   if (!scene_.material || slot.claimed || slot.plan.origin != ModelOrigin::file) return false;
   const std::vector<std::string>& recordings = slot.model->data().provenance.recordings;
   return std::any_of(recordings.begin(), recordings.end(), [&](const std::string& name) {
-    const std::string start = *scene_.material + "_";  // as the rig names its own
+    const std::string start = *scene_.material + "_";  // the rig names its recordings MATERIAL_SEED
     return name.rfind(start, 0) != 0 || name.find_first_not_of("0123456789", start.size()) != std::string::npos;
   });
 }
@@ -165,7 +165,7 @@ bool SessionModels::join(std::size_t index, FinishedModel& finished) {
   if (finished.model == nullptr) {
     notices_.push_back({slot.info.name + ": " + finished.problem, true});
     slot.info.problem = finished.problem;
-    if (!slot.hidden()) slot.show();  // an old one stays
+    if (!slot.hidden()) slot.show();  // an earlier model stays in use
     return false;
   }
   const bool first = ready_slots().empty();
@@ -207,7 +207,7 @@ void SessionModels::use_plans(const std::vector<SlotPlan>& plans) {
   select_what_is_there();
 }
 
-// The active model must be one that takes part, as soon as there is one.
+// If the active model is not shown, selects the first shown model, if there is one.
 void SessionModels::select_what_is_there() {
   const auto shown = ready_slots();
   if (!shown.empty() && !slots_[selected_]->takes_part()) selected_ = shown.front();
@@ -222,12 +222,12 @@ bool SessionModels::remove(std::size_t index) {
   }
   slot.removed = true;
   slot.info.state = SlotState::hidden;
-  if (direct_ != index) free(index);  // which stays as the reference
+  if (direct_ != index) free(index);  // the reference keeps its slot
   select_what_is_there();
   return true;
 }
 
-// Another model may have its place from now on.
+// Removes the slot from all published sets, so that another model may use it.
 void SessionModels::free(std::size_t index) {
   freed_.push_back(index);
   for (PublishedSet& set : sets_) std::replace(set.slots.begin(), set.slots.end(), index, PublishedSet::kRemoved);
@@ -287,7 +287,7 @@ std::unique_ptr<LiveModels> SessionModels::make_set(const SensorSpec& sensor,
   set.id = sets_.empty() ? 1 : sets_.back().id + 1;
   std::vector<std::shared_ptr<const ForceModel>> models;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    // The reference stays, also where it is not shown.
+    // The reference is in every set, even when it is hidden.
     if (!slots_[i]->takes_part() && !(direct_ == i && slots_[i]->model != nullptr)) continue;
     models.push_back(slots_[i]->model);
     set.slots.push_back(i);

@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 constexpr double kTick_ns = 1e6;
-// Between two resamplings, and of the contact so far: more of the same changes little.
+// The interval between two evaluations, and its share of the contact so far: a few more samples change little.
 constexpr double kInterval_s = 2.0;
 constexpr double kMoreContact = 0.1;
 
@@ -104,7 +104,7 @@ void BackgroundEvaluation::update(const SessionModels& models, const Comparison&
       return evaluated;
     });
   } catch (const std::system_error&) {
-    // No thread to be had: a later frame tries again.
+    // Without a thread, a later frame tries again.
   }
 }
 
