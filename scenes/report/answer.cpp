@@ -12,9 +12,9 @@ namespace palpate {
 namespace {
 
 constexpr double kBudget_ns = 1e6;
-// With less of the test within the JND no model is recommended.
+// No model is recommended if less than this share of the test samples is within the JND.
 constexpr double kGoodShare = 0.9;
-// A share that moves by less is no reason to speak of the surface.
+// The answer mentions the surface only if moving it changes the share within the JND by more.
 constexpr double kShareThatMatters = 0.005;
 
 SentencePart number(const ModelResult& model, const char* figure, const std::string& text) {
@@ -59,7 +59,7 @@ Sentence errors_of(const ModelResult& model) {
   return sentence;
 }
 
-// Time and error of `other` against the recommended model.
+// Compares time and error of `other` with the recommended model.
 Sentence compared(const ModelResult& other, const ModelResult& recommended) {
   const PairedDifference difference = paired_difference(other.errors, recommended.errors);
   Sentence sentence{

@@ -51,7 +51,7 @@ double largest_force_N(const ReportData& data) {
   return largest;
 }
 
-// What a reader must know to believe the first screen.
+// Notes on how the numbers of the first screen were obtained.
 std::string notes_html(const ReportData& data) {
   std::vector<std::string> notes;
   notes.push_back(

@@ -36,7 +36,7 @@ std::string shown(const TableCell& cell, const TableColumn& column) {
                                                       : with_thousands(fixed(value, column.decimals));
 }
 
-// What is shown under the cell `first - 1`: the next one, or an interval of the next two.
+// The small text below the cell `first - 1`: the next value, or the next two as an interval.
 std::string under_html(const std::vector<TableCell>& row, std::size_t first, const TableColumn& column) {
   if (column.under == 0) return {};
   const std::string low = shown(row[first], column);
